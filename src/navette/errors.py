@@ -1,0 +1,79 @@
+"""Every exception Navette raises on purpose.
+
+    NavetteError
+    ├── InvalidValueError (ValueError)      a value is out of range or malformed
+    │   ├── ParameterError                  a parameter: unknown, mistyped, out of range
+    │   ├── InvalidNameError                a node, topic or frame name
+    │   └── MessageError                    a message field: type, range, length
+    ├── UnknownNameError (LookupError)      a type, frame, robot, world that is not there
+    ├── FileFormatError (ValueError)        a file: carries path and line
+    ├── DecodeError (ValueError)            bytes that are not what they claim to be
+    ├── TransformError                      a transform that cannot be given
+    └── CallbackError (RuntimeError)        a callback raised: node, topic, stamp
+"""
+
+from pathlib import Path
+
+
+class NavetteError(Exception):
+    """Base of the package; catch this to catch them all."""
+
+
+class InvalidValueError(NavetteError, ValueError):
+    """A value is not allowed; the text names thing, value and what is allowed."""
+
+
+class ParameterError(InvalidValueError):
+    """A parameter is unknown, of the wrong type or out of range."""
+
+
+class InvalidNameError(InvalidValueError):
+    """A node, topic, namespace or frame name breaks the naming rules."""
+
+
+class MessageError(InvalidValueError, TypeError):
+    """A message field got a value of the wrong type, range or length.
+
+    Also a ``TypeError``, because that is what rclpy users expect of a wrong type.
+    """
+
+
+class UnknownNameError(NavetteError, LookupError):
+    """Something was asked for by a name that nobody has; the text lists those known."""
+
+    @classmethod
+    def of(cls, kind: str, name: str, known: list[str]) -> "UnknownNameError":
+        listed = ", ".join(sorted(known)) or "none"
+        return cls(f"unknown {kind} {name!r}; known: {listed}")
+
+
+class FileFormatError(NavetteError, ValueError):
+    """A file cannot be read as what it should be."""
+
+    def __init__(self, path: Path | str, reason: str, line: int | None = None) -> None:
+        where = f"{path}:{line}" if line is not None else f"{path}"
+        super().__init__(f"{where}: {reason}")
+        self.path = Path(path)
+        self.line = line
+        self.reason = reason
+
+
+class DecodeError(NavetteError, ValueError):
+    """Bytes do not decode as the type they are said to be."""
+
+
+class TransformError(NavetteError):
+    """A transform is unknown, not connected or outside the buffered time."""
+
+
+class CallbackError(NavetteError, RuntimeError):
+    """A callback raised; the original exception is the ``__cause__``."""
+
+    def __init__(self, node: str, source: str, stamp_ns: int, cause: object) -> None:
+        super().__init__(
+            f"node {node}: callback of {source} raised at "
+            f"{stamp_ns / 1e9:.3f} s: {type(cause).__name__}: {cause}"
+        )
+        self.node = node
+        self.source = source
+        self.stamp_ns = stamp_ns

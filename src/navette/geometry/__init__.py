@@ -1,0 +1,26 @@
+"""Poses, angles, footprints: the shared words about where things are."""
+
+from navette.geometry.angles import angle_difference, wrap_angle
+from navette.geometry.footprint import Footprint
+from navette.geometry.se2 import Pose2
+from navette.geometry.se3 import (
+    Quaternion,
+    Transform3,
+    Vector3,
+    quaternion_from_rpy,
+    quaternion_from_yaw,
+    yaw_of,
+)
+
+__all__ = [
+    "Pose2",
+    "Transform3",
+    "Quaternion",
+    "Vector3",
+    "quaternion_from_rpy",
+    "quaternion_from_yaw",
+    "yaw_of",
+    "angle_difference",
+    "wrap_angle",
+    "Footprint",
+]

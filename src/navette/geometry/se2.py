@@ -1,0 +1,54 @@
+"""Poses in the plane: SE(2).
+
+A pose named ``map_T_base`` takes points given in ``base`` to ``map``:
+``p_map = map_T_base.apply(p_base)``; inner names match when multiplied:
+``map_T_scan = map_T_base @ base_T_scan``.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry.angles import angle_difference, wrap_angle
+
+
+class Pose2(NamedTuple):
+    """A planar pose: position (m) and yaw (rad, counter-clockwise from +x)."""
+
+    x: float
+    y: float
+    yaw: float
+
+    def __matmul__(self, other: "Pose2") -> "Pose2":
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        return Pose2(
+            self.x + c * other.x - s * other.y,
+            self.y + s * other.x + c * other.y,
+            wrap_angle(self.yaw + other.yaw),
+        )
+
+    def inverse(self) -> "Pose2":
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        return Pose2(
+            -c * self.x - s * self.y, s * self.x - c * self.y, wrap_angle(-self.yaw)
+        )
+
+    def apply(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points (N, 2) in the inner frame → (N, 2) in the outer frame, metres."""
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        rotation = np.array([[c, s], [-s, c]])
+        return np.asarray(points, np.float64) @ rotation + (self.x, self.y)
+
+    def distance_to(self, other: "Pose2") -> float:
+        """Distance between the two positions, metres."""
+        return math.hypot(other.x - self.x, other.y - self.y)
+
+    def interpolate(self, other: "Pose2", fraction: float) -> "Pose2":
+        """Between ``self`` (0) and ``other`` (1): straight line, short way round."""
+        return Pose2(
+            self.x + fraction * (other.x - self.x),
+            self.y + fraction * (other.y - self.y),
+            wrap_angle(self.yaw + fraction * angle_difference(other.yaw, self.yaw)),
+        )

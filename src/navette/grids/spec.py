@@ -1,0 +1,68 @@
+"""Where a grid lies: resolution, size and origin."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+
+
+@dataclass(frozen=True)
+class GridSpec:
+    """Geometry of a grid stored as ``data[row, column]`` = ``data[y, x]``.
+
+    ``origin`` is the pose of the outer corner of cell (0, 0) in the grid's frame,
+    as in nav_msgs/MapMetaData; a cell's centre lies half a cell further in.
+    """
+
+    resolution: float
+    width: int
+    height: int
+    origin: Pose2 = Pose2(0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.resolution) and self.resolution > 0):
+            raise InvalidValueError(
+                f"grid resolution {self.resolution!r}: wanted a finite value > 0 m"
+            )
+        if self.width < 1 or self.height < 1:
+            raise InvalidValueError(
+                f"grid of {self.width} x {self.height} cells: wanted at least 1 x 1"
+            )
+        if not all(map(math.isfinite, self.origin)):
+            raise InvalidValueError(f"grid origin {self.origin}: wanted finite values")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(height, width): the shape of the data array."""
+        return (self.height, self.width)
+
+    def cell_of(self, x: float, y: float) -> tuple[int, int]:
+        """(row, column) of the cell that holds the point (m, grid's frame).
+
+        Points outside give indices outside; ask :meth:`contains`.
+        """
+        dx, dy = x - self.origin.x, y - self.origin.y
+        c, s = math.cos(self.origin.yaw), math.sin(self.origin.yaw)
+        column = math.floor((c * dx + s * dy) / self.resolution)
+        row = math.floor((c * dy - s * dx) / self.resolution)
+        return row, column
+
+    def center_of(self, row: int, column: int) -> tuple[float, float]:
+        """Centre (x, y) of a cell in metres in the grid's frame."""
+        u = (column + 0.5) * self.resolution
+        v = (row + 0.5) * self.resolution
+        c, s = math.cos(self.origin.yaw), math.sin(self.origin.yaw)
+        return self.origin.x + c * u - s * v, self.origin.y + s * u + c * v
+
+    def centers_of(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Centres (N, 2) x, y in metres of cells (N, 2) row, column."""
+        uv = (cells[:, ::-1].astype(np.float64) + 0.5) * self.resolution
+        return self.origin.apply(uv)
+
+    def contains(self, row: int, column: int) -> bool:
+        """Whether the cell lies in the grid."""
+        return 0 <= row < self.height and 0 <= column < self.width

@@ -1,0 +1,154 @@
+"""Parameters of a stage as a frozen dataclass: value, unit, range, meaning.
+
+A stage writes::
+
+    @dataclass(frozen=True, kw_only=True)
+    class CostmapParams(Params):
+        resolution: float = param(0.1, "edge of a cell", unit="m", above=0.0)
+
+and gets validation on construction. The runtime declares the fields as ROS 2
+parameters with the same text and range, so they are written once.
+"""
+
+import dataclasses
+import math
+import types
+import typing
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from navette.errors import ParameterError
+
+
+@dataclass(frozen=True)
+class ParamInfo:
+    """What a parameter means and which values it takes (bounds in its unit)."""
+
+    meaning: str
+    unit: str = ""
+    at_least: float | None = None
+    at_most: float | None = None
+    above: float | None = None
+    below: float | None = None
+    choices: tuple[str, ...] = ()
+
+    def allowed(self) -> str:
+        """The allowed values in words, for messages and the docs table."""
+        if self.choices:
+            return "one of " + ", ".join(self.choices)
+        bounds = [
+            f"{sign} {bound:g}"
+            for sign, bound in (
+                (">=", self.at_least),
+                (">", self.above),
+                ("<=", self.at_most),
+                ("<", self.below),
+            )
+            if bound is not None
+        ]
+        return " and ".join(bounds) or "any"
+
+
+_KEY = "navette.param"
+
+
+def param(
+    default: Any,
+    meaning: str,
+    *,
+    unit: str = "",
+    at_least: float | None = None,
+    at_most: float | None = None,
+    above: float | None = None,
+    below: float | None = None,
+    choices: Sequence[str] = (),
+) -> Any:
+    """A dataclass field that carries its :class:`ParamInfo`."""
+    info = ParamInfo(meaning, unit, at_least, at_most, above, below, tuple(choices))
+    return dataclasses.field(default=default, metadata={_KEY: info})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Params:
+    """Base of every stage's parameters: checks each field on construction.
+
+    Allowed field types: bool, int, float, str and tuples of these (ROS 2 arrays).
+    An int given for a float is converted; everything else of a wrong type raises.
+
+    Raises:
+        ParameterError: names the field, the value and what is allowed.
+    """
+
+    def __post_init__(self) -> None:
+        hints = typing.get_type_hints(type(self))
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            value = _convert(field.name, value, hints[field.name])
+            _check_range(field.name, value, info_of(field))
+            object.__setattr__(self, field.name, value)
+        self.check()
+
+    def check(self) -> None:
+        """Override to test conditions between fields."""
+
+    @classmethod
+    def from_dict(cls, values: dict[str, Any]) -> typing.Self:
+        """Build from plain values; an unknown key raises and lists the known ones."""
+        known = [field.name for field in dataclasses.fields(cls)]
+        for key in values:
+            if key not in known:
+                raise ParameterError(
+                    f"unknown parameter {key!r}; known: {', '.join(sorted(known))}"
+                )
+        return cls(**values)
+
+
+def info_of(field: "dataclasses.Field[Any]") -> ParamInfo:
+    """The :class:`ParamInfo` of a dataclass field made by :func:`param`."""
+    info = field.metadata.get(_KEY)
+    return info if isinstance(info, ParamInfo) else ParamInfo(field.name)
+
+
+def _convert(name: str, value: Any, hint: Any) -> Any:
+    if isinstance(hint, types.GenericAlias) and hint.__origin__ is tuple:
+        if isinstance(value, str) or not isinstance(value, Sequence):
+            raise _wrong_type(name, value, hint)
+        return tuple(_convert(name, item, hint.__args__[0]) for item in value)
+    if hint is float and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if hint is int and isinstance(value, bool):
+        raise _wrong_type(name, value, hint)
+    if not isinstance(value, hint):
+        raise _wrong_type(name, value, hint)
+    return value
+
+
+def _wrong_type(name: str, value: Any, hint: Any) -> ParameterError:
+    wanted = getattr(hint, "__name__", str(hint))
+    return ParameterError(
+        f"parameter {name!r}: {value!r} is {type(value).__name__}, wanted {wanted}"
+    )
+
+
+def _check_range(name: str, value: Any, info: ParamInfo) -> None:
+    for item in value if isinstance(value, tuple) else (value,):
+        if not _in_range(item, info):
+            raise ParameterError(
+                f"parameter {name!r}: {item!r} is not allowed; "
+                f"wanted {info.allowed()}{' ' + info.unit if info.unit else ''}"
+            )
+
+
+def _in_range(value: Any, info: ParamInfo) -> bool:
+    if isinstance(value, str):
+        return not info.choices or value in info.choices
+    if isinstance(value, bool):
+        return True
+    return (
+        math.isfinite(value)
+        and (info.at_least is None or value >= info.at_least)
+        and (info.at_most is None or value <= info.at_most)
+        and (info.above is None or value > info.above)
+        and (info.below is None or value < info.below)
+    )
