@@ -1,15 +1,15 @@
 """Every exception Navette raises on purpose.
 
-    NavetteError
-    ├── InvalidValueError (ValueError)      a value is out of range or malformed
-    │   ├── ParameterError                  a parameter: unknown, mistyped, out of range
-    │   ├── InvalidNameError                a node, topic or frame name
-    │   └── MessageError                    a message field: type, range, length
-    ├── UnknownNameError (LookupError)      a type, frame, robot, world that is not there
-    ├── FileFormatError (ValueError)        a file: carries path and line
-    ├── DecodeError (ValueError)            bytes that are not what they claim to be
-    ├── TransformError                      a transform that cannot be given
-    └── CallbackError (RuntimeError)        a callback raised: node, topic, stamp
+NavetteError
+├── InvalidValueError (ValueError)      a value is out of range or malformed
+│   ├── ParameterError                  a parameter: unknown, mistyped, out of range
+│   ├── InvalidNameError                a node, topic or frame name
+│   └── MessageError                    a message field: type, range, length
+├── UnknownNameError (LookupError)      a type, frame, robot or world not there
+├── FileFormatError (ValueError)        a file: carries path and line
+├── DecodeError (ValueError)            bytes that are not what they claim to be
+├── TransformError                      a transform that cannot be given
+└── CallbackError (RuntimeError)        a callback raised: node, topic, stamp
 """
 
 from pathlib import Path

@@ -39,7 +39,8 @@ class Pose2(NamedTuple):
         """Points (N, 2) in the inner frame → (N, 2) in the outer frame, metres."""
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         rotation = np.array([[c, s], [-s, c]])
-        return np.asarray(points, np.float64) @ rotation + (self.x, self.y)
+        moved: NDArray[np.float64] = points @ rotation + (self.x, self.y)
+        return moved
 
     def distance_to(self, other: "Pose2") -> float:
         """Distance between the two positions, metres."""

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 
+_ORIGIN = Pose2(0.0, 0.0, 0.0)
+
 
 @dataclass(frozen=True)
 class GridSpec:
@@ -21,7 +23,7 @@ class GridSpec:
     resolution: float
     width: int
     height: int
-    origin: Pose2 = Pose2(0.0, 0.0, 0.0)
+    origin: Pose2 = _ORIGIN
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.resolution) and self.resolution > 0):

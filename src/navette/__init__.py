@@ -1,0 +1,1 @@
+"""Robot navigation that you pip install."""
