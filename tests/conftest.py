@@ -1,0 +1,24 @@
+"""Settings shared by all tests."""
+
+import os
+from collections.abc import Generator
+
+import pytest
+from hypothesis import settings
+
+# Examples are drawn from a fixed seed, so that a run repeats; no deadline, because
+# the first call of a kernel may compile it.
+settings.register_profile("navette", deadline=None, derandomize=True)
+settings.load_profile("navette")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """With NAVETTE_REQUIRE_ALL set (as .ci/run does) a skipped test has failed."""
+    report = yield
+    if report.skipped and os.environ.get("NAVETTE_REQUIRE_ALL"):
+        report.outcome = "failed"
+        report.longrepr = f"skipped where nothing may be: {report.longrepr}"
+    return report

@@ -1,0 +1,121 @@
+"""The house rules that a machine can check (docs/design.md, "The house")."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import navette
+from navette.launch.stack import FLOW as WIRED
+
+ROOT = Path(__file__).parent.parent
+SOURCE = ROOT / "src" / "navette"
+LINT = "from importlinter.cli import lint_imports_command as lint; lint()"
+FLOW = ("sim", "costmap", "mapping", "planning", "control", "missions")
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def python_files(folder: Path) -> list[Path]:
+    return sorted(folder.rglob("*.py"))
+
+
+def test_import_contracts_hold() -> None:
+    """Layers, forbidden imports and cycles, as pyproject.toml states them."""
+    done = subprocess.run(
+        [sys.executable, "-c", LINT],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "src")},
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_flow_order_is_one_and_the_same_everywhere() -> None:
+    """The README's picture, the layers contract and the stack agree."""
+    layers = PYPROJECT["tool"]["importlinter"]["contracts"][0]["layers"]
+    stages = next(layer for layer in layers if "costmap" in layer)
+    contract = [name.strip(" ()") for name in stages.split("|")]
+    in_contract = [name for name in reversed(contract) if name in FLOW]
+    assert tuple(in_contract) == FLOW
+
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    picture = readme[readme.index("<!-- flow -->") : readme.index("<!-- /flow -->")]
+    words = re.findall(r"\b(" + "|".join(FLOW) + r")\b", picture)
+    assert tuple(dict.fromkeys(words)) == FLOW
+
+    assert WIRED == FLOW
+
+
+def test_every_folder_is_a_package_that_imports_no_node() -> None:
+    for folder in {path.parent for path in python_files(SOURCE)}:
+        init = folder / "__init__.py"
+        assert init.is_file(), f"{folder} has no __init__.py"
+        for module in imported_modules(init):
+            assert not module.endswith(".node"), f"{init} imports {module}"
+
+
+def imported_modules(path: Path) -> list[str]:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found: list[str] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found.append(node.module)
+    return found
+
+
+@pytest.mark.parametrize("folder", ["src", "tests", "examples", "benchmarks"])
+def test_no_file_is_too_long(folder: str) -> None:
+    too_long = {
+        str(path.relative_to(ROOT)): lines
+        for path in python_files(ROOT / folder)
+        if (lines := path.read_text(encoding="utf-8").count("\n")) > 500
+    }
+    assert not too_long
+
+
+def test_tests_neither_sleep_nor_skip_without_a_reason() -> None:
+    for path in python_files(ROOT / "tests"):
+        text = path.read_text(encoding="utf-8")
+        assert not re.search(r"\btime\.sleep\b|\basyncio\.sleep\b", text) or (
+            path == Path(__file__)
+        ), f"{path} sleeps"
+
+
+def test_no_folder_is_named_after_nothing() -> None:
+    nothing = {"utils", "util", "helpers", "common", "misc"}
+    names = {path.stem for path in SOURCE.rglob("*")}
+    assert not names & nothing
+
+
+def test_the_package_needs_nothing_outside_itself() -> None:
+    """No path of a machine or of a neighbouring folder in code or data."""
+    text_files = {".py", ".pyi", ".yaml", ".sdf", ".json", ".html", ".toml", ".md"}
+    for path in SOURCE.rglob("*"):
+        if path.suffix in text_files:
+            text = path.read_text(encoding="utf-8")
+            assert "../shared" not in text, path
+            assert not re.search(r"/(home|root|work|tmp)/\w", text), path
+
+
+def test_public_names_are_the_listed_ones() -> None:
+    """A name that appears or vanishes is a decision: change the list with it."""
+    listed = (ROOT / "tests" / "public_names.txt").read_text("utf-8").split()
+    assert sorted(navette.__all__) == listed
+
+
+def test_importing_navette_loads_nothing_heavy() -> None:
+    code = "import sys, navette; print(*sorted(sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    loaded = set(done.stdout.split())
+    assert not loaded & {"numpy", "numba", "mujoco", "websockets", "mcap", "rich"}
