@@ -1,0 +1,206 @@
+"""Distance to the nearest obstacle: exact, within a window.
+
+Method: a vertical pass gives each cell the distance g to the nearest obstacle in
+its own column; then along each row d² = min over k of g(c + k)² + k² (Meijster,
+Roerdink and Hesselink 2000, phases 1 and 2). Only |k| <= radius can matter, so the
+minimum is taken plainly over the window instead of by lower envelopes: it runs on
+whole SIMD registers of small integers.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from navette.grids.checks import at_least, kernel_array
+
+# Columns worked on at a time: a few registers that stay in the first-level cache.
+BLOCK = 64
+# Largest radius whose sums of squares, up to 2 · (radius + 1)², fit 16 bits.
+RADIUS_16_BIT = 179
+
+
+def distance_squared(
+    occupied: NDArray[np.uint8], radius_cells: int
+) -> NDArray[np.int32]:
+    """Squared distance to the nearest obstacle, in cells².
+
+    Args:
+        occupied: (H, W), non-zero = obstacle.
+        radius_cells: how far to look; the time grows with it.
+
+    Returns:
+        (H, W) int32, from cell centre to cell centre; exact up to ``radius_cells``,
+        ``(radius_cells + 1)²`` for everything further away.
+    """
+    occupied = kernel_array("occupied", occupied, np.uint8)
+    scratch = Scratch(occupied.shape, radius_cells)
+    squared = np.empty(occupied.shape, np.int32)
+    _squared_kernel(occupied, scratch.columns, scratch.padded, scratch.row, squared)
+    return squared
+
+
+def distance_field(
+    occupied: NDArray[np.uint8], resolution: float, max_distance_m: float
+) -> NDArray[np.float32]:
+    """Distance to the nearest obstacle in metres, between cell centres.
+
+    Args:
+        occupied: (H, W), non-zero = obstacle.
+        resolution: edge of a cell, m.
+        max_distance_m: how far to look; the time grows with it.
+
+    Returns:
+        (H, W) float32, exact below ``max_distance_m`` and clipped to it.
+    """
+    occupied = kernel_array("occupied", occupied, np.uint8)
+    at_least("resolution", resolution, 1e-9)
+    at_least("max_distance_m", max_distance_m, 0.0)
+    radius = math.ceil(max_distance_m / resolution)
+    scratch = Scratch(occupied.shape, radius)
+    metres = resolution * np.sqrt(np.arange((radius + 1) ** 2 + 1))
+    table = np.minimum(metres, max_distance_m).astype(np.float32)
+    field = np.empty(occupied.shape, np.float32)
+    _field_kernel(occupied, scratch.columns, scratch.padded, scratch.row, table, field)
+    return field
+
+
+class Scratch:
+    """The work arrays of the distance kernels, in the smallest integers that do.
+
+    Attributes:
+        columns: (H, W) distance along the column, cells.
+        padded: (W + 2 · radius,) squares of one row of it, with its margins.
+        row: (W,) squared distances of that row, cells².
+    """
+
+    def __init__(self, shape: tuple[int, ...], radius_cells: int) -> None:
+        at_least("radius_cells", radius_cells, 0)
+        height, width = shape
+        # Beyond the grid's diagonal there is nothing to find, but results are
+        # still clipped at the radius that was asked for.
+        self.radius = int(radius_cells)
+        small = self.radius <= RADIUS_16_BIT
+        self.columns = np.empty((height, width), np.uint8 if small else np.int32)
+        squares = np.uint16 if small else np.int32
+        self.padded = np.empty(width + 2 * self.radius, squares)
+        self.row = np.empty(width, squares)
+
+
+@njit(cache=True)
+def _first_row(occupied: Any, row: Any, far: Any, zero: Any) -> None:
+    for c in range(row.size):
+        row[c] = far if occupied[c] == 0 else zero
+
+
+@njit(cache=True)
+def _step_down(
+    above: Any, occupied: Any, row: Any, far: Any, zero: Any, one: Any
+) -> None:
+    for c in range(row.size):
+        further = row.dtype.type(above[c] + one)
+        further = further if further < far else far
+        row[c] = further if occupied[c] == 0 else zero
+
+
+@njit(cache=True)
+def _step_up(below: Any, row: Any, one: Any) -> None:
+    for c in range(row.size):
+        further = row.dtype.type(below[c] + one)
+        row[c] = further if further < row[c] else row[c]
+
+
+@njit(cache=True)
+def column_distances(occupied: Any, radius: int, columns: Any) -> None:
+    """Phase 1: distance to the nearest obstacle in the same column, cells.
+
+    One function per row: only then does the compiler see that rows do not overlap
+    (ten times faster than the same loops written in place).
+    """
+    T = columns.dtype.type
+    far, zero, one = T(radius + 1), T(0), T(1)
+    height = columns.shape[0]
+    _first_row(occupied[0], columns[0], far, zero)
+    for r in range(1, height):
+        _step_down(columns[r - 1], occupied[r], columns[r], far, zero, one)
+    for r in range(height - 2, -1, -1):
+        _step_up(columns[r + 1], columns[r], one)
+
+
+@njit(cache=True)
+def _block_minimum(padded: Any, radius: int, limit: Any, block: Any) -> None:
+    """Phase 2 for the cells of ``block``; ``padded`` reaches ``radius`` further."""
+    T = padded.dtype.type
+    n = block.size
+    nearest = limit
+    for i in range(n + 2 * radius):
+        nearest = min(nearest, padded[i])
+    middle = padded[radius : radius + n]
+    for i in range(n):
+        block[i] = middle[i]
+    if nearest >= limit:
+        return
+    k = 1
+    while k <= radius:
+        stop = min(k + 4, radius + 1)
+        for offset in range(k, stop):
+            offset2 = T(offset * offset)
+            left = padded[radius - offset : radius - offset + n]
+            right = padded[radius + offset : radius + offset + n]
+            for i in range(n):
+                there = T(min(left[i], right[i]) + offset2)
+                block[i] = there if there < block[i] else block[i]
+        k = stop
+        furthest = T(0)
+        for i in range(n):
+            furthest = max(furthest, block[i])
+        if nearest + k * k >= furthest:
+            return
+
+
+@njit(cache=True)
+def row_squares(columns: Any, radius: int, padded: Any, row: Any) -> None:
+    """Phase 2: squared distances (W,) of one row from its column distances (W,).
+
+    ``padded`` must hold ``(radius + 1)²`` in its margins.
+    """
+    T = padded.dtype.type
+    width = row.size
+    limit = T((radius + 1) * (radius + 1))
+    middle = padded[radius : radius + width]
+    for c in range(width):
+        middle[c] = T(columns[c]) * T(columns[c])
+    for start in range(0, width, BLOCK):
+        stop = min(start + BLOCK, width)
+        window = padded[start : stop + 2 * radius]
+        _block_minimum(window, radius, limit, row[start:stop])
+
+
+@njit(cache=True)
+def _squared_kernel(
+    occupied: Any, columns: Any, padded: Any, row: Any, squared: Any
+) -> None:
+    radius = (padded.size - row.size) // 2
+    padded[:] = padded.dtype.type((radius + 1) * (radius + 1))
+    column_distances(occupied, radius, columns)
+    for r in range(columns.shape[0]):
+        row_squares(columns[r], radius, padded, row)
+        out = squared[r]
+        for c in range(row.size):
+            out[c] = row[c]
+
+
+@njit(cache=True)
+def _field_kernel(
+    occupied: Any, columns: Any, padded: Any, row: Any, table: Any, field: Any
+) -> None:
+    radius = (padded.size - row.size) // 2
+    padded[:] = padded.dtype.type((radius + 1) * (radius + 1))
+    column_distances(occupied, radius, columns)
+    for r in range(columns.shape[0]):
+        row_squares(columns[r], radius, padded, row)
+        out = field[r]
+        for c in range(row.size):
+            out[c] = table[row[c]]

@@ -1,0 +1,116 @@
+import math
+
+import numpy as np
+import pytest
+
+from navette.errors import InvalidValueError
+from navette.geometry import Footprint, Pose2
+from navette.grids import GridSpec, body_clearance, body_points, distance_field
+from navette.grids.clearance import grid_frame, pose_clearance, pose_is_clear
+
+BODY = Footprint(((-0.5, -0.7), (1.5, -0.7), (1.5, 0.7), (-0.5, 0.7)))
+SPEC = GridSpec(0.1, 120, 90, Pose2(-4.0, 2.0, 0.7))
+HALF_DIAGONAL = 0.1 * math.sqrt(0.5)
+
+
+def field_with(*cells: tuple[int, int], spec: GridSpec = SPEC) -> np.ndarray:
+    occupied = np.zeros(spec.shape, np.uint8)
+    for row, column in cells:
+        occupied[row, column] = 1
+    return distance_field(occupied, spec.resolution, 20.0)
+
+
+def brute_force(body: np.ndarray, pose: Pose2, post: tuple[float, float]) -> float:
+    """Least distance of the body's points to one obstacle's centre, metres."""
+    gaps = pose.apply(body[:, :2]) - post
+    return float((np.hypot(gaps[:, 0], gaps[:, 1]) - body[:, 2]).min())
+
+
+def test_clearance_equals_brute_force_to_a_fraction_of_a_cell() -> None:
+    rng = np.random.default_rng(1)
+    field, post = field_with((40, 60)), SPEC.center_of(40, 60)
+    body = body_points(BODY, 0.1)
+    corner = SPEC.center_of(25, 25)
+    poses = [
+        Pose2(corner[0] + x, corner[1] + y, yaw)
+        for x, y, yaw in rng.uniform((-1, -1, -3), (1, 1, 3), (200, 3))
+    ]
+    expected = [brute_force(body, pose, post) - HALF_DIAGONAL for pose in poses]
+    found = body_clearance(field, SPEC, body, np.array(poses), outside_m=20.0)
+    np.testing.assert_allclose(found, expected, atol=0.02)
+
+
+def test_a_post_inside_the_outline_is_seen() -> None:
+    body = body_points(BODY, 0.1)
+    pose = Pose2(*SPEC.center_of(45, 60), 0.3)
+    for ahead, left in ((0.0, 0.0), (0.6, 0.0), (1.0, 0.3), (0.2, -0.4)):
+        x, y = pose.apply(np.array([[ahead, left]]))[0]
+        field = field_with(SPEC.cell_of(x, y))
+        assert body_clearance(field, SPEC, body, np.array([pose]))[0] < 0.0
+        outline = np.ascontiguousarray(body[body[:, 2] == 0][:, :2])
+        assert body_clearance(field, SPEC, outline, np.array([pose]))[0] > 0.0
+
+
+def test_inner_discs_never_lower_the_clearance_to_things_outside() -> None:
+    body = body_points(BODY, 0.1)
+    outline = body[body[:, 2] == 0]
+    for post in ((3.0, 0.2), (-0.6, 0.75), (0.5, 0.8), (1.55, 0.0), (-3.0, -2.0)):
+        pose = Pose2(0.0, 0.0, 0.0)
+        assert brute_force(body, pose, post) == brute_force(outline, pose, post)
+
+
+def test_outside_the_grid_counts_as_told() -> None:
+    field = field_with((40, 60))
+    body = np.array([[0.0, 0.0]])
+    far = np.array([[100.0, 0.0, 0.0], [math.nan, 0.0, 0.0]])
+    assert body_clearance(field, SPEC, body, far) == pytest.approx(-HALF_DIAGONAL)
+    found = body_clearance(field, SPEC, body, far, outside_m=3.0)
+    assert found == pytest.approx(3.0 - HALF_DIAGONAL)
+
+
+def test_no_poses_no_clearances() -> None:
+    field, body = field_with((40, 60)), np.zeros((1, 2))
+    assert body_clearance(field, SPEC, body, np.empty((0, 3))).shape == (0,)
+
+
+def test_quick_accept_gives_a_lower_bound() -> None:
+    field = field_with((10, 10))
+    poses = np.array([[*SPEC.center_of(60, 80), 0.0]])
+    body = body_points(BODY, 0.1)
+    exact = body_clearance(field, SPEC, body, poses)[0]
+    quick = body_clearance(field, SPEC, body, poses, enough_m=0.5)[0]
+    assert 0.5 <= quick < exact
+
+
+def test_pose_is_clear_agrees_with_the_clearance() -> None:
+    rng = np.random.default_rng(2)
+    field = field_with((40, 60), (20, 90), (70, 30))
+    body, frame = body_points(BODY, 0.1), grid_frame(SPEC)
+    reach = BODY.circumscribed_radius
+    for _ in range(300):
+        x, y = SPEC.center_of(*rng.integers((20, 20), (70, 100)))
+        yaw, needed = rng.uniform(-3, 3), rng.uniform(0, 1)
+        exact = pose_clearance(field, frame, body, reach, x, y, yaw, 0.0, math.inf)
+        clear = pose_is_clear(field, frame, body, reach, x, y, yaw, 0.0, needed)
+        # The centre's shortcut trusts the field to be 1-Lipschitz between cells.
+        assert clear == (exact >= needed) or abs(exact - needed) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"distance_m": np.zeros((3, 3), np.float32)}, "distance_m: shape"),
+        ({"distance_m": np.zeros(SPEC.shape)}, "distance_m: dtype float64"),
+        ({"body": np.zeros((0, 2))}, r"body: shape \(0, 2\)"),
+        ({"body": np.zeros((4, 5))}, r"body: shape \(4, 5\)"),
+        ({"poses": np.zeros((4, 2))}, r"poses: shape \(4, 2\)"),
+    ],
+)
+def test_bad_input_is_named(change, text) -> None:
+    good = {
+        "distance_m": np.zeros(SPEC.shape, np.float32),
+        "body": np.zeros((1, 2)),
+        "poses": np.zeros((1, 3)),
+    }
+    with pytest.raises(InvalidValueError, match=text):
+        body_clearance(spec=SPEC, **(good | change))

@@ -1,0 +1,79 @@
+import numpy as np
+import pytest
+from scipy.ndimage import distance_transform_edt
+
+from navette.errors import InvalidValueError
+from navette.grids import distance_field, distance_squared
+
+
+def oracle(occupied: np.ndarray, radius: int) -> np.ndarray:
+    """Exact squared distances by SciPy, clipped as the kernel clips them."""
+    limit = (radius + 1) ** 2
+    if not occupied.any():
+        return np.full(occupied.shape, limit)
+    squared = np.rint(distance_transform_edt(occupied == 0) ** 2)
+    return np.minimum(squared, limit).astype(int)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 200), (200, 1), (63, 129), (40, 64)])
+@pytest.mark.parametrize("radius", [0, 1, 3, 20, 179, 180, 250])
+def test_squared_distance_equals_the_exact_transform(shape, radius) -> None:
+    rng = np.random.default_rng(radius)
+    for density in (0.0005, 0.02, 0.4):
+        occupied = (rng.random(shape) < density).astype(np.uint8)
+        np.testing.assert_array_equal(
+            distance_squared(occupied, radius), oracle(occupied, radius)
+        )
+
+
+def test_any_non_zero_value_is_an_obstacle() -> None:
+    occupied = np.array([[0, 0, 255, 0]], np.uint8)
+    assert distance_squared(occupied, 5).tolist() == [[4, 1, 0, 1]]
+
+
+def test_everything_is_far_without_obstacles() -> None:
+    assert (distance_squared(np.zeros((5, 300), np.uint8), 7) == 64).all()
+
+
+def test_field_is_in_metres_and_clipped() -> None:
+    occupied = np.zeros((3, 9), np.uint8)
+    occupied[1, 0] = 1
+    field = distance_field(occupied, 0.1, 0.45)
+    assert field.dtype == np.float32
+    np.testing.assert_allclose(
+        field[1], [0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.45, 0.45, 0.45], rtol=1e-6
+    )
+    assert field[0, 1] == pytest.approx(0.1 * 2**0.5)
+
+
+def test_read_only_and_strided_arrays_are_taken() -> None:
+    occupied = np.zeros((20, 30), np.uint8)
+    occupied[5, 7] = 1
+    frozen = occupied.copy()
+    frozen.flags.writeable = False
+    expected = distance_squared(occupied, 6)
+    np.testing.assert_array_equal(distance_squared(frozen, 6), expected)
+    np.testing.assert_array_equal(distance_squared(occupied.T, 6), expected.T)
+
+
+@pytest.mark.parametrize(
+    ("occupied", "radius", "text"),
+    [
+        (np.zeros((3, 3), bool), 2, "occupied: dtype bool, wanted uint8"),
+        (np.zeros(3, np.uint8), 2, "occupied: 1-D, wanted 2-D"),
+        (np.zeros((0, 3), np.uint8), 2, r"occupied: shape \(0, 3\)"),
+        ([[0]], 2, "occupied: list, wanted a uint8 array"),
+        (np.zeros((3, 3), np.uint8), -1, "radius_cells: -1, wanted a value >= 0"),
+    ],
+)
+def test_bad_input_is_named(occupied, radius, text) -> None:
+    with pytest.raises(InvalidValueError, match=text):
+        distance_squared(occupied, radius)
+
+
+def test_bad_distances_are_named() -> None:
+    occupied = np.zeros((3, 3), np.uint8)
+    with pytest.raises(InvalidValueError, match="resolution: 0"):
+        distance_field(occupied, 0.0, 1.0)
+    with pytest.raises(InvalidValueError, match="max_distance_m: nan"):
+        distance_field(occupied, 0.1, float("nan"))
