@@ -140,7 +140,7 @@ def pose_clearance(
     ``body`` is (K, 2) or (K, 3) float64, ``reach_m`` the largest distance of its
     points from the base origin (the circumscribed radius).
     """
-    margin = HALF_DIAGONAL * frame[4]
+    margin: float = HALF_DIAGONAL * frame[4]
     u, v, cos, sin = _to_cells(frame, x, y, yaw)
     if enough_m < np.inf:
         bound: float = _interpolate(distance_m, u, v, outside_m) - reach_m - margin
