@@ -1,0 +1,47 @@
+"""What a person asks of a run."""
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """One run of the simulated robot.
+
+    ``world`` and ``robot`` are built-in names or files. ``speed`` is a factor of real
+    time; infinity means as fast as the machine can. ``port`` None means no live view.
+    """
+
+    world: str = "arena"
+    robot: str | None = None
+    start: Pose2 | None = None
+    goals: tuple[tuple[float, float], ...] = ()
+    headless: bool = False
+    speed: float = 1.0
+    seed: int = 0
+    record: Path | None = None
+    record_images: bool = False
+    params_files: tuple[Path, ...] = field(default=())
+    max_time_s: float | None = None
+    port: int = 8765
+
+    def __post_init__(self) -> None:
+        if not self.speed > 0:
+            raise InvalidValueError(f"speed {self.speed!r}: wanted above 0, or max")
+        if self.seed < 0:
+            raise InvalidValueError(f"seed {self.seed!r}: wanted 0 or more")
+        if self.max_time_s is not None and not self.max_time_s > 0:
+            raise InvalidValueError(
+                f"max time {self.max_time_s!r}: wanted more than 0 seconds"
+            )
+        if self.start is not None and not all(map(math.isfinite, self.start)):
+            raise InvalidValueError(f"start {tuple(self.start)}: wanted finite numbers")
+
+    @property
+    def ends_with_goals(self) -> bool:
+        """Whether the run is over once its goals are."""
+        return self.headless and bool(self.goals)

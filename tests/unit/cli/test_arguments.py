@@ -1,0 +1,56 @@
+import math
+
+import pytest
+
+from navette.cli.arguments import join_pairs, parse_goal, parse_speed
+from navette.errors import InvalidValueError
+
+
+def test_each_goal_becomes_one_word() -> None:
+    typed = "world.sdf --goal -13.2 4 --headless --goal 1 2 --start 1 2 90".split()
+    assert join_pairs(typed) == [
+        "world.sdf",
+        "--goal",
+        "-13.2 4",
+        "--headless",
+        "--goal",
+        "1 2",
+        "--start",
+        "1",
+        "2",
+        "90",
+    ]
+
+
+def test_a_goal_already_joined_stays() -> None:
+    assert join_pairs(["--goal", "1,2", "--headless"]) == [
+        "--goal",
+        "1,2",
+        "--headless",
+    ]
+
+
+@pytest.mark.parametrize("text", ["-13.2 4", "-13.2,4", " -13.2 , 4.0 "])
+def test_goals_in_either_spelling(text: str) -> None:
+    assert parse_goal(text) == (-13.2, 4.0)
+
+
+def test_a_goal_that_is_not_a_number_is_left_to_the_planner_to_name() -> None:
+    assert math.isnan(parse_goal("nan 2")[0])
+
+
+@pytest.mark.parametrize("text", ["1", "1 2 3", "here there", ""])
+def test_a_malformed_goal_shows_how_to_write_one(text: str) -> None:
+    with pytest.raises(InvalidValueError, match="--goal 6 -12"):
+        parse_goal(text)
+
+
+def test_speeds() -> None:
+    assert parse_speed("max") == math.inf
+    assert parse_speed("2.5") == 2.5
+
+
+@pytest.mark.parametrize("text", ["0", "-1", "nan", "fast", "inf"])
+def test_a_malformed_speed_says_what_is_allowed(text: str) -> None:
+    with pytest.raises(InvalidValueError, match="max"):
+        parse_speed(text)
