@@ -1,0 +1,41 @@
+"""The named states of the controller, as they go on the wire."""
+
+from enum import StrEnum
+
+
+class ControlState(StrEnum):
+    """What the controller does, or why it does not move."""
+
+    IDLE = "idle"
+    FOLLOWING = "following"
+    TURNING = "turning"
+    REACHED = "reached"
+    MISSED_GOAL = "missed_goal"
+    BLOCKED = "blocked"
+    OFF_PATH = "off_path"
+    STALE_ODOMETRY = "stale_odometry"
+    STALE_COSTMAP = "stale_costmap"
+    STALE_PATH = "stale_path"
+    INVALID_PATH = "invalid_path"
+    UNKNOWN_FRAME = "unknown_frame"
+    COMMAND_NOT_FINITE = "command_not_finite"
+    COMMAND_OVER_LIMIT = "command_over_limit"
+
+    @property
+    def moves(self) -> bool:
+        """Whether the robot is on its way along a path."""
+        return self in (ControlState.FOLLOWING, ControlState.TURNING)
+
+    @property
+    def rests(self) -> bool:
+        """Whether there is nothing to do until a new path arrives."""
+        return self in _RESTING
+
+
+_RESTING = (
+    ControlState.IDLE,
+    ControlState.REACHED,
+    ControlState.MISSED_GOAL,
+    ControlState.INVALID_PATH,
+    ControlState.UNKNOWN_FRAME,
+)
