@@ -1,5 +1,6 @@
 """Grid arrays: cells, rays, distance, inflation, resampling."""
 
+from navette.grids.cells import FREE, LETHAL, UNKNOWN
 from navette.grids.clearance import (
     body_clearance,
     body_points,
@@ -9,11 +10,17 @@ from navette.grids.clearance import (
     pose_is_clear,
 )
 from navette.grids.distance import distance_field, distance_squared
+from navette.grids.inflation import cost_table, inflate
+from navette.grids.rays import beam_directions, trace_beams
+from navette.grids.resample import accumulate, merge, placed
 from navette.grids.spec import GridSpec
 
 __all__ = [
     "GridSpec",
     "grid_frame",
+    "UNKNOWN",
+    "FREE",
+    "LETHAL",
     "distance_squared",
     "distance_field",
     "body_points",
@@ -21,4 +28,11 @@ __all__ = [
     "distance_at",
     "pose_clearance",
     "pose_is_clear",
+    "cost_table",
+    "inflate",
+    "beam_directions",
+    "trace_beams",
+    "merge",
+    "accumulate",
+    "placed",
 ]

@@ -1,0 +1,167 @@
+"""Beams of a range sensor traced through a grid."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.grids.checks import grid_array, kernel_array
+from navette.grids.clearance import grid_frame
+from navette.grids.spec import GridSpec
+
+
+def beam_directions(
+    angle_min: float, angle_increment: float, count: int
+) -> NDArray[np.float64]:
+    """Unit vectors (N, 2) of a scan's beams in the sensor's frame."""
+    angles = angle_min + angle_increment * np.arange(count)
+    return np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def trace_beams(
+    cost: NDArray[np.int8],
+    spec: GridSpec,
+    sensor: tuple[float, float],
+    directions: NDArray[np.float64],
+    ranges: NDArray[np.float32],
+    *,
+    range_min: float,
+    range_max: float,
+    margins: NDArray[np.float32] | None = None,
+) -> int:
+    """Write one scan into ``cost``: free up to each hit, lethal at it.
+
+    Cells on the line from the sensor's cell to the end's cell (Bresenham 1965)
+    become free, cells that hold a hit lethal; nothing is written beyond a hit. A
+    hit is never freed by another beam of the same scan. Readings:
+
+    - range_min < r < range_max: a hit at r;
+    - r >= range_max, infinite too: nothing there, free up to range_max;
+    - r <= range_min, negative or not a number: no information, nothing written.
+
+    Args:
+        cost: (H, W) int8, changed in place; -1 unknown, 0 free … 100 lethal.
+        spec: where the grid lies.
+        sensor: (x, y) in the grid's frame, m; inside the grid.
+        directions: (N, 2) unit vectors of the beams in the grid's frame.
+        ranges: (N,) float32, m.
+        range_min: least valid range, m.
+        range_max: largest valid range, m.
+        margins: (N,) float32, how far before its hit each beam stops freeing, m.
+
+    Returns:
+        The number of beams that hit something inside the grid.
+    """
+    if not (cost.flags.writeable and cost.flags.c_contiguous):
+        raise InvalidValueError("cost: wanted a writable C-ordered array")
+    grid = grid_array("cost", cost, np.int8, spec)
+    rays = kernel_array("directions", directions, np.float64, allow_empty=True)
+    metres = kernel_array("ranges", ranges, np.float32, 1, allow_empty=True)
+    if margins is None:
+        margins = np.zeros_like(metres)
+    before = kernel_array("margins", margins, np.float32, 1, allow_empty=True)
+    if rays.shape != (metres.size, 2) or before.shape != metres.shape:
+        raise InvalidValueError(
+            f"{metres.size} ranges, directions {rays.shape}, margins {before.shape}: "
+            f"wanted (N,), (N, 2), (N,)"
+        )
+    if not spec.contains(*spec.cell_of(*sensor)):
+        raise InvalidValueError(f"sensor at {sensor}: outside the grid {spec}")
+    if not (0.0 <= range_min < range_max < math.inf):
+        raise InvalidValueError(
+            f"range_min {range_min}, range_max {range_max}: wanted 0 <= min < max"
+        )
+    ends = np.empty(metres.size, np.int64)
+    hits: int = _trace_kernel(
+        grid,
+        grid_frame(spec),
+        float(sensor[0]),
+        float(sensor[1]),
+        rays,
+        metres,
+        before,
+        float(range_min),
+        float(range_max),
+        ends,
+    )
+    return hits
+
+
+@njit(cache=True)
+def _trace_kernel(
+    cost: Any,
+    frame: Any,
+    x: float,
+    y: float,
+    directions: Any,
+    ranges: Any,
+    margins: Any,
+    range_min: float,
+    range_max: float,
+    ends: Any,
+) -> int:
+    height, width = cost.shape
+    flat = cost.reshape(height * width)
+    per_metre = 1.0 / frame[4]
+    dx, dy = (x - frame[0]) * per_metre, (y - frame[1]) * per_metre
+    u, v = frame[2] * dx + frame[3] * dy, frame[2] * dy - frame[3] * dx
+    for i in range(ranges.size):
+        ends[i] = -1
+        reading = ranges[i]
+        if not reading > range_min:  # also not a number
+            continue
+        reach = min(reading, range_max)
+        bx, by = directions[i, 0] * per_metre, directions[i, 1] * per_metre
+        du, dv = frame[2] * bx + frame[3] * by, frame[2] * by - frame[3] * bx
+        inside = min(reach, _exit(u, du, width), _exit(v, dv, height))
+        column = min(max(int(u + inside * du), 0), width - 1)
+        row = min(max(int(v + inside * dv), 0), height - 1)
+        hit = reading < range_max and inside == reach
+        if hit:
+            ends[i] = row * width + column
+        share = 1.0 - margins[i] / reach if hit else 1.0
+        _free_line(flat, width, int(v), int(u), row, column, share)
+    hits = 0
+    for i in range(ranges.size):
+        if ends[i] >= 0:
+            flat[ends[i]] = 100
+            hits += 1
+    return hits
+
+
+@njit(cache=True)
+def _exit(start: float, speed: float, size: int) -> float:
+    """When a point at ``start`` that moves at ``speed`` leaves [0, size)."""
+    if speed > 0.0:
+        return (size - start) / speed
+    if speed < 0.0:
+        return -start / speed
+    return np.inf
+
+
+@njit(cache=True)
+def _free_line(
+    flat: Any, width: int, r0: int, c0: int, r1: int, c1: int, share: float
+) -> None:
+    """Free the first ``share`` of the cells from (r0, c0) to (r1, c1)."""
+    across, along = abs(r1 - r0), abs(c1 - c0)
+    minor = width if r1 > r0 else -width
+    major = 1 if c1 > c0 else -1
+    if across > along:
+        across, along = along, across
+        minor, major = major, minor
+    at = r0 * width + c0
+    error = along // 2
+    for _ in range(int(share * along)):
+        flat[at] = 0
+        at += major
+        error += across
+        if error >= along:
+            at += minor
+            error -= along
+    # The end's own cell: freed when nothing was hit there, or overwritten as lethal.
+    if share >= 1.0:
+        flat[at] = 0
