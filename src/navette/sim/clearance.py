@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exact distance from the robot's body to the nearest obstacle."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.sim.build import OBSTACLE, Compiled
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """Distance in metres (negative: inside) and whose it is ("" = no obstacle)."""
+
+    distance: float
+    obstacle: str
+
+
+class ClearanceProbe:
+    """Measures body to obstacle: boxes around obstacles first, then exact pairs.
+
+    Obstacles are tried in the order of a lower bound on their distance; the search
+    ends when no bound is below the best pair found.
+    """
+
+    def __init__(self, compiled: Compiled, data: mujoco.MjData) -> None:
+        model = compiled.model
+        self._compiled = compiled
+        obstacles = np.flatnonzero(compiled.is_obstacle)
+        self._obstacles = obstacles
+        self._fixed = np.array(model.geom_bodyid)[obstacles] == 0
+        self._parts = np.flatnonzero(compiled.is_robot & _meets_obstacles(model))
+        self._low, self._high = _bounds(model, data, obstacles)
+        self._radius = np.array(model.geom_rbound)[obstacles]
+        self.reach = self._farthest(data)
+
+    def _farthest(self, data: mujoco.MjData) -> float:
+        """Farthest point of the robot from its root body, an upper bound, m."""
+        root = data.xpos[self._compiled.robot.root_body]
+        away = np.linalg.norm(data.geom_xpos[self._parts] - root, axis=1)
+        radius = self._compiled.model.geom_rbound[self._parts]
+        return float((away + radius).max())
+
+    def measure(self, data: mujoco.MjData) -> Clearance:
+        """The nearest obstacle now (kinematics must be fresh)."""
+        if not len(self._obstacles):
+            return Clearance(np.inf, "")
+        model = self._compiled.model
+        bound = self._lower_bounds(data)
+        best, nearest = np.inf, -1
+        for i in np.argsort(bound):
+            if bound[i] >= best:
+                break
+            obstacle = int(self._obstacles[i])
+            for part in self._parts:
+                limit = min(best, 1e3)
+                distance = mujoco.mj_geomDistance(
+                    model, data, int(part), obstacle, limit, None
+                )
+                if distance < best:
+                    best, nearest = distance, obstacle
+        return Clearance(float(best), self._compiled.geom_owner[nearest])
+
+    def _lower_bounds(self, data: mujoco.MjData) -> NDArray[np.float64]:
+        """For each obstacle a distance that the true one cannot undercut."""
+        radius = self._compiled.model.geom_rbound[self._parts]
+        centres = data.geom_xpos[self._parts]
+        centre = centres.mean(axis=0)
+        around = float((np.linalg.norm(centres - centre, axis=1) + radius).max())
+        low, high = self._low, self._high
+        if not self._fixed.all():
+            moving = ~self._fixed
+            places = data.geom_xpos[self._obstacles[moving]]
+            reach = self._radius[moving, None]
+            low, high = low.copy(), high.copy()
+            low[moving], high[moving] = places - reach, places + reach
+        gap = np.maximum(np.maximum(low - centre, centre - high), 0.0)
+        bounds: NDArray[np.float64] = np.linalg.norm(gap, axis=1) - around
+        return bounds
+
+
+def _meets_obstacles(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Geoms that obstacles can touch (tyres only meet the ground)."""
+    touches: NDArray[np.bool_] = (np.array(model.geom_conaffinity) & OBSTACLE) != 0
+    return touches
+
+
+def _bounds(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Corners (N, 3) of axis-aligned boxes around geoms, world frame."""
+    rotation = data.geom_xmat[geoms].reshape(-1, 3, 3)
+    local = model.geom_aabb[geoms]
+    middle = data.geom_xpos[geoms] + np.einsum("nij,nj->ni", rotation, local[:, :3])
+    half = np.einsum("nij,nj->ni", np.abs(rotation), local[:, 3:])
+    return middle - half, middle + half

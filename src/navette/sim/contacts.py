@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the robot bumped into."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from navette.sim.build import Compiled
+
+_GAP_NS = 250_000_000  # touching again within this is the same episode
+
+
+@dataclass(frozen=True)
+class ContactEpisode:
+    """The robot touched something; ``part`` is the robot's link that did."""
+
+    start_ns: int
+    end_ns: int
+    part: str
+    obstacle: str
+
+
+class ContactMonitor:
+    """Collects contacts of the robot with anything that it should not touch.
+
+    Wheels, casters and whatever else is made to stand on the ground may touch it.
+    """
+
+    def __init__(self, compiled: Compiled, data: mujoco.MjData) -> None:
+        self._owner = compiled.geom_owner
+        self._robot = compiled.is_robot
+        self._ground = compiled.is_ground
+        self._stands = _stands(compiled, data)
+        self.episodes: list[ContactEpisode] = []
+        self._open: dict[str, int] = {}  # obstacle → index of its newest episode
+
+    def reset(self) -> None:
+        self.episodes.clear()
+        self._open.clear()
+
+    def observe(self, data: mujoco.MjData, now_ns: int) -> bool:
+        """Note the contacts of the last physics step; whether there were any."""
+        pairs = data.contact.geom
+        robot = self._robot[pairs]
+        bad = robot.any(axis=1) & ~robot.all(axis=1)
+        bad &= ~(self._ground[pairs].any(axis=1) & self._stands[pairs].any(axis=1))
+        if not bad.any():
+            return False
+        for pair in pairs[bad]:
+            mine, other = pair if self._robot[pair[0]] else pair[::-1]
+            self._note(self._owner[mine], self._owner[other], now_ns)
+        return True
+
+    def _note(self, part: str, obstacle: str, now_ns: int) -> None:
+        index = self._open.get(obstacle)
+        if index is not None and now_ns - self.episodes[index].end_ns <= _GAP_NS:
+            old = self.episodes[index]
+            self.episodes[index] = ContactEpisode(
+                old.start_ns, now_ns, old.part, obstacle
+            )
+            return
+        self._open[obstacle] = len(self.episodes)
+        self.episodes.append(ContactEpisode(now_ns, now_ns, part, obstacle))
+
+
+def _stands(
+    compiled: Compiled, data: mujoco.MjData
+) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+    """Which geoms reach down to where the wheels touch the ground, (ngeom,)."""
+    model = compiled.model
+    rotation = data.geom_xmat.reshape(-1, 3, 3)
+    local = model.geom_aabb
+    middle = data.geom_xpos[:, 2] + np.einsum("nj,nj->n", rotation[:, 2], local[:, :3])
+    half = np.einsum("nj,nj->n", np.abs(rotation[:, 2]), local[:, 3:])
+    low = middle - half
+    floor = low[compiled.is_robot & (model.geom_conaffinity != 0)].min()
+    slack = 0.1 * compiled.robot.drive.wheel_radius
+    stands: np.ndarray[tuple[int], np.dtype[np.bool_]] = compiled.is_robot & (
+        low <= floor + slack
+    )
+    return stands

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The motor controller: turns speed commands into wheel speeds within limits."""
+
+import math
+from dataclasses import dataclass
+
+from navette.sim.params import SimParams
+
+CONTROL_PERIOD_NS = 10_000_000  # a motor controller's cycle
+
+
+@dataclass(frozen=True)
+class BodySpeed:
+    """Forward speed (m/s) and yaw rate (rad/s) of the base."""
+
+    linear: float = 0.0
+    angular: float = 0.0
+
+
+_STOP = BodySpeed()
+
+
+class SpeedRamp:
+    """Follows the newest command within speed and acceleration limits.
+
+    Without a newer command for ``command_timeout_s`` the target becomes zero.
+    """
+
+    def __init__(self, params: SimParams) -> None:
+        self._params = params
+        self.speed = _STOP
+        self._target = _STOP
+        self._expires_ns: int | None = None
+
+    def reset(self) -> None:
+        self.speed = self._target = _STOP
+        self._expires_ns = None
+
+    def command(self, linear: float, angular: float, now_ns: int) -> bool:
+        """Take a command; False (and no change) if it is not finite."""
+        if not (math.isfinite(linear) and math.isfinite(angular)):
+            return False
+        p = self._params
+        self._target = BodySpeed(
+            min(max(linear, -p.max_reverse_speed_mps), p.max_speed_mps),
+            min(max(angular, -p.max_yaw_rate_radps), p.max_yaw_rate_radps),
+        )
+        if p.command_timeout_s > 0:
+            self._expires_ns = now_ns + round(p.command_timeout_s * 1e9)
+        return True
+
+    def advance(self, now_ns: int) -> BodySpeed:
+        """Speed for the next control period."""
+        if self._expires_ns is not None and now_ns >= self._expires_ns:
+            self._target, self._expires_ns = _STOP, None
+        period_s = CONTROL_PERIOD_NS * 1e-9
+        dv = self._params.max_accel_mps2 * period_s
+        dw = self._params.max_yaw_accel_radps2 * period_s
+        v, w = self.speed.linear, self.speed.angular
+        self.speed = BodySpeed(
+            v + min(max(self._target.linear - v, -dv), dv),
+            w + min(max(self._target.angular - w, -dw), dw),
+        )
+        return self.speed
+
+    def constant_until_ns(self) -> float:
+        """Time before which :meth:`advance` would change nothing (0 = ramping)."""
+        if self.speed != self._target:
+            return 0.0
+        return math.inf if self._expires_ns is None else float(self._expires_ns)

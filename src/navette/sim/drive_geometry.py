@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where a robot's base frame is: on the floor, midway between its drive wheels."""
+
+import math
+from dataclasses import dataclass
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2, Transform3, Vector3, quaternion_from_yaw
+from navette.geometry.se3 import rotate
+from navette.sim.scene import Model
+
+
+@dataclass(frozen=True)
+class DriveWheel:
+    """A driven wheel: ``direction`` is ±1, the joint's sense that rolls forward."""
+
+    joint: str
+    link: str
+    side: int  # +1 left, −1 right
+    direction: float
+
+
+def drive_wheels(model: Model) -> tuple[DriveWheel, ...]:
+    """The driven wheels of a model, left ones first.
+
+    Raises:
+        InvalidValueError: the drive names a joint that the model does not have.
+    """
+    assert model.drive is not None, "drive_wheels() of a model without a drive"
+    left_axis_model = _left_of(model)
+    wheels = []
+    for side, names in ((1, model.drive.left_joints), (-1, model.drive.right_joints)):
+        for name in names:
+            joint = model.joint(name)
+            axis_model = rotate(joint.model_T_joint.rotation, joint.axis)
+            along = sum(a * b for a, b in zip(axis_model, left_axis_model, strict=True))
+            wheels.append(
+                DriveWheel(name, joint.child, side, math.copysign(1.0, along))
+            )
+    return tuple(wheels)
+
+
+def base_of(model: Model) -> Transform3:
+    """``model_T_base``: at the axle's middle on the floor, x forward, z up."""
+    assert model.drive is not None, "base_of() of a model without a drive"
+    left, right = _sides(model)
+    x, y, z = ((a + b) / 2 for a, b in zip(left, right, strict=True))
+    to_left = _left_of(model)
+    yaw = math.atan2(-to_left[0], to_left[1])
+    # Tiny angles are rounding of files that write pi with five digits.
+    yaw = 0.0 if abs(yaw) < 1e-3 else yaw
+    floor = z - model.drive.wheel_radius
+    return Transform3((x, y, floor), quaternion_from_yaw(yaw))
+
+
+def base_pose_on_floor(pose: Pose2, floor: float) -> Transform3:
+    """``world_T_base`` of a robot that stands at ``pose`` on a floor at that z."""
+    return Transform3.from_pose2(pose, z=floor)
+
+
+def _sides(model: Model) -> tuple[Vector3, Vector3]:
+    """Mean position (model frame) of the left and of the right wheel joints."""
+    assert model.drive is not None
+    means = []
+    for names in (model.drive.left_joints, model.drive.right_joints):
+        points = [model.joint(name).model_T_joint.translation for name in names]
+        x, y, z = (sum(axis) / len(points) for axis in zip(*points, strict=True))
+        means.append((x, y, z))
+    return means[0], means[1]
+
+
+def _left_of(model: Model) -> Vector3:
+    """Unit vector (model frame, level) from the right wheels to the left ones."""
+    left, right = _sides(model)
+    dx, dy = left[0] - right[0], left[1] - right[1]
+    length = math.hypot(dx, dy)
+    if length < 1e-6:
+        raise InvalidValueError(
+            f"model {model.name!r}: left and right wheels are at the same place"
+        )
+    return (dx / length, dy / length, 0.0)

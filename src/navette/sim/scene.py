@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Plain data that every reader makes and the builder compiles: a scene of models.
+
+Poses are :class:`~navette.geometry.Transform3`, named ``outer_T_inner``. Lengths
+are metres, angles radians, masses kilograms. All poses inside a model are resolved
+to the model's frame, so that nothing below has to know SDF's or URDF's rules.
+"""
+
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from pathlib import Path
+
+from navette.errors import InvalidValueError
+from navette.geometry import Transform3, Vector3
+
+Colour = tuple[float, float, float, float]  # red, green, blue, alpha in 0…1
+
+_IDENTITY = Transform3.identity()
+
+
+@dataclass(frozen=True)
+class Box:
+    size: Vector3  # full edges
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """About its z axis, centred."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Capsule:
+    """About its z axis, centred; ``length`` is the cylindrical part."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Sphere:
+    radius: float
+
+
+@dataclass(frozen=True)
+class Ellipsoid:
+    radii: Vector3
+
+
+@dataclass(frozen=True)
+class Plane:
+    """An infinite plane through the origin; ``size`` is only how much is drawn."""
+
+    normal: Vector3 = (0.0, 0.0, 1.0)
+    size: tuple[float, float] = (100.0, 100.0)
+
+
+Shape = Box | Cylinder | Capsule | Sphere | Ellipsoid | Plane
+
+
+@dataclass(frozen=True, kw_only=True)
+class Geometry:
+    """A shape on a link: seen by sensors, touched by others, or both."""
+
+    name: str
+    shape: Shape
+    link_T_shape: Transform3 = _IDENTITY
+    colour: Colour | None = None
+    collides: bool = True
+    visible: bool = True
+    friction: float | None = None
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Mass (kg) and inertia about the centre of mass (kg m²)."""
+
+    mass: float
+    link_T_com: Transform3
+    inertia: tuple[float, float, float, float, float, float]  # xx yy zz xy xz yz
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensor:
+    """What all sensors have; ``topic`` is empty when the file gives none."""
+
+    name: str
+    link_T_sensor: Transform3 = _IDENTITY
+    rate_hz: float = 10.0
+    topic: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LidarSensor(Sensor):
+    """A planar laser scanner; the first and last beam lie on the given angles."""
+
+    samples: int = 360
+    angle_min: float = -3.141592653589793
+    angle_max: float = 3.141592653589793
+    range_min: float = 0.1
+    range_max: float = 20.0
+    noise_stddev: float = 0.0
+    sees_visuals: bool = True  # a gpu_lidar sees what is drawn, a ray what collides
+
+
+@dataclass(frozen=True, kw_only=True)
+class CameraSensor(Sensor):
+    """A pinhole camera that looks along its frame's +x, with z up (SDF)."""
+
+    width: int = 320
+    height: int = 240
+    horizontal_fov: float = 1.047
+    near: float = 0.1
+    far: float = 100.0
+    noise_stddev: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImuSensor(Sensor):
+    acceleration_stddev: float = 0.0
+    angular_velocity_stddev: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactSensor(Sensor):
+    """Names collisions of its link to be watched; all contacts are reported."""
+
+    collisions: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Link:
+    name: str
+    model_T_link: Transform3 = _IDENTITY
+    inertial: Inertial | None = None
+    geometries: tuple[Geometry, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
+
+
+class JointKind(Enum):
+    FIXED = "fixed"
+    REVOLUTE = "revolute"  # also continuous: without limits
+    PRISMATIC = "prismatic"
+    BALL = "ball"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """Connects ``child`` to ``parent`` ("world" pins it); axis in the joint frame."""
+
+    name: str
+    kind: JointKind
+    parent: str
+    child: str
+    model_T_joint: Transform3
+    axis: Vector3 = (0.0, 0.0, 1.0)
+    limits: tuple[float, float] | None = None
+    damping: float = 0.0
+    friction: float = 0.0
+
+
+@dataclass(frozen=True)
+class SpeedLimits:
+    """Limits of a drive; None where the file says nothing. SI units."""
+
+    speed: float | None = None
+    reverse_speed: float | None = None
+    yaw_rate: float | None = None
+    acceleration: float | None = None
+    yaw_acceleration: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiffDrive:
+    """Wheels driven in two groups; more than one a side is skid steering.
+
+    ``wheel_separation`` turns a yaw rate into wheel speeds: for skid steering it is
+    the effective one, wider than the distance between the wheels.
+    """
+
+    left_joints: tuple[str, ...]
+    right_joints: tuple[str, ...]
+    wheel_separation: float
+    wheel_radius: float
+    topic: str = "cmd_vel"
+    limits: SpeedLimits = SpeedLimits()
+    max_wheel_torque: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Model:
+    """Links and joints that move together; nested models are already flattened.
+
+    ``frames`` are further named frames: name → (link it is attached to, pose).
+    """
+
+    name: str
+    world_T_model: Transform3 = _IDENTITY
+    static: bool = False
+    links: tuple[Link, ...] = ()
+    joints: tuple[Joint, ...] = ()
+    frames: dict[str, tuple[str, Transform3]] = field(default_factory=dict)
+    drive: DiffDrive | None = None
+
+    def link(self, name: str) -> Link:
+        return next(link for link in self.links if link.name == name)
+
+    def joint(self, name: str) -> Joint:
+        for joint in self.joints:
+            if joint.name == name:
+                return joint
+        known = ", ".join(joint.name for joint in self.joints) or "none"
+        raise InvalidValueError(
+            f"model {self.name!r}: no joint {name!r}; joints: {known}"
+        )
+
+    def at(self, world_T_model: Transform3) -> "Model":
+        return replace(self, world_T_model=world_T_model)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """A world: models, gravity (m/s²) and how it looks.
+
+    ``start`` is where a robot without a pose of its own begins. ``mjcf`` is a
+    MuJoCo model file whose contents join the scene as they are.
+    """
+
+    name: str
+    models: tuple[Model, ...] = ()
+    gravity: Vector3 = (0.0, 0.0, -9.81)
+    sky: Colour = (0.62, 0.76, 0.92, 1.0)
+    sun_direction: Vector3 = (-0.5, 0.1, -0.9)
+    start: Transform3 = _IDENTITY
+    mjcf: Path | None = None
+
+    @property
+    def robot(self) -> Model | None:
+        """The first model that has a drive."""
+        return next((m for m in self.models if m.drive is not None), None)
+
+    def with_robot(self, robot: Model) -> "Scene":
+        """The same scene with ``robot`` in place of its own, if it had one."""
+        others = tuple(m for m in self.models if m.drive is None)
+        return replace(self, models=(*others, robot))

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: Apache-2.0
+"""SDF sensors and drive plugins (Gazebo classic, Ignition, gz)."""
+
+import math
+
+from navette.sim.scene import (
+    CameraSensor,
+    ContactSensor,
+    DiffDrive,
+    ImuSensor,
+    LidarSensor,
+    Sensor,
+    SpeedLimits,
+)
+from navette.sim.sdf_poses import PoseGraph, read_pose
+from navette.sim.xml_tree import Unsupported, XmlNode
+
+MAX_BEAMS = 20_000
+MAX_PIXELS = 4096 * 4096
+
+_LIDAR_TYPES = ("ray", "lidar", "gpu_ray", "gpu_lidar")
+
+# Plugins whose work Navette's own nodes do; no need to warn about them.
+_REPLACED = (
+    "posepublisher",
+    "pose-publisher",
+    "jointstatepublisher",
+    "joint-state-publisher",
+    "joint_state_publisher",
+    "odometrypublisher",
+    "odometry-publisher",
+    "physics",
+    "usercommands",
+    "user-commands",
+    "scenebroadcaster",
+    "scene-broadcaster",
+    "imu",
+    "sensors",
+    "contact",
+)
+
+
+def read_sensors(
+    link: XmlNode, graph: PoseGraph, link_name: str, unsupported: Unsupported
+) -> tuple[Sensor, ...]:
+    """The sensors of a link that the simulator can play."""
+    sensors: list[Sensor] = []
+    for node in link.all("sensor"):
+        common = {
+            "name": node.name(),
+            "link_T_sensor": graph.resolve_in(link_name, read_pose(node)),
+            "topic": _topic(node),
+        }
+        sensor = _read_sensor(node, common, unsupported)
+        if sensor is not None:
+            sensors.append(sensor)
+    return tuple(sensors)
+
+
+def _read_sensor(
+    node: XmlNode, common: dict[str, object], unsupported: Unsupported
+) -> Sensor | None:
+    kind = node.need_attribute("type")
+    if kind in _LIDAR_TYPES:
+        return _lidar(node, kind, common, unsupported)
+    if kind == "camera":
+        return _camera(node, common)
+    if kind == "imu":
+        return _imu(node, common)
+    if kind == "contact":
+        contact = node.find("contact")
+        names = [c.text.strip() for c in contact.all("collision")] if contact else []
+        rate = _rate(node, 10.0)
+        return ContactSensor(**common, rate_hz=rate, collisions=tuple(names))  # type: ignore[arg-type]
+    unsupported.note(f"sensor of type {kind!r}", node)
+    return None
+
+
+def _rate(node: XmlNode, default: float) -> float:
+    """SDF's 0 means "as fast as possible": the default is used then."""
+    rate = node.number("update_rate", 0.0)
+    if rate < 0 or rate > 1000:
+        raise node.error(f"<update_rate> is {rate:g}; wanted 0 to 1000 Hz")
+    return rate or default
+
+
+def _topic(node: XmlNode) -> str:
+    topic = node.words("topic")
+    for plugin in node.all("plugin"):
+        topic = topic or plugin.words("topicName")
+    return topic.strip("/")
+
+
+def _lidar(
+    node: XmlNode, kind: str, common: dict[str, object], unsupported: Unsupported
+) -> LidarSensor:
+    body = node.find("ray") or node.find("lidar")
+    if body is None:
+        raise node.error("a <ray> or <lidar> is missing")
+    horizontal = body.need("scan").need("horizontal")
+    vertical = body.find("scan", "vertical")
+    if vertical is not None and vertical.number("samples", 1.0) > 1:
+        unsupported.note("rows of beams of a lidar above one (one is made)", vertical)
+    samples = round(
+        horizontal.positive("samples", 640.0) * horizontal.positive("resolution", 1.0)
+    )
+    if not 1 <= samples <= MAX_BEAMS:
+        raise horizontal.error(f"{samples} samples; wanted 1 to {MAX_BEAMS}")
+    angle_min = horizontal.number("min_angle", 0.0)
+    angle_max = horizontal.number("max_angle", 0.0)
+    if angle_max < angle_min or angle_max - angle_min > math.tau + 1e-6:
+        raise horizontal.error(f"angles {angle_min:g} to {angle_max:g} make no scan")
+    limits = body.need("range")
+    range_min, range_max = limits.number("min", 0.0), limits.positive("max")
+    if not 0 <= range_min < range_max:
+        raise limits.error(f"min {range_min:g} and max {range_max:g} m make no range")
+    return LidarSensor(
+        **common,  # type: ignore[arg-type]
+        rate_hz=_rate(node, 10.0),
+        samples=samples,
+        angle_min=angle_min,
+        angle_max=angle_max,
+        range_min=range_min,
+        range_max=range_max,
+        noise_stddev=_stddev(body),
+        sees_visuals=kind != "ray",
+    )
+
+
+def _camera(node: XmlNode, common: dict[str, object]) -> CameraSensor:
+    body = node.need("camera")
+    image, clip = body.find("image"), body.find("clip")
+    width = round(image.positive("width", 320.0)) if image else 320
+    height = round(image.positive("height", 240.0)) if image else 240
+    if width * height > MAX_PIXELS:
+        raise body.error(f"{width} x {height} pixels; at most {MAX_PIXELS}")
+    fov = body.positive("horizontal_fov", 1.047)
+    if fov >= math.pi:
+        raise body.error(f"<horizontal_fov> is {fov:g}; a pinhole has less than pi")
+    return CameraSensor(
+        **common,  # type: ignore[arg-type]
+        rate_hz=_rate(node, 30.0),
+        width=width,
+        height=height,
+        horizontal_fov=fov,
+        near=clip.positive("near", 0.1) if clip else 0.1,
+        far=clip.positive("far", 100.0) if clip else 100.0,
+        noise_stddev=_stddev(body),
+    )
+
+
+def _imu(node: XmlNode, common: dict[str, object]) -> ImuSensor:
+    return ImuSensor(
+        **common,  # type: ignore[arg-type]
+        rate_hz=_rate(node, 100.0),
+        acceleration_stddev=_stddev(node.find("imu", "linear_acceleration", "x")),
+        angular_velocity_stddev=_stddev(node.find("imu", "angular_velocity", "x")),
+    )
+
+
+def _stddev(node: XmlNode | None) -> float:
+    noise = node.find("noise") if node is not None else None
+    if noise is None:
+        return 0.0
+    stddev = noise.number("stddev", 0.0)
+    if stddev < 0:
+        raise noise.error(f"<stddev> is {stddev:g}; wanted >= 0")
+    return stddev
+
+
+def is_drive_plugin(plugin: XmlNode) -> bool:
+    text = _plugin_name(plugin)
+    return any(key in text for key in ("diffdrive", "diff-drive", "diff_drive")) or (
+        "skid_steer" in text or "skidsteer" in text
+    )
+
+
+def is_replaced_plugin(plugin: XmlNode) -> bool:
+    text = _plugin_name(plugin).rpartition("::")[2]
+    return text in _REPLACED or any(key in _plugin_name(plugin) for key in _REPLACED)
+
+
+def _plugin_name(plugin: XmlNode) -> str:
+    a = plugin.attributes
+    return f"{a.get('filename', '')} {a.get('name', '')}".lower()
+
+
+def read_drive(plugin: XmlNode) -> DiffDrive:
+    """Wheel joints, geometry and limits of a differential or skid-steer plugin."""
+    left = _joints(plugin, "left")
+    right = _joints(plugin, "right")
+    if not left or not right:
+        raise plugin.error("a drive needs <left_joint> and <right_joint>")
+    separation = _first(plugin, ("wheel_separation", "wheelSeparation"))
+    radius = _first(plugin, ("wheel_radius",))
+    diameter = _first(plugin, ("wheel_diameter", "wheelDiameter"))
+    if radius is None and diameter is not None:
+        radius = diameter / 2
+    if separation is None or radius is None or min(separation, radius) <= 0:
+        raise plugin.error("wheel separation and radius must be given and > 0")
+    multiplier = _first(plugin, ("wheel_separation_multiplier",)) or 1.0
+    return DiffDrive(
+        left_joints=left,
+        right_joints=right,
+        wheel_separation=separation * multiplier,
+        wheel_radius=radius,
+        topic=plugin.words("topic", "cmd_vel").strip("/"),
+        limits=_limits(plugin),
+        max_wheel_torque=_first(plugin, ("max_wheel_torque", "wheelTorque", "torque")),
+    )
+
+
+def _joints(plugin: XmlNode, side: str) -> tuple[str, ...]:
+    tags = (
+        f"{side}_joint",
+        f"{side}Joint",
+        f"{side}FrontJoint",
+        f"{side}RearJoint",
+        f"{side}_front_joint",
+        f"{side}_rear_joint",
+    )
+    return tuple(c.text.strip() for c in plugin.children if c.tag in tags)
+
+
+def _first(plugin: XmlNode, tags: tuple[str, ...]) -> float | None:
+    for tag in tags:
+        if plugin.find(tag) is not None:
+            return plugin.number(tag)
+    return None
+
+
+def _limits(plugin: XmlNode) -> SpeedLimits:
+    """Positive limits; gz gives signed minima, and infinity for "none" is absent."""
+
+    def positive(*tags: str) -> float | None:
+        value = _first(plugin, tags)
+        return abs(value) if value else None
+
+    return SpeedLimits(
+        speed=positive("max_linear_velocity", "max_velocity"),
+        reverse_speed=positive("min_linear_velocity", "min_velocity"),
+        yaw_rate=positive("max_angular_velocity"),
+        acceleration=positive("max_linear_acceleration", "max_acceleration"),
+        yaw_acceleration=positive("max_angular_acceleration"),
+    )

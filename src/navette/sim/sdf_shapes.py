@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: Apache-2.0
+"""SDF geometry, materials, friction and inertia of a link."""
+
+from dataclasses import replace
+
+from navette.geometry import Transform3
+from navette.sim.scene import (
+    Box,
+    Capsule,
+    Colour,
+    Cylinder,
+    Ellipsoid,
+    Geometry,
+    Inertial,
+    Plane,
+    Shape,
+    Sphere,
+)
+from navette.sim.sdf_poses import PoseGraph, read_pose
+from navette.sim.xml_tree import Unsupported, XmlNode
+
+# Names from Gazebo's material script that worlds use most.
+_GAZEBO_COLOURS: dict[str, Colour] = {
+    "Grey": (0.5, 0.5, 0.5, 1.0),
+    "DarkGrey": (0.25, 0.25, 0.25, 1.0),
+    "White": (0.95, 0.95, 0.95, 1.0),
+    "Black": (0.1, 0.1, 0.1, 1.0),
+    "FlatBlack": (0.1, 0.1, 0.1, 1.0),
+    "Red": (0.85, 0.15, 0.15, 1.0),
+    "Green": (0.2, 0.7, 0.25, 1.0),
+    "Blue": (0.2, 0.3, 0.85, 1.0),
+    "Yellow": (0.95, 0.85, 0.2, 1.0),
+    "Orange": (0.95, 0.55, 0.15, 1.0),
+    "Purple": (0.55, 0.3, 0.7, 1.0),
+    "Turquoise": (0.2, 0.75, 0.75, 1.0),
+    "Wood": (0.62, 0.44, 0.27, 1.0),
+    "Bricks": (0.62, 0.32, 0.26, 1.0),
+}
+
+
+def read_geometries(
+    link: XmlNode, graph: PoseGraph, link_name: str, unsupported: Unsupported
+) -> tuple[Geometry, ...]:
+    """Collisions and visuals; a visual equal to a collision becomes one shape."""
+    collisions: list[Geometry] = []
+    visuals: list[Geometry] = []
+    for kind, found in (("collision", collisions), ("visual", visuals)):
+        for node in link.all(kind):
+            shape = _read_shape(node.need("geometry"), unsupported)
+            if shape is None:
+                continue
+            pose = graph.resolve_in(link_name, read_pose(node))
+            found.append(_geometry(node, shape, pose, collides=kind == "collision"))
+    return merge_geometries(collisions, visuals)
+
+
+def _geometry(
+    node: XmlNode, shape: Shape, pose: Transform3, *, collides: bool
+) -> Geometry:
+    return Geometry(
+        name=node.attributes.get("name", node.tag),
+        shape=shape,
+        link_T_shape=pose,
+        colour=None if collides else _read_colour(node),
+        collides=collides,
+        visible=not collides,
+        friction=_read_friction(node) if collides else None,
+    )
+
+
+def merge_geometries(
+    collisions: list[Geometry], visuals: list[Geometry]
+) -> tuple[Geometry, ...]:
+    """One geometry for each pair of collision and visual that coincide."""
+    left = list(visuals)
+    merged = []
+    for collision in collisions:
+        twin = next((v for v in left if _coincide(collision, v)), None)
+        if twin is not None:
+            left.remove(twin)
+            collision = replace(collision, colour=twin.colour, visible=True)
+        merged.append(collision)
+    return (*merged, *left)
+
+
+def _coincide(a: Geometry, b: Geometry) -> bool:
+    if isinstance(a.shape, Plane) and isinstance(b.shape, Plane):
+        same = a.shape.normal == b.shape.normal  # the drawn size does not matter
+    else:
+        same = a.shape == b.shape
+    return same and a.link_T_shape == b.link_T_shape
+
+
+def _read_shape(geometry: XmlNode, unsupported: Unsupported) -> Shape | None:
+    for node in geometry.children:
+        if node.tag == "box":
+            return Box(_positive3(node.need("size")))
+        if node.tag == "cylinder":
+            return Cylinder(node.positive("radius"), node.positive("length"))
+        if node.tag == "capsule":
+            return Capsule(node.positive("radius"), node.positive("length"))
+        if node.tag == "sphere":
+            return Sphere(node.positive("radius"))
+        if node.tag == "ellipsoid":
+            return Ellipsoid(_positive3(node.need("radii")))
+        if node.tag == "plane":
+            return _read_plane(node)
+        if node.tag != "empty":
+            unsupported.note(f"<{node.tag}> geometry", node)
+        return None
+    raise geometry.error("no shape in it")
+
+
+def _read_plane(node: XmlNode) -> Plane:
+    normal, size = node.find("normal"), node.find("size")
+    n = normal.numbers(3) if normal is not None else (0.0, 0.0, 1.0)
+    s = size.numbers(2) if size is not None else (100.0, 100.0)
+    if normal is not None and sum(c * c for c in n) < 1e-12:
+        raise normal.error("a normal of length 0")
+    return Plane((n[0], n[1], n[2]), (s[0], s[1]))
+
+
+def _positive3(node: XmlNode) -> tuple[float, float, float]:
+    x, y, z = node.numbers(3)
+    if min(x, y, z) <= 0:
+        raise node.error(f"{x:g} {y:g} {z:g}: wanted three numbers > 0")
+    return (x, y, z)
+
+
+def _read_colour(visual: XmlNode) -> Colour | None:
+    for material in visual.all("material"):
+        for tag in ("diffuse", "ambient"):
+            node = material.find(tag)
+            if node is not None and node.text.strip():
+                return _colour(node)
+        name = material.find("script", "name")
+        if name is not None:
+            short = name.text.strip().removeprefix("Gazebo/")
+            return _GAZEBO_COLOURS.get(short, _GAZEBO_COLOURS["Grey"])
+    return None
+
+
+def _colour(node: XmlNode) -> Colour:
+    count = len(node.text.split())
+    values = node.numbers(3 if count == 3 else 4)
+    r, g, b, a = (*values, 1.0)[:4]
+    return (_unit(r), _unit(g), _unit(b), _unit(a))
+
+
+def _unit(value: float) -> float:
+    return min(1.0, max(0.0, value))
+
+
+def _read_friction(collision: XmlNode) -> float | None:
+    node = collision.find("surface", "friction", "ode")
+    if node is None or node.find("mu") is None:
+        return None
+    friction = node.number("mu")
+    if friction < 0:
+        raise node.error(f"<mu> is {friction:g}; wanted >= 0")
+    return friction
+
+
+def read_inertial(link: XmlNode, graph: PoseGraph, link_name: str) -> Inertial | None:
+    """Mass and inertia; without numbers SDF means 1 kg and 1 kg m²."""
+    node = link.find("inertial")
+    if node is None:
+        return None
+    link_T_com = graph.resolve_in(link_name, read_pose(node))
+    inertia = node.find("inertia")
+    xx, yy, zz, xy, xz, yz = (
+        inertia.number(key, 1.0 if key[1] == key[2] else 0.0) if inertia else default
+        for key, default in (
+            ("ixx", 1.0),
+            ("iyy", 1.0),
+            ("izz", 1.0),
+            ("ixy", 0.0),
+            ("ixz", 0.0),
+            ("iyz", 0.0),
+        )
+    )
+    return Inertial(node.positive("mass", 1.0), link_T_com, (xx, yy, zz, xy, xz, yz))

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulator: physics, drive and sensors of one robot in one world.
+
+Knows no node and no topic. Time is integer nanoseconds and advances in whole
+physics steps, in batches as long as nothing changes in between. What happens does
+not depend on how often anybody looks: commands, limits and checks act on fixed
+multiples of the physics step, and sensors only read.
+"""
+
+import math
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2, Transform3, Vector3
+from navette.geometry.se3 import multiply, rotate
+from navette.sim.build import Compiled, compile_scene
+from navette.sim.clearance import Clearance, ClearanceProbe
+from navette.sim.contacts import ContactMonitor
+from navette.sim.drive import CONTROL_PERIOD_NS, SpeedRamp
+from navette.sim.lidar import Lidar, Scan
+from navette.sim.mount import Mount
+from navette.sim.params import SimParams
+from navette.sim.scene import LidarSensor, Scene
+
+_WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz
+
+
+class Motion(NamedTuple):
+    """Velocity of the base in its own frame: m/s and rad/s."""
+
+    linear: Vector3
+    angular: Vector3
+
+
+class Simulator:
+    """One robot in one world.
+
+    Args:
+        scene: the world, with a robot in it.
+        params: limits, noise and physics step.
+        start: where the robot stands (x, y, yaw) on the floor; without it, the
+            robot starts where the scene puts it (and may have to fall).
+
+    Raises:
+        InvalidValueError: the scene has no robot, or ``start`` is in an obstacle.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        params: SimParams | None = None,
+        *,
+        start: Pose2 | None = None,
+    ) -> None:
+        self.params = params or SimParams()
+        self.compiled = compile_scene(scene, timestep_s=self.params.timestep_s)
+        self._step_ns = round(self.params.timestep_s * 1e9)
+        self._data = mujoco.MjData(self.compiled.model)
+        self._start = start
+        self._ramp = SpeedRamp(self.params)
+        mujoco.mj_kinematics(self.compiled.model, self._data)
+        self._probe = ClearanceProbe(self.compiled, self._data)
+        self.contacts = ContactMonitor(self.compiled, self._data)
+        self.lidars = _lidars(self.compiled, self.params)
+        self.reset()
+
+    def reset(self) -> None:
+        """Back to the start: state, time, noise and records."""
+        mujoco.mj_resetData(self.compiled.model, self._data)
+        self._rng = np.random.default_rng(self.params.seed)
+        self._steps = 0
+        self._fresh_at = -1
+        self._near = True
+        self._ramp.reset()
+        self.contacts.reset()
+        self.min_clearance = Clearance(math.inf, "")
+        if self._start is not None:
+            self._place(self._start)
+        first = self.clearance()
+        if self._start is not None and first.distance < 0:
+            raise InvalidValueError(
+                f"start {tuple(self._start)}: the robot would stand "
+                f"{-first.distance:.2f} m inside {first.obstacle!r}"
+            )
+
+    def _place(self, start: Pose2) -> None:
+        robot = self.compiled.robot
+        world_T_base = Transform3.from_pose2(start, z=self._floor() + 1e-3)
+        base_T_root = robot.model_T_base.inverse() @ robot.root_T_model.inverse()
+        pose = world_T_base @ base_T_root
+        x, y, z, w = pose.rotation
+        self._data.qpos[robot.qpos : robot.qpos + 7] = (*pose.translation, w, x, y, z)
+
+    def _floor(self) -> float:
+        mujoco.mj_kinematics(self.compiled.model, self._data)
+        ground = np.flatnonzero(self.compiled.is_ground)
+        return float(self._data.geom_xpos[ground[0], 2]) if len(ground) else 0.0
+
+    @property
+    def now_ns(self) -> int:
+        return self._steps * self._step_ns
+
+    def command(self, linear: float, angular: float) -> bool:
+        """Set the wanted speed (m/s, rad/s); False if it is refused as not finite."""
+        return self._ramp.command(linear, angular, self.now_ns)
+
+    def step(self, count: int = 1) -> None:
+        """Advance by ``count`` physics steps."""
+        end = self._steps + count
+        control = max(1, CONTROL_PERIOD_NS // self._step_ns)
+        watch = max(1, _WATCH_PERIOD_NS // self._step_ns)
+        while self._steps < end:
+            if self._steps % control == 0:
+                self._drive()
+            if self._steps % watch == 0:
+                self._watch()
+            batch = min(end, self._next_event(control, watch)) - self._steps
+            if self._near:
+                self._step_watchfully(batch)
+            else:
+                mujoco.mj_step(self.compiled.model, self._data, batch)
+                self._steps += batch
+
+    def advance_to(self, now_ns: int) -> None:
+        """Advance to the last physics step at or before ``now_ns``."""
+        count = now_ns // self._step_ns - self._steps
+        if count > 0:
+            self.step(count)
+
+    def _next_event(self, control: int, watch: int) -> int:
+        """The step at which the drive or the watch has to act next."""
+        next_watch = (self._steps // watch + 1) * watch
+        constant_until = self._ramp.constant_until_ns() / self._step_ns
+        if constant_until >= next_watch:
+            return next_watch
+        tick = max(self._steps + 1, math.ceil(constant_until))
+        return min(next_watch, math.ceil(tick / control) * control)
+
+    def _step_watchfully(self, count: int) -> None:
+        """Step one by one, so that no short contact is missed."""
+        for _ in range(count):
+            mujoco.mj_step(self.compiled.model, self._data, 1)
+            self._steps += 1
+            if self._data.ncon:
+                self.contacts.observe(self._data, self.now_ns)
+
+    def _drive(self) -> None:
+        speed = self._ramp.advance(self.now_ns)
+        drive = self.compiled.robot.drive
+        half = drive.wheel_separation / 2
+        for wheel, actuator in zip(
+            self.compiled.robot.wheels, self.compiled.robot.actuators, strict=True
+        ):
+            rim = speed.linear - wheel.side * speed.angular * half
+            self._data.ctrl[actuator] = wheel.direction * rim / drive.wheel_radius
+
+    def _watch(self) -> None:
+        """Measure clearance; decide whether contacts are possible until next time."""
+        clearance = self.clearance()
+        if clearance.distance < self.min_clearance.distance:
+            self.min_clearance = clearance
+        self.contacts.observe(self._data, self.now_ns)
+        motion = self.motion()
+        reach = self._reach()
+        fastest = math.hypot(*motion.linear) + math.hypot(*motion.angular) * reach
+        growth = self.params.max_accel_mps2 + self.params.max_yaw_accel_radps2 * reach
+        period_s = _WATCH_PERIOD_NS * 1e-9
+        margin = 1.5 * period_s * (fastest + growth * period_s) + 0.01
+        self._near = clearance.distance < margin
+
+    def _reach(self) -> float:
+        """Farthest point of the robot from its base, m."""
+        return self._probe.reach
+
+    def _refresh(self) -> None:
+        """Bring body and geom poses up to the present state."""
+        if self._fresh_at != self._steps:
+            mujoco.mj_kinematics(self.compiled.model, self._data)
+            self._fresh_at = self._steps
+
+    def pose(self) -> Transform3:
+        """``world_T_base``: the axle's middle, on the floor."""
+        robot = self.compiled.robot
+        x, y, z, qw, qx, qy, qz = self._data.qpos[robot.qpos : robot.qpos + 7].tolist()
+        world_T_root = Transform3((x, y, z), (qx, qy, qz, qw))
+        return world_T_root @ robot.root_T_model @ robot.model_T_base
+
+    def motion(self) -> Motion:
+        """Velocity of the base in its own frame."""
+        robot = self.compiled.robot
+        v = self._data.qvel[robot.qvel : robot.qvel + 6].tolist()
+        x, y, z, w = self._root_rotation()
+        root_T_base = robot.root_T_model @ robot.model_T_base
+        base_R_root = root_T_base.inverse().rotation
+        v_root = rotate((-x, -y, -z, w), (v[0], v[1], v[2]))
+        omega = (v[3], v[4], v[5])
+        lever = _cross(omega, root_T_base.translation)
+        at_base = (v_root[0] + lever[0], v_root[1] + lever[1], v_root[2] + lever[2])
+        return Motion(rotate(base_R_root, at_base), rotate(base_R_root, omega))
+
+    def _root_rotation(self) -> tuple[float, float, float, float]:
+        robot = self.compiled.robot
+        w, x, y, z = self._data.qpos[robot.qpos + 3 : robot.qpos + 7].tolist()
+        return (x, y, z, w)
+
+    def clearance(self) -> Clearance:
+        """Distance from the robot's body to the nearest obstacle now."""
+        self._refresh()
+        return self._probe.measure(self._data)
+
+    def scan(self, index: int = 0) -> Scan:
+        """A scan of lidar ``index`` now."""
+        self._refresh()
+        return self.lidars[index].scan(
+            self.compiled.model, self._data, self.now_ns, self._rng
+        )
+
+
+def _cross(a: Vector3, b: Vector3) -> Vector3:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def _lidars(compiled: Compiled, params: SimParams) -> tuple[Lidar, ...]:
+    lidars = []
+    for link in compiled.robot.model.links:
+        for sensor in link.sensors:
+            if isinstance(sensor, LidarSensor):
+                mount = Mount(compiled.robot.bodies[link.name], sensor.link_T_sensor)
+                noise = params.lidar_noise_m
+                lidars.append(
+                    Lidar(
+                        sensor,
+                        mount,
+                        noise_m=sensor.noise_stddev if noise < 0 else noise,
+                        dropout=params.lidar_dropout,
+                    )
+                )
+    return tuple(lidars)

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: Apache-2.0
+"""XML of robots and worlds: parsed safely, every element knows its line.
+
+World files come from strangers. ``defusedxml`` refuses document types, entities
+and external references; the bounds below refuse files made to exhaust memory.
+"""
+
+import logging
+import math
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.etree.ElementTree import ParseError
+
+from defusedxml.common import DefusedXmlException
+from defusedxml.ElementTree import DefusedXMLParser
+
+from navette.errors import FileFormatError
+
+MAX_BYTES = 32 * 1024 * 1024
+MAX_ELEMENTS = 400_000
+MAX_DEPTH = 64
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(eq=False, slots=True)
+class XmlNode:
+    """An element: tag, attributes, text, children and the line it starts on."""
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    path: Path
+    text: str = ""
+    children: list["XmlNode"] = field(default_factory=list)
+
+    def error(self, reason: str) -> FileFormatError:
+        """The error to raise about this element; it carries file and line."""
+        return FileFormatError(self.path, f"<{self.tag}>: {reason}", self.line)
+
+    def all(self, tag: str) -> Iterator["XmlNode"]:
+        return (child for child in self.children if child.tag == tag)
+
+    def find(self, *tags: str) -> "XmlNode | None":
+        """The first descendant along the path of tags, or None."""
+        node: XmlNode | None = self
+        for tag in tags:
+            node = next(node.all(tag), None) if node is not None else None
+        return node
+
+    def need(self, tag: str) -> "XmlNode":
+        child = self.find(tag)
+        if child is None:
+            raise self.error(f"a <{tag}> is missing")
+        return child
+
+    def name(self) -> str:
+        return self.need_attribute("name")
+
+    def need_attribute(self, key: str) -> str:
+        value = self.attributes.get(key, "").strip()
+        if not value:
+            raise self.error(f"attribute {key!r} is missing")
+        return value
+
+    def words(self, tag: str, default: str = "") -> str:
+        """Text of a child, or the default when absent or empty."""
+        child = self.find(tag)
+        return (child.text.strip() if child is not None else "") or default
+
+    def flag(self, tag: str, *, default: bool = False) -> bool:
+        text = self.words(tag).lower()
+        if text in ("", "1", "true", "0", "false"):
+            return text in ("1", "true") if text else default
+        raise self.need(tag).error(f"{text!r} is not true or false")
+
+    def number(self, tag: str, default: float | None = None) -> float:
+        """A finite number from a child; without default it must be there."""
+        child = self.find(tag) if default is not None else self.need(tag)
+        if child is None or not child.text.strip():
+            if default is None:
+                raise self.error(f"<{tag}> is empty; wanted a number")
+            return default
+        return child.numbers(1)[0]
+
+    def positive(self, tag: str, default: float | None = None) -> float:
+        value = self.number(tag, default)
+        if value <= 0:
+            raise self.error(f"<{tag}> is {value:g}; wanted > 0")
+        return value
+
+    def numbers(self, count: int) -> tuple[float, ...]:
+        """Exactly ``count`` finite numbers from this element's text."""
+        return self.parse_numbers(self.text, count)
+
+    def parse_numbers(self, text: str, count: int) -> tuple[float, ...]:
+        try:
+            values = tuple(float(word) for word in text.split())
+        except ValueError:
+            raise self.error(f"{text.strip()!r} are not numbers") from None
+        if len(values) != count:
+            raise self.error(f"{len(values)} numbers; wanted {count}")
+        if not all(map(math.isfinite, values)):
+            raise self.error(f"{text.strip()!r}: wanted finite numbers")
+        return values
+
+
+class Unsupported:
+    """Collects what a reader skips; says each kind once when the file is read."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._count: Counter[str] = Counter()
+        self._line: dict[str, int] = {}
+
+    def note(self, kind: str, node: XmlNode) -> None:
+        self._count[kind] += 1
+        self._line.setdefault(kind, node.line)
+
+    def report(self) -> None:
+        for kind, count in self._count.items():
+            more = f" (and {count - 1} more)" if count > 1 else ""
+            _log.warning(
+                "%s:%d: not supported, ignored: %s%s",
+                self._path,
+                self._line[kind],
+                kind,
+                more,
+            )
+
+
+class _TreeBuilder:
+    """Target of the parser: makes :class:`XmlNode` and enforces the bounds."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.root: XmlNode | None = None
+        self.expat: object = None
+        self._open: list[XmlNode] = []
+        self._count = 0
+
+    def start(self, tag: str, attributes: dict[str, str]) -> XmlNode:
+        line = int(getattr(self.expat, "CurrentLineNumber", 0))
+        node = XmlNode(tag.rpartition("}")[2], dict(attributes), line, self.path)
+        self._count += 1
+        if self._count > MAX_ELEMENTS:
+            raise node.error(f"more than {MAX_ELEMENTS} elements")
+        if len(self._open) >= MAX_DEPTH:
+            raise node.error(f"nested deeper than {MAX_DEPTH}")
+        if self._open:
+            self._open[-1].children.append(node)
+        else:
+            self.root = node
+        self._open.append(node)
+        return node
+
+    def end(self, tag: str) -> None:
+        self._open.pop()
+
+    def data(self, text: str) -> None:
+        if self._open:
+            self._open[-1].text += text
+
+    def close(self) -> XmlNode | None:
+        return self.root
+
+
+def read_bounded(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
+    """The bytes of a file, refused when it is missing or unreasonably large."""
+    try:
+        size = path.stat().st_size
+        if size > max_bytes:
+            raise FileFormatError(path, f"{size} bytes; at most {max_bytes} are read")
+        return path.read_bytes()
+    except OSError as error:
+        raise FileFormatError(path, f"cannot be read: {error.strerror}") from error
+
+
+def parse_xml(path: Path, text: bytes | None = None) -> XmlNode:
+    """Parse a file (or ``text`` said to be that file) into nodes with lines.
+
+    Raises:
+        FileFormatError: not XML, hostile (entities, document types), or too large.
+    """
+    builder = _TreeBuilder(path)
+    parser = DefusedXMLParser(target=builder, forbid_dtd=True)
+    builder.expat = parser.parser
+    try:
+        parser.feed(text if text is not None else read_bounded(path))
+        root = parser.close()
+    except ParseError as error:
+        raise FileFormatError(
+            path, f"not XML: {error.msg}", error.position[0]
+        ) from None
+    except DefusedXmlException as error:
+        raise FileFormatError(path, f"refused: {type(error).__name__}") from None
+    if not isinstance(root, XmlNode):
+        raise FileFormatError(path, "not XML: no element")
+    return root
