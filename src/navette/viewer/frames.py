@@ -1,0 +1,300 @@
+"""Frames that clients send: text and binary to values, nothing else.
+
+Source: the Foxglove WebSocket protocol v1 (foxglove/ws-protocol, docs/spec.md);
+the later subprotocol ``foxglove.sdk.v1`` has the same frames. Whatever a client
+sends either becomes one of the values below or raises :class:`DecodeError`.
+"""
+
+import json
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from navette.errors import DecodeError
+
+# In order of preference; the app of today asks for the first, older tools and the
+# published TypeScript client for the second.
+SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
+
+_U32 = 2**32
+
+
+@dataclass(frozen=True)
+class Subscribe:
+    """Pairs of (subscription id chosen by the client, channel id)."""
+
+    subscriptions: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True)
+class Unsubscribe:
+    subscription_ids: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class ClientChannel:
+    """What a client wants to publish: topic, ``cdr`` or ``json``, type name."""
+
+    id: int
+    topic: str
+    encoding: str
+    type_name: str
+
+
+@dataclass(frozen=True)
+class Advertise:
+    channels: tuple[ClientChannel, ...]
+
+
+@dataclass(frozen=True)
+class Unadvertise:
+    channel_ids: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Publish:
+    channel_id: int
+    data: bytes
+
+
+@dataclass(frozen=True)
+class GetParameters:
+    """No names means all parameters."""
+
+    names: tuple[str, ...]
+    request_id: str | None
+
+
+@dataclass(frozen=True)
+class WireParameter:
+    """A parameter as JSON has it; ``kind`` tells 3.0 from 3 and bytes from text.
+
+    ``value`` None means unset. ``kind``: float64, float64_array, byte_array or None.
+    """
+
+    name: str
+    value: Any
+    kind: str | None = None
+
+
+@dataclass(frozen=True)
+class SetParameters:
+    parameters: tuple[WireParameter, ...]
+    request_id: str | None
+
+
+@dataclass(frozen=True)
+class WatchParameters:
+    """No names means all parameters."""
+
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class UnwatchParameters:
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class WatchGraph:
+    pass
+
+
+@dataclass(frozen=True)
+class UnwatchGraph:
+    pass
+
+
+@dataclass(frozen=True)
+class FetchAsset:
+    uri: str
+    request_id: int
+
+
+@dataclass(frozen=True)
+class CallService:
+    service_id: int
+    call_id: int
+    encoding: str
+    data: bytes
+
+
+ClientFrame = (
+    Subscribe
+    | Unsubscribe
+    | Advertise
+    | Unadvertise
+    | Publish
+    | GetParameters
+    | SetParameters
+    | WatchParameters
+    | UnwatchParameters
+    | WatchGraph
+    | UnwatchGraph
+    | FetchAsset
+    | CallService
+)
+
+
+def decode(frame: str | bytes) -> ClientFrame:
+    """One client frame as a value.
+
+    Raises:
+        DecodeError: in words that the client's user may read.
+    """
+    if isinstance(frame, str):
+        return _decode_text(frame)
+    return _decode_binary(frame)
+
+
+def _decode_text(text: str) -> ClientFrame:
+    try:
+        # Python would take NaN, which no other JSON reader does.
+        document = json.loads(text, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as error:
+        raise DecodeError(f"text frame is not JSON: {error}") from None
+    if not isinstance(document, dict):
+        raise DecodeError("text frame is not a JSON object")
+    operation = document.get("op")
+    if not isinstance(operation, str) or operation not in _TEXT:
+        raise DecodeError(f"unknown op {operation!r:.80}; known: {', '.join(_TEXT)}")
+    return _TEXT[operation](_Fields(document, operation))
+
+
+def _decode_binary(data: bytes) -> ClientFrame:
+    if not data:
+        raise DecodeError("binary frame is empty")
+    if data[0] == 1:
+        if len(data) < 5:
+            raise DecodeError("message data frame is cut short")
+        (channel_id,) = struct.unpack_from("<I", data, 1)
+        return Publish(channel_id, bytes(data[5:]))
+    if data[0] == 2:
+        return _decode_call(data)
+    raise DecodeError(f"unknown binary opcode {data[0]}; known: 1 and 2")
+
+
+def _decode_call(data: bytes) -> CallService:
+    if len(data) < 13:
+        raise DecodeError("service call frame is cut short")
+    service_id, call_id, length = struct.unpack_from("<III", data, 1)
+    end = 13 + length
+    if end > len(data):
+        raise DecodeError("service call frame is cut short")
+    encoding = data[13:end].decode("utf-8", "replace")
+    return CallService(service_id, call_id, encoding, bytes(data[end:]))
+
+
+def _refuse_constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is not JSON")
+
+
+class _Fields:
+    """Typed access to the fields of a JSON object; errors name op and field."""
+
+    def __init__(self, document: dict[str, Any], where: str) -> None:
+        self._document = document
+        self._where = where
+
+    def _get(self, name: str, kind: type, wanted: str) -> Any:
+        value = self._document.get(name)
+        if not isinstance(value, kind) or isinstance(value, bool):
+            raise self._wrong(name, value, wanted)
+        return value
+
+    def text(self, name: str) -> str:
+        return str(self._get(name, str, "a string"))
+
+    def optional_text(self, name: str) -> str | None:
+        return None if self._document.get(name) is None else self.text(name)
+
+    def identifier(self, name: str) -> int:
+        return self._identifier(name, self._get(name, int, "a number"))
+
+    def _identifier(self, name: str, value: object) -> int:
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise DecodeError(
+                f"{self._where}: {name!r} has {value!r:.80}, not a number"
+            )
+        if not 0 <= value < _U32:
+            raise DecodeError(
+                f"{self._where}: {name!r} has {value!r:.80}, not a uint32"
+            )
+        return value
+
+    def _wrong(self, name: str, value: object, wanted: str) -> DecodeError:
+        return DecodeError(f"{self._where}: {name!r} has {value!r:.80}, not {wanted}")
+
+    def identifiers(self, name: str) -> tuple[int, ...]:
+        items = self._get(name, list, "a list of numbers")
+        return tuple(self._identifier(name, item) for item in items)
+
+    def texts(self, name: str) -> tuple[str, ...]:
+        items = self._get(name, list, "a list of strings")
+        if not all(isinstance(item, str) for item in items):
+            raise DecodeError(f"{self._where}: {name!r} is not a list of strings")
+        return tuple(items)
+
+    def objects(self, name: str) -> "list[_Fields]":
+        items = self._get(name, list, "a list of objects")
+        if not all(isinstance(item, dict) for item in items):
+            raise DecodeError(f"{self._where}: {name!r} is not a list of objects")
+        return [_Fields(item, f"{self._where}.{name}") for item in items]
+
+    def value(self, name: str) -> Any:
+        return self._document.get(name)
+
+
+def _subscribe(fields: _Fields) -> Subscribe:
+    return Subscribe(
+        tuple(
+            (item.identifier("id"), item.identifier("channelId"))
+            for item in fields.objects("subscriptions")
+        )
+    )
+
+
+def _advertise(fields: _Fields) -> Advertise:
+    return Advertise(
+        tuple(
+            ClientChannel(
+                item.identifier("id"),
+                item.text("topic"),
+                item.text("encoding"),
+                item.text("schemaName"),
+            )
+            for item in fields.objects("channels")
+        )
+    )
+
+
+def _set_parameters(fields: _Fields) -> SetParameters:
+    return SetParameters(
+        tuple(
+            WireParameter(
+                item.text("name"), item.value("value"), item.optional_text("type")
+            )
+            for item in fields.objects("parameters")
+        ),
+        fields.optional_text("id"),
+    )
+
+
+_TEXT: dict[str, Callable[[_Fields], ClientFrame]] = {
+    "subscribe": _subscribe,
+    "unsubscribe": lambda f: Unsubscribe(f.identifiers("subscriptionIds")),
+    "advertise": _advertise,
+    "unadvertise": lambda f: Unadvertise(f.identifiers("channelIds")),
+    "getParameters": lambda f: GetParameters(
+        f.texts("parameterNames"), f.optional_text("id")
+    ),
+    "setParameters": _set_parameters,
+    "subscribeParameterUpdates": lambda f: WatchParameters(f.texts("parameterNames")),
+    "unsubscribeParameterUpdates": lambda f: UnwatchParameters(
+        f.texts("parameterNames")
+    ),
+    "subscribeConnectionGraph": lambda _: WatchGraph(),
+    "unsubscribeConnectionGraph": lambda _: UnwatchGraph(),
+    "fetchAsset": lambda f: FetchAsset(f.text("uri"), f.identifier("requestId")),
+}

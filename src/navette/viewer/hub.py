@@ -1,0 +1,327 @@
+"""The live view's state: clients, channels, who watches what. No socket, no node.
+
+The socket thread feeds client frames in (:meth:`Hub.receive`) and takes frames out
+of each client's outbox; the program feeds topics, messages and values in. What a
+client wants of the program goes out through
+:class:`~navette.viewer.session.Robot`. All methods belong to the socket thread.
+"""
+
+import itertools
+from collections.abc import Callable, Iterable
+
+from navette.errors import DecodeError
+from navette.viewer import frames, replies
+from navette.viewer.assets import AssetFolders
+from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.outbox import Outbox
+from navette.viewer.replies import Channel, Graph, Level
+from navette.viewer.session import Robot, Session, Topic, Watch
+
+_MAX_CLIENT_CHANNELS = 256
+_TIME = "time"
+
+
+class Hub:
+    """State of the live view; see the module's text for who calls what."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        name: str,
+        session_id: str,
+        assets: AssetFolders | None = None,
+    ) -> None:
+        self._robot = robot
+        self._info = replies.server_info(name, session_id)
+        self._assets = assets or AssetFolders({})
+        self._sessions: dict[int, Session] = {}
+        self._channels: dict[int, Channel] = {}
+        self._topics: dict[Topic, Channel] = {}
+        self._watchers: dict[Watch, set[int]] = {}
+        self._graph = replies.EMPTY_GRAPH
+        self._client_ids = itertools.count(1)
+        self._channel_ids = itertools.count(1)
+        self.now_ns = 0
+
+    @property
+    def clients(self) -> int:
+        return len(self._sessions)
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        return tuple(self._channels.values())
+
+    # -- clients ---------------------------------------------------------------
+
+    def join(self, outbox: Outbox) -> Session:
+        session = Session(next(self._client_ids), outbox)
+        self._sessions[session.id] = session
+        session.send(self._info)
+        session.send(replies.advertise(self._channels.values()))
+        if self.now_ns:
+            session.send(replies.time(self.now_ns))
+        return session
+
+    def leave(self, session: Session) -> None:
+        for subscription_id in list(session.channel_by_subscription):
+            self._unsubscribe(session, subscription_id)
+        for channel_id in list(session.client_channels):
+            del session.client_channels[channel_id]
+            self._robot.close_publisher(session.id, channel_id)
+        self._sessions.pop(session.id, None)
+
+    def receive(self, session: Session, frame: str | bytes) -> None:
+        """Act on one frame; whatever is wrong with it becomes a status message."""
+        try:
+            request = frames.decode(frame)
+        except DecodeError as error:
+            session.complain(str(error))
+            return
+        _HANDLERS[type(request)](self, session, request)
+
+    def done(self, client: int) -> None:
+        """The program has finished one request of a client."""
+        session = self._sessions.get(client)
+        if session is not None:
+            session.pending -= 1
+
+    # -- what the program tells ------------------------------------------------
+
+    def set_topics(self, topics: Iterable[Topic]) -> None:
+        wanted = dict.fromkeys(topics)
+        gone = [self._topics.pop(topic) for topic in list(self._topics.keys() - wanted)]
+        for channel in gone:
+            self._remove_channel(channel)
+        if gone:
+            self._broadcast(replies.unadvertise(sorted(channel.id for channel in gone)))
+        added = []
+        for topic in wanted:
+            if topic not in self._topics:
+                channel = Channel(
+                    next(self._channel_ids),
+                    topic.name,
+                    topic.type_name,
+                    topic.definition,
+                    topic.latched,
+                )
+                self._topics[topic] = self._channels[channel.id] = channel
+                added.append(channel)
+        if added:
+            self._broadcast(replies.advertise(added))
+
+    def message(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
+        channel_id = watch.channel.id
+        for client in self._watchers.get(watch, ()):
+            session = self._sessions[client]
+            subscription_id = session.subscription_by_channel[channel_id]
+            frame = replies.message_data(subscription_id, stamp_ns, payload)
+            session.outbox.put_data(subscription_id, frame)
+
+    def set_graph(self, graph: Graph) -> None:
+        update = replies.graph_update(self._graph, graph)
+        self._graph = graph
+        if update is not None:
+            for session in self._sessions.values():
+                if session.wants_graph:
+                    session.send(update)
+
+    def set_now(self, now_ns: int) -> None:
+        """Tell the clients the time; only the newest waits for a slow one."""
+        if now_ns == self.now_ns:
+            return
+        self.now_ns = now_ns
+        frame = replies.time(now_ns)
+        for session in self._sessions.values():
+            session.outbox.put_data(_TIME, frame, depth=1)
+
+    def parameters(
+        self,
+        client: int,
+        parameters: Iterable[WireParameter],
+        request_id: str | None,
+    ) -> None:
+        session = self._sessions.get(client)
+        if session is not None:
+            session.send(replies.parameter_values(parameters, request_id))
+
+    def parameters_changed(self, parameters: Iterable[WireParameter]) -> None:
+        changed = list(parameters)
+        for session in self._sessions.values():
+            wanted = [p for p in changed if session.wants_parameter(p.name)]
+            if wanted:
+                session.send(replies.parameter_values(wanted, None))
+
+    def complain(self, client: int, message: str, level: Level = Level.ERROR) -> None:
+        session = self._sessions.get(client)
+        if session is not None:
+            session.complain(message, level)
+
+    # -- client requests -------------------------------------------------------
+
+    def _subscribe(self, session: Session, request: frames.Subscribe) -> None:
+        for subscription_id, channel_id in request.subscriptions:
+            channel = self._channels.get(channel_id)
+            if channel is None:
+                session.complain(f"subscribe: unknown channel id {channel_id}")
+            elif subscription_id in session.channel_by_subscription:
+                session.complain(f"subscribe: id {subscription_id} is in use")
+            elif channel_id in session.subscription_by_channel:
+                session.complain(
+                    f"subscribe: channel {channel_id} ({channel.topic}) is subscribed"
+                )
+            else:
+                session.channel_by_subscription[subscription_id] = channel_id
+                session.subscription_by_channel[channel_id] = subscription_id
+                self._add_watcher(session, channel)
+
+    def _on_unsubscribe(self, session: Session, request: frames.Unsubscribe) -> None:
+        for subscription_id in request.subscription_ids:
+            if subscription_id in session.channel_by_subscription:
+                self._unsubscribe(session, subscription_id)
+            else:
+                session.complain(
+                    f"unsubscribe: unknown subscription id {subscription_id}",
+                    Level.WARNING,
+                )
+
+    def _unsubscribe(self, session: Session, subscription_id: int) -> None:
+        channel_id = session.channel_by_subscription.pop(subscription_id)
+        del session.subscription_by_channel[channel_id]
+        session.outbox.forget(subscription_id)
+        watch = _watch_of(session, self._channels[channel_id])
+        watchers = self._watchers[watch]
+        watchers.discard(session.id)
+        if not watchers:
+            del self._watchers[watch]
+            self._robot.unwatch(watch)
+
+    def _add_watcher(self, session: Session, channel: Channel) -> None:
+        watch = _watch_of(session, channel)
+        watchers = self._watchers.get(watch)
+        if watchers is None:
+            self._watchers[watch] = {session.id}
+            self._robot.watch(watch)
+        else:
+            watchers.add(session.id)
+
+    def _advertise(self, session: Session, request: frames.Advertise) -> None:
+        for channel in request.channels:
+            problem = _refusal(session, channel)
+            if problem:
+                session.complain(f"advertise: {problem}")
+                continue
+            session.client_channels[channel.id] = channel
+            session.pending += 1
+            self._robot.open_publisher(session.id, channel)
+
+    def _unadvertise(self, session: Session, request: frames.Unadvertise) -> None:
+        for channel_id in request.channel_ids:
+            if session.client_channels.pop(channel_id, None) is None:
+                session.complain(
+                    f"unadvertise: unknown channel id {channel_id}", Level.WARNING
+                )
+                continue
+            session.pending += 1
+            self._robot.close_publisher(session.id, channel_id)
+
+    def _publish(self, session: Session, request: frames.Publish) -> None:
+        if request.channel_id not in session.client_channels:
+            session.complain(f"publish: channel {request.channel_id} is not advertised")
+            return
+        session.pending += 1
+        self._robot.publish(session.id, request.channel_id, request.data)
+
+    def _get_parameters(self, session: Session, request: frames.GetParameters) -> None:
+        session.pending += 1
+        self._robot.get_parameters(session.id, request.names, request.request_id)
+
+    def _set_parameters(self, session: Session, request: frames.SetParameters) -> None:
+        session.pending += 1
+        self._robot.set_parameters(session.id, request.parameters, request.request_id)
+
+    def _watch_parameters(
+        self, session: Session, request: frames.WatchParameters
+    ) -> None:
+        session.parameter_names.update(request.names)
+        session.all_parameters = session.all_parameters or not request.names
+
+    def _unwatch_parameters(
+        self, session: Session, request: frames.UnwatchParameters
+    ) -> None:
+        session.parameter_names.difference_update(request.names)
+        if not request.names:
+            session.parameter_names.clear()
+            session.all_parameters = False
+
+    def _watch_graph(self, session: Session, _request: frames.WatchGraph) -> None:
+        session.wants_graph = True
+        update = replies.graph_update(replies.EMPTY_GRAPH, self._graph)
+        if update is not None:
+            session.send(update)
+
+    def _unwatch_graph(self, session: Session, _request: frames.UnwatchGraph) -> None:
+        session.wants_graph = False
+
+    def _fetch_asset(self, session: Session, request: frames.FetchAsset) -> None:
+        try:
+            data = self._assets.read(request.uri)
+        except (LookupError, OSError) as error:
+            session.send(replies.asset_error(request.request_id, str(error)))
+        else:
+            session.send(replies.asset(request.request_id, data))
+
+    def _call_service(self, session: Session, request: frames.CallService) -> None:
+        session.send(
+            replies.service_failure(
+                request.service_id, request.call_id, "this server offers no services"
+            )
+        )
+
+    # -- inside ----------------------------------------------------------------
+
+    def _remove_channel(self, channel: Channel) -> None:
+        for session in self._sessions.values():
+            subscription_id = session.subscription_by_channel.get(channel.id)
+            if subscription_id is not None:
+                self._unsubscribe(session, subscription_id)
+        del self._channels[channel.id]
+
+    def _broadcast(self, frame: str | bytes) -> None:
+        for session in self._sessions.values():
+            session.send(frame)
+
+
+_HANDLERS: dict[type, Callable[..., None]] = {
+    frames.Subscribe: Hub._subscribe,
+    frames.Unsubscribe: Hub._on_unsubscribe,
+    frames.Advertise: Hub._advertise,
+    frames.Unadvertise: Hub._unadvertise,
+    frames.Publish: Hub._publish,
+    frames.GetParameters: Hub._get_parameters,
+    frames.SetParameters: Hub._set_parameters,
+    frames.WatchParameters: Hub._watch_parameters,
+    frames.UnwatchParameters: Hub._unwatch_parameters,
+    frames.WatchGraph: Hub._watch_graph,
+    frames.UnwatchGraph: Hub._unwatch_graph,
+    frames.FetchAsset: Hub._fetch_asset,
+    frames.CallService: Hub._call_service,
+}
+
+
+def _watch_of(session: Session, channel: Channel) -> Watch:
+    return Watch(channel, session.id if channel.latched else None)
+
+
+def _refusal(session: Session, channel: ClientChannel) -> str:
+    """Why a client's channel cannot be opened; empty where it can."""
+    if channel.id in session.client_channels:
+        return f"channel id {channel.id} is in use"
+    if channel.encoding not in replies.ENCODINGS:
+        return (
+            f"encoding {channel.encoding!r:.80} of {channel.topic!r:.80}; "
+            f"known: {', '.join(replies.ENCODINGS)}"
+        )
+    if len(session.client_channels) >= _MAX_CLIENT_CHANNELS:
+        return f"more than {_MAX_CLIENT_CHANNELS} channels"
+    return ""

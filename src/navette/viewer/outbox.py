@@ -1,0 +1,89 @@
+"""What waits to be sent to one client: bounded, newest kept."""
+
+from collections import deque
+from collections.abc import Hashable
+
+Frame = str | bytes
+
+
+class Outbox:
+    """Frames for one client, in order; a slow reader loses old data frames only.
+
+    Control frames (answers, advertisements) are never dropped: when more than
+    ``control_bytes`` of them wait, :attr:`overflowed` says that the client does not
+    read and should be let go. Data frames belong to a stream (a subscription); each
+    stream keeps its newest ``depth`` frames and at most ``stream_bytes`` (but always
+    one frame), so that a slow client sees every topic fresh, if less often.
+    """
+
+    def __init__(
+        self,
+        *,
+        depth: int = 16,
+        stream_bytes: int = 4_000_000,
+        control_bytes: int = 16_000_000,
+    ) -> None:
+        self._depth = depth
+        self._stream_bytes = stream_bytes
+        self._control_limit = control_bytes
+        self._control: deque[Frame] = deque()
+        self._control_size = 0
+        self._streams: dict[Hashable, _Stream] = {}
+        self._turns: deque[Hashable] = deque()
+        self.dropped = 0
+        self.overflowed = False
+
+    def __bool__(self) -> bool:
+        return bool(self._control or self._turns)
+
+    def put_control(self, frame: Frame) -> None:
+        if self.overflowed:
+            return
+        self._control.append(frame)
+        self._control_size += len(frame)
+        self.overflowed = self._control_size > self._control_limit
+
+    def put_data(
+        self, stream: Hashable, frame: bytes, *, depth: int | None = None
+    ) -> None:
+        waiting = self._streams.get(stream)
+        if waiting is None:
+            waiting = self._streams[stream] = _Stream()
+        waiting.frames.append(frame)
+        waiting.size += len(frame)
+        self._turns.append(stream)
+        limit = self._depth if depth is None else depth
+        while len(waiting.frames) > 1 and (
+            len(waiting.frames) > limit or waiting.size > self._stream_bytes
+        ):
+            waiting.size -= len(waiting.frames.popleft())
+            # Its turn goes with it: each stream has as many turns as frames.
+            self._turns.remove(stream)
+            self.dropped += 1
+
+    def forget(self, stream: Hashable) -> None:
+        """Drop what waits of a stream (its client no longer wants it)."""
+        if self._streams.pop(stream, None) is not None:
+            self._turns = deque(turn for turn in self._turns if turn != stream)
+
+    def pop(self) -> Frame:
+        """The next frame to send; control frames first, then data in order."""
+        if self._control:
+            frame = self._control.popleft()
+            self._control_size -= len(frame)
+            return frame
+        stream = self._turns.popleft()
+        waiting = self._streams[stream]
+        data = waiting.frames.popleft()
+        waiting.size -= len(data)
+        if not waiting.frames:
+            del self._streams[stream]
+        return data
+
+
+class _Stream:
+    __slots__ = ("frames", "size")
+
+    def __init__(self) -> None:
+        self.frames: deque[bytes] = deque()
+        self.size = 0

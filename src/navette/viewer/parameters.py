@@ -1,0 +1,96 @@
+"""ROS 2 parameter values and their form on the Foxglove socket."""
+
+import base64
+import binascii
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from navette.errors import ParameterError
+from navette.viewer.frames import WireParameter
+
+
+def wire_name(node: str, parameter: str) -> str:
+    """``/planner`` and ``method`` → ``/planner.method``, as foxglove_bridge has it."""
+    return f"{node}.{parameter}"
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """``/planner.method`` (or ``planner.method``) → (``/planner``, ``method``)."""
+    node, dot, parameter = name.partition(".")
+    if not (node and dot and parameter):
+        raise ParameterError(f"parameter {name!r:.120}: wanted /node.parameter")
+    return node if node.startswith("/") else f"/{node}", parameter
+
+
+def to_wire(name: str, value: Any) -> WireParameter:
+    """A parameter's value for JSON; ``kind`` keeps doubles and bytes apart.
+
+    JSON knows no NaN and no infinity: such a number goes out as unset.
+    """
+    if isinstance(value, bytes | bytearray):
+        return WireParameter(name, base64.b64encode(value).decode(), "byte_array")
+    if isinstance(value, float):
+        return WireParameter(name, value if math.isfinite(value) else None, "float64")
+    if isinstance(value, bool | int | str) or value is None:
+        return WireParameter(name, value)
+    return _array_to_wire(name, list(value))
+
+
+def _array_to_wire(name: str, items: list[Any]) -> WireParameter:
+    if items and all(isinstance(item, bytes) and len(item) == 1 for item in items):
+        return to_wire(name, b"".join(items))
+    if items and all(isinstance(item, float) for item in items):
+        finite = [item if math.isfinite(item) else None for item in items]
+        return WireParameter(name, finite, "float64_array")
+    return WireParameter(name, items)
+
+
+def from_wire(parameter: WireParameter, current: Any) -> Any:
+    """The value to set: numbers become what the parameter is now (3 → 3.0).
+
+    Raises:
+        ParameterError: the value contradicts its own ``kind`` or is no ROS 2 value.
+    """
+    value, kind = parameter.value, parameter.kind
+    if kind == "byte_array":
+        return _bytes_of(parameter)
+    if isinstance(value, dict):
+        raise ParameterError(f"parameter {parameter.name!r}: objects are no ROS 2 type")
+    if kind == "float64" or (_is_number(value) and isinstance(current, float)):
+        return _float(parameter, value)
+    if isinstance(value, list):
+        floats = kind == "float64_array" or _holds_floats(current)
+        mixed = any(isinstance(item, float) for item in value)
+        if floats or (mixed and all(map(_is_number, value))):
+            return [_float(parameter, item) for item in value]
+    if isinstance(value, float) and isinstance(current, int) and value.is_integer():
+        # JavaScript has one kind of number.
+        return int(value)
+    return value
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _holds_floats(value: object) -> bool:
+    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+        return False
+    items = list(value)
+    return bool(items) and all(isinstance(item, float) for item in items)
+
+
+def _float(parameter: WireParameter, value: object) -> float:
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise ParameterError(
+            f"parameter {parameter.name!r}: {value!r:.80} is no number"
+        )
+    return float(value)
+
+
+def _bytes_of(parameter: WireParameter) -> bytes:
+    try:
+        return base64.b64decode(parameter.value, validate=True)
+    except (binascii.Error, TypeError, ValueError):
+        raise ParameterError(f"parameter {parameter.name!r}: is not base64") from None

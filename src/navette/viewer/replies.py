@@ -1,0 +1,182 @@
+"""Frames that the server sends: values to text and binary, nothing else.
+
+Source: the Foxglove WebSocket protocol v1 (foxglove/ws-protocol, docs/spec.md).
+"""
+
+import json
+import struct
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+from navette.viewer.frames import WireParameter
+
+# Services and playback control join when the runtime has them: a capability that
+# is declared must work.
+CAPABILITIES = (
+    "clientPublish",
+    "parameters",
+    "parametersSubscribe",
+    "connectionGraph",
+    "time",
+    "assets",
+)
+ENCODINGS = ("cdr", "json")
+
+
+class Level(IntEnum):
+    """Severity of a status message."""
+
+    INFO = 0
+    WARNING = 1
+    ERROR = 2
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A topic with one type, as clients see it; ``latched`` is transient local."""
+
+    id: int
+    topic: str
+    type_name: str
+    definition: str
+    latched: bool = False
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Who publishes and who subscribes: topic → node names."""
+
+    published: Mapping[str, tuple[str, ...]]
+    subscribed: Mapping[str, tuple[str, ...]]
+
+
+EMPTY_GRAPH = Graph({}, {})
+
+
+def server_info(name: str, session_id: str) -> str:
+    return _json(
+        op="serverInfo",
+        name=name,
+        capabilities=CAPABILITIES,
+        supportedEncodings=ENCODINGS,
+        # Without the distribution's name the Foxglove app does not know that this is
+        # ROS 2, and its publish tools (the goal point!) stay off.
+        metadata={"ROS_DISTRO": "jazzy"},
+        sessionId=session_id,
+    )
+
+
+def status(level: Level, message: str) -> str:
+    return _json(op="status", level=int(level), message=message)
+
+
+def advertise(channels: Iterable[Channel]) -> str:
+    return _json(
+        op="advertise",
+        channels=[
+            {
+                "id": channel.id,
+                "topic": channel.topic,
+                "encoding": "cdr",
+                "schemaName": channel.type_name,
+                "schemaEncoding": "ros2msg",
+                "schema": channel.definition,
+            }
+            for channel in channels
+        ],
+    )
+
+
+def unadvertise(channel_ids: Iterable[int]) -> str:
+    return _json(op="unadvertise", channelIds=list(channel_ids))
+
+
+def message_data(subscription_id: int, stamp_ns: int, payload: bytes) -> bytes:
+    return struct.pack("<BIQ", 1, subscription_id, _u64(stamp_ns)) + payload
+
+
+def time(stamp_ns: int) -> bytes:
+    return struct.pack("<BQ", 2, _u64(stamp_ns))
+
+
+def parameter_values(
+    parameters: Iterable[WireParameter], request_id: str | None
+) -> str:
+    document: dict[str, Any] = {
+        "op": "parameterValues",
+        "parameters": [_parameter(parameter) for parameter in parameters],
+    }
+    if request_id is not None:
+        document["id"] = request_id
+    return _json(**document)
+
+
+def _parameter(parameter: WireParameter) -> dict[str, Any]:
+    document: dict[str, Any] = {"name": parameter.name}
+    if parameter.value is not None:
+        document["value"] = parameter.value
+    if parameter.kind is not None:
+        document["type"] = parameter.kind
+    return document
+
+
+def graph_update(old: Graph, new: Graph) -> str | None:
+    """The difference of two graphs, or None where they are the same."""
+    published = _changed(old.published, new.published)
+    subscribed = _changed(old.subscribed, new.subscribed)
+    gone = (old.published.keys() | old.subscribed.keys()) - (
+        new.published.keys() | new.subscribed.keys()
+    )
+    # A topic that lost its last publisher but is still subscribed to is not removed.
+    lost = old.published.keys() - new.published.keys() - gone
+    published.update(dict.fromkeys(lost, ()))
+    lost = old.subscribed.keys() - new.subscribed.keys() - gone
+    subscribed.update(dict.fromkeys(lost, ()))
+    if not (published or subscribed or gone):
+        return None
+    return _json(
+        op="connectionGraphUpdate",
+        publishedTopics=[
+            {"name": topic, "publisherIds": list(nodes)}
+            for topic, nodes in sorted(published.items())
+        ],
+        subscribedTopics=[
+            {"name": topic, "subscriberIds": list(nodes)}
+            for topic, nodes in sorted(subscribed.items())
+        ],
+        advertisedServices=[],
+        removedTopics=sorted(gone),
+        removedServices=[],
+    )
+
+
+def _changed(
+    old: Mapping[str, tuple[str, ...]], new: Mapping[str, tuple[str, ...]]
+) -> dict[str, tuple[str, ...]]:
+    return {topic: nodes for topic, nodes in new.items() if old.get(topic) != nodes}
+
+
+def asset(request_id: int, data: bytes) -> bytes:
+    return struct.pack("<BIBI", 4, request_id, 0, 0) + data
+
+
+def asset_error(request_id: int, message: str) -> bytes:
+    text = message.encode()
+    return struct.pack("<BIBI", 4, request_id, 1, len(text)) + text
+
+
+def service_failure(service_id: int, call_id: int, message: str) -> str:
+    return _json(
+        op="serviceCallFailure", serviceId=service_id, callId=call_id, message=message
+    )
+
+
+def _json(**fields: Any) -> str:
+    # NaN would make the whole frame unreadable in a browser: better to fail here.
+    return json.dumps(fields, allow_nan=False, separators=(",", ":"))
+
+
+def _u64(stamp_ns: int) -> int:
+    return max(0, stamp_ns)

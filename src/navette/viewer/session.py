@@ -1,0 +1,78 @@
+"""One client of the live view, and what the view asks of the running program."""
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from navette.viewer import replies
+from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.outbox import Outbox
+from navette.viewer.replies import Channel, Level
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic of the graph with one type; ``latched`` is transient local."""
+
+    name: str
+    type_name: str
+    definition: str
+    latched: bool = False
+
+
+@dataclass(frozen=True)
+class Watch:
+    """A subscription that the program keeps for the viewer.
+
+    Clients share one (``client`` None), except for latched topics: there each client
+    has its own, so that the graph itself sends the latched messages to newcomers.
+    """
+
+    channel: Channel
+    client: int | None
+
+
+class Robot(Protocol):
+    """What the hub asks of the running program; every call returns at once.
+
+    After each publisher, publish and parameter call the program calls
+    :meth:`Hub.done`, so that a client cannot pile up work.
+    """
+
+    def watch(self, watch: Watch) -> None: ...
+    def unwatch(self, watch: Watch) -> None: ...
+    def open_publisher(self, client: int, channel: ClientChannel) -> None: ...
+    def close_publisher(self, client: int, channel_id: int) -> None: ...
+    def publish(self, client: int, channel_id: int, data: bytes) -> None: ...
+    def get_parameters(
+        self, client: int, names: tuple[str, ...], request_id: str | None
+    ) -> None: ...
+    def set_parameters(
+        self,
+        client: int,
+        parameters: tuple[WireParameter, ...],
+        request_id: str | None,
+    ) -> None: ...
+
+
+@dataclass
+class Session:
+    """One client: what it subscribes to, publishes and watches."""
+
+    id: int
+    outbox: Outbox
+    channel_by_subscription: dict[int, int] = field(default_factory=dict)
+    subscription_by_channel: dict[int, int] = field(default_factory=dict)
+    client_channels: dict[int, ClientChannel] = field(default_factory=dict)
+    parameter_names: set[str] = field(default_factory=set)
+    all_parameters: bool = False
+    wants_graph: bool = False
+    pending: int = 0
+
+    def send(self, frame: str | bytes) -> None:
+        self.outbox.put_control(frame)
+
+    def complain(self, message: str, level: Level = Level.ERROR) -> None:
+        self.send(replies.status(level, message))
+
+    def wants_parameter(self, name: str) -> bool:
+        return self.all_parameters or name in self.parameter_names

@@ -1,0 +1,126 @@
+"""Plain HTTP on the viewer's port: who may ask, and what is answered."""
+
+import ipaddress
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+from urllib.parse import urlsplit
+
+_LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
+# Names that only a local network gives out; a page on the internet cannot have them.
+_LOCAL_SUFFIXES = (".localhost", ".local", ".lan", ".home.arpa", ".internal")
+
+PAGE_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "img-src data:; connect-src 'self' ws: wss:; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'"
+)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An HTTP response."""
+
+    status: int
+    content_type: str
+    body: bytes
+    headers: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Gate:
+    """Decides which hosts and origins may speak to this server.
+
+    A page from the internet must not drive the robot. Browsers tell the page's
+    origin when it opens a socket; and a page that has its own name point at this
+    machine (DNS rebinding) shows in the Host header.
+    """
+
+    bound_host: str
+    allowed_origins: tuple[str, ...]
+    allowed_hosts: tuple[str, ...] = ()
+
+    def refusal(self, host: str | None, origin: str | None) -> str:
+        """Why a request is refused, in words; empty where it may pass."""
+        if host is not None and not self._host_allowed(host):
+            return (
+                f"host {host!r:.120} is not allowed: use localhost or 127.0.0.1, or "
+                "add the name to the viewer's parameter allowed_hosts"
+            )
+        if origin is not None and not self._origin_allowed(origin, host):
+            return (
+                f"origin {origin!r:.120} is not allowed: add it to the viewer's "
+                "parameter allowed_origins"
+            )
+        return ""
+
+    def _host_allowed(self, host: str) -> bool:
+        name = _name_of(f"//{host}")
+        if name in self.allowed_hosts or name in _LOOPBACK_NAMES:
+            return True
+        if self.bound_host in _LOOPBACK_NAMES:
+            return False
+        return _is_address(name) or "." not in name or name.endswith(_LOCAL_SUFFIXES)
+
+    def _origin_allowed(self, origin: str, host: str | None) -> bool:
+        if "*" in self.allowed_origins or origin in self.allowed_origins:
+            return True
+        if _name_of(origin) in _LOOPBACK_NAMES and origin.startswith("http"):
+            return True
+        return host is not None and origin in (f"http://{host}", f"https://{host}")
+
+
+def _name_of(address: str) -> str:
+    try:
+        return (urlsplit(address).hostname or "").lower()
+    except ValueError:
+        return ""
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+class Site:
+    """The pages: ``/``, ``/layout.json``, ``/health``; 404 for all else."""
+
+    def __init__(
+        self,
+        page: bytes,
+        layout: Mapping[str, Any],
+        health: Callable[[], Mapping[str, Any]],
+    ) -> None:
+        self._page = page
+        self._layout = json.dumps(layout, indent=2).encode()
+        self._health = health
+
+    def answer(self, method: str, target: str) -> Answer:
+        if method not in ("GET", "HEAD"):
+            return refuse(405, f"method {method} is not allowed; use GET")
+        path = target.partition("?")[0]
+        if path in ("/", "/index.html"):
+            headers = {"Content-Security-Policy": PAGE_POLICY}
+            answer = Answer(200, "text/html; charset=utf-8", self._page, headers)
+        elif path == "/layout.json":
+            download = 'attachment; filename="navette-layout.json"'
+            headers = {"Content-Disposition": download}
+            answer = Answer(200, "application/json", self._layout, headers)
+        elif path == "/health":
+            body = json.dumps(self._health()).encode()
+            answer = Answer(200, "application/json", body)
+        else:
+            answer = refuse(
+                404, f"nothing at {path!r:.120}; known: /, /layout.json, /health"
+            )
+        if method == "HEAD":
+            return Answer(answer.status, answer.content_type, b"", answer.headers)
+        return answer
+
+
+def refuse(status: int, reason: str) -> Answer:
+    return Answer(status, "text/plain; charset=utf-8", f"{reason}\n".encode())

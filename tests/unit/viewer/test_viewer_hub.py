@@ -1,0 +1,281 @@
+"""Who watches what: sessions, channels and the requests they make."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from viewer_fakes import RecordingRobot, sent
+
+from navette.viewer.assets import AssetFolders
+from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.hub import Hub
+from navette.viewer.outbox import Outbox
+from navette.viewer.replies import Channel, Graph, message_data
+from navette.viewer.session import Session, Topic, Watch
+
+SCAN = Topic("/lidar", "sensor_msgs/msg/LaserScan", "float32[] ranges")
+MAP = Topic("/map", "nav_msgs/msg/OccupancyGrid", "int8[] data", latched=True)
+
+
+class Bench:
+    """A hub with a recording robot and clients that speak JSON."""
+
+    def __init__(self, folder: Path) -> None:
+        self.robot = RecordingRobot()
+        self.hub = Hub(
+            self.robot,
+            name="test",
+            session_id="1",
+            assets=AssetFolders({"navette": folder}),
+        )
+
+    def join(self) -> Session:
+        session = self.hub.join(Outbox())
+        sent(session.outbox)
+        return session
+
+    def ask(self, session: Session, **document: Any) -> list[Any]:
+        """Send one JSON frame; gives what is sent back."""
+        self.hub.receive(session, json.dumps(document))
+        return sent(session.outbox)
+
+    def subscribe(self, session: Session, subscription: int, channel: int) -> list[Any]:
+        pair = {"id": subscription, "channelId": channel}
+        return self.ask(session, op="subscribe", subscriptions=[pair])
+
+    def channel(self, topic: str) -> Channel:
+        return next(c for c in self.hub.channels if c.topic == topic)
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Bench:
+    return Bench(tmp_path)
+
+
+def test_newcomers_get_info_channels_and_time(bench: Bench) -> None:
+    bench.hub.set_topics([SCAN])
+    bench.hub.set_now(5)
+    session = bench.hub.join(Outbox())
+    info, channels, time = sent(session.outbox)
+    assert info["op"] == "serverInfo"
+    assert [c["topic"] for c in channels["channels"]] == ["/lidar"]
+    assert time[0] == 2
+
+
+def test_topics_come_and_go(bench: Bench) -> None:
+    session = bench.join()
+    bench.hub.set_topics([SCAN])
+    bench.hub.set_topics([SCAN, MAP])
+    bench.hub.set_topics([MAP])
+    first, second, third = sent(session.outbox)
+    assert [c["id"] for c in first["channels"]] == [1]
+    assert [c["id"] for c in second["channels"]] == [2]
+    assert third == {"op": "unadvertise", "channelIds": [1]}
+
+
+def test_a_topic_nobody_watches_is_not_subscribed(bench: Bench) -> None:
+    bench.hub.set_topics([SCAN])
+    one, two = bench.join(), bench.join()
+    channel = bench.channel("/lidar")
+    assert bench.robot.take() == []
+    bench.subscribe(one, 10, channel.id)
+    bench.subscribe(two, 20, channel.id)
+    assert bench.robot.take() == [("watch", "/lidar", None)]
+    bench.ask(one, op="unsubscribe", subscriptionIds=[10])
+    assert bench.robot.take() == []
+    bench.hub.leave(two)
+    assert bench.robot.take() == [("unwatch", "/lidar", None)]
+
+
+def test_messages_go_to_their_watchers_under_their_own_ids(bench: Bench) -> None:
+    bench.hub.set_topics([SCAN])
+    one, two, other = bench.join(), bench.join(), bench.join()
+    channel = bench.channel("/lidar")
+    bench.subscribe(one, 10, channel.id)
+    bench.subscribe(two, 20, channel.id)
+    bench.hub.message(Watch(channel, None), 123, b"scan")
+    assert sent(one.outbox) == [message_data(10, 123, b"scan")]
+    assert sent(two.outbox) == [message_data(20, 123, b"scan")]
+    assert sent(other.outbox) == []
+
+
+def test_latched_topics_are_watched_once_per_client(bench: Bench) -> None:
+    """Only so do newcomers get what was sent before they came."""
+    bench.hub.set_topics([MAP])
+    one, two = bench.join(), bench.join()
+    channel = bench.channel("/map")
+    bench.subscribe(one, 1, channel.id)
+    bench.subscribe(two, 1, channel.id)
+    assert bench.robot.take() == [
+        ("watch", "/map", one.id),
+        ("watch", "/map", two.id),
+    ]
+    bench.hub.message(Watch(channel, two.id), 1, b"map")
+    assert sent(one.outbox) == []
+    assert len(sent(two.outbox)) == 1
+
+
+def test_a_topic_that_goes_ends_its_subscriptions(bench: Bench) -> None:
+    bench.hub.set_topics([SCAN])
+    session = bench.join()
+    channel = bench.channel("/lidar")
+    bench.subscribe(session, 10, channel.id)
+    bench.hub.message(Watch(channel, None), 1, b"late")
+    bench.hub.set_topics([])
+    assert bench.robot.take()[-1] == ("unwatch", "/lidar", None)
+    assert sent(session.outbox) == [{"op": "unadvertise", "channelIds": [1]}]
+    bench.hub.message(Watch(channel, None), 2, b"too late")
+    assert not session.outbox
+
+
+@pytest.mark.parametrize(
+    ("document", "complaint"),
+    [
+        (
+            {"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 99}]},
+            "unknown channel id 99",
+        ),
+        (
+            {"op": "subscribe", "subscriptions": [{"id": 10, "channelId": 1}]},
+            "id 10 is in use",
+        ),
+        (
+            {"op": "subscribe", "subscriptions": [{"id": 11, "channelId": 1}]},
+            "is subscribed",
+        ),
+        ({"op": "unsubscribe", "subscriptionIds": [7]}, "unknown subscription id 7"),
+        ({"op": "unadvertise", "channelIds": [7]}, "unknown channel id 7"),
+        ({"op": "nonsense"}, "unknown op"),
+    ],
+)
+def test_bad_requests_get_a_status(
+    bench: Bench, document: dict[str, Any], complaint: str
+) -> None:
+    bench.hub.set_topics([SCAN])
+    session, other = bench.join(), bench.join()
+    bench.subscribe(session, 10, 1)
+    (status,) = bench.ask(session, **document)
+    assert status["op"] == "status"
+    assert status["level"] >= 1
+    assert complaint in status["message"]
+    assert not other.outbox
+
+
+def advertise(bench: Bench, session: Session, **fields: Any) -> list[Any]:
+    channel = {
+        "id": 1,
+        "topic": "/goal_point",
+        "encoding": "json",
+        "schemaName": "geometry_msgs/msg/PointStamped",
+        **fields,
+    }
+    return bench.ask(session, op="advertise", channels=[channel])
+
+
+def test_clients_publish_on_channels_that_they_advertised(bench: Bench) -> None:
+    session = bench.join()
+    assert advertise(bench, session) == []
+    bench.hub.receive(session, b"\x01\x01\x00\x00\x00{}")
+    bench.ask(session, op="unadvertise", channelIds=[1])
+    channel = ClientChannel(1, "/goal_point", "json", "geometry_msgs/msg/PointStamped")
+    assert bench.robot.take() == [
+        ("open", session.id, channel),
+        ("publish", session.id, 1, b"{}"),
+        ("close", session.id, 1),
+    ]
+    bench.hub.receive(session, b"\x01\x01\x00\x00\x00{}")
+    (status,) = sent(session.outbox)
+    assert "channel 1 is not advertised" in status["message"]
+    assert bench.robot.take() == []
+
+
+def test_channels_that_cannot_be_are_refused(bench: Bench) -> None:
+    session = bench.join()
+    (status,) = advertise(bench, session, encoding="protobuf")
+    assert "known: cdr, json" in status["message"]
+    advertise(bench, session)
+    (status,) = advertise(bench, session)
+    assert "channel id 1 is in use" in status["message"]
+    for number in range(2, 400):
+        replies = advertise(bench, session, id=number)
+    assert "more than 256 channels" in replies[0]["message"]
+
+
+def test_what_a_client_published_ends_with_it(bench: Bench) -> None:
+    session = bench.join()
+    advertise(bench, session)
+    bench.robot.take()
+    bench.hub.leave(session)
+    assert bench.robot.take() == [("close", session.id, 1)]
+    bench.hub.done(session.id)
+    assert bench.hub.clients == 0
+
+
+def test_work_under_way_is_counted(bench: Bench) -> None:
+    session = bench.join()
+    advertise(bench, session)
+    bench.ask(session, op="getParameters", parameterNames=[], id="x")
+    assert session.pending == 2
+    bench.hub.done(session.id)
+    assert session.pending == 1
+
+
+def test_parameter_answers_and_updates(bench: Bench) -> None:
+    one, two = bench.join(), bench.join()
+    bench.ask(one, op="subscribeParameterUpdates", parameterNames=["/n.a"])
+    bench.ask(two, op="subscribeParameterUpdates", parameterNames=[])
+    a, b = WireParameter("/n.a", 1), WireParameter("/n.b", True)
+    bench.hub.parameters(one.id, [b], "req")
+    (answer,) = sent(one.outbox)
+    assert answer["id"] == "req"
+    bench.hub.parameters_changed([a, b])
+    (update,) = sent(one.outbox)
+    assert update["parameters"] == [{"name": "/n.a", "value": 1}]
+    assert len(sent(two.outbox)[0]["parameters"]) == 2
+    bench.ask(one, op="unsubscribeParameterUpdates", parameterNames=["/n.a"])
+    bench.ask(two, op="unsubscribeParameterUpdates", parameterNames=[])
+    bench.hub.parameters_changed([a, b])
+    assert not one.outbox
+    assert not two.outbox
+
+
+def test_the_graph_is_sent_whole_and_then_in_changes(bench: Bench) -> None:
+    bench.hub.set_graph(Graph({"/a": ("/n",)}, {}))
+    session, other = bench.join(), bench.join()
+    (whole,) = bench.ask(session, op="subscribeConnectionGraph")
+    assert whole["publishedTopics"] == [{"name": "/a", "publisherIds": ["/n"]}]
+    bench.hub.set_graph(Graph({"/a": ("/n",)}, {"/a": ("/m",)}))
+    (change,) = sent(session.outbox)
+    assert change["publishedTopics"] == []
+    assert change["subscribedTopics"] == [{"name": "/a", "subscriberIds": ["/m"]}]
+    bench.ask(session, op="unsubscribeConnectionGraph")
+    bench.hub.set_graph(Graph({}, {}))
+    assert not session.outbox
+    assert not other.outbox
+
+
+def test_only_the_newest_time_waits(bench: Bench) -> None:
+    session = bench.join()
+    for now in (1, 2, 2, 3):
+        bench.hub.set_now(now)
+    assert sent(session.outbox) == [b"\x02" + (3).to_bytes(8, "little")]
+
+
+def test_assets_are_sent_or_refused(bench: Bench, tmp_path: Path) -> None:
+    (tmp_path / "robot.urdf").write_text("<robot/>")
+    session = bench.join()
+    (found,) = bench.ask(
+        session, op="fetchAsset", uri="package://navette/robot.urdf", requestId=4
+    )
+    assert found == b"\x04\x04\x00\x00\x00\x00\x00\x00\x00\x00<robot/>"
+    (missing,) = bench.ask(session, op="fetchAsset", uri="file:///x", requestId=5)
+    assert missing[5] == 1
+    assert b"unknown asset 'file:///x'" in missing
+
+
+def test_service_calls_fail_by_name(bench: Bench) -> None:
+    session = bench.join()
+    bench.hub.receive(session, b"\x02" + bytes(12))
+    (failure,) = sent(session.outbox)
+    assert failure["op"] == "serviceCallFailure"

@@ -1,0 +1,56 @@
+"""What waits for a slow client."""
+
+from navette.viewer.outbox import Outbox
+
+
+def drain(outbox: Outbox) -> list[str | bytes]:
+    frames = []
+    while outbox:
+        frames.append(outbox.pop())
+    return frames
+
+
+def test_frames_leave_in_order_control_first() -> None:
+    outbox = Outbox()
+    outbox.put_data(1, b"a")
+    outbox.put_data(2, b"b")
+    outbox.put_control("info")
+    outbox.put_data(1, b"c")
+    assert drain(outbox) == ["info", b"a", b"b", b"c"]
+
+
+def test_each_stream_keeps_its_newest() -> None:
+    outbox = Outbox(depth=2)
+    for number in range(5):
+        outbox.put_data("fast", b"f%d" % number)
+    outbox.put_data("slow", b"s0")
+    assert drain(outbox) == [b"f3", b"f4", b"s0"]
+    assert outbox.dropped == 3
+
+
+def test_large_frames_are_bounded_by_bytes_but_one_always_stays() -> None:
+    outbox = Outbox(stream_bytes=10)
+    for letter in (b"a", b"b", b"c"):
+        outbox.put_data("image", letter * 6)
+    outbox.put_data("map", b"m" * 100)
+    assert drain(outbox) == [b"cccccc", b"m" * 100]
+
+
+def test_a_forgotten_stream_leaves_nothing() -> None:
+    outbox = Outbox()
+    outbox.put_data(1, b"a")
+    outbox.put_data(2, b"b")
+    outbox.put_data(1, b"c")
+    outbox.forget(1)
+    outbox.forget(3)
+    assert drain(outbox) == [b"b"]
+
+
+def test_a_client_that_never_reads_overflows() -> None:
+    outbox = Outbox(control_bytes=10)
+    outbox.put_control("x" * 8)
+    assert not outbox.overflowed
+    outbox.put_control("x" * 8)
+    outbox.put_control("x" * 8)
+    assert outbox.overflowed
+    assert len(drain(outbox)) == 2
