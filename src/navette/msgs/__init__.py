@@ -1,1 +1,52 @@
-"""."""
+"""ROS 2 message, service and action types: classes, CDR, definitions; no logic."""
+
+from typing import TYPE_CHECKING, Any
+
+from navette.msgs.definition_text import definition_text
+from navette.msgs.registry import interface_names, load_interfaces, packages
+from navette.msgs.type_hash import type_description, type_hash
+
+if TYPE_CHECKING:
+    from navette.msgs.api import (
+        Message,
+        copier_of,
+        copy_message,
+        deserialize,
+        fields,
+        from_dict,
+        get_interface,
+        serialize,
+        to_dict,
+        type_name,
+        validate,
+    )
+
+__all__ = [
+    "Message",
+    "get_interface",
+    "type_name",
+    "serialize",
+    "deserialize",
+    "copy_message",
+    "copier_of",
+    "to_dict",
+    "from_dict",
+    "fields",
+    "validate",
+    "definition_text",
+    "type_hash",
+    "type_description",
+    "load_interfaces",
+    "packages",
+    "interface_names",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Fetch what needs numpy only when it is asked for (see ``api``)."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from navette.msgs import api
+
+    value = globals()[name] = getattr(api, name)
+    return value

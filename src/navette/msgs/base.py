@@ -1,0 +1,122 @@
+"""What all message classes share."""
+
+from collections.abc import Callable
+from typing import Any, ClassVar, Never, Self
+
+import numpy as np
+
+from navette.errors import MessageError
+from navette.msgs.interface import Field, FieldType, MessageSpec, short_name
+
+_SHOWN = 6  # elements of an array in a repr
+
+
+class _Default:
+    """Stands for "not given" in generated constructors."""
+
+    def __repr__(self) -> str:
+        return "<default>"
+
+
+DEFAULT = _Default()
+
+
+class Message:
+    """Base of every generated message class.
+
+    A class has a slot ``_name`` and a checked property ``name`` for each field, its
+    constants as attributes, and the definition it was made from as ``_spec_``. That
+    name and its like end in an underscore because no field's name may.
+    """
+
+    __slots__ = ()
+
+    _spec_: ClassVar[MessageSpec]
+    _type_name_: ClassVar[str]
+    _field_types_: ClassVar[dict[str, str]]
+    _make_default_: ClassVar[Callable[[], Any]]
+    SLOT_TYPES: ClassVar[tuple[FieldType, ...]]
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """Names of the fields and their types, spelt as rclpy spells them."""
+        return dict(cls._field_types_)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Message) or self._type_name_ != other._type_name_:
+            return NotImplemented
+        return all(
+            _equal(getattr(self, name), getattr(other, name))
+            for name in self._field_types_
+        )
+
+    def __repr__(self) -> str:
+        shown = (f"{name}={_show(getattr(self, name))}" for name in self._field_types_)
+        package, kind, name = self._type_name_.split("/")
+        return f"{package}.{kind}.{name}({', '.join(shown)})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        values = tuple(getattr(self, name) for name in self._field_types_)
+        return _restore, (self._type_name_, values)
+
+    def __copy__(self) -> Self:
+        names = self._field_types_
+        return type(self)(**{name: getattr(self, name) for name in names})
+
+
+def fields(interface: "type[Message] | Message") -> tuple[Field, ...]:
+    """The fields of a message class: names, types, defaults, in order."""
+    return interface._spec_.fields
+
+
+def refuse_keywords(cls: type[Message], unknown: dict[str, Any]) -> Never:
+    """Raise for constructor keywords that are no fields."""
+    listed = ", ".join(cls._field_types_) or "none"
+    named = ", ".join(repr(name) for name in unknown)
+    raise MessageError(f"{cls._type_name_} has no field {named}; its fields: {listed}")
+
+
+def _restore(type_name: str, values: tuple[Any, ...]) -> Message:
+    from navette.msgs.classes import get_message_class
+
+    cls = get_message_class(type_name)
+    return cls(**dict(zip(cls._field_types_, values, strict=True)))
+
+
+def _equal(mine: Any, other: Any) -> bool:
+    if isinstance(mine, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(mine, other)
+    return bool(mine == other)
+
+
+def _show(value: Any) -> str:
+    if not isinstance(value, (list, np.ndarray)):
+        return repr(value)
+    items = value[:_SHOWN].tolist() if isinstance(value, np.ndarray) else value[:_SHOWN]
+    shown = [repr(item) for item in items]
+    if len(value) > _SHOWN:
+        shown.append(f"… {len(value)} in all")
+    return f"[{', '.join(shown)}]"
+
+
+_IDL_NAMES = {"float64": "double", "float32": "float", "bool": "boolean"}
+_IDL_NAMES |= {"byte": "octet", "char": "uint8"}
+
+
+def idl_type(type_: FieldType) -> str:
+    """``sequence<double, 3>``, ``geometry_msgs/Point``: rclpy's spelling of a type."""
+    base = short_name(type_.base) if type_.is_message else type_.base
+    base = _IDL_NAMES.get(base, base)
+    if type_.string_bound is not None:
+        base += f"<{type_.string_bound}>"
+    if type_.container == "array":
+        return f"{base}[{type_.size}]"
+    if type_.container == "sequence":
+        return (
+            f"sequence<{base}>"
+            if type_.size is None
+            else (f"sequence<{base}, {type_.size}>")
+        )
+    return base

@@ -1,0 +1,87 @@
+"""serialize and deserialize: headers, byte order, errors."""
+
+import struct
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from navette.errors import DecodeError, MessageError
+from navette.msgs.base import Message
+from navette.msgs.cdr.reader import HEADER_SIZE, Order, Reader, make_reader
+from navette.msgs.cdr.writer import make_writer
+from navette.msgs.validation import validate
+
+_ORDERS: dict[bytes, Order] = {b"\x00\x00": ">", b"\x00\x01": "<"}
+M = TypeVar("M", bound=Message)
+
+_SLACK = 3  # writers may pad the end to a multiple of four
+
+_writers: dict[type, Callable[[Any], bytes]] = {}
+_readers: dict[tuple[type, Order], Reader] = {}
+
+
+def serialize(msg: Message) -> bytes:
+    """The message as CDR, little-endian, behind the 4-byte encapsulation header.
+
+    Raises:
+        MessageError: a list inside was changed in place to hold something wrong, or a
+            string holds half a surrogate pair.
+    """
+    writer = _writers.get(msg.__class__) or _writer_of(msg.__class__)
+    try:
+        return writer(msg)
+    except UnicodeEncodeError as error:
+        name = type(msg).__name__
+        raise MessageError(f"{name}: a string is not text: {error}") from error
+    except (AttributeError, TypeError, struct.error):
+        validate(msg)
+        raise
+
+
+def deserialize(data: bytes | bytearray | memoryview, cls: type[M]) -> M:
+    """The message in CDR bytes with their header, either byte order.
+
+    Arrays are copies: they can be written to and do not keep ``data`` alive.
+
+    Raises:
+        DecodeError: the bytes are not a message of this class.
+    """
+    order = _ORDERS.get(bytes(data[:2]))
+    if order is None or len(data) < HEADER_SIZE:
+        raise DecodeError(
+            f"{cls.__name__}: header {bytes(data[:4]).hex(' ') or 'missing'}, "
+            "wanted plain CDR: 00 00 or 00 01 and two more bytes"
+        )
+    reader = _readers.get((cls, order)) or _reader_of(cls, order)
+    if isinstance(data, bytearray):
+        data = memoryview(data)
+    length = len(data)
+    try:
+        message, end = reader(data, HEADER_SIZE, length)
+    except DecodeError:
+        raise
+    except (struct.error, ValueError) as error:
+        raise DecodeError(
+            f"{length} bytes are no {cls._type_name_}: {error}"
+        ) from error
+    if length - end > _SLACK:
+        raise DecodeError(
+            f"{cls._type_name_}: {length - end} of {length} bytes are left over"
+        )
+    decoded: M = message
+    return decoded
+
+
+def _message_class(cls: type) -> type[Message]:
+    if not issubclass(cls, Message) or cls is Message:
+        raise MessageError(f"{cls.__name__} is no message class")
+    return cls
+
+
+def _writer_of(cls: type) -> Callable[[Any], bytes]:
+    _writers[cls] = make_writer(_message_class(cls)._spec_)
+    return _writers[cls]
+
+
+def _reader_of(cls: type, order: Order) -> Reader:
+    _readers[cls, order] = make_reader(_message_class(cls), order)
+    return _readers[cls, order]

@@ -1,0 +1,96 @@
+"""How values lie in a CDR stream.
+
+Plain CDR (OMG CORBA 3.4 part 2, section 9.3; DDS-XTypes 1.3, "XCDR1"): every primitive
+is aligned to its size, counted from the end of the 4-byte header. Consecutive
+primitives form a *run*, packed by one ``struct`` call. Where a run starts at an offset
+that is only known at run time, its padding depends on that offset modulo 8: a table
+holds the eight cases.
+"""
+
+from dataclasses import dataclass, field
+from struct import Struct
+
+from navette.msgs.interface import FieldType, MessageSpec
+from navette.msgs.registry import get_message_spec
+
+# struct code and size; a bool is read as a byte, so that 2 can be told from True.
+CODES = {
+    "bool": ("B", 1),
+    "byte": ("c", 1),
+    "char": ("B", 1),
+    "int8": ("b", 1),
+    "uint8": ("B", 1),
+    "int16": ("h", 2),
+    "uint16": ("H", 2),
+    "int32": ("i", 4),
+    "uint32": ("I", 4),
+    "int64": ("q", 8),
+    "uint64": ("Q", 8),
+    "float32": ("f", 4),
+    "float64": ("d", 8),
+}
+PHASES = 8
+
+
+@dataclass
+class Run:
+    """Consecutive primitives; items are (alignment, struct code, bytes, expression)."""
+
+    items: list[tuple[int, str, int, str]] = field(default_factory=list)
+
+    def add(self, alignment: int, code: str, size: int, expression: str) -> None:
+        """Append a value."""
+        self.items.append((alignment, code, size, expression))
+
+    @property
+    def expressions(self) -> list[str]:
+        """What is packed, or the variables to unpack into."""
+        return [item[3] for item in self.items]
+
+    @property
+    def alignment(self) -> int:
+        """The greatest alignment in the run."""
+        return max((item[0] for item in self.items), default=1)
+
+    def layout(self, phase: int) -> tuple[str, int]:
+        """struct format (no byte order) and length in bytes from offset ``phase``."""
+        offset = phase
+        codes = []
+        for alignment, code, size, _ in self.items:
+            padding = -offset % alignment
+            codes.append(f"{padding}x" if padding > 1 else "x" * padding)
+            codes.append(code)
+            offset += padding + size
+        return "".join(codes), offset - phase
+
+    def table(self, order: str, prefix: str = "") -> list[tuple[Struct, int]]:
+        """The struct and the length for each phase 0…7."""
+        layouts = [self.layout(phase) for phase in range(PHASES)]
+        return [(Struct(order + prefix + codes), length) for codes, length in layouts]
+
+    def end_phase(self, phase: int | None) -> int | None:
+        """Offset modulo 8 after the run; known for every start if it aligns to 8."""
+        if phase is None:
+            ends = {(p + self.layout(p)[1]) % PHASES for p in range(PHASES)}
+            return ends.pop() if len(ends) == 1 else None
+        return (phase + self.layout(phase)[1]) % PHASES
+
+
+def item_size(type_: FieldType) -> int:
+    """Fewest bytes that one element of the type takes, without padding."""
+    if type_.is_message:
+        return least_size(get_message_spec(type_.base))
+    if type_.is_string:
+        return 4
+    return CODES[type_.base][1]
+
+
+def least_size(spec: MessageSpec) -> int:
+    """Fewest bytes that a message takes: bounds what a length in bad data may claim."""
+    total = 0
+    for each in spec.wire_fields:
+        if each.type.container == "sequence":
+            total += 4
+        else:
+            total += item_size(each.type) * (each.type.size or 1)
+    return total

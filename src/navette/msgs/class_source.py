@@ -1,0 +1,152 @@
+"""Source of constructors and setters, written out per field.
+
+Names of ours start with an underscore: no field's name may, so none can clash.
+"""
+
+import keyword
+from typing import Any
+
+import numpy as np
+
+from navette.msgs.base import DEFAULT, Message, refuse_keywords
+from navette.msgs.interface import INTEGER_RANGES, Field, MessageSpec
+from navette.msgs.values import DTYPES, FLOAT32_MAX, make_checker
+
+
+def generate(spec: MessageSpec, nested: list[type[Message] | None]) -> dict[str, Any]:
+    """Functions ``__init__``, ``_set_<i>`` and ``_make_default`` of a message.
+
+    The caller puts the finished class into the returned scope as ``_cls``.
+    """
+    scope: dict[str, Any] = {
+        "_DEFAULT": DEFAULT,
+        "_new": object.__new__,
+        "_ndarray": np.ndarray,
+        "_refuse_keywords": refuse_keywords,
+    }
+    for index, field in enumerate(spec.fields):
+        cls = nested[index]
+        scope[f"_check_{index}"] = make_checker(spec.name, field, cls)
+        scope[f"_default_{index}"] = _default_value(field, cls)
+        scope[f"_class_{index}"] = cls
+        if field.type.is_numeric:
+            scope[f"_dtype_{index}"] = DTYPES[field.type.base]
+    source = "\n".join([*_constructor(spec), *_setters(spec), *_maker(spec)])
+    exec(compile(source, f"<{spec.name}>", "exec"), scope)
+    return scope
+
+
+def _constructor(spec: MessageSpec) -> list[str]:
+    arguments = [
+        f"{field.name}=_DEFAULT"
+        for field in spec.fields
+        if not keyword.iskeyword(field.name)
+    ]
+    star = ["*"] if arguments else []
+    signature = ", ".join(["_self", *star, *arguments, "**_unknown"])
+    lines = [f"def __init__({signature}):"]
+    for field in spec.fields:
+        if keyword.iskeyword(field.name):
+            lines.append(f" _{field.name} = _unknown.pop({field.name!r}, _DEFAULT)")
+    lines.append(" if _unknown: _refuse_keywords(_cls, _unknown)")
+    for index, field in enumerate(spec.fields):
+        name = f"_{field.name}" if keyword.iskeyword(field.name) else field.name
+        lines.append(f" if {name} is _DEFAULT:")
+        lines.append(f"  _self._{field.name} = {_default_expression(index, field)}")
+        lines.append(" else:")
+        lines.append(f"  _set_{index}(_self, {name})")
+    return lines
+
+
+def _setters(spec: MessageSpec) -> list[str]:
+    lines = []
+    for index, field in enumerate(spec.fields):
+        lines.append(f"def _set_{index}(_self, _value):")
+        lines.append(f" if not ({_known_right(index, field)}):")
+        lines.append(f"  _value = _check_{index}(_value)")
+        lines.append(f" _self._{field.name} = _value")
+    return lines
+
+
+def _maker(spec: MessageSpec) -> list[str]:
+    lines = ["def _make_default():", " _m = _new(_cls)"]
+    lines += [
+        f" _m._{field.name} = {_default_expression(index, field)}"
+        for index, field in enumerate(spec.fields)
+    ]
+    return [*lines, " return _m"]
+
+
+def _known_right(index: int, field: Field) -> str:
+    """An expression that is true for the usual right value, and never for a wrong."""
+    type_ = field.type
+    if not type_.is_scalar:
+        if not type_.is_numeric:
+            return "False"
+        test = (
+            f"_value.__class__ is _ndarray and _value.dtype is _dtype_{index}"
+            " and _value.ndim == 1 and _value.flags.c_contiguous"
+        )
+        if type_.size is not None:
+            sign = "==" if type_.container == "array" else "<="
+            test += f" and len(_value) {sign} {type_.size}"
+        return test
+    if type_.is_message:
+        return f"_value.__class__ is _class_{index}"
+    if type_.is_string:
+        test = "_value.__class__ is str"
+        bound = type_.string_bound
+        return test if bound is None else f"{test} and len(_value) <= {bound}"
+    if type_.base in INTEGER_RANGES:
+        low, high = INTEGER_RANGES[type_.base]
+        return f"_value.__class__ is int and {low} <= _value <= {high}"
+    return {
+        "bool": "_value.__class__ is bool",
+        "byte": "_value.__class__ is bytes and len(_value) == 1",
+        "float64": "_value.__class__ is float",
+        "float32": (
+            "_value.__class__ is float"
+            f" and {-FLOAT32_MAX!r} <= _value <= {FLOAT32_MAX!r}"
+        ),
+    }[type_.base]
+
+
+def _default_value(field: Field, nested: type[Message] | None) -> Any:
+    """What ``_default_<i>`` holds: a value, or a function that makes one."""
+    type_, default = field.type, field.default
+    if nested is not None:
+        # A list holds its elements' maker, too: a fixed array starts filled.
+        return nested._make_default_
+    if type_.is_scalar:
+        return default if default is not None else _zero(type_.base)
+    if not type_.is_numeric:
+        count = type_.size if type_.container == "array" else 0
+        return default if default is not None else [""] * (count or 0)
+    if default is not None:
+        return np.array(default, DTYPES[type_.base])
+    count = type_.size if type_.container == "array" else 0
+    return np.zeros(count or 0, DTYPES[type_.base])
+
+
+def _zero(base: str) -> Any:
+    if base in INTEGER_RANGES:
+        return 0
+    return {"bool": False, "byte": b"\0", "string": "", "wstring": ""}.get(base, 0.0)
+
+
+def _default_expression(index: int, field: Field) -> str:
+    type_ = field.type
+    name = f"_default_{index}"
+    if type_.is_message:
+        if type_.is_scalar:
+            return f"{name}()"
+        if type_.container == "sequence":
+            return "[]"
+        return f"[{name}() for _ in range({type_.size})]"
+    if type_.is_scalar:
+        return name
+    if type_.is_numeric:
+        # An empty array has nothing to change, so all messages share one.
+        is_empty = type_.container == "sequence" and not field.default
+        return name if is_empty else f"{name}.copy()"
+    return f"{name}[:]"

@@ -1,0 +1,134 @@
+"""Makes the Python class of an interface when it is first asked for.
+
+Each message class is compiled from generated source, because setters and constructors
+written out per field are several times faster than ones that look the field up.
+"""
+
+from operator import attrgetter
+from typing import Any
+
+from navette.errors import UnknownNameError
+from navette.msgs.base import Message, idl_type
+from navette.msgs.class_source import generate
+from navette.msgs.interface import ActionSpec, MessageSpec, ServiceSpec, Spec
+from navette.msgs.registry import full_name, get_message_spec, get_spec
+
+_classes: dict[str, type] = {}
+
+
+def get_interface(name: str) -> type:
+    """The class of ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``.
+
+    ``pkg/Name`` means a message. The same name gives the same class every time.
+
+    Raises:
+        InvalidNameError: the name has the wrong form.
+        UnknownNameError: nobody defines it; lists what the package has.
+    """
+    name = full_name(name)
+    found = _classes.get(name)
+    if found is None:
+        found = _classes[name] = _make(get_spec(name))
+    return found
+
+
+def get_message_class(name: str) -> type[Message]:
+    """As :func:`get_interface`, for messages only."""
+    get_message_spec(name)
+    cls = get_interface(name)
+    assert issubclass(cls, Message), "a message's definition makes a message class"
+    return cls
+
+
+def type_name(interface: object) -> str:
+    """``geometry_msgs/msg/Twist`` of a class or a message of it.
+
+    Raises:
+        UnknownNameError: it is neither.
+    """
+    name = getattr(interface, "_type_name_", None)
+    if not isinstance(name, str):
+        raise UnknownNameError(
+            f"{interface!r} is neither a message, service or action class nor a message"
+        )
+    return name
+
+
+def _make(spec: Spec) -> type:
+    if isinstance(spec, MessageSpec):
+        return _make_message(spec)
+    if isinstance(spec, ServiceSpec):
+        return _make_service(spec)
+    return _make_action(spec)
+
+
+def _make_service(spec: ServiceSpec) -> type:
+    return _namespace_class(
+        spec.name,
+        Request=get_interface(spec.request.name),
+        Response=get_interface(spec.response.name),
+        Event=get_interface(spec.event.name),
+    )
+
+
+def _make_action(spec: ActionSpec) -> type:
+    impl = type(
+        "Impl",
+        (),
+        {
+            "SendGoalService": get_interface(spec.send_goal.name),
+            "GetResultService": get_interface(spec.get_result.name),
+            "FeedbackMessage": get_interface(spec.feedback_message.name),
+            "CancelGoalService": get_interface("action_msgs/srv/CancelGoal"),
+            "GoalStatusMessage": get_interface("action_msgs/msg/GoalStatusArray"),
+        },
+    )
+    return _namespace_class(
+        spec.name,
+        Goal=get_interface(spec.goal.name),
+        Result=get_interface(spec.result.name),
+        Feedback=get_interface(spec.feedback.name),
+        Impl=impl,
+    )
+
+
+def _namespace_class(name: str, **members: type) -> type:
+    def refuse(cls: type, *_: object, **__: object) -> Any:
+        raise NotImplementedError(
+            f"{name} is no message: use its {', '.join(members)} classes"
+        )
+
+    body = {"_type_name_": name, "__module__": _module_of(name), "__new__": refuse}
+    return type(name.rpartition("/")[2], (), {**body, **members})
+
+
+def _module_of(name: str) -> str:
+    package, kind, _ = name.split("/")
+    return f"navette.msgs.{package}.{kind}"
+
+
+def _make_message(spec: MessageSpec) -> type[Message]:
+    nested = [
+        get_message_class(field.type.base) if field.type.is_message else None
+        for field in spec.fields
+    ]
+    scope = generate(spec, nested)
+    namespace: dict[str, Any] = {
+        "__slots__": tuple(f"_{field.name}" for field in spec.fields),
+        "__module__": _module_of(spec.name),
+        "__doc__": f"{spec.name}: {', '.join(field.name for field in spec.fields)}",
+        "__init__": scope["__init__"],
+        "_spec_": spec,
+        "_type_name_": spec.name,
+        "_field_types_": {field.name: idl_type(field.type) for field in spec.fields},
+        "_make_default_": staticmethod(scope["_make_default"]),
+        "SLOT_TYPES": tuple(field.type for field in spec.fields),
+    }
+    namespace |= {constant.name: constant.value for constant in spec.constants}
+    for index, field in enumerate(spec.fields):
+        # attrgetter reads a slot at C speed; a Python getter costs half as much again.
+        get = attrgetter(f"_{field.name}")
+        namespace[field.name] = property(get, scope[f"_set_{index}"])
+    cls: type[Message] = type(spec.name.rpartition("/")[2], (Message,), namespace)
+    scope["_cls"] = cls
+    return cls

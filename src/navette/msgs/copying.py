@@ -1,0 +1,87 @@
+"""Deep copies of messages, by code generated per class.
+
+A message handed to a subscriber is a copy, so this runs once per delivery: nested
+messages are copied inline, without a call for each.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from navette.errors import MessageError
+from navette.msgs.base import Message
+from navette.msgs.classes import get_message_class
+from navette.msgs.interface import MessageSpec
+from navette.msgs.registry import get_message_spec
+from navette.msgs.validation import validate
+
+M = TypeVar("M", bound=Message)
+Copier = Callable[[Any], Any]
+
+_copiers: dict[type, Copier] = {}
+
+
+def copy_message(msg: M) -> M:
+    """A copy that shares nothing with the original.
+
+    Raises:
+        MessageError: a list inside was changed in place to hold something wrong.
+    """
+    copier = _copiers.get(msg.__class__) or copier_of(msg.__class__)
+    try:
+        copied: M = copier(msg)
+    except (AttributeError, TypeError):
+        validate(msg)
+        raise
+    return copied
+
+
+def copier_of(cls: type[M]) -> Callable[[M], M]:
+    """The function that copies messages of a class, for callers that copy many."""
+    found = _copiers.get(cls)
+    if found is None:
+        if not issubclass(cls, Message):
+            raise MessageError(f"{cls.__name__} is no message class")
+        found = _copiers[cls] = _make(cls)
+    return found
+
+
+def _make(cls: type[Message]) -> Copier:
+    emitter = _Emitter()
+    result = emitter.message(cls._spec_, "m", cls)
+    lines = ["def copy(m):", *emitter.lines, f" return {result}"]
+    exec(compile("\n".join(lines), f"<copy {cls._type_name_}>", "exec"), emitter.scope)
+    copier: Copier = emitter.scope["copy"]
+    return copier
+
+
+class _Emitter:
+    """Collects the lines of one copy function and the objects they refer to."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.scope: dict[str, Any] = {"new": object.__new__}
+        self._count = 0
+
+    def message(self, spec: MessageSpec, source: str, cls: type) -> str:
+        """Emit the copy of the message in variable ``source``; returns its variable."""
+        self._count += 1
+        number = self._count
+        target = f"t{number}"
+        self.scope[f"C{number}"] = cls
+        self.lines.append(f" {target} = new(C{number})")
+        for field in spec.fields:
+            slot = f"_{field.name}"
+            value = f"{source}.{slot}"
+            if field.type.is_message and field.type.is_scalar:
+                inner = f"s{number}"
+                self.lines.append(f" {inner} = {value}")
+                nested = get_message_spec(field.type.base)
+                value = self.message(nested, inner, get_message_class(nested.name))
+            elif field.type.is_message:
+                element = get_message_class(field.type.base)
+                self.scope[f"E{number}_{field.name}"] = copier_of(element)
+                value = f"[E{number}_{field.name}(e) for e in {value}]"
+            elif not field.type.is_scalar:
+                value += ".copy()" if field.type.is_numeric else "[:]"
+            self.lines.append(f" {target}.{slot} = {value}")
+        return target

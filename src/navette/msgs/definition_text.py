@@ -1,0 +1,75 @@
+"""Definitions as text: the ``ros2msg`` schema that MCAP files and Foxglove carry."""
+
+import json
+
+from navette.msgs.interface import (
+    ActionSpec,
+    Constant,
+    Field,
+    MessageSpec,
+    ServiceSpec,
+    short_name,
+)
+from navette.msgs.registry import get_message_spec, get_spec
+
+_SEPARATOR = "=" * 80
+
+
+def definition_text(name: str) -> str:
+    """The definition and those of all messages it contains, each under its ``MSG:``.
+
+    Services and actions give their parts separated by ``---``, as their files do.
+    """
+    spec = get_spec(name)
+    if isinstance(spec, MessageSpec):
+        tops = [spec]
+    elif isinstance(spec, ServiceSpec):
+        tops = [spec.request, spec.response]
+    else:
+        assert isinstance(spec, ActionSpec), "there are three kinds of interface"
+        tops = [spec.goal, spec.result, spec.feedback]
+    contained: dict[str, MessageSpec] = {}
+    for top in tops:
+        _collect(top, contained)
+    text = "---\n".join(message_text(top) for top in tops)
+    for dependency in contained.values():
+        text += f"{_SEPARATOR}\nMSG: {short_name(dependency.name)}\n"
+        text += message_text(dependency)
+    return text
+
+
+def message_text(spec: MessageSpec) -> str:
+    """Constants, then fields, one a line, as in a ``.msg`` file."""
+    lines = [_constant_line(constant) for constant in spec.constants]
+    lines += [_field_line(field) for field in spec.fields]
+    return "".join(line + "\n" for line in lines)
+
+
+def _collect(spec: MessageSpec, found: dict[str, MessageSpec]) -> None:
+    for field in spec.fields:
+        if field.type.is_message and field.type.base not in found:
+            found[field.type.base] = get_message_spec(field.type.base)
+            _collect(found[field.type.base], found)
+
+
+def _constant_line(constant: Constant) -> str:
+    return f"{constant.base} {constant.name}={_literal(constant.value)}"
+
+
+def _field_line(field: Field) -> str:
+    line = f"{field.type} {field.name}"
+    if field.default is None:
+        return line
+    if isinstance(field.default, list):
+        return f"{line} [{', '.join(_literal(item) for item in field.default)}]"
+    return f"{line} {_literal(field.default)}"
+
+
+def _literal(value: bool | int | float | str | bytes) -> str:
+    if isinstance(value, bytes):
+        return str(value[0])
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    return repr(value)

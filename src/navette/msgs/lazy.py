@@ -1,0 +1,29 @@
+"""Contents of the modules ``navette.msgs.<package>.<kind>``, made on first use."""
+
+from collections.abc import Callable
+from typing import Any
+
+from navette.msgs.registry import interface_names
+
+
+def module_contents(
+    module: str,
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """``__getattr__``, ``__dir__`` and ``__all__`` of the module of that name."""
+    package, kind = module.split(".")[-2:]
+    names = interface_names(package, kind)
+
+    def get(name: str) -> Any:
+        # A service's parts are found under their own names too, as in ROS 2.
+        if name.partition("_")[0] not in names:
+            raise AttributeError(
+                f"module {module!r} has no {name!r}; it has {', '.join(names)}"
+            )
+        from navette.msgs.classes import get_interface
+
+        return get_interface(f"{package}/{kind}/{name}")
+
+    def listed() -> list[str]:
+        return names
+
+    return get, listed, names
