@@ -20,7 +20,8 @@ from navette.control.turn_gain import TurnGain
 from navette.geometry import Footprint, Pose2
 
 _START_WINDOW_M = 2.0  # how far along a new path the robot may already be
-_BLOCKED_SCALE = 0.1  # less of a command is not worth moving
+_BLOCKED_SCALE = 0.1  # less of a command is not worth moving …
+_FREED_SCALE = 0.3  # … and a blocked robot starts again only for this much
 _RESTS_MPS = 0.05
 
 
@@ -48,6 +49,7 @@ class PathFollower:
         self._rest: ControlState | None = ControlState.IDLE
         self._last: Command | None = None
         self._clearance = math.inf
+        self._blocked = False
 
     @property
     def has_path(self) -> bool:
@@ -99,7 +101,7 @@ class PathFollower:
         self._with.turn_gain.update(last.turn_rate, inputs.turn_rate, dt)
         wanted = self._steer(inputs)
         command = self._accelerate(last, wanted, dt)
-        command, blocked = self._keep_clear(inputs.pose, command)
+        command, blocked = self._keep_clear(inputs.pose, wanted, command)
         state = ControlState.BLOCKED if blocked else wanted.state
         return self._emit(command, state)
 
@@ -144,20 +146,24 @@ class PathFollower:
             return limits.brake(last, dt)
         return limits.towards(last, wanted.command, dt)
 
-    def _keep_clear(self, pose: Pose2, command: Command) -> tuple[Command, bool]:
+    def _keep_clear(
+        self, pose: Pose2, wanted: Wanted, command: Command
+    ) -> tuple[Command, bool]:
         """Scale the command to what the obstacles allow; whether that is a stop."""
         if not self._params.collision_check:
             return command, False
-        v, omega = command
+        # Blocked, it looks as far as it wants to go: the first small command from
+        # standstill always fits, and the robot would creep up by fits and starts.
+        v, omega = self._with.limits.clamp(wanted.command) if self._blocked else command
         motion = Command(v, omega * self._with.turn_gain.value)
         scale, self._clearance = self._with.collision.check(pose, motion)
-        if scale >= 1.0:
-            return command, False
-        if scale < _BLOCKED_SCALE:
+        self._blocked = scale < (_FREED_SCALE if self._blocked else _BLOCKED_SCALE)
+        if self._blocked:
             if self._active is not None:
                 self._active.reconsider()
             return STOP, True
-        return Command(v * scale, omega * scale), False
+        scale = min(1.0, scale)
+        return Command(command.speed * scale, command.turn_rate * scale), False
 
     def _stop(self, state: ControlState) -> FollowerOutput:
         return self._emit(STOP, state)

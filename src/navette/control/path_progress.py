@@ -14,7 +14,8 @@ class PathPoint(NamedTuple):
     """The robot seen from the nearest point of its piece.
 
     ``sample`` index of the sample before it; ``s`` arc length (m); ``cross_track`` (m)
-    left of the travel positive; ``heading_error`` (rad) the robot's direction of travel minus the path's.
+    left of the travel positive; ``heading_error`` (rad) the robot's direction of travel
+    minus the path's.
     """
 
     sample: int

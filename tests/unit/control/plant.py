@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from navette.control import (
     ControlParams,
-    ControlState,
     FollowerInputs,
     FollowerOutput,
     PathFollower,
