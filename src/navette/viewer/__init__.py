@@ -1,1 +1,6 @@
-"""."""
+"""The live view: Foxglove's socket and a web page on one port."""
+
+from navette.viewer.layout import build_layout
+from navette.viewer.params import ViewerParams
+
+__all__ = ["ViewerParams", "build_layout"]

@@ -1,0 +1,47 @@
+"""Which topics a recording takes."""
+
+import re
+from dataclasses import dataclass
+
+from navette.errors import ParameterError
+
+IMAGE_TYPE = "sensor_msgs/msg/Image"
+
+
+@dataclass(frozen=True)
+class TopicSelection:
+    """By name, by pattern, or all; raw images and hidden topics only when asked.
+
+    A topic is recorded if it is named in ``topics`` or matches ``regex`` (with
+    neither: every topic) and does not match ``exclude``. Patterns are Python's and
+    are searched anywhere in the full name. A subscribed camera has to render, so
+    raw images need ``images``, or their name in ``topics``; so do hidden topics
+    (a part of the name starts with an underscore).
+    """
+
+    topics: tuple[str, ...] = ()
+    regex: str = ""
+    exclude: str = ""
+    images: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("regex", "exclude"):
+            pattern = getattr(self, name)
+            try:
+                re.compile(pattern)
+            except re.error as error:
+                raise ParameterError(
+                    f"parameter {name!r}: {pattern!r} is no regular expression: {error}"
+                ) from None
+
+    def takes(self, topic: str, type_name: str) -> bool:
+        """Whether the topic (full name) of this type is recorded."""
+        if topic in self.topics:
+            return True
+        if self.exclude and re.search(self.exclude, topic):
+            return False
+        if type_name == IMAGE_TYPE and not self.images:
+            return False
+        if self.regex:
+            return re.search(self.regex, topic) is not None
+        return not self.topics and "/_" not in topic

@@ -1,0 +1,113 @@
+"""Bag files: MCAP with ROS 2's profile, as rosbag2 writes it.
+
+Source: the MCAP specification and its ``ros2`` profile (foxglove/mcap). Made so that
+the same messages give the same bytes: no wall clock, no random number and no
+version of a library goes into the file; chunks end by size and by :meth:`flush`,
+which the caller must tie to message time.
+
+Why chunks and not records of their own: compressed chunks are four to ten times
+smaller, and a chunk is what readers seek by. What is not yet in a finished chunk is
+lost with the process, so flush often.
+"""
+
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from mcap.writer import CompressionType, Writer
+
+from navette.errors import FileFormatError
+
+_CHUNK_BYTES = 256 * 1024
+_LIBRARY = "navette"
+
+
+class BagWriter:
+    """Writes one ``.mcap`` file; an existing file is replaced.
+
+    Raises:
+        FileFormatError: the file cannot be made; names path and reason.
+
+    Later a full or vanished disk shows as ``OSError`` from any method but
+    :meth:`abandon`.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            self._file = path.open("wb")
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise FileFormatError(path, f"cannot be written: {reason}") from error
+        # Any: several of mcap's methods carry no types.
+        self._mcap: Any = Writer(
+            self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD
+        )
+        self._mcap.start(profile="ros2", library=_LIBRARY)
+        self._schemas: dict[str, int] = {}
+        self._sequences: dict[int, int] = {}
+
+    def add_channel(
+        self,
+        topic: str,
+        type_name: str,
+        definition: str,
+        *,
+        type_hash: str = "",
+        qos: str = "",
+    ) -> int:
+        """Announce a topic; gives the channel's number for :meth:`write`.
+
+        Args:
+            definition: ros2msg text of the type and all types it holds.
+            type_hash: ``RIHS01_…``.
+            qos: what its publishers offer, see :func:`navette.bags.qos_text`.
+        """
+        schema = self._schemas.get(type_name)
+        if schema is None:
+            schema = self._mcap.register_schema(
+                type_name, "ros2msg", definition.encode()
+            )
+            self._schemas[type_name] = schema
+        channel: int = self._mcap.register_channel(
+            topic,
+            "cdr",
+            schema,
+            {"offered_qos_profiles": qos, "topic_type_hash": type_hash},
+        )
+        self._sequences[channel] = 0
+        return channel
+
+    def write(
+        self, channel: int, stamp_ns: int, payload: bytes, published_ns: int
+    ) -> None:
+        """Append a message.
+
+        Args:
+            stamp_ns: when it was recorded.
+            payload: CDR with its 4-byte header.
+            published_ns: when it was published.
+        """
+        sequence = self._sequences[channel] + 1
+        self._sequences[channel] = sequence
+        self._mcap.add_message(channel, stamp_ns, payload, published_ns, sequence)
+
+    @property
+    def message_count(self) -> int:
+        """Messages written so far."""
+        return sum(self._sequences.values())
+
+    def flush(self) -> None:
+        """Finish the chunk and hand it to the system: it outlives this process."""
+        self._mcap.flush()
+
+    def close(self) -> None:
+        """Write the index and close; closing twice is harmless."""
+        if not self._file.closed:
+            self._mcap.finish()
+            self._file.close()
+
+    def abandon(self) -> None:
+        """Close after an ``OSError``; what was flushed stays readable."""
+        with suppress(OSError):  # the same error again; it is known already
+            self._file.close()
