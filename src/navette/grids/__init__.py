@@ -9,6 +9,7 @@ from navette.grids.clearance import (
     pose_clearance,
     pose_is_clear,
 )
+from navette.grids.compare import Changes, compare
 from navette.grids.distance import distance_field, distance_squared
 from navette.grids.inflation import cost_table, inflate
 from navette.grids.rays import beam_directions, trace_beams
@@ -35,4 +36,6 @@ __all__ = [
     "merge",
     "accumulate",
     "placed",
+    "Changes",
+    "compare",
 ]

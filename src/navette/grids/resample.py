@@ -35,6 +35,9 @@ def merge(
     source: NDArray[np.int8],
     source_spec: GridSpec,
     mode: MergeMode = "overwrite",
+    *,
+    sensor: tuple[float, float] = (0.0, 0.0),
+    erase_within: float = math.inf,
 ) -> None:
     """Lay ``source`` over ``target``; unknown source cells leave the target alone.
 
@@ -45,6 +48,10 @@ def merge(
         source_spec: where it lies, in the target's frame, rotated as may be.
         mode: ``overwrite`` = the source's known cells replace the target's;
             ``max`` = the larger of both.
+        sensor: (x, y) that the source was seen from, in the target's frame, m.
+        erase_within: distance from there, m, from which on a lethal target cell is
+            not overwritten by a lower one. Far away neighbouring beams pass a post
+            on both sides: they free its cell without having seen it.
     """
     if mode not in ("overwrite", "max"):
         raise InvalidValueError(f"merge mode {mode!r}; wanted overwrite or max")
@@ -54,10 +61,12 @@ def merge(
     _merge_kernel(
         grid,
         cells,
-        _relation(source_spec, target_spec),
-        _relation(target_spec, source_spec),
+        grid_relation(source_spec, target_spec),
+        grid_relation(target_spec, source_spec),
         np.int8(LETHAL - 1 if push else LETHAL),
         mode == "max",
+        _to_cells(target_spec, sensor),
+        float(erase_within) / target_spec.resolution,
     )
 
 
@@ -95,8 +104,8 @@ def accumulate(
     _accumulate_kernel(
         field,
         cells,
-        _relation(source_spec, target_spec),
-        _relation(target_spec, source_spec),
+        grid_relation(source_spec, target_spec),
+        grid_relation(target_spec, source_spec),
         np.int8(UNKNOWN if push else LETHAL),
         np.float32(hit),
         np.float32(miss),
@@ -104,11 +113,17 @@ def accumulate(
     )
 
 
+def _to_cells(spec: GridSpec, point: tuple[float, float]) -> tuple[float, float]:
+    """(u, v): columns and rows from the grid's corner to a point of its frame."""
+    corner_T_point = spec.origin.inverse() @ Pose2(*point, 0.0)
+    return corner_T_point.x / spec.resolution, corner_T_point.y / spec.resolution
+
+
 def _pushes_lethal(target: GridSpec, source: GridSpec) -> bool:
     return source.resolution <= target.resolution * (1.0 + 1e-6)
 
 
-def _relation(outer: GridSpec, inner: GridSpec) -> Affine:
+def grid_relation(outer: GridSpec, inner: GridSpec) -> Affine:
     """(a, b, u, v) that take inner cells to outer cells.
 
     u' = a · u − b · v + u0 and v' = b · u + a · v + v0, with u along columns and v
@@ -204,7 +219,14 @@ def _is_in(fu: int, fv: int, width: int, height: int) -> bool:
 
 @njit(cache=True)
 def _merge_kernel(
-    target: Any, source: Any, relation: Any, inverse: Any, lethal_as: Any, larger: bool
+    target: Any,
+    source: Any,
+    relation: Any,
+    inverse: Any,
+    lethal_as: Any,
+    larger: bool,
+    sensor: Any,
+    erase_within: float,
 ) -> None:
     height, width = source.shape
     pulled = np.empty(target.shape[1], np.int8)
@@ -214,7 +236,12 @@ def _merge_kernel(
         if larger:
             _max_row(target[r, first:last], pulled[first:last])
         else:
-            _overwrite_row(target[r, first:last], pulled[first:last])
+            near, far = _chord(
+                r + 0.5 - sensor[1], sensor[0], erase_within, first, last
+            )
+            _keep_lethal_row(target[r, first:near], pulled[first:near])
+            _overwrite_row(target[r, near:far], pulled[near:far])
+            _keep_lethal_row(target[r, far:last], pulled[far:last])
     if lethal_as < LETHAL:
         for r in range(height):
             if _has_lethal(source[r]):
@@ -260,7 +287,7 @@ def _push_lethal(target: Any, source: Any, inverse: Any, r: int) -> None:
     """Set the target cells that hold the centres of row ``r``'s lethal cells."""
     for c in range(source.size):
         if source[c] >= LETHAL:
-            row, column = _target_cell(inverse, r, c)
+            row, column = related_cell(inverse, r, c)
             if 0 <= row < target.shape[0] and 0 <= column < target.shape[1]:
                 target[row, column] = LETHAL
 
@@ -272,7 +299,7 @@ def _push_hits(
     """:func:`_push_lethal` for a field of log odds."""
     for c in range(source.size):
         if source[c] >= LETHAL:
-            row, column = _target_cell(inverse, r, c)
+            row, column = related_cell(inverse, r, c)
             if 0 <= row < field.shape[0] and 0 <= column < field.shape[1]:
                 field[row, column] = _added(field[row, column], hit, limit)
 
@@ -284,7 +311,7 @@ def _added(now: Any, step: Any, limit: Any) -> Any:
 
 
 @njit(cache=True)
-def _target_cell(inverse: Any, r: int, c: int) -> tuple[int, int]:
+def related_cell(inverse: Any, r: int, c: int) -> tuple[int, int]:
     """(row, column) of the target cell that holds the centre of source cell (r, c)."""
     a, b, u0, v0 = inverse
     u = a * (c + 0.5) - b * (r + 0.5) + u0
@@ -296,6 +323,30 @@ def _target_cell(inverse: Any, r: int, c: int) -> tuple[int, int]:
 def _overwrite_row(target: Any, pulled: Any) -> None:
     for c in range(target.size):
         target[c] = pulled[c] if pulled[c] >= 0 else target[c]
+
+
+@njit(cache=True)
+def _keep_lethal_row(target: Any, pulled: Any) -> None:
+    lethal = np.int8(LETHAL)
+    for c in range(target.size):
+        known = pulled[c] if pulled[c] >= 0 else target[c]
+        target[c] = known if target[c] < lethal else target[c]
+
+
+@njit(cache=True)
+def _chord(
+    v: float, center: float, radius: float, first: int, last: int
+) -> tuple[int, int]:
+    """Columns within [first, last) whose centres lie in a disc, ``v`` rows off it."""
+    if radius == np.inf:
+        return first, last
+    if abs(v) >= radius:
+        return last, last
+    half = math.sqrt(radius * radius - v * v)
+    near = math.ceil(center - half - 0.5)
+    far = math.floor(center + half - 0.5) + 1
+    near = min(max(near, first), last)
+    return near, max(min(far, last), near)
 
 
 @njit(cache=True)

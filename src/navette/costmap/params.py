@@ -1,0 +1,59 @@
+"""Parameters of the costmap stage."""
+
+from dataclasses import dataclass
+
+from navette.errors import ParameterError
+from navette.params import Params, param
+
+
+@dataclass(frozen=True, kw_only=True)
+class CostmapParams(Params):
+    """How a scan becomes a costmap."""
+
+    resolution: float = param(0.1, "edge of a cell", unit="m", above=0.0, at_most=1.0)
+    size: float = param(
+        30.0,
+        "edge of the square grid around the sensor; what lies outside is not seen",
+        unit="m",
+        above=0.0,
+        at_most=200.0,
+    )
+    inflation_radius: float = param(
+        1.0, "distance from an obstacle at which cost ends", unit="m", at_least=0.0
+    )
+    inflation_method: str = param(
+        "linear",
+        "how cost falls with distance d: max_cost (1 - d / inflation_radius), "
+        "or max_cost exp(-inflation_decay d)",
+        choices=("linear", "exponential"),
+    )
+    inflation_decay: float = param(
+        3.0, "decay of the exponential inflation", unit="1/m", at_least=0.0
+    )
+    max_cost: int = param(
+        100,
+        "cost towards an obstacle; hits themselves are 100",
+        at_least=0,
+        at_most=100,
+    )
+    grazing_margin: float = param(
+        0.5,
+        "at most this far before a hit a beam stops freeing cells, when it grazes "
+        "the surface and would free cells that the surface is in",
+        unit="m",
+        at_least=0.0,
+        at_most=5.0,
+    )
+
+    def check(self) -> None:
+        cells = self.size / self.resolution
+        if not 1 <= cells <= 4000:
+            raise ParameterError(
+                f"parameter 'size': {self.size} m at a resolution of "
+                f"{self.resolution} m is {cells:.0f} cells; wanted 1 to 4000"
+            )
+        if self.inflation_radius > self.size:
+            raise ParameterError(
+                f"parameter 'inflation_radius': {self.inflation_radius} m; wanted at "
+                f"most the size, {self.size} m"
+            )
