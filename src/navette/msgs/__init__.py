@@ -3,7 +3,13 @@
 from typing import TYPE_CHECKING, Any
 
 from navette.msgs.definition_text import definition_text
-from navette.msgs.registry import interface_names, load_interfaces, packages
+from navette.msgs.foreign import load_definition_text
+from navette.msgs.registry import (
+    add_interface_path,
+    interface_names,
+    load_interfaces,
+    packages,
+)
 from navette.msgs.type_hash import type_description, type_hash
 
 if TYPE_CHECKING:
@@ -37,6 +43,8 @@ __all__ = [
     "type_hash",
     "type_description",
     "load_interfaces",
+    "load_definition_text",
+    "add_interface_path",
     "packages",
     "interface_names",
 ]

@@ -28,7 +28,8 @@ def get_interface(name: str) -> type:
     name = full_name(name)
     found = _classes.get(name)
     if found is None:
-        found = _classes[name] = _make(get_spec(name))
+        # setdefault: when two threads come here at once, both get the same class.
+        found = _classes.setdefault(name, _make(get_spec(name)))
     return found
 
 

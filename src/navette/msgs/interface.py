@@ -1,4 +1,4 @@
-"""What an interface definition says: fields, constants, the three kinds of interface."""
+"""What an interface definition says: fields, constants, three kinds of interface."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -7,9 +7,14 @@ from navette.msgs.registry import interface_names
 
 
 def module_contents(
-    module: str,
+    namespace: dict[str, Any],
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """``__getattr__``, ``__dir__`` and ``__all__`` of the module of that name."""
+    """``__getattr__``, ``__dir__`` and ``__all__`` of the module with these globals.
+
+    A class is put among the globals once it is made, so that ``__getattr__`` is called
+    once for each.
+    """
+    module = namespace["__name__"]
     package, kind = module.split(".")[-2:]
     names = interface_names(package, kind)
 
@@ -21,7 +26,8 @@ def module_contents(
             )
         from navette.msgs.classes import get_interface
 
-        return get_interface(f"{package}/{kind}/{name}")
+        namespace[name] = get_interface(f"{package}/{kind}/{name}")
+        return namespace[name]
 
     def listed() -> list[str]:
         return names

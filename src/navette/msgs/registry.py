@@ -4,12 +4,13 @@ Packages come with Navette (``definitions/``) or are added by :func:`load_interf
 A file is read when its type is first asked for.
 """
 
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from navette.errors import FileFormatError, InvalidNameError, UnknownNameError
-from navette.msgs.interface import MessageSpec, Spec
+from navette.msgs.interface import ActionSpec, MessageSpec, Spec
 from navette.msgs.parser import (
     INTERFACE_NAME,
     PACKAGE_NAME,
@@ -26,14 +27,20 @@ _PARSERS: dict[str, Callable[[str, str, Path], Any]] = {
     "action": parse_action,
 }
 
+# Folders of packages, as PATH holds folders of programs; for processes that call no
+# add_interface_path of their own.
+PATH_VARIABLE = "NAVETTE_INTERFACE_PATH"
+
 _folders: dict[str, Path] = {}
+_search_path: list[Path] = []
 _specs: dict[str, Spec] = {}
 
 
 def packages() -> list[str]:
     """Names of all packages that are known, sorted."""
     built_in = (path.name for path in DEFINITIONS.iterdir() if path.is_dir())
-    return sorted({*built_in, *_folders})
+    searched = (name for root in _roots() for name in _found_packages(root))
+    return sorted({*built_in, *_folders, *searched})
 
 
 def interface_names(package: str, kind: str) -> list[str]:
@@ -86,16 +93,8 @@ def get_message_spec(name: str) -> MessageSpec:
 
 def add_spec(spec: Spec) -> None:
     """Make a definition known under its own name and those of its parts."""
-    _specs[spec.name] = spec
-    if not isinstance(spec, MessageSpec):
-        for part in spec.parts():
-            _specs[part.name] = part
-    for service in (
-        getattr(spec, "send_goal", None),
-        getattr(spec, "get_result", None),
-    ):
-        if service is not None:
-            _specs[service.name] = service
+    for part in _parts_of(spec):
+        _specs[part.name] = part
 
 
 def load_interfaces(package: str, folder: Path | str) -> list[str]:
@@ -119,34 +118,83 @@ def load_interfaces(package: str, folder: Path | str) -> list[str]:
         raise InvalidNameError(f"package {package!r} is one of Navette's own")
     files = _definition_files(folder)
     specs = [_parse_file(package, path) for path in files]
-    _refuse_changed(specs, files)
-    known_before = package in _folders
+    known_before = _folders.get(package)
     _folders[package] = folder
-    added = [spec for spec in specs if spec.name not in _specs]
-    for spec in added:
-        add_spec(spec)
     try:
-        for spec, path in zip(specs, files, strict=True):
-            _check_references(spec, path)
+        add_specs(specs, files)
     except FileFormatError:
-        _forget(package, added, keep_folder=known_before)
+        del _folders[package]
+        if known_before is not None:
+            _folders[package] = known_before
         raise
     return sorted(spec.name for spec in specs)
 
 
-def messages_of(spec: Spec) -> Iterator[MessageSpec]:
-    """The message itself, or the messages of a service or action."""
-    if isinstance(spec, MessageSpec):
-        yield spec
-    else:
-        yield from spec.parts()
+def add_specs(specs: Sequence[Spec], sources: Sequence[Path | str]) -> None:
+    """Make definitions known, all of them or, if one is wrong, none.
+
+    Raises:
+        FileFormatError: names the source of a definition that was known before with
+            other content, refers to a type nobody defines, or contains itself.
+    """
+    for spec, source in zip(specs, sources, strict=True):
+        if _specs.get(spec.name, spec) != spec:
+            raise FileFormatError(
+                source, f"{spec.name} was loaded before with another definition"
+            )
+    added = [spec for spec in specs if spec.name not in _specs]
+    for spec in added:
+        add_spec(spec)
+    try:
+        for spec, source in zip(specs, sources, strict=True):
+            _check_references(spec, source)
+    except FileFormatError:
+        _forget(added)
+        raise
+
+
+def add_interface_path(folder: Path | str) -> None:
+    """Let packages be found as ``folder/<package>/{msg,srv,action}`` when asked for.
+
+    The environment variable ``NAVETTE_INTERFACE_PATH`` adds such folders, too. Own
+    packages of Navette come first, then folders in the order they were added.
+
+    Raises:
+        FileFormatError: no such folder.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise FileFormatError(folder, "no such folder to search interfaces in")
+    if folder not in _search_path:
+        _search_path.append(folder)
 
 
 def _folder_of(package: str) -> Path:
-    folder = _folders.get(package, DEFINITIONS / package)
-    if not PACKAGE_NAME.fullmatch(package) or not folder.is_dir():
-        raise UnknownNameError.of("interface package", package, packages())
-    return folder
+    if package in _folders:
+        return _folders[package]
+    if PACKAGE_NAME.fullmatch(package):
+        if (DEFINITIONS / package).is_dir():
+            return DEFINITIONS / package
+        for root in _roots():
+            if _found_packages(root, package):
+                load_interfaces(package, root / package)
+                return _folders[package]
+    raise UnknownNameError.of("interface package", package, packages())
+
+
+def _roots() -> list[Path]:
+    variable = os.environ.get(PATH_VARIABLE, "")
+    named = [Path(each) for each in variable.split(os.pathsep) if each]
+    return [*_search_path, *named]
+
+
+def _found_packages(root: Path, pattern: str = "*") -> set[str]:
+    return {
+        folder.parent.name
+        for kind in KINDS
+        for folder in root.glob(f"{pattern}/{kind}")
+        if folder.is_dir() and PACKAGE_NAME.fullmatch(folder.parent.name)
+    }
 
 
 def _load(name: str) -> None:
@@ -184,25 +232,16 @@ def _definition_files(folder: Path) -> list[Path]:
     return files
 
 
-def _refuse_changed(specs: list[Spec], files: list[Path]) -> None:
-    for spec, path in zip(specs, files, strict=True):
-        if _specs.get(spec.name, spec) != spec:
-            raise FileFormatError(
-                path, f"{spec.name} was loaded before with another definition"
-            )
-
-
-def _check_references(spec: Spec, path: Path) -> None:
-    for message in messages_of(spec):
-        for field in message.fields:
+def _check_references(spec: Spec, source: Path | str) -> None:
+    for message in _parts_of(spec):
+        for field in getattr(message, "fields", ()):
             if not field.type.is_message:
                 continue
             try:
-                get_message_spec(field.type.base)
                 _refuse_cycle(field.type.base, (message.name,))
             except UnknownNameError as error:
                 reason = f"field {field.name!r}: {error}"
-                raise FileFormatError(path, reason) from error
+                raise FileFormatError(source, reason) from error
 
 
 def _refuse_cycle(name: str, above: tuple[str, ...]) -> None:
@@ -213,10 +252,16 @@ def _refuse_cycle(name: str, above: tuple[str, ...]) -> None:
             _refuse_cycle(field.type.base, (*above, name))
 
 
-def _forget(package: str, specs: list[Spec], *, keep_folder: bool) -> None:
+def _parts_of(spec: Spec) -> Iterator[Spec]:
+    """The definition and all that is defined with it."""
+    yield spec
+    if isinstance(spec, ActionSpec):
+        yield from (spec.send_goal, spec.get_result)
+    if not isinstance(spec, MessageSpec):
+        yield from spec.parts()
+
+
+def _forget(specs: Sequence[Spec]) -> None:
     for spec in specs:
-        for part in messages_of(spec):
+        for part in _parts_of(spec):
             _specs.pop(part.name, None)
-        _specs.pop(spec.name, None)
-    if not keep_folder:
-        _folders.pop(package, None)

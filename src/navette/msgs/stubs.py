@@ -35,7 +35,7 @@ def module_text(package: str, kind: str) -> str:
         f'"""{_WHAT[kind]} of {package}, made on first use."""\n\n'
         f"{_GENERATED}"
         "from navette.msgs.lazy import module_contents\n\n"
-        "__getattr__, __dir__, __all__ = module_contents(__name__)\n"
+        "__getattr__, __dir__, __all__ = module_contents(globals())\n"
     )
 
 

@@ -235,9 +235,20 @@ def _as_array(
     if not len(value):
         return np.zeros(0, dtype)
     try:
-        return np.array(value)
+        found = np.array(value)
+        # Among integers, numpy makes floats or objects of those around 2**63 and up.
+        if dtype.kind in "iu" and found.dtype.kind in "fO" and _all_integers(value):
+            found = np.array(value, dtype)
     except (ValueError, OverflowError):
         raise _refuse(where, value, allowed) from None
+    return found
+
+
+def _all_integers(values: Iterable[Any]) -> bool:
+    return all(
+        isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+        for value in values
+    )
 
 
 def _cast(
@@ -247,7 +258,7 @@ def _cast(
     kinds = {"b": "b", "i": "iu", "u": "iu", "f": "fiu"}[dtype.kind]
     if found.dtype.kind not in kinds:
         raise MessageError(
-            f"{where}: elements of {found.dtype} ({shortened(found.tolist())}), "
+            f"{where}: elements of {found.dtype} ({shortened(found[:8].tolist())}), "
             f"wanted {base}"
         )
     if not found.size:
@@ -259,7 +270,8 @@ def _cast(
     else:
         return found.astype(dtype)
     finite = found[np.isfinite(found)] if found.dtype.kind == "f" else found
-    if finite.size and not (low <= finite.min() and finite.max() <= high):
+    # As Python numbers: numpy would round the bounds of 64 bits to floats.
+    if finite.size and not (low <= finite.min().item() and finite.max().item() <= high):
         raise MessageError(
             f"{where}: values from {finite.min()} to {finite.max()} do not fit {base} "
             f"({low} to {high})"

@@ -6,17 +6,18 @@ from typing import Any, TypeVar
 
 from navette.errors import DecodeError, MessageError
 from navette.msgs.base import Message
-from navette.msgs.cdr.reader import HEADER_SIZE, Order, Reader, make_reader
+from navette.msgs.cdr.reader import HEADER_SIZE, Reader, make_reader
 from navette.msgs.cdr.writer import make_writer
 from navette.msgs.validation import validate
 
-_ORDERS: dict[bytes, Order] = {b"\x00\x00": ">", b"\x00\x01": "<"}
+_BIG, _LITTLE = b"\x00\x00", b"\x00\x01"
 M = TypeVar("M", bound=Message)
 
 _SLACK = 3  # writers may pad the end to a multiple of four
 
 _writers: dict[type, Callable[[Any], bytes]] = {}
-_readers: dict[tuple[type, Order], Reader] = {}
+_readers: dict[type, Reader] = {}
+_big_endian_readers: dict[type, Reader] = {}
 
 
 def serialize(msg: Message) -> bytes:
@@ -45,13 +46,10 @@ def deserialize(data: bytes | bytearray | memoryview, cls: type[M]) -> M:
     Raises:
         DecodeError: the bytes are not a message of this class.
     """
-    order = _ORDERS.get(bytes(data[:2]))
-    if order is None or len(data) < HEADER_SIZE:
-        raise DecodeError(
-            f"{cls.__name__}: header {bytes(data[:4]).hex(' ') or 'missing'}, "
-            "wanted plain CDR: 00 00 or 00 01 and two more bytes"
-        )
-    reader = _readers.get((cls, order)) or _reader_of(cls, order)
+    if data[:2] == _LITTLE and len(data) >= HEADER_SIZE:
+        reader = _readers.get(cls) or _reader_of(cls)
+    else:
+        reader = _big_endian_reader(data, cls)
     if isinstance(data, bytearray):
         data = memoryview(data)
     length = len(data)
@@ -82,6 +80,20 @@ def _writer_of(cls: type) -> Callable[[Any], bytes]:
     return _writers[cls]
 
 
-def _reader_of(cls: type, order: Order) -> Reader:
-    _readers[cls, order] = make_reader(_message_class(cls), order)
-    return _readers[cls, order]
+def _reader_of(cls: type) -> Reader:
+    _readers[cls] = make_reader(_message_class(cls), "<")
+    return _readers[cls]
+
+
+def _big_endian_reader(
+    data: bytes | bytearray | memoryview, cls: type[Message]
+) -> Reader:
+    if data[:2] != _BIG or len(data) < HEADER_SIZE:
+        raise DecodeError(
+            f"{cls.__name__}: header {bytes(data[:4]).hex(' ') or 'missing'}, "
+            "wanted plain CDR: 00 00 or 00 01 and two more bytes"
+        )
+    found = _big_endian_readers.get(cls)
+    if found is None:
+        found = _big_endian_readers[cls] = make_reader(_message_class(cls), ">")
+    return found

@@ -76,6 +76,50 @@ class Run:
         return (phase + self.layout(phase)[1]) % PHASES
 
 
+@dataclass(frozen=True)
+class Leaf:
+    """A primitive inside a message: its type and the path of field names to it."""
+
+    path: tuple[str, ...]
+    base: str
+
+
+def uniform_leaves(spec: MessageSpec) -> list[Leaf] | None:
+    """The primitives of a message whose every element in a list lies alike.
+
+    None if it holds strings, arrays or bools (those are checked one by one), or if
+    padding differs from element to element: CDR aligns primitives, not structures, so
+    the first must have the greatest alignment and the length must be a multiple of it.
+    """
+    leaves: list[Leaf] = []
+    for each in spec.fields:
+        if not each.type.is_scalar or each.type.is_string or each.type.base == "bool":
+            return None
+        if not each.type.is_message:
+            leaves.append(Leaf((each.name,), each.type.base))
+            continue
+        inner = uniform_leaves(get_message_spec(each.type.base))
+        if inner is None:
+            return None
+        leaves += [Leaf((each.name, *leaf.path), leaf.base) for leaf in inner]
+    run = leaf_run(leaves)
+    is_alike = (
+        bool(leaves)
+        and run.items[0][0] == run.alignment
+        and run.layout(0)[1] % run.alignment == 0
+    )
+    return leaves if is_alike else None
+
+
+def leaf_run(leaves: list[Leaf]) -> Run:
+    """The leaves as a run, without expressions."""
+    run = Run()
+    for leaf in leaves:
+        code, size = CODES[leaf.base]
+        run.add(size, code, size, "")
+    return run
+
+
 def item_size(type_: FieldType) -> int:
     """Fewest bytes that one element of the type takes, without padding."""
     if type_.is_message:

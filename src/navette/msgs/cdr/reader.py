@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 
 from navette.errors import DecodeError
 from navette.msgs.base import Message
-from navette.msgs.cdr.layout import CODES, PHASES, Run, item_size
+from navette.msgs.cdr.layout import (
+    CODES,
+    PHASES,
+    Leaf,
+    Run,
+    item_size,
+    leaf_run,
+    uniform_leaves,
+)
 from navette.msgs.cdr.wide import WIDE_UNIT, decode_wide
 from navette.msgs.classes import get_message_class
 from navette.msgs.interface import PLACEHOLDER, Field, FieldType, MessageSpec
@@ -215,6 +223,12 @@ class _Emitter:
 
     def _loop(self, type_: FieldType, path: str, length: str) -> str:
         items = self._new_name("a")
+        leaves = (
+            uniform_leaves(get_message_spec(type_.base)) if type_.is_message else None
+        )
+        if leaves is not None:
+            self._uniform_loop(type_.base, leaves, items, length)
+            return items
         self.lines += [f" {items} = []", f" for _ in range({length}):"]
         if type_.is_message:
             reader = self._new_name("R")
@@ -232,6 +246,43 @@ class _Emitter:
         self.lines.append(f"  {items}.append(e)")
         self._phase = None
         return items
+
+    def _uniform_loop(
+        self, name: str, leaves: list[Leaf], items: str, length: str
+    ) -> None:
+        """All elements by one iter_unpack, built without a call of ours for each."""
+        run = leaf_run(leaves)
+        ((packer, size), *_) = run.table(self._order)
+        unpack = self._new_name("U")
+        self.scope[unpack] = packer.iter_unpack
+        variables = {leaf.path: f"e{index}" for index, leaf in enumerate(leaves)}
+        if run.alignment > 1:
+            shift = HEADER_SIZE % run.alignment
+            self.lines.append(f" if {length}: p += {shift} - p & {run.alignment - 1}")
+        self.lines += [
+            f" q = p + {length} * {size}",
+            f" if q > end: refuse_length({name!r}, {length})",
+            f" {items} = []",
+            f" for {', '.join(variables.values())}, in {unpack}(b[p:q]):",
+        ]
+        result = self._build(name, variables, ())
+        self.lines += [f"  {items}.append({result})", " p = q"]
+        self._phase = None
+
+    def _build(
+        self, name: str, variables: dict[tuple[str, ...], str], path: tuple[str, ...]
+    ) -> str:
+        """Emit the making of a message in a loop from its leaves' variables."""
+        target = self._new_name("m")
+        self.scope[f"C{target}"] = get_message_class(name)
+        self.lines.append(f"  {target} = new(C{target})")
+        for field in get_message_spec(name).fields:
+            inner = (*path, field.name)
+            value = variables.get(inner) or self._build(
+                field.type.base, variables, inner
+            )
+            self.lines.append(f"  {target}._{field.name} = {value}")
+        return target
 
     def finish_run(self) -> None:
         """Emit the unpacking of the collected primitives, then what checks them."""

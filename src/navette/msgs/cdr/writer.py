@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from navette.msgs.base import Message
-from navette.msgs.cdr.layout import CODES, PHASES, Run
+from navette.msgs.cdr.layout import CODES, PHASES, Leaf, Run, leaf_run, uniform_leaves
 from navette.msgs.cdr.wide import WIDE_UNIT, encode_wide
 from navette.msgs.interface import PLACEHOLDER, Field, FieldType, MessageSpec
 from navette.msgs.registry import get_message_spec
@@ -59,6 +59,7 @@ class _Emitter:
         self.parts: list[str] = []
         self.scope: dict[str, Any] = {
             "HEADER": HEADER,
+            "PAD": b"\0" * PHASES,
             "PAD4": b"\0\0\0\0",
             "join": b"".join,
             "encode_wide": encode_wide,
@@ -164,6 +165,12 @@ class _Emitter:
         self.flush_parts()
         self.is_single_run = False
         self._phase = None
+        leaves = (
+            uniform_leaves(get_message_spec(type_.base)) if type_.is_message else None
+        )
+        if leaves is not None:
+            self._uniform_loop(items, leaves)
+            return
         self.lines.append(f" for e in {items}:")
         if type_.is_message:
             writer = self._new_name("W")
@@ -177,8 +184,27 @@ class _Emitter:
         else:
             self.lines.append("  t = e.encode() + b'\\0'")
             self.lines.append("  n = len(t)")
-        self.lines.append("  parts += (PAD4[:q], n.to_bytes(4, 'little'), t)")
+        self.lines.append("  parts += (PAD[:q], n.to_bytes(4, 'little'), t)")
         self.lines.append("  p += q + 4 + len(t)")
+
+    def _uniform_loop(self, items: str, leaves: list[Leaf]) -> None:
+        """One pack an element, without a call of ours for each."""
+        run = leaf_run(leaves)
+        ((packer, length), *_) = run.table("<")
+        name = self._new_name("U")
+        self.scope[name] = packer.pack
+        values = ", ".join(
+            "e" + "".join(f"._{n}" for n in leaf.path) for leaf in leaves
+        )
+        if run.alignment > 1:
+            self.lines += [
+                f" q = -p & {run.alignment - 1}",
+                f" if q and {items}:",
+                "  parts.append(PAD[:q])",
+                "  p += q",
+            ]
+        self.lines.append(f" parts += [{name}({values}) for e in {items}]")
+        self.lines.append(f" p += {length} * len({items})")
 
     def finish_run(self) -> None:
         """Emit the pack of the collected primitives."""
