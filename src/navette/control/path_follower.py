@@ -94,7 +94,7 @@ class PathFollower:
         piece; 4. accelerate within the limits; 5. keep clear of obstacles; 6. gate.
         """
         stale = self._gate.stale(inputs.ages)
-        if self._rest is not None or stale is not None or not inputs.finite:
+        if self._rest is not None or stale is not None or not inputs.plausible:
             return self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
         last = self._last or Command(inputs.speed, inputs.turn_rate)
         last = self._with.limits.clamp(last)

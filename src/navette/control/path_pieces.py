@@ -18,10 +18,12 @@ from navette.control.path_shape import (
     split_at,
     turn_angles,
 )
+from navette.control.records import FARTHEST_M
 from navette.errors import InvalidValueError
 from navette.geometry import angle_difference, wrap_angle
 
 SAMPLE_M = 0.05  # spacing of the points on a piece
+_LONGEST_M = 1e5
 _SAME_PLACE_M = 0.005
 _SIMPLIFY_M = 0.01  # well below a cell: keeps arcs, drops the points between corners
 
@@ -80,10 +82,7 @@ def split_path(
     Raises:
         InvalidValueError: not (N, 3) or not finite.
     """
-    if poses.ndim != 2 or poses.shape[1] != 3 or not np.all(np.isfinite(poses)):
-        raise InvalidValueError(
-            f"path of shape {poses.shape}: wanted finite poses (N, 3) x, y, yaw"
-        )
+    _check(poses)
     pieces: list[Piece] = []
     for run in _runs(poses, _directions(poses)):
         if isinstance(run, TurnPiece):
@@ -92,6 +91,19 @@ def split_path(
             direction, points = run
             pieces += _drive(points, direction, tolerance, sharp)
     return pieces
+
+
+def _check(poses: NDArray[np.float64]) -> None:
+    if poses.ndim != 2 or poses.shape[1] != 3 or not np.all(np.isfinite(poses)):
+        raise InvalidValueError(
+            f"path of shape {poses.shape}: wanted finite poses (N, 3) x, y, yaw"
+        )
+    span = float(np.abs(np.diff(poses[:, :2], axis=0)).sum())
+    if np.abs(poses[:, :2]).max(initial=0.0) > FARTHEST_M or span > _LONGEST_M:
+        raise InvalidValueError(
+            f"path of {span:g} m: wanted at most {_LONGEST_M:g} m, "
+            f"coordinates up to ±{FARTHEST_M:g} m"
+        )
 
 
 def _directions(poses: NDArray[np.float64]) -> list[int]:
@@ -163,6 +175,8 @@ def sample_piece(points: Points, direction: int) -> DrivePiece:
     heading = np.append(heading, heading[-1])
     curvature = np.zeros(len(s))
     curvature[1:-1] = change / (s[1] - s[0])
+    # Where an arc begins between two samples the change of heading is uneven.
+    curvature[1:-1] = (curvature[:-2] + 2 * curvature[1:-1] + curvature[2:]) / 4
     winding = np.concatenate(([0.0], np.cumsum(np.abs(change)), [0.0]))
     winding[-1] = winding[-2]
     return DrivePiece(

@@ -80,7 +80,10 @@ def _fillet(corner: Points, touch: float, angle: float) -> Points:
     into = (b - a) / math.dist(a, b)
     left = np.array([-into[1], into[0]]) * math.copysign(1.0, angle)
     radius = touch / math.tan(abs(angle) / 2)
-    count = max(2, math.ceil(abs(angle) / 0.1) + 1)
+    # Finer than the later samples, else the curvature sampled comes in lumps.
+    count = 1 + max(
+        2, math.ceil(abs(angle) / 0.1), math.ceil(abs(angle) * radius / 0.02)
+    )
     phi = np.linspace(0.0, abs(angle), count)[:, None]
     start = b - touch * into
     return np.asarray(

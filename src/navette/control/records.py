@@ -9,6 +9,9 @@ from navette.control.limits import Command
 from navette.control.states import ControlState
 from navette.geometry import Pose2
 
+FARTHEST_M = 1e8  # from the map's origin; UTM northings reach 1e7
+_FASTEST = 1e3  # m/s, rad/s
+
 
 @dataclass(frozen=True)
 class FollowerInputs:
@@ -20,9 +23,13 @@ class FollowerInputs:
     ages: InputAges = FRESH
 
     @property
-    def finite(self) -> bool:
-        """Whether every number can be computed with."""
-        return all(map(math.isfinite, (*self.pose, self.speed, self.turn_rate)))
+    def plausible(self) -> bool:
+        """Whether every number is finite and can be that of a robot."""
+        return (
+            math.hypot(self.pose.x, self.pose.y) <= FARTHEST_M
+            and abs(self.pose.yaw) <= FARTHEST_M
+            and math.hypot(self.speed, self.turn_rate) <= _FASTEST
+        )
 
 
 class FollowerOutput(NamedTuple):

@@ -44,7 +44,7 @@ def approach_speed(distance: float, speed: float, deceleration: float) -> float:
     infinite slope at the end is cut off by ``d / 0.3 s``: a drive that lags would
     overshoot on the bare root.
     """
-    left = max(0.0, distance - 0.1 * abs(speed))
+    left = max(0.0, distance - 0.15 * abs(speed))
     return min(
         math.sqrt(2 * _BRAKE_SHARE * deceleration * left), max(0.0, distance) / 0.3
     )
