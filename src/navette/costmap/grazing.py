@@ -3,7 +3,9 @@
 A beam along a wall crosses cells that the wall is in before it hits. Freeing them
 would erase what a better placed scan saw: walls get holes where they are looked at
 sideways. The distance from the beam to the surface, s metres before the hit, is
-s · sin(incidence); cells are freed only while it exceeds a cell's half diagonal.
+s · sin(incidence). It should exceed ``clearance`` in the last cell freed, as it does
+where a beam meets the surface squarely and is freed up to the hit: so the margin is
+clearance / sin(incidence) − clearance, nothing for a square hit.
 """
 
 from typing import Any
@@ -27,8 +29,8 @@ def grazing_margins(
     """Margin before each hit in which cells are not freed.
 
     The surface runs from a hit to its neighbours' hits; of the two the one that the
-    beam meets more squarely counts. A beam without neighbours has a margin of
-    ``clearance``: it met a thing too small for two beams.
+    beam meets more squarely counts. A hit without neighbours has no margin: it is a
+    thing too small for two beams, not a surface.
 
     Args:
         ranges: (N,) float32, m.
@@ -72,12 +74,9 @@ def _margins_kernel(
         here = _sine(ranges, directions, i, i + 1, range_min, range_max)
         squarest = max(here, last)
         last = here
-        if squarest < 0.0:
-            margins[i] = min(clearance, most)
-        elif squarest * most <= clearance:
-            margins[i] = most
-        else:
-            margins[i] = clearance / squarest
+        if squarest >= 0.0:
+            squarest = max(squarest, 1e-9)
+            margins[i] = min(clearance / squarest - clearance, most)
 
 
 @njit(cache=True)

@@ -155,7 +155,7 @@ def _free_line(
         minor, major = major, minor
     at = r0 * width + c0
     error = along // 2
-    for _ in range(int(share * along)):
+    for _ in range(int(share * along + 0.5)):
         flat[at] = 0
         at += major
         error += across

@@ -1,0 +1,77 @@
+"""How far a map reaches, and how it grows."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.grids import UNKNOWN, GridSpec
+
+
+@dataclass(frozen=True)
+class Growth:
+    """A larger extent and the cells added on each side."""
+
+    spec: GridSpec
+    rows: tuple[int, int]
+    columns: tuple[int, int]
+
+
+def known_corners(
+    cells: NDArray[np.int8], spec: GridSpec
+) -> NDArray[np.float64] | None:
+    """Corners (4, 2), m, of the box around all known cells; None = all unknown."""
+    known = cells != UNKNOWN
+    rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
+    if rows.size == 0:
+        return None
+    u = np.array([columns[0], columns[-1] + 1]) * spec.resolution
+    v = np.array([rows[0], rows[-1] + 1]) * spec.resolution
+    return spec.origin.apply(np.array([(x, y) for x in u for y in v]))
+
+
+def grow_to_hold(
+    spec: GridSpec, points: NDArray[np.float64], *, chunk: float, max_size: float
+) -> Growth | None:
+    """The map's extent enlarged until it holds ``points``, or None if it does.
+
+    Grows on the sides that need it, by whole chunks, while an edge stays within
+    ``max_size``; what would not fit stays outside.
+
+    Args:
+        spec: the extent now.
+        points: (N, 2) in the map frame, m.
+        chunk: m.
+        max_size: m.
+    """
+    local = spec.origin.inverse().apply(points) / spec.resolution
+    step = max(1, round(chunk / spec.resolution))
+    most = math.floor(max_size / spec.resolution + 1e-9)
+    columns = _sides(local[:, 0], spec.width, step, most)
+    rows = _sides(local[:, 1], spec.height, step, most)
+    if columns == (0, 0) and rows == (0, 0):
+        return None
+    shift = Pose2(-columns[0] * spec.resolution, -rows[0] * spec.resolution, 0.0)
+    larger = GridSpec(
+        spec.resolution,
+        spec.width + sum(columns),
+        spec.height + sum(rows),
+        spec.origin @ shift,
+    )
+    return Growth(larger, rows, columns)
+
+
+def _sides(at: NDArray[np.float64], size: int, step: int, most: int) -> tuple[int, int]:
+    """Cells to add before and after an axis of ``size`` cells."""
+    # A point on the border (to rounding) does not ask for more.
+    before = step * max(0, math.ceil(-(at.min() + 1e-6) / step))
+    after = step * max(0, math.ceil((at.max() - size - 1e-6) / step))
+    room = most - size
+    while before + after > room and (before or after):
+        if before >= after:
+            before -= step
+        else:
+            after -= step
+    return before, after
