@@ -1,0 +1,194 @@
+"""From map, pose and goal to a path that the body can drive."""
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Footprint, Pose2
+from navette.grids import GridSpec
+from navette.planning.detour import DetourPlanner, Target
+from navette.planning.footprint_check import check_path
+from navette.planning.goals import nearest_reachable
+from navette.planning.outcome import Outcome
+from navette.planning.params import PlannerParams
+from navette.planning.path_shape import Poses, path_cost, turn_in_place
+from navette.planning.planning_grid import (
+    BodyShape,
+    PlanningGrid,
+    open_at,
+    planning_grid,
+    without_obstacles_in,
+)
+from navette.planning.route import GridRouter
+
+# Share of the goal tolerance by which a route may simply be cut short.
+_CUT_SHARE = 0.5
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Where to go, in the map frame; ``yaw`` None = any heading will do."""
+
+    x: float
+    y: float
+    yaw: float | None = None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What planning came to.
+
+    Attributes:
+        outcome: named result.
+        poses: (N, 3) x, y, yaw in the map frame; empty without a path.
+        cost: metres of free driving forwards that the path is worth.
+        margin_m: clearance that the path keeps.
+        expansions: poses that the search with headings looked at; 0 = not needed.
+    """
+
+    outcome: Outcome
+    poses: Poses = field(default_factory=lambda: np.empty((0, 3)))
+    cost: float = math.inf
+    margin_m: float = math.nan
+    expansions: int = 0
+
+
+class Planner:
+    """Plans on the newest map; keeps nothing else between plans but work arrays."""
+
+    def __init__(self, params: PlannerParams) -> None:
+        self.params = params
+        self.footprint = Footprint.from_flat(params.footprint)
+        self.router = GridRouter(params)
+        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._body: BodyShape | None = None
+        self._grids: dict[float, PlanningGrid] = {}
+
+    def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
+        """Take a map (H, W): −1 unknown, 0 free … 100 occupied."""
+        if self._map is None or self._map[1].resolution != spec.resolution:
+            self._body = BodyShape.of(self.footprint, spec.resolution)
+        self._map = occupancy, spec
+        self._grids.clear()
+
+    @property
+    def body(self) -> BodyShape:
+        """The body, sampled as finely as the map."""
+        assert self._body is not None, "set_map comes first"
+        return self._body
+
+    def grid(self, margin_m: float | None = None) -> PlanningGrid:
+        """The map prepared for a margin (the parameter's by default)."""
+        assert self._map is not None, "set_map comes first"
+        margin = self.params.clearance_margin_m if margin_m is None else margin_m
+        if margin not in self._grids:
+            params = replace(self.params, clearance_margin_m=margin)
+            self._grids[margin] = planning_grid(*self._map, self.body, params)
+        return self._grids[margin]
+
+    def plan(self, start: Pose2, goal: Goal) -> Plan:
+        """A path from ``start`` to ``goal``, or the reason why there is none.
+
+        Where the body does not fit with its margin, the tight margin is tried.
+        """
+        refused = self._refusal(start, goal)
+        if refused is not None:
+            return Plan(refused)
+        plan = self._plan_with(self.params.clearance_margin_m, start, goal)
+        tight = self.params.tight_margin_m
+        if plan.outcome.has_path or tight >= self.params.clearance_margin_m:
+            return plan
+        squeezed = self._plan_with(tight, start, goal)
+        return squeezed if squeezed.outcome.has_path else plan
+
+    def cost_of(self, poses: Poses) -> float:
+        """What driving these poses is worth on the newest map; see path_cost."""
+        return path_cost(
+            poses,
+            self.grid(),
+            turn_cost_m=self.params.turn_cost_m,
+            reverse_factor=self.params.reverse_factor,
+        )
+
+    def _refusal(self, start: Pose2, goal: Goal) -> Outcome | None:
+        if not all(map(math.isfinite, (goal.x, goal.y, goal.yaw or 0.0))):
+            return Outcome.GOAL_NOT_FINITE
+        if self.grid().cell_of(goal.x, goal.y) is None:
+            return Outcome.GOAL_OUTSIDE_MAP
+        if self.grid().cell_of(start.x, start.y) is None:
+            return Outcome.START_OUTSIDE_MAP
+        return None
+
+    def _plan_with(self, margin_m: float, start: Pose2, goal: Goal) -> Plan:
+        grid = self._opened(margin_m, start)
+        end, why_not = self._end(grid, start, goal)
+        if end is None:
+            return Plan(why_not)
+        route = self.router.route(grid, self.body, start, end, goal.yaw)
+        assert route is not None, "the end was chosen among reachable cells"
+        checked = self._cut_to_fit(grid, start, goal, route)
+        if checked is not None:
+            return self._planned(goal, checked, margin_m, 0)
+        detour = DetourPlanner(grid, self.body, self.params, self.router).plan(
+            start, Target(goal.x, goal.y, goal.yaw, self._reach_m), route
+        )
+        if detour.poses is None:
+            why = Outcome.SEARCH_LIMIT if detour.exhausted else Outcome.NO_PATH
+            return Plan(why, expansions=detour.expansions)
+        return self._planned(goal, detour.poses, margin_m, detour.expansions)
+
+    @property
+    def _reach_m(self) -> float:
+        """How far from the goal a path may end: the robot stops short of its end."""
+        params = self.params
+        return max(
+            params.goal_tolerance_m - params.path_end_tolerance_m,
+            0.5 * params.goal_tolerance_m,
+        )
+
+    def _opened(self, margin_m: float, start: Pose2) -> PlanningGrid:
+        """The grid without the robot's own shadow, open around the start."""
+        assert self._map is not None, "set_map comes first"
+        params = replace(self.params, clearance_margin_m=margin_m)
+        grid = self.grid(margin_m)
+        grid = without_obstacles_in(grid, self._map[0], start, self.body, params)
+        cell = grid.cell_of(start.x, start.y)
+        assert cell is not None, "the start lies in the map"
+        return open_at(grid, cell, self.body)
+
+    def _end(
+        self, grid: PlanningGrid, start: Pose2, goal: Goal
+    ) -> tuple[tuple[float, float] | None, Outcome]:
+        """Where the path is to end, or None and the reason."""
+        if self.router.connects(grid, (start.x, start.y), (goal.x, goal.y)):
+            return (goal.x, goal.y), Outcome.OK
+        cell = grid.cell_of(start.x, start.y)
+        assert cell is not None, "the start lies in the map"
+        near, outcome = nearest_reachable(
+            grid, cell, (goal.x, goal.y), self._reach_m, self.body
+        )
+        return (None if near is None else grid.spec.center_of(*near)), outcome
+
+    def _cut_to_fit(
+        self, grid: PlanningGrid, start: Pose2, goal: Goal, route: Poses
+    ) -> Poses | None:
+        """The route, less a little at its end, if the body fits along it."""
+        sweep = turn_in_place(start.x, start.y, start.yaw, float(route[0, 2]))
+        check = check_path(np.concatenate([sweep, route]), grid, self.body)
+        if check.first_bad is None:
+            return route
+        kept = route[: max(0, check.first_bad - len(sweep))]
+        if goal.yaw is not None or len(kept) < 2:
+            return None
+        missing = math.dist(kept[-1, :2], (goal.x, goal.y))
+        return kept if missing <= _CUT_SHARE * self.params.goal_tolerance_m else None
+
+    def _planned(
+        self, goal: Goal, poses: Poses, margin_m: float, expansions: int
+    ) -> Plan:
+        off = math.dist(poses[-1, :2], (goal.x, goal.y))
+        snapped = off > self.params.path_end_tolerance_m
+        outcome = Outcome.GOAL_SNAPPED if snapped else Outcome.OK
+        return Plan(outcome, poses, self.cost_of(poses), margin_m, expansions)

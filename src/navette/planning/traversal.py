@@ -1,0 +1,110 @@
+"""What a step between cells costs: edge tables, and grids with a closed rim.
+
+Costs are fixed-point integers: one straight step over a free cell is ``STRAIGHT``
+units, a diagonal one ``DIAGONAL`` (√2 to four digits), so that sums are exact and
+independent of order, and an open list can be an array of buckets.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+
+STRAIGHT = 10_000
+DIAGONAL = 14_142
+LETHAL = 255
+"""Cell cost that no path enters."""
+DEAREST = 252
+"""Highest passable cell cost, as in Nav2's costmaps."""
+
+Cell = tuple[int, int]
+"""(row, column)."""
+
+# Moves in the order of the direction code (0-7), as (row, column) steps; the
+# opposite of code k is k ^ 1 for straight moves and 11 - k for diagonal ones.
+MOVES: tuple[Cell, ...] = (
+    (-1, 0),
+    (1, 0),
+    (0, -1),
+    (0, 1),
+    (-1, -1),
+    (-1, 1),
+    (1, -1),
+    (1, 1),
+)
+
+
+@dataclass(frozen=True)
+class EdgeTable:
+    """Cost of entering a cell, by the cell's cost (0-255); 0 means closed.
+
+    ``straight[c] = STRAIGHT * (1 + weight * c / 252)``, likewise ``diagonal``.
+    """
+
+    weight: float = 0.0
+    lethal_from: int = LETHAL
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.weight <= 1000:
+            raise InvalidValueError(f"edge weight {self.weight!r}: wanted 0 to 1000")
+        if not 1 <= self.lethal_from <= LETHAL:
+            raise InvalidValueError(
+                f"lethal_from {self.lethal_from!r}: wanted 1 to {LETHAL}"
+            )
+
+    @cached_property
+    def straight(self) -> NDArray[np.int32]:
+        return self._table(STRAIGHT)
+
+    @cached_property
+    def diagonal(self) -> NDArray[np.int32]:
+        return self._table(DIAGONAL)
+
+    @property
+    def longest(self) -> int:
+        """The dearest single step, in units."""
+        return int(self.diagonal.max())
+
+    def _table(self, unit: int) -> NDArray[np.int32]:
+        cost = np.arange(256)
+        table = np.rint(unit * (1 + self.weight * cost / DEAREST)).astype(np.int32)
+        table[self.lethal_from :] = 0
+        return table
+
+
+def with_rim(cost: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Cost (H, W) → (H + 2, W + 2) with a lethal rim: searches need no bounds."""
+    if cost.ndim != 2 or cost.dtype != np.uint8:
+        raise InvalidValueError(
+            f"cost grid of shape {cost.shape}, {cost.dtype}: wanted 2-D uint8"
+        )
+    height, width = cost.shape
+    if max(height, width) > 32_000:
+        raise InvalidValueError(
+            f"cost grid of {height} x {width} cells: wanted at most 32000 a side"
+        )
+    rimmed = np.empty((height + 2, width + 2), np.uint8)
+    rimmed[0] = rimmed[-1] = rimmed[:, 0] = rimmed[:, -1] = LETHAL
+    rimmed[1:-1, 1:-1] = cost
+    return rimmed
+
+
+def require_inside(cell: Cell, shape: tuple[int, ...], what: str) -> None:
+    """Raise unless ``cell`` lies in a grid of ``shape``."""
+    if not (0 <= cell[0] < shape[0] and 0 <= cell[1] < shape[1]):
+        raise InvalidValueError(
+            f"{what} cell {cell}: outside the grid of {shape[0]} x {shape[1]} cells"
+        )
+
+
+def steps_cost(
+    cells: NDArray[np.int64], cost: NDArray[np.uint8], table: EdgeTable
+) -> int:
+    """Units that a chain (N, 2) of neighbouring cells costs; the oracle of tests."""
+    entered = cost[cells[1:, 0], cells[1:, 1]]
+    diagonal = np.abs(np.diff(cells, axis=0)).sum(axis=1) == 2
+    each = np.where(diagonal, table.diagonal[entered], table.straight[entered])
+    return int(each.sum())
