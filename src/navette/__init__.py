@@ -1,1 +1,45 @@
-"""Robot navigation that you pip install."""
+"""Robot navigation that you pip install.
+
+rclpy's names are here too (``from navette import Node, spin``); they are loaded when
+first used, so that ``import navette`` costs next to nothing.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from navette._version import __version__
+
+if TYPE_CHECKING:
+    from navette.runtime import *  # noqa: F403 - for editors; see _RUNTIME_NAMES
+
+_RUNTIME_NAMES = frozenset(
+    """
+    Buffer CallbackGroup Clock ClockType Context DurabilityPolicy Duration Executor
+    ExternalShutdownException Future HistoryPolicy Input LivelinessPolicy
+    LoggingSeverity MultiThreadedExecutor MutuallyExclusiveCallbackGroup Node
+    NotInitializedException Output PacedClock Parameter
+    ParameterAlreadyDeclaredException ParameterNotDeclaredException Publisher
+    QoSPresetProfiles QoSProfile ROSClock ROSInterruptException Rate
+    ReentrantCallbackGroup ReliabilityPolicy SingleThreadedExecutor StageNode
+    StaticTransformBroadcaster Subscription SystemClock Task Time Timer
+    TransformBroadcaster TransformListener VirtualClock create_node
+    get_default_context get_global_executor init ok qos_profile_sensor_data
+    qos_profile_system_default remove_ros_args shutdown spin spin_once
+    spin_until_future_complete try_shutdown
+    """.split()  # noqa: SIM905 - reads better than sixty quoted strings
+)
+
+__all__ = ["__version__", *sorted(_RUNTIME_NAMES)]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _RUNTIME_NAMES:
+        raise AttributeError(f"module 'navette' has no attribute {name!r}")
+    from navette import runtime
+
+    value = getattr(runtime, name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_RUNTIME_NAMES})

@@ -1,1 +1,160 @@
-"""."""
+"""The node runtime: rclpy's API on one deterministic executor."""
+
+from navette.runtime.api import (
+    InitContextManager,
+    SignalHandlerOptions,
+    create_node,
+    get_global_executor,
+    init,
+    ok,
+    remove_ros_args,
+    shutdown,
+    spin,
+    spin_once,
+    spin_until_future_complete,
+    try_shutdown,
+)
+from navette.runtime.callback_groups import (
+    CallbackGroup,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
+from navette.runtime.clock import (
+    PacedClock,
+    Stopwatch,
+    SystemClock,
+    TimeSource,
+    VirtualClock,
+)
+from navette.runtime.context import Context, get_default_context
+from navette.runtime.exceptions import (
+    ExternalShutdownException,
+    NotInitializedException,
+    ParameterAlreadyDeclaredException,
+    ParameterNotDeclaredException,
+    ROSInterruptException,
+)
+from navette.runtime.executor import (
+    Executor,
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+)
+from navette.runtime.future import Future, Task
+from navette.runtime.graph import Graph, NodeInfo
+from navette.runtime.log import Logger
+from navette.runtime.log_levels import LoggingSeverity
+from navette.runtime.node import Node
+from navette.runtime.parameter import Parameter
+from navette.runtime.parameter_files import read_parameter_file
+from navette.runtime.publisher import Publisher
+from navette.runtime.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPresetProfiles,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_sensor_data,
+    qos_profile_system_default,
+)
+from navette.runtime.rate import Rate
+from navette.runtime.ros_clock import Clock, JumpThreshold, ROSClock, TimeJump
+from navette.runtime.stage import Input, Output, StageNode
+from navette.runtime.stage_params import declare_params
+from navette.runtime.status import StatusReporter
+from navette.runtime.subscription import MessageInfo, Subscription
+from navette.runtime.tf import (
+    Buffer,
+    StaticTransformBroadcaster,
+    TransformBroadcaster,
+    TransformListener,
+)
+from navette.runtime.time import (
+    ClockType,
+    Duration,
+    Time,
+    ns_to_stamp,
+    stamp_to_ns,
+)
+from navette.runtime.timer import Timer
+
+__all__ = [
+    # life cycle
+    "Context",
+    "InitContextManager",
+    "SignalHandlerOptions",
+    "create_node",
+    "get_default_context",
+    "get_global_executor",
+    "init",
+    "ok",
+    "remove_ros_args",
+    "shutdown",
+    "spin",
+    "spin_once",
+    "spin_until_future_complete",
+    "try_shutdown",
+    # nodes and topics
+    "Graph",
+    "MessageInfo",
+    "Node",
+    "NodeInfo",
+    "Publisher",
+    "Subscription",
+    "DurabilityPolicy",
+    "HistoryPolicy",
+    "LivelinessPolicy",
+    "QoSPresetProfiles",
+    "QoSProfile",
+    "ReliabilityPolicy",
+    "qos_profile_sensor_data",
+    "qos_profile_system_default",
+    # execution
+    "CallbackGroup",
+    "Executor",
+    "Future",
+    "MultiThreadedExecutor",
+    "MutuallyExclusiveCallbackGroup",
+    "ReentrantCallbackGroup",
+    "SingleThreadedExecutor",
+    "Task",
+    # time
+    "Clock",
+    "ClockType",
+    "Duration",
+    "JumpThreshold",
+    "PacedClock",
+    "ROSClock",
+    "Rate",
+    "Stopwatch",
+    "SystemClock",
+    "Time",
+    "TimeJump",
+    "TimeSource",
+    "Timer",
+    "VirtualClock",
+    "ns_to_stamp",
+    "stamp_to_ns",
+    # parameters and logging
+    "Logger",
+    "LoggingSeverity",
+    "Parameter",
+    "declare_params",
+    "read_parameter_file",
+    # stages
+    "Input",
+    "Output",
+    "StageNode",
+    "StatusReporter",
+    # transforms
+    "Buffer",
+    "StaticTransformBroadcaster",
+    "TransformBroadcaster",
+    "TransformListener",
+    # errors
+    "ExternalShutdownException",
+    "NotInitializedException",
+    "ParameterAlreadyDeclaredException",
+    "ParameterNotDeclaredException",
+    "ROSInterruptException",
+]

@@ -1,1 +1,43 @@
-"""."""
+"""The seam that moves (topic, message) between endpoints, and what implements it."""
+
+from navette.transports.base import (
+    Endpoint,
+    EndpointKind,
+    Item,
+    PublisherPort,
+    Sink,
+    SubscriptionPort,
+    Transport,
+    TransportObserver,
+)
+from navette.transports.inprocess import InProcessTransport
+from navette.transports.qos import (
+    INFINITE_NS,
+    DurabilityPolicy,
+    EndpointQos,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPolicyKind,
+    ReliabilityPolicy,
+    incompatible_policies,
+)
+
+__all__ = [
+    "DurabilityPolicy",
+    "Endpoint",
+    "EndpointKind",
+    "EndpointQos",
+    "HistoryPolicy",
+    "INFINITE_NS",
+    "InProcessTransport",
+    "Item",
+    "LivelinessPolicy",
+    "PublisherPort",
+    "QoSPolicyKind",
+    "ReliabilityPolicy",
+    "Sink",
+    "SubscriptionPort",
+    "Transport",
+    "TransportObserver",
+    "incompatible_policies",
+]

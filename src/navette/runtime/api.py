@@ -1,0 +1,151 @@
+"""rclpy's module-level functions: init, spin, shutdown and company."""
+
+import sys
+from collections.abc import Sequence
+from enum import IntEnum
+from types import TracebackType
+from typing import Any
+
+from navette.runtime.arguments import remove_ros_args as _remove_ros_args
+from navette.runtime.clock import TimeSource
+from navette.runtime.context import (
+    Context,
+    get_default_context,
+    reset_default_context,
+)
+from navette.runtime.executor import Executor, SingleThreadedExecutor
+from navette.runtime.future import Future
+from navette.runtime.node import Node
+
+
+class SignalHandlerOptions(IntEnum):
+    """Accepted for compatibility: Python's own handlers stay in place."""
+
+    NO = 0
+    SIGINT = 1
+    SIGTERM = 2
+    ALL = 3
+
+
+class InitContextManager:
+    """What :func:`init` returns: ``with init(): …`` shuts down at the end."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+
+    def __enter__(self) -> "InitContextManager":
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        try_shutdown(context=self.context)
+
+
+def init(
+    *,
+    args: Sequence[str] | None = None,
+    context: Context | None = None,
+    domain_id: int | None = None,
+    signal_handler_options: SignalHandlerOptions | None = None,
+    clock: TimeSource | None = None,
+) -> InitContextManager:
+    """Make the context valid; read ``args`` (``sys.argv`` if None).
+
+    Args:
+        clock: how time passes (default: the system clock).
+    """
+    if context is None:
+        # A default context that was shut down cannot come back: take a new one.
+        context = get_default_context()
+        if context.was_shut_down:
+            reset_default_context()
+            context = get_default_context()
+    if clock is not None:
+        context.use_clock(clock)
+    context.init(args, domain_id=domain_id)
+    return InitContextManager(context)
+
+
+def ok(*, context: Context | None = None) -> bool:
+    """Whether the context is initialised and not shut down."""
+    return (context or get_default_context()).ok()
+
+
+def shutdown(
+    *, context: Context | None = None, uninstall_handlers: bool | None = None
+) -> None:
+    """Shut the context down; its nodes are destroyed, its spins return."""
+    (context or get_default_context()).shutdown()
+
+
+def try_shutdown(
+    *, context: Context | None = None, uninstall_handlers: bool | None = None
+) -> None:
+    """Shut down if it is valid."""
+    (context or get_default_context()).try_shutdown()
+
+
+def create_node(node_name: str, **kwargs: Any) -> Node:
+    """A :class:`Node`, with its keyword arguments."""
+    return Node(node_name, **kwargs)
+
+
+def get_global_executor(context: Context | None = None) -> Executor:
+    """The executor behind :func:`spin`; one a context."""
+    context = context or get_default_context()
+    if context.executor is None:
+        context.executor = SingleThreadedExecutor(context=context)
+    executor: Executor = context.executor
+    return executor
+
+
+def spin(node: Node, executor: Executor | None = None) -> None:
+    """Run the node's callbacks until shutdown."""
+    executor = executor or get_global_executor(node.context)
+    was_added = executor.add_node(node)
+    try:
+        executor.spin()
+    finally:
+        if was_added:
+            executor.remove_node(node)
+
+
+def spin_once(
+    node: Node,
+    *,
+    executor: Executor | None = None,
+    timeout_sec: float | None = None,
+) -> None:
+    """Run one event, waiting at most ``timeout_sec`` for it."""
+    executor = executor or node.executor or get_global_executor(node.context)
+    was_added = executor.add_node(node)
+    try:
+        executor.spin_once(timeout_sec=timeout_sec)
+    finally:
+        if was_added:
+            executor.remove_node(node)
+
+
+def spin_until_future_complete(
+    node: Node,
+    future: Future[Any],
+    executor: Executor | None = None,
+    timeout_sec: float | None = None,
+) -> None:
+    """Run until ``future`` is done or the time is over; also from a callback."""
+    executor = executor or node.executor or get_global_executor(node.context)
+    was_added = executor.add_node(node)
+    try:
+        executor.spin_until_future_complete(future, timeout_sec)
+    finally:
+        if was_added:
+            executor.remove_node(node)
+
+
+def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
+    """``args`` (``sys.argv`` if None) without the ROS arguments."""
+    return _remove_ros_args(sys.argv if args is None else args)

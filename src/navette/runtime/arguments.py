@@ -1,0 +1,131 @@
+"""Command-line arguments of ROS 2 programs: ``--ros-args -r … -p … --params-file …``."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from navette.errors import InvalidValueError
+from navette.runtime.log_levels import LoggingSeverity, severity_from_string
+from navette.runtime.names import RemapRule
+from navette.runtime.parameter_files import parse_value
+
+ParameterArgument = tuple[str | None, str, object]
+"""(node name or None, parameter name, value)."""
+
+
+@dataclass
+class RosArguments:
+    """What stood between ``--ros-args`` and ``--``, and what did not."""
+
+    remaps: list[RemapRule] = field(default_factory=list)
+    #: Parameter files and single parameters in their order: the last wins.
+    parameters: list[Path | ParameterArgument] = field(default_factory=list)
+    #: (logger name or None for all, level)
+    log_levels: list[tuple[str | None, LoggingSeverity]] = field(default_factory=list)
+    log_file: Path | None = None
+    enable_rosout: bool = True
+    enable_stdout: bool = True
+    enclave: str = "/"
+    other: list[str] = field(default_factory=list)
+
+
+_FLAGS = {
+    "--enable-rosout-logs": ("enable_rosout", True),
+    "--disable-rosout-logs": ("enable_rosout", False),
+    "--enable-stdout-logs": ("enable_stdout", True),
+    "--disable-stdout-logs": ("enable_stdout", False),
+}
+_IGNORED_FLAGS = ("--enable-external-lib-logs", "--disable-external-lib-logs")
+_WITH_VALUE = {
+    "-r": "remap",
+    "--remap": "remap",
+    "-p": "parameter",
+    "--param": "parameter",
+    "--params-file": "file",
+    "--log-level": "level",
+    "--log-file": "log_file",
+    "-e": "enclave",
+    "--enclave": "enclave",
+}
+
+
+def parse_ros_arguments(args: Sequence[str]) -> RosArguments:
+    """Read the ROS arguments among ``args`` (program name included or not).
+
+    Raises:
+        InvalidValueError: an unknown ROS argument or one of the wrong form.
+    """
+    found = RosArguments()
+    rest = iter(args)
+    for argument in rest:
+        if argument == "--ros-args":
+            _parse_block(rest, found)
+        else:
+            found.other.append(argument)
+    return found
+
+
+def remove_ros_args(args: Sequence[str]) -> list[str]:
+    """``args`` without the blocks from ``--ros-args`` to ``--``."""
+    kept: list[str] = []
+    inside = False
+    for argument in args:
+        if argument == "--ros-args":
+            inside = True
+        elif inside and argument == "--":
+            inside = False
+        elif not inside:
+            kept.append(argument)
+    return kept
+
+
+def _parse_block(rest: Iterator[str], found: RosArguments) -> None:
+    for argument in rest:
+        if argument == "--":
+            return
+        if argument == "--ros-args" or argument in _IGNORED_FLAGS:
+            continue
+        if argument in _FLAGS:
+            name, value = _FLAGS[argument]
+            setattr(found, name, value)
+        elif argument in _WITH_VALUE:
+            text = next(rest, None)
+            if text is None:
+                raise InvalidValueError(
+                    f"ROS argument {argument}: its value is missing"
+                )
+            _take(_WITH_VALUE[argument], text, found)
+        elif ":=" in argument and not argument.startswith("-"):
+            found.remaps.append(RemapRule.parse(argument))
+        else:
+            known = sorted((*_WITH_VALUE, *_FLAGS, *_IGNORED_FLAGS))
+            raise InvalidValueError(
+                f"unknown ROS argument {argument!r}; known: {', '.join(known)}"
+            )
+
+
+def _take(kind: str, text: str, found: RosArguments) -> None:
+    if kind == "remap":
+        found.remaps.append(RemapRule.parse(text))
+    elif kind == "parameter":
+        found.parameters.append(parse_parameter_argument(text))
+    elif kind == "file":
+        found.parameters.append(Path(text))
+    elif kind == "log_file":
+        found.log_file = Path(text)
+    elif kind == "enclave":
+        found.enclave = text
+    else:
+        name, separator, level = text.rpartition(":=")
+        found.log_levels.append(
+            (name if separator else None, severity_from_string(level))
+        )
+
+
+def parse_parameter_argument(text: str) -> ParameterArgument:
+    """``[node:]name:=value``."""
+    left, separator, value = text.partition(":=")
+    if not separator or not left:
+        raise InvalidValueError(f"parameter {text!r}: wanted [node:]name:=value")
+    node, colon, name = left.rpartition(":")
+    return (node if colon else None, name, parse_value(value))

@@ -1,0 +1,64 @@
+"""Callback groups: which callbacks may start while another has not ended.
+
+On the one deterministic loop a callback runs to its end unless it waits (a nested
+spin, a coroutine's ``await``). While it waits, its own group decides: mutually
+exclusive ones hold their other callbacks back, re-entrant ones let them start.
+"""
+
+from collections import deque
+from typing import Any
+
+
+class CallbackGroup:
+    """Base of the two kinds; holds events back while ``held`` is above zero."""
+
+    #: Whether a waiting callback keeps the others of the group from starting.
+    exclusive = True
+
+    __slots__ = ("__weakref__", "_entities", "held", "parked", "ready")
+
+    def __init__(self) -> None:
+        self.held = 0
+        self.parked: deque[Any] = deque()
+        self.ready: deque[Any] | None = None  # the loop's queue, once known
+        self._entities: list[Any] = []
+
+    def add_entity(self, entity: Any) -> None:
+        """Note that ``entity``'s callback belongs to this group."""
+        self._entities.append(entity)
+
+    def remove_entity(self, entity: Any) -> None:
+        """Forget ``entity`` (it was destroyed)."""
+        if entity in self._entities:
+            self._entities.remove(entity)
+
+    def has_entity(self, entity: Any) -> bool:
+        return entity in self._entities
+
+    def can_execute(self, entity: Any) -> bool:
+        """Whether ``entity``'s callback might start now."""
+        return self.held == 0
+
+    def hold(self) -> None:
+        """Keep the group's events back until the matching :meth:`release`."""
+        self.held += 1
+
+    def release(self) -> None:
+        """Undo one :meth:`hold`; parked events go first, in their old order."""
+        self.held -= 1
+        if self.held == 0 and self.parked and self.ready is not None:
+            self.ready.extendleft(reversed(self.parked))
+            self.parked.clear()
+
+
+class MutuallyExclusiveCallbackGroup(CallbackGroup):
+    """At most one of the group's callbacks is under way at a time."""
+
+    __slots__ = ()
+
+
+class ReentrantCallbackGroup(CallbackGroup):
+    """Any of the group's callbacks may start while others wait."""
+
+    exclusive = False
+    __slots__ = ()

@@ -1,0 +1,180 @@
+"""Where time comes from: virtual, paced or the machine's. The only wall clock here.
+
+The loop asks its clock to go to the time of the next event. A virtual clock is
+there at once; a paced one waits in between; the system clock goes by itself.
+"""
+
+import threading
+import time
+from abc import ABC, abstractmethod
+
+from navette.errors import InvalidValueError
+
+# Waits are cut into pieces: an interrupt (Ctrl-C) is then seen on every platform.
+_LONGEST_WAIT_S = 0.25
+# A paced run that fell behind further than this does not hurry to catch up.
+_MAX_CATCH_UP_S = 0.25
+
+
+class Wakeup:
+    """Lets another thread end a wait."""
+
+    __slots__ = ("_event",)
+
+    def __init__(self) -> None:
+        self._event = threading.Event()
+
+    def set(self) -> None:
+        self._event.set()
+
+    def clear(self) -> None:
+        self._event.clear()
+
+    def wait(self, timeout_s: float | None) -> bool:
+        """True if woken; False once ``timeout_s`` (None = for ever) is over."""
+        deadline = None if timeout_s is None else time.monotonic() + timeout_s
+        while True:
+            left = _LONGEST_WAIT_S
+            if deadline is not None:
+                left = min(left, deadline - time.monotonic())
+            if self._event.wait(max(left, 0.0)):
+                return True
+            if deadline is not None and time.monotonic() >= deadline:
+                return False
+
+
+class TimeSource(ABC):
+    """The time of a context, in integer nanoseconds."""
+
+    #: Whether time stands still between events (nothing happens by waiting).
+    is_virtual: bool = False
+
+    @property
+    @abstractmethod
+    def now_ns(self) -> int:
+        """Nanoseconds since the clock's epoch."""
+
+    @abstractmethod
+    def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
+        """Wait until ``target_ns`` (None = for ever); False if woken before."""
+
+
+class SystemClock(TimeSource):
+    """The machine's clock: nanoseconds since 1970."""
+
+    @property
+    def now_ns(self) -> int:
+        return time.time_ns()
+
+    def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
+        if target_ns is None:
+            return not wakeup.wait(None)
+        left_ns = target_ns - time.time_ns()
+        return left_ns <= 0 or not wakeup.wait(left_ns / 1e9)
+
+
+class VirtualClock(TimeSource):
+    """Time that jumps to the next event: as fast as the machine can."""
+
+    is_virtual = True
+    now_ns: int = 0
+
+    def __init__(self, start_ns: int = 0) -> None:
+        if start_ns < 0:
+            raise InvalidValueError(f"start {start_ns} ns: wanted >= 0")
+        self.now_ns = start_ns
+
+    def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
+        if target_ns is None:
+            return not wakeup.wait(None)
+        self.now_ns = max(self.now_ns, target_ns)
+        return True
+
+
+class PacedClock(VirtualClock):
+    """Virtual time that runs at ``factor`` times wall time: the same events, later.
+
+    Args:
+        factor: seconds of virtual time per second of wall time, > 0.
+        start_ns: where virtual time starts.
+    """
+
+    def __init__(self, factor: float = 1.0, start_ns: int = 0) -> None:
+        super().__init__(start_ns)
+        self._factor = self._checked(factor)
+        self._paused = False
+        self._anchor_wall_s = time.monotonic()
+        self._anchor_ns = start_ns
+        self._first: tuple[float, int] | None = None
+        self.lag_s = 0.0
+
+    @property
+    def factor(self) -> float:
+        return self._factor
+
+    @factor.setter
+    def factor(self, factor: float) -> None:
+        self._factor = self._checked(factor)
+        self._anchor()
+
+    @property
+    def paused(self) -> bool:
+        """While true, virtual time stands; other threads' calls still run."""
+        return self._paused
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
+        self._paused = paused
+        self._anchor()
+
+    @property
+    def real_time_factor(self) -> float:
+        """Virtual over wall time since the first wait; 0.0 before it."""
+        if self._first is None:
+            return 0.0
+        wall_s = time.monotonic() - self._first[0]
+        return (self.now_ns - self._first[1]) / 1e9 / wall_s if wall_s > 0 else 0.0
+
+    def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
+        if target_ns is None or self._paused:
+            return not wakeup.wait(None)
+        if self._first is None:
+            self._anchor()
+            self._first = (self._anchor_wall_s, self.now_ns)
+        due_s = self._anchor_wall_s + (target_ns - self._anchor_ns) / 1e9 / self._factor
+        left_s = due_s - time.monotonic()
+        if left_s > 0 and wakeup.wait(left_s):
+            return False
+        self.now_ns = max(self.now_ns, target_ns)
+        self.lag_s = max(0.0, time.monotonic() - due_s)
+        if self.lag_s > _MAX_CATCH_UP_S:
+            self._anchor()
+        return True
+
+    def _anchor(self) -> None:
+        self._anchor_wall_s = time.monotonic()
+        self._anchor_ns = self.now_ns
+
+    @staticmethod
+    def _checked(factor: float) -> float:
+        if not 0.0 < factor < float("inf"):
+            raise InvalidValueError(
+                f"real-time factor {factor!r}: wanted a finite value > 0"
+            )
+        return float(factor)
+
+
+def monotonic_ns() -> int:
+    """The machine's steady clock, for STEADY_TIME and for measuring."""
+    return time.monotonic_ns()
+
+
+class Stopwatch:
+    """Wall time since its making, for progress reports and limits."""
+
+    def __init__(self) -> None:
+        self._start_ns = time.monotonic_ns()
+
+    @property
+    def elapsed_s(self) -> float:
+        return (time.monotonic_ns() - self._start_ns) / 1e9

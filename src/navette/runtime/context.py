@@ -1,0 +1,196 @@
+"""A context: one graph, one loop, one set of arguments; tests make their own."""
+
+import logging
+import os
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from navette.errors import InvalidValueError
+from navette.runtime.arguments import RosArguments, parse_ros_arguments
+from navette.runtime.clock import SystemClock, TimeSource
+from navette.runtime.graph import Graph
+from navette.runtime.log import LogHub, StdlibHandler
+from navette.runtime.log_sinks import ConsoleSink, FileSink
+from navette.runtime.loop import EventLoop
+from navette.runtime.overrides import ParameterOverrides
+from navette.transports import InProcessTransport
+
+if TYPE_CHECKING:
+    from navette.runtime.node import Node
+
+
+class Context:
+    """What nodes share. ``clock`` decides how time passes (default: the system's).
+
+    As in rclpy it becomes valid with :meth:`init`; a context that was made by hand
+    initialises itself, without arguments, when its first node is made.
+    """
+
+    def __init__(self, *, clock: TimeSource | None = None) -> None:
+        self.loop = EventLoop(clock or SystemClock())
+        self.graph = Graph()
+        self.graph.add_transport(InProcessTransport())
+        self.overrides = ParameterOverrides()
+        self.log = LogHub(lambda: self.loop.clock.now_ns)
+        self.arguments = RosArguments()
+        self.nodes: list[Node] = []
+        #: The executor that module-level ``spin`` uses; made on demand.
+        self.executor: Any = None
+        self._initialized = False
+        self._shut_down = False
+        self._domain_id = 0
+        self._on_shutdown: list[Callable[[], object]] = []
+        self._lock = threading.RLock()
+        self._file_sink: FileSink | None = None
+        self._handler = StdlibHandler(self.log)
+
+    @property
+    def clock(self) -> TimeSource:
+        """How time passes here."""
+        return self.loop.clock
+
+    def use_clock(self, clock: TimeSource) -> None:
+        """Let time pass as ``clock`` says; only while the context has no nodes."""
+        if clock is self.loop.clock:
+            return
+        if self.nodes:
+            raise InvalidValueError(
+                "the context's clock cannot change once it has nodes "
+                f"({', '.join(n.get_fully_qualified_name() for n in self.nodes)})"
+            )
+        self.loop.clock = clock
+
+    def init(
+        self,
+        args: Sequence[str] | None = None,
+        *,
+        initialize_logging: bool = True,
+        domain_id: int | None = None,
+    ) -> None:
+        """Read the arguments (``sys.argv`` if None) and become valid."""
+        with self._lock:
+            if self._initialized:
+                raise RuntimeError("Context.init() must only be called once")
+            arguments = parse_ros_arguments(sys.argv if args is None else args)
+            self._domain_id = _domain_id(domain_id)
+            self.overrides.add_arguments(arguments.parameters, "command line")
+            self.arguments = arguments
+            if initialize_logging:
+                self._start_logging(arguments)
+            self._initialized = True
+
+    def init_if_needed(self) -> None:
+        """Become valid without arguments, if it was never initialised."""
+        if not self._initialized:
+            self.init(args=[])
+
+    def ok(self) -> bool:
+        """Whether it is initialised and not shut down."""
+        return self._initialized and not self._shut_down
+
+    @property
+    def was_shut_down(self) -> bool:
+        """Whether it was valid once and is not any more."""
+        return self._shut_down
+
+    def shutdown(self) -> None:
+        """End every spin and wait; a second call does nothing."""
+        with self._lock:
+            if not self._initialized:
+                raise RuntimeError(
+                    "the context must be initialised before it can be shut down"
+                )
+            if self._shut_down:
+                return
+            self._shut_down = True
+        self.loop.close()
+        callbacks, self._on_shutdown = self._on_shutdown, []
+        for callback in callbacks:
+            callback()
+        for node in tuple(self.nodes):
+            node.destroy_node()
+        for transport in self.graph.transports:
+            transport.close()
+        self._stop_logging()
+
+    def try_shutdown(self) -> None:
+        """Shut down if it is valid."""
+        if self.ok():
+            self.shutdown()
+
+    def destroy(self) -> None:
+        self.try_shutdown()
+
+    def on_shutdown(self, callback: Callable[[], object]) -> None:
+        """Call ``callback`` when the context is shut down."""
+        self._on_shutdown.append(callback)
+
+    def get_domain_id(self) -> int:
+        return self._domain_id
+
+    def check_overrides(self, nodes: "Sequence[Node] | None" = None) -> None:
+        """Raise if a given parameter value reaches no node (see ParameterOverrides).
+
+        Call it once all nodes exist.
+        """
+        self.overrides.check(self.nodes if nodes is None else nodes)
+
+    def __enter__(self) -> "Context":
+        self.init_if_needed()
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.try_shutdown()
+
+    def _start_logging(self, arguments: RosArguments) -> None:
+        for name, level in arguments.log_levels:
+            self.log.set_level(name or "", level)
+        if arguments.enable_stdout:
+            self.log.sinks.append(ConsoleSink())
+        if arguments.log_file is not None:
+            self._file_sink = FileSink(arguments.log_file)
+            self.log.sinks.append(self._file_sink)
+        logging.getLogger("navette").addHandler(self._handler)
+
+    def _stop_logging(self) -> None:
+        logging.getLogger("navette").removeHandler(self._handler)
+        self.log.sinks.clear()
+        if self._file_sink is not None:
+            self._file_sink.close()
+
+
+def _domain_id(given: int | None) -> int:
+    if given is not None:
+        return given
+    text = os.environ.get("ROS_DOMAIN_ID", "0") or "0"
+    if not text.isdigit():
+        raise InvalidValueError(f"ROS_DOMAIN_ID {text!r}: wanted a number >= 0")
+    return int(text)
+
+
+_default: Context | None = None
+_default_lock = threading.Lock()
+
+
+def get_default_context(*, shutting_down: bool = False) -> Context:
+    """The context used where none is given; a new one after a shutdown."""
+    global _default
+    with _default_lock:
+        if _default is None:
+            _default = Context()
+        return _default
+
+
+def reset_default_context() -> None:
+    """Forget the default context, so that the next use makes a fresh one."""
+    global _default
+    with _default_lock:
+        _default = None

@@ -1,0 +1,146 @@
+"""rclpy's exception names, inside Navette's tree."""
+
+from typing import Any
+
+from navette.errors import InvalidNameError, NavetteError, ParameterError
+
+
+class NotInitializedException(NavetteError):
+    """The context has not been initialised."""
+
+    def __init__(self, message: str | None = None) -> None:
+        text = "call navette.init() (rclpy.init()) first: the context is not valid"
+        super().__init__(f"{text}: {message}" if message else text)
+
+
+class ROSInterruptException(NavetteError):
+    """A wait was cut short because the context was shut down."""
+
+    def __init__(self) -> None:
+        super().__init__("the context was shut down while waiting")
+
+
+class ExternalShutdownException(NavetteError):
+    """The context was shut down from outside while spinning."""
+
+
+class ShutdownException(NavetteError):
+    """The executor was shut down."""
+
+
+class TimeoutException(NavetteError):
+    """A wait took longer than allowed."""
+
+
+class NameValidationException(InvalidNameError):
+    """A name breaks the rules at ``invalid_index``."""
+
+    def __init__(
+        self, name_type: str, name: str, error_msg: str, invalid_index: int
+    ) -> None:
+        marker = " " * invalid_index + "^"
+        super().__init__(f"invalid {name_type}: {error_msg}:\n  {name!r}\n   {marker}")
+        self.name_type = name_type
+        self.name = name
+        self.error_msg = error_msg
+        self.invalid_index = invalid_index
+
+
+class InvalidNamespaceException(NameValidationException):
+    """A namespace breaks the rules."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
+
+
+class InvalidNodeNameException(NameValidationException):
+    """A node name breaks the rules."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("node name", name, error_msg, invalid_index)
+
+
+class InvalidTopicNameException(NameValidationException):
+    """A topic name breaks the rules."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("topic name", name, error_msg, invalid_index)
+
+
+class InvalidServiceNameException(NameValidationException):
+    """A service name breaks the rules."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__("service name", name, error_msg, invalid_index)
+
+
+class ParameterException(ParameterError):
+    """Base of the parameter errors that rclpy names."""
+
+    def __init__(self, error_msg: str, parameters: str | list[str]) -> None:
+        super().__init__(f"{error_msg}: {parameters}")
+        self.parameters = parameters
+
+
+class ParameterNotDeclaredException(ParameterException):
+    """Asked for a parameter that the node has not declared."""
+
+    def __init__(
+        self,
+        parameters: str | list[str],
+        node: str = "",
+        known: list[str] | None = None,
+    ) -> None:
+        where = f" on node {node}" if node else ""
+        text = f"parameter not declared{where}"
+        if known is not None:
+            text += f" (known: {', '.join(sorted(known)) or 'none'})"
+        super().__init__(text, parameters)
+
+
+class ParameterAlreadyDeclaredException(ParameterException):
+    """Declared twice."""
+
+    def __init__(self, parameters: str | list[str]) -> None:
+        super().__init__("parameter already declared", parameters)
+
+
+class InvalidParameterException(ParameterException):
+    """The name of a parameter is empty or malformed."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("invalid parameter name", parameter_name)
+
+
+class InvalidParameterTypeException(ParameterException):
+    """A value of another type than the declared one."""
+
+    def __init__(self, desired_parameter: Any, expected_type: str) -> None:
+        super().__init__(
+            f"parameter {desired_parameter.name!r} got {desired_parameter.value!r} "
+            f"({desired_parameter.type_.name}), wanted {expected_type}",
+            desired_parameter.name,
+        )
+
+
+class InvalidParameterValueException(ParameterException):
+    """A value that the descriptor or a callback refuses."""
+
+    def __init__(self, parameter: str, value: Any, reason: str) -> None:
+        super().__init__(
+            f"parameter {parameter!r} cannot be {value!r}: {reason}", parameter
+        )
+
+
+class ParameterImmutableException(ParameterException):
+    """A read-only parameter was to be undeclared."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("parameter is read-only", parameter_name)
+
+
+class ParameterUninitializedException(ParameterException):
+    """A statically typed parameter without a value was read."""
+
+    def __init__(self, parameter_name: str) -> None:
+        super().__init__("parameter has no value yet", parameter_name)

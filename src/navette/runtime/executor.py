@@ -1,0 +1,203 @@
+"""Executors: sets of nodes whose callbacks the context's one deterministic loop runs.
+
+rclpy's names are all the same executor here: callbacks run one after the other, in
+the order of (time, sequence), in the thread that spins.
+"""
+
+from collections.abc import Callable, Coroutine
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from navette.errors import InvalidValueError
+from navette.runtime.clock import TimeSource
+from navette.runtime.context import Context, get_default_context
+from navette.runtime.exceptions import NotInitializedException
+from navette.runtime.future import Future, Task
+from navette.runtime.loop import Call, EventLoop
+
+if TYPE_CHECKING:
+    from navette.runtime.node import Node
+
+
+class Executor:
+    """Runs the callbacks of its nodes.
+
+    A node that was added to any executor of the context takes part whenever the
+    context's loop runs; events of other nodes wait.
+
+    Args:
+        context: the default one if not given.
+        clock: how time passes in that context; only before it has nodes.
+    """
+
+    def __init__(
+        self, *, context: Context | None = None, clock: TimeSource | None = None
+    ) -> None:
+        if context is None and clock is not None:
+            context = Context(clock=clock)
+        self._context = context or get_default_context()
+        if context is not None:
+            context.init_if_needed()
+        if not self._context.ok():
+            raise NotInitializedException("cannot create an executor")
+        if clock is not None:
+            self._context.use_clock(clock)
+        self._nodes: list[Node] = []
+        self._stopping = False
+
+    @property
+    def context(self) -> Context:
+        return self._context
+
+    @property
+    def loop(self) -> EventLoop:
+        """The context's event loop."""
+        return self._context.loop
+
+    @property
+    def clock(self) -> TimeSource:
+        return self._context.clock
+
+    @property
+    def now_ns(self) -> int:
+        """The context's time, nanoseconds."""
+        return self._context.clock.now_ns
+
+    # -- nodes -----------------------------------------------------------------
+
+    def add_node(self, node: "Node") -> bool:
+        """Let the node's callbacks run; False if it was added already."""
+        if node in self._nodes:
+            return False
+        if node.context is not self._context:
+            raise InvalidValueError(
+                f"node {node.get_fully_qualified_name()} belongs to another context "
+                "than the executor"
+            )
+        if node.executor is not None:
+            node.executor.remove_node(node)
+        self._nodes.append(node)
+        node.attach(self)
+        self.loop.wake()
+        return True
+
+    def remove_node(self, node: "Node") -> None:
+        """Keep the node's events waiting from now on."""
+        if node in self._nodes:
+            self._nodes.remove(node)
+            node.detach()
+
+    def get_nodes(self) -> list["Node"]:
+        return list(self._nodes)
+
+    # -- spinning --------------------------------------------------------------
+
+    def spin(self) -> None:
+        """Run until shutdown or :meth:`stop`; a virtual run, until nothing is left."""
+        self._run()
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Run one event; wait for it at most ``timeout_sec`` (None = for ever)."""
+        self._run(timeout_s=timeout_sec, limit=1)
+
+    def spin_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | None = None
+    ) -> None:
+        """Run until ``future`` is done or the time is over."""
+        self._run(timeout_s=timeout_sec, done=future.done)
+
+    def spin_once_until_future_complete(
+        self, future: Future[Any], timeout_sec: float | None = None
+    ) -> None:
+        """Run one event, unless ``future`` is done first."""
+        self._run(timeout_s=timeout_sec, done=future.done, limit=1)
+
+    def spin_until(self, time_ns: int) -> None:
+        """Run all events up to and including ``time_ns``; then it is that time."""
+        self._run(until_ns=time_ns)
+
+    def spin_for(self, duration_ns: int) -> None:
+        """As :meth:`spin_until`, counted from now."""
+        self._run(until_ns=self.now_ns + duration_ns)
+
+    def spin_until_complete(
+        self,
+        condition: Callable[[], bool] | Future[Any],
+        timeout_ns: int | None = None,
+    ) -> bool:
+        """Run until the condition holds (or future is done); tells whether it does."""
+        done = condition.done if isinstance(condition, Future) else condition
+        until_ns = None if timeout_ns is None else self.now_ns + timeout_ns
+        self._run(until_ns=until_ns, done=done)
+        return done()
+
+    def stop(self) -> None:
+        """Let the spins under way return after the present callback; any thread."""
+        self._stopping = True
+        self.loop.wake()
+
+    def wake(self) -> None:
+        self.loop.wake()
+
+    def call_soon_threadsafe(self, function: Callable[[], Any]) -> Call:
+        """Run ``function`` between two callbacks; from any thread."""
+        return self.loop.call_soon_threadsafe(function)
+
+    def create_task(
+        self,
+        callback: Callable[..., Any] | Coroutine[Any, Any, Any],
+        *args: Any,
+        **kwargs: Any,
+    ) -> Task[Any]:
+        """Run a function or coroutine on the loop; the task is a future."""
+        return self.loop.create_task(callback, *args, **kwargs)
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Stop, and let go of all nodes."""
+        self.stop()
+        for node in tuple(self._nodes):
+            self.remove_node(node)
+        return True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.shutdown()
+
+    def _run(
+        self,
+        *,
+        until_ns: int | None = None,
+        timeout_s: float | None = None,
+        done: Callable[[], bool] | None = None,
+        limit: int | None = None,
+    ) -> None:
+        if timeout_s is not None and timeout_s >= 0:
+            until_ns = self.now_ns + round(timeout_s * 1e9)
+        self._stopping = False
+        self.loop.run(
+            until_ns=until_ns, done=done, limit=limit, stop=lambda: self._stopping
+        )
+
+
+class SingleThreadedExecutor(Executor):
+    """rclpy's name for the one deterministic executor."""
+
+
+class MultiThreadedExecutor(Executor):
+    """rclpy's name; callbacks still run one at a time, ``num_threads`` or not."""
+
+    def __init__(
+        self,
+        num_threads: int | None = None,
+        *,
+        context: Context | None = None,
+        clock: TimeSource | None = None,
+    ) -> None:
+        super().__init__(context=context, clock=clock)

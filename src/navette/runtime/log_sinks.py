@@ -1,0 +1,65 @@
+"""Where log records go: console, file; ``/rosout`` is a publisher of each node."""
+
+import sys
+from pathlib import Path
+from typing import TextIO
+
+from navette.errors import FileFormatError
+from navette.runtime.log import LogRecord
+from navette.runtime.log_levels import LoggingSeverity
+
+_COLOURS = {
+    LoggingSeverity.DEBUG: "\x1b[32m",
+    LoggingSeverity.WARN: "\x1b[33m",
+    LoggingSeverity.ERROR: "\x1b[31m",
+    LoggingSeverity.FATAL: "\x1b[31m",
+}
+_RESET = "\x1b[0m"
+
+
+def format_record(record: LogRecord) -> str:
+    """``[INFO] [1.500000000] [name]: message``, as ROS 2 prints it."""
+    seconds, nanoseconds = divmod(record.stamp_ns, 1_000_000_000)
+    return (
+        f"[{record.severity.name}] [{seconds}.{nanoseconds:09d}] "
+        f"[{record.name}]: {record.message}"
+    )
+
+
+class ConsoleSink:
+    """Writes to standard error; coloured only on a terminal."""
+
+    def __init__(self, stream: TextIO | None = None) -> None:
+        self._stream = stream
+
+    def __call__(self, record: LogRecord) -> None:
+        # Looked up late: programs and tests replace sys.stderr.
+        stream = self._stream or sys.stderr
+        line = format_record(record)
+        colour = _COLOURS.get(record.severity, "")
+        if colour and stream.isatty():
+            line = f"{colour}{line}{_RESET}"
+        stream.write(line + "\n")
+        stream.flush()
+
+
+class FileSink:
+    """Appends to a file, a line a record.
+
+    Raises:
+        FileFormatError: the file cannot be opened.
+    """
+
+    def __init__(self, path: Path) -> None:
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = path.open("a", encoding="utf-8")
+        except OSError as error:
+            raise FileFormatError(path, f"cannot be written: {error}") from error
+
+    def __call__(self, record: LogRecord) -> None:
+        self._file.write(format_record(record) + "\n")
+        self._file.flush()
+
+    def close(self) -> None:
+        self._file.close()

@@ -1,0 +1,357 @@
+"""The event loop of a context: everything that happens, in order of (time, sequence).
+
+One thread at a time drives it. Events of the present moment wait in ``ready``, in
+the order of their making; later ones wait in a heap. A callback that waits runs the
+loop again from inside (nested), with its own callback group held back.
+"""
+
+import heapq
+import threading
+from collections import deque
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from navette.errors import CallbackError
+from navette.runtime.callback_groups import CallbackGroup, ReentrantCallbackGroup
+from navette.runtime.clock import TimeSource, Wakeup
+from navette.runtime.future import Task
+
+# How long a thread that may not drive the loop waits before it looks again.
+_TURN_S = 0.005
+
+
+class Entity:
+    """Something the loop can run: a subscription, a timer, a plain call."""
+
+    __slots__ = ("group",)
+
+    group: CallbackGroup
+
+    def run(self) -> Any:
+        """Do one event's work; a returned coroutine is run as a task."""
+        raise NotImplementedError
+
+    def origin(self) -> tuple[str, str]:
+        """Full name of the node and the topic or timer, for error messages."""
+        return "", type(self).__name__
+
+
+class Call(Entity):
+    """A plain function call; :meth:`cancel` keeps it from happening."""
+
+    __slots__ = ("_function", "_node", "_source", "token")
+
+    def __init__(
+        self,
+        function: Callable[[], Any],
+        group: CallbackGroup,
+        source: str,
+        node: str,
+    ) -> None:
+        self._function = function
+        self.group = group
+        self._source = source
+        self._node = node
+        self.token = 0
+
+    def run(self) -> Any:
+        return self._function()
+
+    def origin(self) -> tuple[str, str]:
+        return self._node, self._source
+
+    def cancel(self) -> None:
+        self.token = -1
+        self._function = _nothing
+
+
+def _nothing() -> None:
+    """What a cancelled call does."""
+
+
+class EventLoop:
+    """Runs events in order of (time, sequence) under one :class:`TimeSource`."""
+
+    def __init__(self, clock: TimeSource) -> None:
+        self.clock = clock
+        self.ready: deque[Entity] = deque()
+        #: True while the driving thread waits: whoever adds an event must wake it.
+        self.waiting = False
+        self._heap: list[tuple[int, int, Any]] = []
+        self._sequence = 0
+        self.free_group = ReentrantCallbackGroup()
+        self._inbox: deque[Entity] = deque()
+        self._wakeup = Wakeup()
+        self._attention = False
+        self._closed = False
+        self._driver: int | None = None
+        self._running: Entity | None = None
+        self._lock = threading.Lock()
+        self._turn = threading.Condition()
+
+    # -- adding events ---------------------------------------------------------
+
+    def call_soon(
+        self, function: Callable[[], Any], source: str = "call", node: str = ""
+    ) -> Call:
+        """Run ``function`` at the present time, after what is ready already."""
+        call = Call(function, self.free_group, source, node)
+        self.ready.append(call)
+        if self.waiting:
+            self._wakeup.set()
+        return call
+
+    def call_soon_threadsafe(
+        self, function: Callable[[], Any], source: str = "call", node: str = ""
+    ) -> Call:
+        """As :meth:`call_soon`, from any thread, between two callbacks."""
+        call = Call(function, self.free_group, source, node)
+        self._inbox.append(call)
+        self.wake()
+        return call
+
+    def call_at(
+        self,
+        time_ns: int,
+        function: Callable[[], Any],
+        source: str = "call",
+        node: str = "",
+    ) -> Call:
+        """Run ``function`` at ``time_ns`` (now, if that is past)."""
+        call = Call(function, self.free_group, source, node)
+        call.token = self.schedule(time_ns, call)
+        return call
+
+    def schedule(self, time_ns: int, entity: Any) -> int:
+        """Queue ``entity`` for ``time_ns``; it runs if its ``token`` still matches."""
+        with self._lock:
+            self._sequence += 1
+            token = self._sequence
+            heapq.heappush(self._heap, (time_ns, token, entity))
+        if self.waiting:
+            self._wakeup.set()
+        return token
+
+    def wake(self) -> None:
+        """Make the driving thread look around."""
+        self._attention = True
+        if self.waiting:
+            self._wakeup.set()
+
+    def create_task(
+        self,
+        handler: Callable[..., Any] | Coroutine[Any, Any, Any],
+        *args: Any,
+        source: str = "task",
+        node: str = "",
+        **kwargs: Any,
+    ) -> Task[Any]:
+        """Run a function or coroutine on this loop; the task holds its result."""
+        task: Task[Any] = Task(
+            handler, args, kwargs, loop=self, source=source, node=node
+        )
+
+        def fail(error: Exception) -> None:
+            awaited = task.has_done_callbacks
+            task.set_exception(error)
+            if not awaited:  # nobody would see it otherwise
+                raise error
+
+        task.on_error = fail
+        self.call_soon(task, source, node)
+        return task
+
+    # -- running ---------------------------------------------------------------
+
+    def close(self) -> None:
+        """End every run; later runs return at once."""
+        self._closed = True
+        self.wake()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether some thread drives the loop now."""
+        return self._driver is not None
+
+    @property
+    def in_driver_thread(self) -> bool:
+        """Whether the caller runs inside a callback of this loop."""
+        return self._driver == threading.get_ident()
+
+    def run(
+        self,
+        *,
+        until_ns: int | None = None,
+        done: Callable[[], bool] | None = None,
+        limit: int | None = None,
+        stop: Callable[[], bool] | None = None,
+    ) -> None:
+        """Run events until one of the conditions holds.
+
+        Args:
+            until_ns: run all events up to and including this time, then stop.
+            done: asked before every event.
+            limit: at most this many events.
+            stop: asked only after :meth:`wake`: a request from elsewhere.
+
+        Under a virtual clock it also ends when nothing is left to happen.
+
+        Raises:
+            CallbackError: a callback raised; names node, source and stamp.
+        """
+        if self.in_driver_thread:
+            self._run_nested(until_ns, done, limit, stop)
+            return
+        while not self._closed and not (done is not None and done()):
+            if self._take_turn():
+                try:
+                    self._run(until_ns, done, limit, stop)
+                finally:
+                    self._give_turn()
+                return
+            if until_ns is not None and self.clock.now_ns >= until_ns:
+                return
+            if stop is not None and stop():
+                return
+
+    def _take_turn(self) -> bool:
+        """Become the driver; False after a short wait if another thread is."""
+        with self._turn:
+            if self._driver is not None:
+                self._turn.wait(_TURN_S)
+            if self._driver is None:
+                self._driver = threading.get_ident()
+                return True
+            return False
+
+    def _give_turn(self) -> None:
+        with self._turn:
+            self._driver = None
+            self._turn.notify_all()
+
+    def _run_nested(
+        self,
+        until_ns: int | None,
+        done: Callable[[], bool] | None,
+        limit: int | None,
+        stop: Callable[[], bool] | None,
+    ) -> None:
+        outer = self._running
+        held = outer.group if outer is not None and outer.group.exclusive else None
+        if held is not None:
+            held.hold()
+        try:
+            self._run(until_ns, done, limit, stop)
+        finally:
+            if held is not None:
+                held.release()
+            self._running = outer
+
+    def _run(
+        self,
+        until_ns: int | None,
+        done: Callable[[], bool] | None,
+        limit: int | None,
+        stop: Callable[[], bool] | None,
+    ) -> None:
+        count = 0
+        while not self._closed:
+            self._attention = False
+            if stop is not None and stop():
+                self._attention = True  # for the runs around this one
+                return
+            self._collect()
+            count += self._run_ready(done, None if limit is None else limit - count)
+            if done is not None and done():
+                return
+            if limit is not None and count >= limit:
+                return
+            if self.ready or self._inbox or self._attention:
+                continue
+            if not self._go_on(until_ns):
+                return
+
+    def _collect(self) -> None:
+        """Move what is due now, and what other threads sent, to ``ready``."""
+        now = self.clock.now_ns
+        heap = self._heap
+        if heap and heap[0][0] <= now:
+            with self._lock:
+                while heap and heap[0][0] <= now:
+                    _, token, entity = heapq.heappop(heap)
+                    if entity.token == token:
+                        self.ready.append(entity)
+        inbox = self._inbox
+        while inbox:
+            self.ready.append(inbox.popleft())
+
+    def _run_ready(self, done: Callable[[], bool] | None, limit: int | None) -> int:
+        """Run one batch: what is ready at the start, at most ``limit`` events."""
+        ready = self.ready
+        count = 0
+        for _ in range(len(ready)):
+            if self._attention or (done is not None and done()) or count == limit:
+                break
+            if not ready:
+                break
+            entity = ready.popleft()
+            group = entity.group
+            if group.held:
+                group.parked.append(entity)
+                continue
+            self._running = entity
+            count += 1
+            try:
+                result = entity.run()
+            except Exception as error:
+                raise self._error(entity.origin(), error) from error
+            if result is not None and isinstance(result, Coroutine):
+                self._start(entity, result)
+        return count
+
+    def _go_on(self, until_ns: int | None) -> bool:
+        """Go to the next event's time; False if there is nothing to wait for."""
+        heap = self._heap
+        with self._lock:
+            while heap and heap[0][2].token != heap[0][1]:
+                heapq.heappop(heap)
+            target = heap[0][0] if heap else None
+        if until_ns is not None:
+            if self.clock.now_ns >= until_ns:
+                return False
+            target = until_ns if target is None else min(target, until_ns)
+        if target is None and self.clock.is_virtual:
+            return False
+        self.waiting = True
+        try:
+            # Looked at again now that others can see that we wait: no event that
+            # was added in between is slept over.
+            if self.ready or self._inbox or self._attention or self._closed:
+                return True
+            self.clock.go_to(target, self._wakeup)
+        finally:
+            self.waiting = False
+            self._wakeup.clear()
+        return True
+
+    def _start(self, entity: Entity, coroutine: Coroutine[Any, Any, Any]) -> None:
+        """Run a coroutine callback; its exclusive group is held until it ends."""
+        node, source = entity.origin()
+        task: Task[Any] = Task(coroutine, loop=self, source=source, node=node)
+
+        def fail(error: Exception) -> None:
+            raise self._error((node, source), error) from error
+
+        task.on_error = fail
+        task()
+        if not task.done() and entity.group.exclusive:
+            group = entity.group
+            group.hold()
+            task.add_done_callback(lambda _: group.release())
+
+    def _error(self, origin: tuple[str, str], error: Exception) -> Exception:
+        # A nested run or a coroutine's step has named the culprit already.
+        if isinstance(error, CallbackError):
+            return error
+        node, source = origin
+        return CallbackError(node or "(none)", source, self.clock.now_ns, error)

@@ -1,0 +1,203 @@
+"""Graph resource names: validation, expansion and remapping as in ROS 2.
+
+``/x`` is global, ``x`` relative to the node's namespace, ``~/x`` private to the node
+(https://design.ros2.org/articles/topic_and_service_names.html).
+"""
+
+import re
+from dataclasses import dataclass
+
+from navette.errors import InvalidValueError
+from navette.runtime.exceptions import (
+    InvalidNamespaceException,
+    InvalidNodeNameException,
+    InvalidServiceNameException,
+    InvalidTopicNameException,
+    NameValidationException,
+)
+
+_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_FORBIDDEN = re.compile(r"[^A-Za-z0-9_/~{}]")
+_SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
+_MAX_NODE_NAME = 255
+
+
+def validate_node_name(node_name: str) -> bool:
+    """True, or raise naming the first offending character."""
+    if not node_name:
+        raise InvalidNodeNameException(node_name, "must not be empty", 0)
+    if len(node_name) > _MAX_NODE_NAME:
+        raise InvalidNodeNameException(
+            node_name, f"must not be longer than {_MAX_NODE_NAME}", _MAX_NODE_NAME
+        )
+    bad = re.search(r"[^A-Za-z0-9_]", node_name)
+    if bad:
+        raise InvalidNodeNameException(
+            node_name,
+            "must only contain letters, digits and underscores",
+            bad.start(),
+        )
+    if node_name[0].isdigit():
+        raise InvalidNodeNameException(node_name, "must not start with a digit", 0)
+    return True
+
+
+def validate_namespace(namespace: str) -> bool:
+    """True, or raise; a namespace is ``/`` or ``/a/b`` without a trailing slash."""
+    if not namespace.startswith("/"):
+        raise InvalidNamespaceException(namespace, "must start with '/'", 0)
+    if namespace != "/":
+        _check_tokens(namespace, InvalidNamespaceException)
+    return True
+
+
+def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
+    """True, or raise; a full name starts with ``/`` and has no ``~`` or ``{}``."""
+    kind = InvalidServiceNameException if is_service else InvalidTopicNameException
+    if not name.startswith("/"):
+        raise kind(name, "a full name must start with '/'", 0)
+    _check_tokens(name, kind)
+    return True
+
+
+def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
+    """True, or raise; relative, private and substituted names are allowed."""
+    kind = InvalidServiceNameException if is_service else InvalidTopicNameException
+    if not name:
+        raise kind(name, "must not be empty", 0)
+    bad = _FORBIDDEN.search(name)
+    if bad:
+        raise kind(
+            name,
+            "must only contain letters, digits, underscores, '/', '~' and '{}'",
+            bad.start(),
+        )
+    if "~" in name[1:]:
+        raise kind(name, "'~' may only come first", name.index("~", 1))
+    if name.startswith("~") and name != "~" and not name.startswith("~/"):
+        raise kind(name, "'~' must be followed by '/'", 1)
+    if name.endswith("/"):
+        raise kind(name, "must not end with '/'", len(name) - 1)
+    if "//" in name:
+        raise kind(name, "must not contain '//'", name.index("//"))
+    return True
+
+
+def _check_tokens(name: str, kind: type[NameValidationException]) -> None:
+    position = 1
+    for token in name[1:].split("/"):
+        if not _TOKEN.match(token):
+            reason = (
+                "each part must start with a letter or '_' and contain only "
+                "letters, digits and underscores"
+            )
+            raise kind(name, reason, position)  # type: ignore[call-arg,arg-type]
+        position += len(token) + 1
+
+
+def expand_topic_name(
+    topic_name: str, node_name: str, node_namespace: str, *, is_service: bool = False
+) -> str:
+    """The full name of ``topic_name`` as used by the node."""
+    validate_topic_name(topic_name, is_service=is_service)
+    known = {"node": node_name, "ns": node_namespace, "namespace": node_namespace}
+
+    def substitute(match: re.Match[str]) -> str:
+        if match[1] not in known:
+            raise InvalidTopicNameException(
+                topic_name,
+                f"unknown substitution {match[0]}; known: {', '.join(known)}",
+                match.start(),
+            )
+        return known[match[1]]
+
+    name = _SUBSTITUTION.sub(substitute, topic_name)
+    prefix = node_namespace.rstrip("/")
+    if name.startswith("~"):
+        name = f"{prefix}/{node_name}{name[1:]}"
+    elif not name.startswith("/"):
+        name = f"{prefix}/{name}"
+    name = name.replace("//", "/")
+    validate_full_topic_name(name, is_service=is_service)
+    return name
+
+
+def full_node_name(node_name: str, namespace: str) -> str:
+    """``/ns/node``."""
+    return f"{namespace.rstrip('/')}/{node_name}"
+
+
+def normalize_namespace(namespace: str) -> str:
+    """With a leading and without a trailing slash; empty is the root."""
+    return "/" + namespace.strip("/") if namespace.strip("/") else "/"
+
+
+@dataclass(frozen=True)
+class RemapRule:
+    """``from:=to``, for all nodes or only those named ``node``."""
+
+    match: str
+    replacement: str
+    node: str | None = None
+
+    @classmethod
+    def parse(cls, text: str) -> "RemapRule":
+        """From ``[node:]from:=to``.
+
+        Raises:
+            InvalidValueError: not of that form.
+        """
+        left, separator, right = text.partition(":=")
+        if not separator or not left or not right:
+            raise InvalidValueError(f"remapping {text!r}: wanted [node:]from:=to")
+        for scheme in ("rostopic://", "rosservice://"):
+            left, right = left.removeprefix(scheme), right.removeprefix(scheme)
+        node, colon, match = left.rpartition(":")
+        if colon:
+            validate_node_name(node)
+        rule = cls(match, right, node if colon else None)
+        rule._validate()
+        return rule
+
+    def _validate(self) -> None:
+        if self.match in ("__node", "__name"):
+            validate_node_name(self.replacement)
+        elif self.match == "__ns":
+            validate_namespace(normalize_namespace(self.replacement))
+        else:
+            validate_topic_name(self.match)
+            validate_topic_name(self.replacement)
+
+    def concerns(self, node_name: str) -> bool:
+        """Whether the rule is for a node of that (original) name."""
+        return self.node is None or self.node == node_name
+
+
+class NodeRemapper:
+    """The rules for one node, local before global; the first that matches wins."""
+
+    def __init__(self, rules: list[RemapRule], node_name: str, namespace: str) -> None:
+        mine = [rule for rule in rules if rule.concerns(node_name)]
+        self.node_name = _first(mine, ("__node", "__name")) or node_name
+        self.namespace = normalize_namespace(_first(mine, ("__ns",)) or namespace)
+        self._rules = [rule for rule in mine if not rule.match.startswith("__")]
+
+    def resolve(
+        self, name: str, *, is_service: bool = False, only_expand: bool = False
+    ) -> str:
+        """Full name after expansion and remapping."""
+        expanded = self._expand(name, is_service=is_service)
+        if not only_expand:
+            for rule in self._rules:
+                if self._expand(rule.match, is_service=is_service) == expanded:
+                    return self._expand(rule.replacement, is_service=is_service)
+        return expanded
+
+    def _expand(self, name: str, *, is_service: bool) -> str:
+        return expand_topic_name(
+            name, self.node_name, self.namespace, is_service=is_service
+        )
+
+
+def _first(rules: list[RemapRule], matches: tuple[str, ...]) -> str | None:
+    return next((r.replacement for r in rules if r.match in matches), None)

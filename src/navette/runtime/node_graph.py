@@ -1,0 +1,117 @@
+"""The graph queries of :class:`Node`, as rclpy has them."""
+
+from navette.errors import UnknownNameError
+from navette.runtime.context import Context
+from navette.runtime.graph import names_and_types
+from navette.runtime.names import NodeRemapper, full_node_name, normalize_namespace
+from navette.runtime.qos import QoSProfile
+from navette.transports import Endpoint, EndpointKind
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+
+class TopicEndpointInfo:
+    """A publisher or subscription as the graph lists it."""
+
+    def __init__(self, endpoint: Endpoint) -> None:
+        self.node_name = endpoint.node_name
+        self.node_namespace = endpoint.node_namespace
+        self.topic_type = endpoint.type_name
+        self.endpoint_type = endpoint.kind
+        self.endpoint_gid = list(endpoint.gid)
+        self.qos_profile = QoSProfile.from_endpoint_qos(endpoint.qos)
+
+    def __repr__(self) -> str:
+        return (
+            f"TopicEndpointInfo(node={self.node_namespace.rstrip('/')}/"
+            f"{self.node_name}, {self.endpoint_type.name}, {self.topic_type})"
+        )
+
+
+class NodeNameNonExistentError(UnknownNameError):
+    """Asked about a node that is not there."""
+
+
+class NodeGraph:
+    """Who is there, and what do they say. Mixed into :class:`Node`."""
+
+    _context: Context
+    _remapper: NodeRemapper
+
+    def get_node_names(self) -> list[str]:
+        return [info.name for info in self._context.graph.nodes()]
+
+    def get_fully_qualified_node_names(self) -> list[str]:
+        return [info.full_name for info in self._context.graph.nodes()]
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        return [(info.name, info.namespace) for info in self._context.graph.nodes()]
+
+    def get_node_names_and_namespaces_with_enclaves(
+        self,
+    ) -> list[tuple[str, str, str]]:
+        nodes = self._context.graph.nodes()
+        return [(info.name, info.namespace, info.enclave) for info in nodes]
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
+        return list(self._context.graph.topics().items())
+
+    def get_publisher_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        return self._by_node(EndpointKind.PUBLISHER, node_name, node_namespace)
+
+    def get_subscriber_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> NamesAndTypes:
+        return self._by_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace)
+
+    def count_publishers(self, topic_name: str) -> int:
+        return len(self._on_topic(EndpointKind.PUBLISHER, topic_name))
+
+    def count_subscribers(self, topic_name: str) -> int:
+        return len(self._on_topic(EndpointKind.SUBSCRIPTION, topic_name))
+
+    def get_publishers_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        found = self._on_topic(EndpointKind.PUBLISHER, topic_name)
+        return [TopicEndpointInfo(endpoint) for endpoint in found]
+
+    def get_subscriptions_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        found = self._on_topic(EndpointKind.SUBSCRIPTION, topic_name)
+        return [TopicEndpointInfo(endpoint) for endpoint in found]
+
+    def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
+        """Let events run until the node is there; False after ``timeout`` seconds."""
+        wanted = "/" + fully_qualified_node_name.lstrip("/")
+        loop = self._context.loop
+        loop.run(
+            until_ns=loop.clock.now_ns + round(timeout * 1e9),
+            done=lambda: wanted in self.get_fully_qualified_node_names(),
+        )
+        return wanted in self.get_fully_qualified_node_names()
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """Full name after expansion and remapping."""
+        return self._remapper.resolve(topic, only_expand=only_expand)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """Full name after expansion and remapping."""
+        return self._remapper.resolve(service, is_service=True, only_expand=only_expand)
+
+    def _on_topic(self, kind: EndpointKind, topic_name: str) -> list[Endpoint]:
+        topic = self.resolve_topic_name(topic_name)
+        return self._context.graph.endpoints(topic, kind=kind)
+
+    def _by_node(
+        self, kind: EndpointKind, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        full_name = full_node_name(node_name, normalize_namespace(node_namespace))
+        known = self.get_fully_qualified_node_names()
+        if full_name not in known:
+            raise NodeNameNonExistentError.of("node", full_name, known)
+        endpoints = self._context.graph.endpoints(kind=kind, node=full_name)
+        return list(names_and_types(endpoints).items())

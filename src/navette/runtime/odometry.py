@@ -1,0 +1,163 @@
+"""Where the robot's base is on the map, from odometry and tf."""
+
+from bisect import bisect_right
+from collections import deque
+
+from navette.geometry import Pose2, Transform3, yaw_of
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.runtime.node import Node
+from navette.runtime.tf import Buffer, TransformException, TransformListener
+from navette.runtime.time import stamp_to_ns
+
+
+class PoseTracker:
+    """Turns odometry into poses of the base on the map, and keeps a short history.
+
+    Odometry may carry another frame of the robot (a lidar ahead of the axle): the
+    static transforms take it to the base. Where its own frame is not the map, the
+    newest transform between the two takes it there. Until these are known there is
+    no pose (never a guessed one).
+
+    Args:
+        node: listens to the transforms.
+        base_frame: the frame that navigation steers.
+        map_frame: the frame of the poses given.
+        history_s: how far back :meth:`pose_at` can look.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        base_frame: str,
+        map_frame: str,
+        history_s: float = 5.0,
+    ) -> None:
+        self.base_frame = base_frame
+        self.map_frame = map_frame
+        self.buffer = Buffer(node=node)
+        self._node = node
+        self._history_ns = round(history_s * 1e9)
+        self._history: deque[tuple[int, Pose2]] = deque()
+        self._velocity = (0.0, 0.0)
+        # Moving transforms are listened to only where odometry needs them.
+        self._listener = TransformListener(self.buffer, node, static_only=True)
+        self._moving_listener: TransformListener | None = None
+        self._child_T_base: tuple[str, Pose2] | None = None
+
+    @property
+    def latest(self) -> Pose2 | None:
+        """The newest map_T_base."""
+        return self._history[-1][1] if self._history else None
+
+    @property
+    def stamp_ns(self) -> int | None:
+        """The stamp of :attr:`latest`."""
+        return self._history[-1][0] if self._history else None
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Forward speed of the base (m/s) and turn rate (rad/s)."""
+        return self._velocity
+
+    def update(self, odometry: Odometry) -> bool:
+        """Take a message; False if it could not be used (the reason is logged)."""
+        child_T_base = self._base_in(odometry.child_frame_id)
+        map_T_odom = self._odom_in_map(odometry.header.frame_id)
+        if child_T_base is None or map_T_odom is None:
+            return False
+        position, q = odometry.pose.pose.position, odometry.pose.pose.orientation
+        odom_T_child = Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
+        map_T_base = map_T_odom @ odom_T_child @ child_T_base
+        total = sum(map_T_base)
+        if total - total != 0.0:  # inf or nan
+            self._complain("odometry is not finite")
+            return False
+        self._store(stamp_to_ns(odometry.header.stamp), map_T_base)
+        twist = odometry.twist.twist
+        self._velocity = _velocity_of_base(
+            twist.linear.x, twist.linear.y, twist.angular.z, child_T_base
+        )
+        return True
+
+    def pose_at(self, stamp_ns: int) -> Pose2 | None:
+        """map_T_base interpolated at a stamp; None outside the history."""
+        history = self._history
+        if not history or not history[0][0] <= stamp_ns <= history[-1][0]:
+            return None
+        index = bisect_right(history, stamp_ns, key=lambda entry: entry[0])
+        before_ns, before = history[index - 1]
+        if before_ns == stamp_ns:
+            return before
+        after_ns, after = history[index]
+        return before.interpolate(
+            after, (stamp_ns - before_ns) / (after_ns - before_ns)
+        )
+
+    def transform_to_base(self, frame_id: str) -> Pose2 | None:
+        """base_T_frame of a frame fixed to the robot; None until it is known."""
+        transform = self._static(self.base_frame, frame_id)
+        return None if transform is None else transform.to_pose2()
+
+    def reset(self) -> None:
+        """Forget the history (a new run, a jump back in time)."""
+        self._history.clear()
+        self._velocity = (0.0, 0.0)
+
+    def _store(self, stamp_ns: int, map_T_base: Pose2) -> None:
+        history = self._history
+        if history and stamp_ns <= history[-1][0]:
+            if stamp_ns == history[-1][0]:
+                history.pop()
+            else:
+                history.clear()  # time was set back: the old poses are of another run
+        history.append((stamp_ns, map_T_base))
+        while history[0][0] < stamp_ns - self._history_ns:
+            history.popleft()
+
+    def _base_in(self, child: str) -> Pose2 | None:
+        """child_T_base, looked up once per frame name."""
+        if self._child_T_base is None or self._child_T_base[0] != child:
+            transform = self._static(child, self.base_frame)
+            if transform is None:
+                return None
+            self._child_T_base = (child, transform.to_pose2())
+        return self._child_T_base[1]
+
+    def _odom_in_map(self, frame: str) -> Pose2 | None:
+        """map_T_odom, the newest."""
+        if frame == self.map_frame:
+            return Pose2(0.0, 0.0, 0.0)
+        try:
+            return self.buffer.lookup(self.map_frame, frame, 0).to_pose2()
+        except TransformException as error:
+            if self._moving_listener is None:
+                self._moving_listener = TransformListener(self.buffer, self._node)
+            self._complain(str(error))
+            return None
+
+    def _static(self, target: str, source: str) -> Transform3 | None:
+        if target == source:
+            return Transform3.identity()
+        try:
+            return self.buffer.lookup(target, source, 0)
+        except TransformException as error:
+            self._complain(str(error))
+            return None
+
+    def _complain(self, reason: str) -> None:
+        self._node.get_logger().warning(
+            f"odometry not used: {reason}", throttle_duration_sec=5.0
+        )
+
+
+def _velocity_of_base(
+    vx: float, vy: float, omega: float, child_T_base: Pose2
+) -> tuple[float, float]:
+    """Forward speed at the base from the velocity of another point of the body.
+
+    v_base = v_child + ω × p (rigid body), turned into the base's axes.
+    """
+    at_base = (vx - omega * child_T_base.y, vy + omega * child_T_base.x)
+    base_T_child = Pose2(0.0, 0.0, -child_T_base.yaw)
+    forward = (base_T_child @ Pose2(at_base[0], at_base[1], 0.0)).x
+    return forward, omega

@@ -1,0 +1,204 @@
+"""Parameters: typed values with ROS 2's types."""
+
+import math
+from collections.abc import Sequence
+from enum import IntEnum
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from navette.errors import ParameterError
+from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
+from navette.msgs.rcl_interfaces.msg import ParameterValue
+
+T = TypeVar("T")
+
+PARAMETER_SEPARATOR_STRING = "."
+
+
+class ParameterType(IntEnum):
+    """Types of a value; numbers as in rcl_interfaces/msg/ParameterType."""
+
+    NOT_SET = 0
+    BOOL = 1
+    INTEGER = 2
+    DOUBLE = 3
+    STRING = 4
+    BYTE_ARRAY = 5
+    BOOL_ARRAY = 6
+    INTEGER_ARRAY = 7
+    DOUBLE_ARRAY = 8
+    STRING_ARRAY = 9
+
+    @classmethod
+    def from_parameter_value(cls, parameter_value: Any) -> "ParameterType":
+        """The type that fits a Python value; raises TypeError if none does."""
+        if parameter_value is None:
+            return cls.NOT_SET
+        for kind, python_type in _SCALARS.items():
+            if isinstance(parameter_value, python_type):
+                return kind
+        if _is_array(parameter_value):
+            items = list(parameter_value)
+            for kind, item_type in _ITEMS.items():
+                if all(_is_item(item, item_type) for item in items):
+                    return kind
+        raise TypeError(
+            f"value {parameter_value!r} is not of a parameter type: wanted bool, "
+            "int, float, str, or a list of bytes, bool, int, float or str"
+        )
+
+    def check(self, parameter_value: Any) -> bool:
+        """Whether the value is of this type."""
+        if self is ParameterType.NOT_SET:
+            return parameter_value is None
+        if self in _SCALARS:
+            if self is not ParameterType.BOOL and isinstance(parameter_value, bool):
+                return False
+            return isinstance(parameter_value, _SCALARS[self])
+        return _is_array(parameter_value) and all(
+            _is_item(item, _ITEMS[self]) for item in parameter_value
+        )
+
+
+# Order matters: a bool is also an int.
+_SCALARS: dict[ParameterType, type] = {
+    ParameterType.BOOL: bool,
+    ParameterType.INTEGER: int,
+    ParameterType.DOUBLE: float,
+    ParameterType.STRING: str,
+}
+_ITEMS: dict[ParameterType, type] = {
+    ParameterType.BYTE_ARRAY: bytes,
+    ParameterType.BOOL_ARRAY: bool,
+    ParameterType.INTEGER_ARRAY: int,
+    ParameterType.DOUBLE_ARRAY: float,
+    ParameterType.STRING_ARRAY: str,
+}
+_VALUE_FIELDS: dict[ParameterType, str] = {
+    kind: f"{kind.name.lower()}_value" for kind in ParameterType if kind
+}
+
+
+def _is_array(value: Any) -> bool:
+    if isinstance(value, np.ndarray):
+        return value.ndim == 1
+    return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
+
+
+def _is_item(item: Any, wanted: type) -> bool:
+    if wanted is bytes:
+        return isinstance(item, bytes) and len(item) == 1
+    if isinstance(item, np.generic):
+        item = item.item()
+    return isinstance(item, wanted) and not (wanted is int and isinstance(item, bool))
+
+
+class Parameter(Generic[T]):
+    """A name, a type and a value."""
+
+    Type = ParameterType
+
+    __slots__ = ("_name", "_type", "_value")
+
+    def __init__(
+        self, name: str, type_: ParameterType | None = None, value: Any = None
+    ) -> None:
+        if type_ is None:
+            type_ = ParameterType.from_parameter_value(value)
+        if not isinstance(type_, ParameterType):
+            raise TypeError(f"type_ must be a Parameter.Type, got {type_!r}")
+        if not type_.check(value):
+            raise ValueError(
+                f"parameter {name!r}: value {value!r} is not of type {type_.name}"
+            )
+        self._name = name
+        self._type = type_
+        self._value = value
+
+    @property
+    def name(self) -> str:
+        return self._name
+
+    @property
+    def type_(self) -> ParameterType:
+        return self._type
+
+    @property
+    def value(self) -> Any:
+        return self._value
+
+    def __repr__(self) -> str:
+        return f"Parameter({self._name!r}, {self._type.name}, {self._value!r})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Parameter):
+            return NotImplemented
+        return (self._name, self._type, _plain(self._value)) == (
+            other._name,
+            other._type,
+            _plain(other._value),
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # values may be lists
+
+    def get_parameter_value(self) -> ParameterValue:
+        """As rcl_interfaces/msg/ParameterValue."""
+        message = ParameterValue(type=int(self._type))
+        if self._type is not ParameterType.NOT_SET:
+            setattr(message, _VALUE_FIELDS[self._type], _plain(self._value))
+        return message
+
+    def to_parameter_msg(self) -> ParameterMsg:
+        return ParameterMsg(name=self._name, value=self.get_parameter_value())
+
+    @classmethod
+    def from_parameter_msg(cls, param_msg: ParameterMsg) -> "Parameter[Any]":
+        value = parameter_value_to_python(param_msg.value)
+        return cls(param_msg.name, ParameterType(param_msg.value.type), value)
+
+
+def _plain(value: Any) -> Any:
+    """Arrays as lists of plain items."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return list(value) if _is_array(value) else value
+
+
+def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
+    """The Python value inside a ParameterValue; None if not set."""
+    kind = ParameterType(parameter_value.type)
+    if kind is ParameterType.NOT_SET:
+        return None
+    value = getattr(parameter_value, _VALUE_FIELDS[kind])
+    return _plain(value) if kind >= ParameterType.BYTE_ARRAY else value
+
+
+def coerced(name: str, value: Any, wanted: ParameterType) -> Any:
+    """``value`` as the declared type allows it: an int for a double, [] for any list.
+
+    Raises:
+        ParameterError: names the parameter, the value and the wanted type.
+    """
+    if wanted is ParameterType.DOUBLE and ParameterType.INTEGER.check(value):
+        return float(value)
+    if wanted is ParameterType.DOUBLE_ARRAY and _is_array(value):
+        if all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in value):
+            return [float(v) for v in value]
+    if wanted in _ITEMS and _is_array(value) and len(value) == 0:
+        return []
+    if not wanted.check(value):
+        try:
+            got = ParameterType.from_parameter_value(value).name
+        except TypeError:
+            got = type(value).__name__
+        raise ParameterError(
+            f"parameter {name!r}: {value!r} is {got}, wanted {wanted.name}"
+        )
+    return value
+
+
+def is_close_to_step(value: float, start: float, step: float, rel_tol: float) -> bool:
+    """Whether ``value`` is a whole number of steps from ``start``."""
+    steps = round((value - start) / step)
+    return math.isclose(start + steps * step, value, rel_tol=rel_tol)

@@ -1,0 +1,170 @@
+"""ROS 2 parameter files: YAML → (node pattern, name, value), safely and bounded."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from navette.errors import FileFormatError, ParameterError
+
+_MAX_BYTES = 4 * 1024 * 1024
+_MAX_DEPTH = 32
+_MAX_VALUES = 100_000
+
+NodeParameters = list[tuple[str, dict[str, Any]]]
+"""(node pattern such as ``/ns/node`` or ``/**``, flat name → value), in file order."""
+
+
+class _Loader(yaml.SafeLoader):
+    """Plain scalars as ROS 2 reads them: ``1e5`` is a double, dates are strings."""
+
+
+_Loader.yaml_implicit_resolvers = {}
+for _tag, _pattern, _starts in (
+    ("bool", r"(?:y|Y|yes|Yes|YES|n|N|no|No|NO|[tT]rue|TRUE|[fF]alse|FALSE"
+     r"|on|On|ON|off|Off|OFF)\Z", "yYnNtTfFoO"),
+    ("int", r"[-+]?(?:0x[0-9a-fA-F]+|0o[0-7]+|[0-9]+)\Z", "-+0123456789"),
+    ("float", r"(?:[-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][-+]?[0-9]+)?"
+     r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z", "-+0123456789."),
+    ("null", r"(?:~|null|Null|NULL|)\Z", ["~", "n", "N", ""]),
+):  # fmt: skip
+    _Loader.add_implicit_resolver(
+        f"tag:yaml.org,2002:{_tag}", re.compile(_pattern), list(_starts)
+    )
+_Loader.add_constructor(
+    "tag:yaml.org,2002:bool",
+    lambda loader, node: str(node.value).lower() in ("y", "yes", "true", "on"),
+)
+_Loader.add_constructor(
+    "tag:yaml.org,2002:int", lambda loader, node: _integer(str(node.value))
+)
+_Loader.add_constructor(
+    "tag:yaml.org,2002:float",
+    lambda loader, node: float(str(node.value).lower().replace(".inf", "inf")
+                               .replace(".nan", "nan")),
+)  # fmt: skip
+
+
+def _integer(text: str) -> int:
+    digits = text.lstrip("+-").lower()
+    base = 16 if digits.startswith("0x") else 8 if digits.startswith("0o") else 10
+    return int(text, base)
+
+
+def parse_value(text: str) -> Any:
+    """The value of ``-p name:=text``: read as YAML, else taken as a string.
+
+    Raises:
+        ParameterError: a YAML mapping or nothing, which no parameter can be.
+    """
+    try:
+        value = yaml.load(text, Loader=_Loader)
+    except yaml.YAMLError:
+        return text
+    if value is None:
+        return text
+    return _leaf("value", value, "command line")
+
+
+def read_parameter_file(path: Path | str) -> NodeParameters:
+    """Read ``node: ros__parameters: …``; nested names are joined with dots.
+
+    Raises:
+        FileFormatError: not readable, not YAML, or not of that form; names the line.
+        ParameterError: a value of a type that parameters do not have.
+    """
+    path = Path(path)
+    try:
+        size = path.stat().st_size
+        if size > _MAX_BYTES:
+            raise FileFormatError(path, f"{size} bytes; wanted at most {_MAX_BYTES}")
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileFormatError(path, f"cannot be read: {error}") from error
+    return parse_parameters(text, path)
+
+
+def parse_parameters(text: str, origin: Path | str = "parameters") -> NodeParameters:
+    """As :func:`read_parameter_file`, from the text itself."""
+    try:
+        document = yaml.load(text, Loader=_Loader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        reason = getattr(error, "problem", None) or str(error)
+        line = mark.line + 1 if mark is not None else None
+        raise FileFormatError(origin, f"not YAML: {reason}", line) from error
+    except RecursionError as error:
+        raise FileFormatError(origin, "nested too deeply") from error
+    if not isinstance(document, dict):
+        raise FileFormatError(origin, "wanted 'node_name: ros__parameters: …'")
+    reader = _Reader(str(origin))
+    reader.nodes("", document, 0)
+    return reader.found
+
+
+class _Reader:
+    """Walks the nested mappings and counts, so that hostile files end early."""
+
+    def __init__(self, origin: str) -> None:
+        self.found: NodeParameters = []
+        self._origin = origin
+        self._count = 0
+
+    def nodes(self, prefix: str, mapping: dict[Any, Any], depth: int) -> None:
+        """Namespaces and node names, down to ``ros__parameters``."""
+        self._check_depth(depth)
+        for key, value in mapping.items():
+            if key == "ros__parameters":
+                values: dict[str, Any] = {}
+                self._parameters("", value, values, depth)
+                self.found.append((prefix or "/", values))
+                continue
+            pattern = f"{prefix}/{str(key).strip('/')}"
+            if not isinstance(value, dict):
+                raise FileFormatError(
+                    self._origin,
+                    f"{pattern}: wanted 'ros__parameters:' below a node name, "
+                    f"got {value!r}",
+                )
+            self.nodes(pattern, value, depth + 1)
+
+    def _parameters(
+        self, prefix: str, mapping: Any, values: dict[str, Any], depth: int
+    ) -> None:
+        self._check_depth(depth)
+        if mapping is None:
+            return
+        if not isinstance(mapping, dict):
+            raise FileFormatError(
+                self._origin, f"{prefix or 'ros__parameters'}: wanted name: value pairs"
+            )
+        for key, value in mapping.items():
+            name = f"{prefix}{key}"
+            self._count += 1
+            if self._count > _MAX_VALUES:
+                raise FileFormatError(self._origin, f"more than {_MAX_VALUES} values")
+            if isinstance(value, dict):
+                self._parameters(f"{name}.", value, values, depth + 1)
+            else:
+                values[name] = _leaf(name, value, self._origin)
+
+    def _check_depth(self, depth: int) -> None:
+        if depth > _MAX_DEPTH:
+            raise FileFormatError(self._origin, f"nested deeper than {_MAX_DEPTH}")
+
+
+def _leaf(name: str, value: Any, origin: str) -> Any:
+    """A scalar, or a list of one kind of scalar (ints among doubles count as such)."""
+    if isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, list):
+        kinds = {type(item) for item in value}
+        if kinds == {int, float}:
+            return [float(item) for item in value]
+        if len(kinds) <= 1 and kinds <= {bool, int, float, str}:
+            return value
+    raise ParameterError(
+        f"{origin}: parameter {name!r}: {value!r} is not a parameter value; wanted "
+        "a bool, int, float, string, or a list of one of these"
+    )

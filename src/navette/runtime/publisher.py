@@ -1,0 +1,108 @@
+"""Publishers."""
+
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, Generic, TypeVar
+
+from navette.errors import MessageError
+from navette.msgs import deserialize, type_name
+from navette.runtime.loop import EventLoop
+from navette.runtime.qos import QoSProfile
+from navette.runtime.time import Duration
+from navette.transports import Endpoint, PublisherPort
+
+MsgT = TypeVar("MsgT")
+
+
+class Publisher(Generic[MsgT]):
+    """Sends messages to a topic. Made by :meth:`Node.create_publisher`."""
+
+    __slots__ = (
+        "_loop",
+        "_on_destroy",
+        "_send",
+        "_sequence",
+        "endpoint",
+        "msg_type",
+        "ports",
+        "qos_profile",
+    )
+
+    def __init__(
+        self,
+        msg_type: type[MsgT],
+        endpoint: Endpoint,
+        qos_profile: QoSProfile,
+        ports: list[PublisherPort],
+        loop: EventLoop,
+        on_destroy: Callable[["Publisher[Any]"], None],
+    ) -> None:
+        self.msg_type = msg_type
+        self.endpoint = endpoint
+        self.qos_profile = qos_profile
+        self.ports = ports
+        self._send = ports[0].send if len(ports) == 1 else self._send_to_all
+        self._loop = loop
+        self._sequence = 0
+        self._on_destroy = on_destroy
+
+    def publish(self, msg: MsgT | bytes) -> None:
+        """Send ``msg`` as it is now; later edits of the object are not seen.
+
+        Raises:
+            MessageError: not of the publisher's type (also a TypeError).
+        """
+        if msg.__class__ is not self.msg_type:
+            msg = self._converted(msg)
+        self._sequence = sequence = self._sequence + 1
+        self._send(msg, self._loop.clock.now_ns, sequence)
+
+    @property
+    def topic_name(self) -> str:
+        return self.endpoint.topic
+
+    @property
+    def topic(self) -> str:
+        return self.endpoint.topic
+
+    def get_subscription_count(self) -> int:
+        """How many subscriptions get the messages."""
+        return sum(port.matched_count for port in self.ports)
+
+    def assert_liveliness(self) -> None:
+        """In process a publisher lives as long as its node: nothing to assert."""
+
+    def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
+        """In process a message is in the queues when ``publish`` returns."""
+        return True
+
+    def destroy(self) -> None:
+        """Leave the topic."""
+        for port in self.ports:
+            port.close()
+        self._on_destroy(self)
+
+    def __enter__(self) -> "Publisher[MsgT]":
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.destroy()
+
+    def _send_to_all(self, message: Any, source_ns: int, sequence: int) -> None:
+        for port in self.ports:
+            port.send(message, source_ns, sequence)
+
+    def _converted(self, msg: Any) -> Any:
+        if isinstance(msg, self.msg_type):
+            return msg
+        if isinstance(msg, bytes):
+            return deserialize(msg, self.msg_type)
+        raise MessageError(
+            f"topic {self.endpoint.topic}: expected "
+            f"{type_name(self.msg_type)}, got {type(msg).__name__}"
+        )

@@ -1,0 +1,278 @@
+"""rclpy's clocks: what a node reads; jumps can be watched.
+
+Under a virtual or paced context every clock tells the context's time. Under the
+system clock, ROS time follows ``/clock`` where ``use_sim_time`` is set.
+"""
+
+import heapq
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+from types import TracebackType
+from typing import Any
+
+from navette.runtime.clock import monotonic_ns
+from navette.runtime.context import Context, get_default_context
+from navette.runtime.exceptions import NotInitializedException
+from navette.runtime.time import ClockType, Duration, Time
+
+
+class ClockChange(IntEnum):
+    """What happened to a clock in a jump; values as in rcl."""
+
+    ROS_TIME_NO_CHANGE = 1
+    ROS_TIME_ACTIVATED = 2
+    ROS_TIME_DEACTIVATED = 3
+    SYSTEM_TIME_NO_CHANGE = 4
+
+
+@dataclass(frozen=True)
+class TimeJump:
+    """A jump of a clock."""
+
+    clock_change: ClockChange
+    delta: Duration
+
+
+class JumpThreshold:
+    """Which jumps to report; backward thresholds are negative."""
+
+    def __init__(
+        self,
+        *,
+        min_forward: Duration | None,
+        min_backward: Duration | None,
+        on_clock_change: bool = True,
+    ) -> None:
+        if min_forward is not None and min_forward.nanoseconds < 0:
+            raise ValueError("min_forward must be a positive non-zero duration")
+        if min_backward is not None and min_backward.nanoseconds >= 0:
+            raise ValueError("min_backward must be a negative non-zero duration")
+        if min_forward is None and min_backward is None and not on_clock_change:
+            raise ValueError("at least one threshold must be enabled")
+        self.min_forward = min_forward
+        self.min_backward = min_backward
+        self.on_clock_change = on_clock_change
+
+    def is_met_by(self, jump: TimeJump) -> bool:
+        changed = jump.clock_change in (
+            ClockChange.ROS_TIME_ACTIVATED,
+            ClockChange.ROS_TIME_DEACTIVATED,
+        )
+        if changed and self.on_clock_change:
+            return True
+        if self.min_forward is not None and jump.delta > self.min_forward:
+            return True
+        return self.min_backward is not None and jump.delta < self.min_backward
+
+
+class JumpHandle:
+    """Keeps a jump callback registered until :meth:`unregister`."""
+
+    def __init__(
+        self,
+        clock: "Clock",
+        threshold: JumpThreshold,
+        pre_callback: Callable[[], None] | None,
+        post_callback: Callable[[TimeJump], None] | None,
+    ) -> None:
+        self._clock = clock
+        self.threshold = threshold
+        self.pre_callback = pre_callback
+        self.post_callback = post_callback
+        clock._jump_handles.append(self)
+
+    def unregister(self) -> None:
+        if self in self._clock._jump_handles:
+            self._clock._jump_handles.remove(self)
+
+    def __enter__(self) -> "JumpHandle":
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.unregister()
+
+
+class Clock:
+    """Tells the time of a context.
+
+    Args:
+        clock_type: ROS_TIME gives a :class:`ROSClock`.
+        context: the default one if not given.
+    """
+
+    def __new__(cls, *args: Any, **kwargs: Any) -> "Clock":
+        if cls is Clock and kwargs.get("clock_type") is ClockType.ROS_TIME:
+            return super().__new__(ROSClock)
+        return super().__new__(cls)
+
+    def __init__(
+        self,
+        *,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+        context: Context | None = None,
+    ) -> None:
+        if not isinstance(clock_type, ClockType):
+            raise TypeError(f"clock_type must be a ClockType, got {clock_type!r}")
+        self._clock_type = clock_type
+        self._context = context or get_default_context()
+        self._loop = self._context.loop
+        self._jump_handles: list[JumpHandle] = []
+
+    @property
+    def clock_type(self) -> ClockType:
+        return self._clock_type
+
+    def __repr__(self) -> str:
+        return f"Clock(clock_type={self._clock_type.name})"
+
+    @property
+    def now_ns(self) -> int:
+        """The time in nanoseconds, without an object around it."""
+        source = self._loop.clock
+        if self._clock_type is ClockType.STEADY_TIME and not source.is_virtual:
+            return monotonic_ns()
+        return source.now_ns
+
+    def now(self) -> Time:
+        return Time(nanoseconds=self.now_ns, clock_type=self._clock_type)
+
+    def schedule(self, time_ns: int, entity: Any) -> int:
+        """Queue ``entity`` on the loop for a time of this clock; gives its token."""
+        source = self._loop.clock
+        if self._clock_type is ClockType.STEADY_TIME and not source.is_virtual:
+            time_ns += source.now_ns - monotonic_ns()
+        return self._loop.schedule(time_ns, entity)
+
+    def create_jump_callback(
+        self,
+        threshold: JumpThreshold,
+        *,
+        pre_callback: Callable[[], None] | None = None,
+        post_callback: Callable[[TimeJump], None] | None = None,
+    ) -> JumpHandle:
+        if pre_callback is None and post_callback is None:
+            raise ValueError("one of pre_callback or post_callback must be callable")
+        return JumpHandle(self, threshold, pre_callback, post_callback)
+
+    def sleep_until(self, until: Time, context: Context | None = None) -> bool:
+        """Let time pass until ``until``; events run meanwhile. False on shutdown."""
+        if until.clock_type != self._clock_type:
+            raise ValueError(
+                f"until is a {until.clock_type.name}, the clock {self._clock_type.name}"
+            )
+        return self.sleep_until_ns(until.nanoseconds, context or self._context)
+
+    def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
+        """Let ``rel_time`` pass; events run meanwhile. False on shutdown."""
+        until_ns = self.now_ns + rel_time.nanoseconds
+        return self.sleep_until_ns(until_ns, context or self._context)
+
+    def sleep_until_ns(self, until_ns: int, context: Context) -> bool:
+        if not context.ok():
+            raise NotInitializedException("cannot sleep without a valid context")
+        alarm = _Alarm(context)
+        alarm.token = self.schedule(until_ns, alarm)
+        context.loop.run(done=lambda: self.now_ns >= until_ns)
+        alarm.token = -1
+        return context.ok() and self.now_ns >= until_ns
+
+
+class _Alarm:
+    """Does nothing at a time: the loop goes there and looks around."""
+
+    __slots__ = ("group", "token")
+
+    def __init__(self, context: Context) -> None:
+        self.group = context.loop.free_group
+        self.token = 0
+
+    def run(self) -> None:
+        """Nothing to do."""
+
+    def origin(self) -> tuple[str, str]:
+        return "", "sleep"
+
+
+class ROSClock(Clock):
+    """A node's clock; can be overridden by simulated time from ``/clock``."""
+
+    def __init__(
+        self,
+        *,
+        clock_type: ClockType = ClockType.ROS_TIME,
+        context: Context | None = None,
+    ) -> None:
+        super().__init__(clock_type=clock_type, context=context)
+        self._override_ns: int | None = None
+        self._waiting: list[tuple[int, int, Any]] = []
+        self._tokens = -1  # a token of -1 means canceled
+
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Whether the time comes from outside (``/clock``)."""
+        return self._override_ns is not None
+
+    @property
+    def now_ns(self) -> int:
+        if self._override_ns is not None:
+            return self._override_ns
+        return self._loop.clock.now_ns
+
+    def schedule(self, time_ns: int, entity: Any) -> int:
+        if self._override_ns is None:
+            return self._loop.schedule(time_ns, entity)
+        # Negative tokens never equal those of the loop's own heap.
+        self._tokens -= 1
+        heapq.heappush(self._waiting, (time_ns, -self._tokens, entity))
+        return self._tokens
+
+    def set_ros_time_override(self, time: Time) -> None:
+        """Simulated time is now ``time``; what became due is queued."""
+        self.set_override_ns(time.nanoseconds)
+
+    def set_override_ns(self, time_ns: int) -> None:
+        """As :meth:`set_ros_time_override`; the first call activates it."""
+        before = self._override_ns
+        change = ClockChange.ROS_TIME_NO_CHANGE
+        if before is None:
+            change = ClockChange.ROS_TIME_ACTIVATED
+            before = self._loop.clock.now_ns
+        jump = TimeJump(change, Duration(nanoseconds=time_ns - before))
+        handles = [h for h in self._jump_handles if h.threshold.is_met_by(jump)]
+        for handle in handles:
+            if handle.pre_callback is not None:
+                handle.pre_callback()
+        self._override_ns = time_ns
+        for handle in handles:
+            if handle.post_callback is not None:
+                handle.post_callback(jump)
+        self._release_due(time_ns)
+
+    def _release_due(self, time_ns: int) -> None:
+        waiting = self._waiting
+        while waiting and waiting[0][0] <= time_ns:
+            _, order, entity = heapq.heappop(waiting)
+            if entity.token == -order:
+                self._loop.ready.append(entity)
+        self._loop.wake()
+
+    def clear_override(self) -> None:
+        """Back to the context's time."""
+        if self._override_ns is None:
+            return
+        delta = self._loop.clock.now_ns - self._override_ns
+        jump = TimeJump(ClockChange.ROS_TIME_DEACTIVATED, Duration(nanoseconds=delta))
+        handles = [h for h in self._jump_handles if h.threshold.is_met_by(jump)]
+        for handle in handles:
+            if handle.pre_callback is not None:
+                handle.pre_callback()
+        self._override_ns = None
+        for handle in handles:
+            if handle.post_callback is not None:
+                handle.post_callback(jump)

@@ -1,0 +1,22 @@
+"""How many arguments a callback takes."""
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+
+def takes_arguments(callback: Callable[..., Any], count: int) -> bool:
+    """Whether ``callback`` needs ``count`` positional arguments (and not fewer)."""
+    try:
+        signature = inspect.signature(callback)
+    except (TypeError, ValueError):  # builtins without a signature
+        return False
+    return not _binds(signature, count - 1) and _binds(signature, count)
+
+
+def _binds(signature: inspect.Signature, count: int) -> bool:
+    try:
+        signature.bind(*[object()] * count)
+    except TypeError:
+        return False
+    return True

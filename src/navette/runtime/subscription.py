@@ -1,0 +1,160 @@
+"""Subscriptions: a queue of the newest samples and a callback."""
+
+from collections import deque
+from collections.abc import Callable
+from enum import Enum
+from types import TracebackType
+from typing import Any, Generic, TypedDict, TypeVar
+
+from navette.msgs import serialize
+from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.loop import Entity, EventLoop
+from navette.runtime.qos import QoSProfile
+from navette.runtime.signatures import takes_arguments
+from navette.transports import INFINITE_NS, Endpoint, Item, SubscriptionPort
+
+MsgT = TypeVar("MsgT")
+
+
+class MessageInfo(TypedDict):
+    """What a callback's second argument tells about the sample; stamps in ns."""
+
+    source_timestamp: int
+    received_timestamp: int
+    publication_sequence_number: int | None
+    reception_sequence_number: int | None
+
+
+class Subscription(Entity, Generic[MsgT]):
+    """Calls back for each sample. Made by :meth:`Node.create_subscription`."""
+
+    class CallbackType(Enum):
+        """Whether the callback wants the :class:`MessageInfo`."""
+
+        MessageOnly = 0
+        WithMessageInfo = 1
+
+    __slots__ = (
+        "_callback",
+        "_depth",
+        "_lifespan_ns",
+        "_loop",
+        "_on_destroy",
+        "_plain",
+        "_queue",
+        "_ready",
+        "_received",
+        "endpoint",
+        "msg_type",
+        "ports",
+        "qos_profile",
+        "raw",
+        "shared",
+    )
+
+    def __init__(
+        self,
+        msg_type: type[MsgT],
+        endpoint: Endpoint,
+        callback: Callable[..., Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        loop: EventLoop,
+        on_destroy: Callable[["Subscription[Any]"], None],
+        *,
+        raw: bool = False,
+        shared: bool = False,
+    ) -> None:
+        self.msg_type = msg_type
+        self.endpoint = endpoint
+        self.group = callback_group
+        self.qos_profile = qos_profile
+        self.raw = raw
+        self.shared = shared
+        self.ports: list[SubscriptionPort] = []
+        self._depth = endpoint.qos.queue_length or INFINITE_NS
+        self._lifespan_ns = endpoint.qos.lifespan_ns
+        self._queue: deque[Item] = deque()
+        self._loop = loop
+        self._ready = loop.ready
+        self._received = 0
+        self._on_destroy = on_destroy
+        self.callback = callback
+
+    @property
+    def callback(self) -> Callable[..., Any]:
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., Any]) -> None:
+        self._callback = callback
+        self._plain = not self.raw and not takes_arguments(callback, 2)
+
+    @property
+    def topic_name(self) -> str:
+        return self.endpoint.topic
+
+    @property
+    def topic(self) -> str:
+        return self.endpoint.topic
+
+    def get_publisher_count(self) -> int:
+        """How many publishers are heard."""
+        return sum(port.matched_count for port in self.ports)
+
+    def receive(self, item: Item) -> None:
+        """Queue a sample (the transport's sink); a full queue loses its oldest."""
+        queue = self._queue
+        if len(queue) < self._depth:
+            queue.append(item)
+            self._ready.append(self)
+            if self._loop.waiting:
+                self._loop.wake()
+        else:
+            queue.append(item)
+            queue.popleft()
+
+    def run(self) -> Any:
+        """Call back with the oldest sample of the queue."""
+        queue = self._queue
+        if not queue:  # destroyed while the event waited
+            return None
+        if self._plain:
+            return self._callback(queue.popleft()[0])
+        return self._run_with_info(queue.popleft())
+
+    def origin(self) -> tuple[str, str]:
+        return self.endpoint.node_full_name, f"topic {self.endpoint.topic}"
+
+    def destroy(self) -> None:
+        """Leave the topic and forget what is queued."""
+        for port in self.ports:
+            port.close()
+        self._queue.clear()
+        self._on_destroy(self)
+
+    def __enter__(self) -> "Subscription[MsgT]":
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.destroy()
+
+    def _run_with_info(self, item: Item) -> Any:
+        message, source_ns, received_ns, sequence = item
+        self._received += 1
+        if self.raw:
+            message = serialize(message)
+        if not takes_arguments(self._callback, 2):
+            return self._callback(message)
+        info: MessageInfo = {
+            "source_timestamp": source_ns,
+            "received_timestamp": received_ns,
+            "publication_sequence_number": sequence,
+            "reception_sequence_number": self._received,
+        }
+        return self._callback(message, info)

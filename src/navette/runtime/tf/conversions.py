@@ -1,0 +1,37 @@
+"""Between messages and transforms."""
+
+from navette.geometry import Transform3
+from navette.msgs.geometry_msgs.msg import (
+    Quaternion,
+    Transform,
+    TransformStamped,
+    Vector3,
+)
+from navette.msgs.std_msgs.msg import Header
+from navette.runtime.time import ns_to_stamp
+
+
+def transform_from_msg(message: Transform) -> Transform3:
+    """geometry_msgs/Transform → outer_T_inner."""
+    t, q = message.translation, message.rotation
+    return Transform3((t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
+
+
+def transform_to_msg(transform: Transform3) -> Transform:
+    """outer_T_inner → geometry_msgs/Transform."""
+    (x, y, z), (qx, qy, qz, qw) = transform
+    return Transform(
+        translation=Vector3(x=x, y=y, z=z),
+        rotation=Quaternion(x=qx, y=qy, z=qz, w=qw),
+    )
+
+
+def transform_stamped(
+    parent: str, child: str, stamp_ns: int, parent_T_child: Transform3
+) -> TransformStamped:
+    """A geometry_msgs/TransformStamped."""
+    return TransformStamped(
+        header=Header(stamp=ns_to_stamp(stamp_ns), frame_id=parent),
+        child_frame_id=child,
+        transform=transform_to_msg(parent_T_child),
+    )

@@ -1,0 +1,27 @@
+"""tf2's exception names."""
+
+from navette.errors import InvalidNameError, TransformError
+
+
+class TransformException(TransformError):
+    """Base of the transform errors."""
+
+
+class LookupException(TransformException):
+    """A frame is not known."""
+
+
+class ConnectivityException(TransformException):
+    """Two frames have no common ancestor."""
+
+
+class ExtrapolationException(TransformException):
+    """A time outside the buffered one was asked for."""
+
+
+class InvalidArgumentException(TransformException, InvalidNameError):
+    """A frame name or a transform is malformed."""
+
+
+class TimeoutException(TransformException):
+    """It did not come in time."""

@@ -1,0 +1,204 @@
+"""Timers: a callback every period of a clock."""
+
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any
+
+from navette.errors import InvalidValueError
+from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.loop import Entity
+from navette.runtime.ros_clock import (
+    Clock,
+    ClockChange,
+    JumpThreshold,
+    TimeJump,
+)
+from navette.runtime.signatures import takes_arguments
+from navette.runtime.time import ClockType, Duration, Time
+
+
+class TimerInfo:
+    """When a timer should have been called and when it was."""
+
+    def __init__(
+        self,
+        *,
+        expected_call_time: int = 0,
+        actual_call_time: int = 0,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+    ) -> None:
+        self.expected_call_time = Time(
+            nanoseconds=expected_call_time, clock_type=clock_type
+        )
+        self.actual_call_time = Time(
+            nanoseconds=actual_call_time, clock_type=clock_type
+        )
+
+
+class Timer(Entity):
+    """Calls back every ``timer_period_ns`` of its clock; misses no beat, skips late ones.
+
+    Made by :meth:`Node.create_timer`.
+    """
+
+    __slots__ = (
+        "_callback",
+        "_clock",
+        "_jump_handle",
+        "_last_ns",
+        "_next_ns",
+        "_node_name",
+        "_on_destroy",
+        "_period_ns",
+        "_wants_info",
+        "token",
+    )
+
+    def __init__(
+        self,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup,
+        timer_period_ns: int,
+        clock: Clock,
+        *,
+        node_name: str = "",
+        on_destroy: Callable[["Timer"], None] | None = None,
+        autostart: bool = True,
+    ) -> None:
+        self._callback = callback
+        self._wants_info = callback is not None and takes_arguments(callback, 1)
+        self.group = callback_group
+        self._clock = clock
+        self._node_name = node_name
+        self._on_destroy = on_destroy
+        self._period_ns = _checked_period(timer_period_ns)
+        self._last_ns = clock.now_ns
+        self._next_ns = self._last_ns + self._period_ns
+        self.token = -1
+        self._jump_handle = clock.create_jump_callback(
+            JumpThreshold(
+                min_forward=None,
+                min_backward=Duration(nanoseconds=-1),
+                on_clock_change=True,
+            ),
+            post_callback=self._on_jump,
+        )
+        if autostart:
+            self._arm()
+        else:
+            self.token = -1
+
+    @property
+    def clock(self) -> Clock:
+        return self._clock
+
+    @property
+    def timer_period_ns(self) -> int:
+        return self._period_ns
+
+    @timer_period_ns.setter
+    def timer_period_ns(self, value: int) -> None:
+        """Counts from the next call on (call :meth:`reset` to start over)."""
+        self._period_ns = _checked_period(int(value))
+
+    @property
+    def callback(self) -> Callable[..., Any] | None:
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., Any]) -> None:
+        self._callback = callback
+        self._wants_info = takes_arguments(callback, 1)
+
+    def is_canceled(self) -> bool:
+        return self.token == -1
+
+    def is_ready(self) -> bool:
+        """Whether it is due."""
+        return self.token != -1 and self._clock.now_ns >= self._next_ns
+
+    def cancel(self) -> None:
+        """Stop calling back until :meth:`reset`."""
+        self.token = -1
+
+    def reset(self) -> None:
+        """Start over: the next call is one period from now."""
+        self._last_ns = self._clock.now_ns
+        self._next_ns = self._last_ns + self._period_ns
+        self._arm()
+
+    def time_since_last_call(self) -> int:
+        """Nanoseconds since the last call (or the start)."""
+        return self._clock.now_ns - self._last_ns
+
+    def time_until_next_call(self) -> int | None:
+        """Nanoseconds until the next call (negative = late); None if canceled."""
+        if self.token == -1:
+            return None
+        return self._next_ns - self._clock.now_ns
+
+    def destroy(self) -> None:
+        """Stop for good."""
+        self.token = -1
+        self._jump_handle.unregister()
+        if self._on_destroy is not None:
+            self._on_destroy(self)
+
+    def origin(self) -> tuple[str, str]:
+        return self._node_name, f"timer of {self._period_ns / 1e9:g} s"
+
+    def run(self) -> Any:
+        if self.token == -1:  # canceled while it waited in the queue
+            return None
+        now = self._clock.now_ns
+        expected = self._next_ns
+        self._last_ns = now
+        self._next_ns = expected + self._period_ns
+        if self._next_ns < now:  # late by more than a period: skip, keep the phase
+            periods_late = -((self._next_ns - now) // self._period_ns)
+            self._next_ns += periods_late * self._period_ns
+        # Armed before the callback: what that schedules for the same time is later.
+        self._arm()
+        if self._callback is None:
+            return None
+        if not self._wants_info:
+            return self._callback()
+        return self._callback(
+            TimerInfo(
+                expected_call_time=expected,
+                actual_call_time=now,
+                clock_type=self._clock.clock_type,
+            )
+        )
+
+    def __enter__(self) -> "Timer":
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.destroy()
+
+    def _arm(self) -> None:
+        self.token = self._clock.schedule(self._next_ns, self)
+
+    def _on_jump(self, jump: TimeJump) -> None:
+        """Keep the pace when the clock is set back or its source changes."""
+        if self.token == -1:
+            return
+        now = self._clock.now_ns
+        changed = jump.clock_change != ClockChange.ROS_TIME_NO_CHANGE
+        if changed or self._next_ns - self._period_ns > now:
+            self._last_ns = now
+            self._next_ns = now + self._period_ns
+            self._arm()
+
+
+def _checked_period(period_ns: int) -> int:
+    # A period of zero would keep a virtual clock from ever going on.
+    if period_ns <= 0:
+        raise InvalidValueError(f"timer period {period_ns / 1e9:g} s: wanted > 0")
+    return period_ns

@@ -1,0 +1,136 @@
+"""The seam: a transport moves (topic, message) between endpoints; it knows no node.
+
+The runtime opens a port per publisher and per subscription on every transport of
+its context. A transport that serialises does so inside its own ports, and only
+while someone remote listens. Services and actions will add endpoint kinds and
+ports beside these.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from navette.transports.qos import EndpointQos, QoSPolicyKind
+
+Item = tuple[Any, int, int, int]
+"""One delivered sample: message, source stamp (ns), received stamp (ns), sequence."""
+
+Sink = Callable[[Item], None]
+"""Takes one delivered sample; must only queue it and return."""
+
+
+class EndpointKind(Enum):
+    """What an endpoint does on its topic."""
+
+    PUBLISHER = 1
+    SUBSCRIPTION = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """One end of a topic, as the graph lists it (labels only, no node object)."""
+
+    kind: EndpointKind
+    topic: str
+    type_name: str
+    qos: EndpointQos
+    node_name: str
+    node_namespace: str
+    gid: bytes
+
+    @property
+    def node_full_name(self) -> str:
+        return f"{self.node_namespace.rstrip('/')}/{self.node_name}"
+
+
+class TransportObserver:
+    """What a transport tells its owner; override what is of interest."""
+
+    def graph_changed(self) -> None:
+        """An endpoint or a node came or went."""
+
+    def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        """The two endpoints exchange samples from now on."""
+
+    def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        """The two endpoints no longer exchange samples."""
+
+    def incompatible_qos(
+        self,
+        publisher: Endpoint,
+        subscription: Endpoint,
+        policies: tuple[QoSPolicyKind, ...],
+    ) -> None:
+        """Same topic and type, but the offer falls short of the request."""
+
+
+class PublisherPort(ABC):
+    """A publisher's door into a transport."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def send(self, message: Any, source_ns: int, sequence: int) -> None:
+        """Deliver ``message`` as it is now; later edits by the caller are unseen."""
+
+    @property
+    @abstractmethod
+    def matched_count(self) -> int:
+        """How many subscriptions the samples go to through this transport."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Leave the topic; closing twice is harmless."""
+
+
+class SubscriptionPort(ABC):
+    """A subscription's door into a transport."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def matched_count(self) -> int:
+        """How many publishers are heard through this transport."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Leave the topic; closing twice is harmless."""
+
+
+class Transport(ABC):
+    """Moves samples between endpoints of the same topic name and type."""
+
+    @abstractmethod
+    def advertise(self, endpoint: Endpoint, message_class: type) -> PublisherPort:
+        """Open a publisher's port.
+
+        Raises:
+            InvalidValueError: the topic carries another type; both are named.
+        """
+
+    @abstractmethod
+    def subscribe(
+        self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
+    ) -> SubscriptionPort:
+        """Open a subscription's port; latched samples reach ``sink`` at once.
+
+        ``shared`` samples may be the same object for several sinks: read-only.
+
+        Raises:
+            InvalidValueError: the topic carries another type; both are named.
+        """
+
+    @abstractmethod
+    def endpoints(self) -> list[Endpoint]:
+        """All endpoints that can be seen, in order of appearance."""
+
+    @abstractmethod
+    def observe(self, observer: TransportObserver) -> None:
+        """Report changes to ``observer`` from now on."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Close every port."""

@@ -1,0 +1,243 @@
+"""The default transport: a topic table in memory, at most one copy a delivery."""
+
+import threading
+from collections import deque
+from typing import Any
+
+from navette.errors import InvalidValueError
+from navette.msgs import copy_message
+from navette.transports.base import (
+    Endpoint,
+    EndpointKind,
+    Item,
+    PublisherPort,
+    Sink,
+    SubscriptionPort,
+    Transport,
+    TransportObserver,
+)
+from navette.transports.qos import incompatible_policies
+
+
+class InProcessPublisher(PublisherPort):
+    """Delivers by calling the matched subscriptions' sinks, in order of matching."""
+
+    __slots__ = ("_history", "_shared_sinks", "_sinks", "_transport", "endpoint")
+
+    def __init__(self, endpoint: Endpoint, transport: "InProcessTransport") -> None:
+        self.endpoint = endpoint
+        self._transport = transport
+        # Tuples, replaced as a whole on a change: a publishing thread never sees
+        # a half-changed list.
+        self._sinks: tuple[Sink, ...] = ()
+        self._shared_sinks: tuple[Sink, ...] = ()
+        self._history: deque[Item] | None = None
+        if endpoint.qos.is_latched:
+            self._history = deque(maxlen=endpoint.qos.queue_length)
+
+    def send(self, message: Any, source_ns: int, sequence: int) -> None:
+        for sink in self._sinks:
+            sink((copy_message(message), source_ns, source_ns, sequence))
+        if self._shared_sinks or self._history is not None:
+            # One copy for all that only read: the caller may edit its own later.
+            item = (copy_message(message), source_ns, source_ns, sequence)
+            if self._history is not None:
+                self._history.append(item)
+            for sink in self._shared_sinks:
+                sink(item)
+
+    def relink(self, subscriptions: "list[InProcessSubscription]") -> None:
+        """Take over the current list of matched subscriptions."""
+        self._sinks = tuple(s.sink for s in subscriptions if not s.shared)
+        self._shared_sinks = tuple(s.sink for s in subscriptions if s.shared)
+
+    def replay(self, subscription: "InProcessSubscription") -> None:
+        """Give a late joiner the newest latched samples, oldest first."""
+        if self._history is None or not subscription.endpoint.qos.is_latched:
+            return
+        wanted = subscription.endpoint.qos.queue_length
+        for item in list(self._history)[-wanted if wanted else 0 :]:
+            if subscription.shared:
+                subscription.sink(item)
+            else:
+                subscription.sink((copy_message(item[0]), *item[1:]))
+
+    @property
+    def matched_count(self) -> int:
+        return len(self._sinks) + len(self._shared_sinks)
+
+    def close(self) -> None:
+        self._transport.remove_publisher(self)
+
+
+class InProcessSubscription(SubscriptionPort):
+    """Names the sink that the matched publishers call."""
+
+    __slots__ = ("_transport", "endpoint", "shared", "sink")
+
+    def __init__(
+        self,
+        endpoint: Endpoint,
+        sink: Sink,
+        transport: "InProcessTransport",
+        *,
+        shared: bool,
+    ) -> None:
+        self.endpoint = endpoint
+        self.sink = sink
+        self.shared = shared
+        self._transport = transport
+
+    @property
+    def matched_count(self) -> int:
+        return self._transport.count_publishers_of(self)
+
+    def close(self) -> None:
+        self._transport.remove_subscription(self)
+
+
+class _Topic:
+    """The endpoints of one topic name, and its type while it has any."""
+
+    __slots__ = ("publishers", "subscriptions", "type_name")
+
+    def __init__(self, type_name: str) -> None:
+        self.type_name = type_name
+        self.publishers: list[InProcessPublisher] = []
+        self.subscriptions: list[InProcessSubscription] = []
+
+    def matches(self, publisher: InProcessPublisher) -> "list[InProcessSubscription]":
+        return [s for s in self.subscriptions if _fits(publisher, s)]
+
+
+def _fits(publisher: InProcessPublisher, subscription: InProcessSubscription) -> bool:
+    return not incompatible_policies(publisher.endpoint.qos, subscription.endpoint.qos)
+
+
+class InProcessTransport(Transport):
+    """Topic table of one context; safe to use from several threads."""
+
+    def __init__(self) -> None:
+        self._topics: dict[str, _Topic] = {}
+        self._observers: list[TransportObserver] = []
+        self._lock = threading.RLock()
+
+    def observe(self, observer: TransportObserver) -> None:
+        self._observers.append(observer)
+
+    def advertise(self, endpoint: Endpoint, message_class: type) -> InProcessPublisher:
+        with self._lock:
+            topic = self._topic_for(endpoint)
+            publisher = InProcessPublisher(endpoint, self)
+            topic.publishers.append(publisher)
+            publisher.relink(topic.matches(publisher))
+            self._report_matches(
+                [(publisher, subscription) for subscription in topic.subscriptions]
+            )
+        return publisher
+
+    def subscribe(
+        self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
+    ) -> InProcessSubscription:
+        with self._lock:
+            topic = self._topic_for(endpoint)
+            subscription = InProcessSubscription(endpoint, sink, self, shared=shared)
+            topic.subscriptions.append(subscription)
+            for publisher in topic.publishers:
+                if _fits(publisher, subscription):
+                    publisher.relink(topic.matches(publisher))
+                    publisher.replay(subscription)
+            self._report_matches(
+                [(publisher, subscription) for publisher in topic.publishers]
+            )
+        return subscription
+
+    def remove_publisher(self, publisher: InProcessPublisher) -> None:
+        """Take the port off its topic."""
+        with self._lock:
+            topic = self._topics.get(publisher.endpoint.topic)
+            if topic is None or publisher not in topic.publishers:
+                return
+            topic.publishers.remove(publisher)
+            matched = topic.matches(publisher)
+            publisher.relink([])
+            self._forget_if_empty(publisher.endpoint.topic, topic)
+            for subscription in matched:
+                for observer in self._observers:
+                    observer.unmatched(publisher.endpoint, subscription.endpoint)
+            self._changed()
+
+    def remove_subscription(self, subscription: InProcessSubscription) -> None:
+        """Take the port off its topic."""
+        with self._lock:
+            topic = self._topics.get(subscription.endpoint.topic)
+            if topic is None or subscription not in topic.subscriptions:
+                return
+            topic.subscriptions.remove(subscription)
+            for publisher in topic.publishers:
+                publisher.relink(topic.matches(publisher))
+                if _fits(publisher, subscription):
+                    for observer in self._observers:
+                        observer.unmatched(publisher.endpoint, subscription.endpoint)
+            self._forget_if_empty(subscription.endpoint.topic, topic)
+            self._changed()
+
+    def count_publishers_of(self, subscription: InProcessSubscription) -> int:
+        """How many publishers the subscription hears."""
+        topic = self._topics.get(subscription.endpoint.topic)
+        if topic is None or subscription not in topic.subscriptions:
+            return 0
+        return sum(_fits(publisher, subscription) for publisher in topic.publishers)
+
+    def endpoints(self) -> list[Endpoint]:
+        with self._lock:
+            return [
+                port.endpoint
+                for topic in self._topics.values()
+                for port in (*topic.publishers, *topic.subscriptions)
+            ]
+
+    def close(self) -> None:
+        with self._lock:
+            topics = list(self._topics.values())
+        for topic in topics:
+            for port in (*topic.publishers, *topic.subscriptions):
+                port.close()
+
+    def _topic_for(self, endpoint: Endpoint) -> _Topic:
+        topic = self._topics.setdefault(endpoint.topic, _Topic(endpoint.type_name))
+        if topic.type_name != endpoint.type_name:
+            others = sorted(
+                {
+                    port.endpoint.node_full_name
+                    for port in (*topic.publishers, *topic.subscriptions)
+                }
+            )
+            verb = "publish" if endpoint.kind == EndpointKind.PUBLISHER else "read"
+            raise InvalidValueError(
+                f"topic {endpoint.topic} carries {topic.type_name} "
+                f"({', '.join(others)}); node {endpoint.node_full_name} wants to "
+                f"{verb} {endpoint.type_name}"
+            )
+        return topic
+
+    def _report_matches(
+        self, pairs: list[tuple[InProcessPublisher, InProcessSubscription]]
+    ) -> None:
+        for publisher, subscription in pairs:
+            ends = publisher.endpoint, subscription.endpoint
+            policies = incompatible_policies(ends[0].qos, ends[1].qos)
+            for observer in self._observers:
+                if policies:
+                    observer.incompatible_qos(*ends, policies)
+                else:
+                    observer.matched(*ends)
+        self._changed()
+
+    def _forget_if_empty(self, name: str, topic: _Topic) -> None:
+        if not topic.publishers and not topic.subscriptions:
+            del self._topics[name]
+
+    def _changed(self) -> None:
+        for observer in self._observers:
+            observer.graph_changed()
