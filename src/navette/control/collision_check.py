@@ -22,6 +22,7 @@ _STEP_M = 0.05  # no point of the body moves farther between predicted poses
 _SLACK_M = 0.02  # a body closer than the margin may come this much closer yet …
 _FLOOR_M = 0.02  # … but not below this
 _MAX_POSES = 400
+_COSTMAP_AGE_S = 0.25  # obstacles are gathered once and used until the next costmap
 
 
 class Verdict(NamedTuple):
@@ -70,7 +71,7 @@ class CollisionCheck:
     def reach(self, speed: float) -> float:
         """Distance (m) around the robot within which obstacles matter."""
         stop = speed * (self._reaction + speed / (2 * self._deceleration))
-        return self._radius + stop + self._horizon + 0.1
+        return self._radius + stop + self._horizon + _STEP_M + speed * _COSTMAP_AGE_S
 
     def check(self, pose: Pose2, motion: Command) -> Verdict:
         """How much of ``motion`` may be commanded at ``pose`` (map).

@@ -95,9 +95,10 @@ class PieceDrive:
         """Turn in place to the path while the heading error is too big to drive."""
         params = self._with.params
         if self._turn is None:
+            error = abs(self.at.heading_error)
             moving = abs(inputs.speed) > STANDSTILL_MPS
-            bearable = params.rotate_above_rad + (_HYSTERESIS_RAD if moving else 0.0)
-            if abs(self.at.heading_error) <= bearable:
+            bearable = params.rotate_above_rad + _HYSTERESIS_RAD
+            if error <= (bearable if moving else params.rotate_above_rad):
                 return None
             travel = self._piece.heading[self.at.sample]
             back = math.pi if self._piece.direction < 0 else 0.0
@@ -107,10 +108,15 @@ class PieceDrive:
                 tolerance=params.turn_tolerance_rad,
                 limits=self._with.limits,
                 is_free=self._with.collision.turn_is_free,
+                # Rather steer than nearly a lap round.
+                either_way=error > bearable,
             )
         wanted = self._turn.step(inputs, self._with.turn_gain.value)
-        if wanted is None:
+        if wanted is None or (
+            wanted.state is ControlState.BLOCKED and not self._turn.either_way
+        ):
             self._turn = None
+            return None
         return wanted
 
     def _speed(self, kappa: float, speed: float, clearance: float) -> float:

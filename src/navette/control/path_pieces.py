@@ -24,6 +24,8 @@ from navette.geometry import angle_difference, wrap_angle
 
 SAMPLE_M = 0.05  # spacing of the points on a piece
 _LONGEST_M = 1e5
+_STEP_LEG_M = 0.25
+_STEP_ANGLE_RAD = 0.6  # less than the 45° of an 8-connected step
 _SAME_PLACE_M = 0.005
 _SIMPLIFY_M = 0.01  # well below a cell: keeps arcs, drops the points between corners
 
@@ -152,6 +154,8 @@ def _drive(
 ) -> list[Piece]:
     """One run of one direction: drive pieces with turns at its sharp corners."""
     corners = simplify(points, _SIMPLIFY_M)
+    if _has_steps(corners):
+        corners = simplify(points, 2 * tolerance)
     angles = turn_angles(corners)
     pieces: list[Piece] = []
     for part in split_at(corners, np.abs(angles) > sharp):
@@ -164,6 +168,16 @@ def _drive(
             pieces.append(TurnPiece(wrap_angle(facing), turn))
         pieces.append(piece)
     return pieces
+
+
+def _has_steps(corners: Points) -> bool:
+    """Whether the way points go from cell to cell, as a raw grid search gives them.
+
+    Rounding each step of such a stair would be a crawl, turning at each a standstill.
+    """
+    legs = np.hypot(*np.diff(corners, axis=0).T)
+    short = np.minimum(legs[:-1], legs[1:]) < _STEP_LEG_M
+    return bool(np.any(short & (np.abs(turn_angles(corners)) > _STEP_ANGLE_RAD)))
 
 
 def sample_piece(points: Points, direction: int) -> DrivePiece:

@@ -65,6 +65,7 @@ class TurnInPlace:
         planned: the turn as planned (rad, signed), 0 if only the target counts.
         tolerance: heading error (rad) that counts as done.
         is_free: whether the body may turn by so much (rad, signed) at a pose.
+        either_way: turn the other way round where the preferred one is not free.
     """
 
     def __init__(
@@ -75,12 +76,14 @@ class TurnInPlace:
         tolerance: float,
         limits: MotionLimits,
         is_free: Callable[[Pose2, float], bool],
+        either_way: bool = True,
     ) -> None:
         self._target = target
         self._planned = planned
         self._tolerance = tolerance
         self._limits = limits
         self._is_free = is_free
+        self.either_way = either_way
         self._direction = 0
 
     def step(self, inputs: FollowerInputs, turn_gain: float) -> Wanted | None:
@@ -110,10 +113,10 @@ class TurnInPlace:
         self._direction = 0
 
     def _choose(self, inputs: FollowerInputs) -> bool:
-        """Pick the preferred direction if its sweep is free, else the other way."""
+        """Pick a direction whose sweep is free, the preferred one first."""
         yaw = inputs.pose.yaw
         preferred = choose_direction(self._target, yaw, inputs.turn_rate, self._planned)
-        for direction in (preferred, -preferred):
+        for direction in (preferred, -preferred)[: 2 if self.either_way else 1]:
             turn = remaining_turn(self._target, yaw, direction)
             if direction * turn < 0:
                 turn += direction * math.tau

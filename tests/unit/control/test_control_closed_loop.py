@@ -212,6 +212,17 @@ def test_a_turn_that_is_free_neither_way_is_blocked() -> None:
     assert plant.pose == (0, 0, 0)
 
 
+def test_a_small_turn_that_is_not_free_is_steered_instead() -> None:
+    post = np.array([[1.4, 0.75]])
+    follower = PathFollower(big_robot())
+    follower.set_obstacles(post, 0.05)
+    follower.set_path(tangent_path(np.array([[0, 0], [5, 4.2]])))
+    plant = Plant(Pose2(0, 0, 0))
+    result = run(follower, plant, 5.0)
+    assert min(o.command.turn_rate for o in result.outputs) > -0.2
+    assert closest(result, post) > 0.0
+
+
 def test_a_narrow_corridor_is_passed_slowly() -> None:
     walls = np.concatenate((seg((-3, 0.83), (14, 0.83)), seg((-3, -0.83), (14, -0.83))))
     follower = PathFollower(big_robot())

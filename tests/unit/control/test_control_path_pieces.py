@@ -87,6 +87,20 @@ def test_headings_that_were_left_out_mean_forward() -> None:
     assert set(kinds(split(path))) == {"forward"}
 
 
+@pytest.mark.parametrize("diagonal", [False, True])
+def test_a_stair_of_cells_is_one_smooth_piece(diagonal: bool) -> None:
+    cells = [(0.0, 0.0)]
+    for k in range(60):
+        x, y = cells[-1]
+        if not diagonal:
+            cells += [(x + 0.1, y), (x + 0.1, y + 0.1)]
+        else:
+            cells.append((x + 0.1, y + 0.1 * (k % 2)))
+    [piece] = split(tangent_path(np.array(cells), spacing=0.2))
+    assert isinstance(piece, DrivePiece)
+    assert max(map(abs, piece.curvature)) < 0.1
+
+
 def test_one_pose_or_the_same_pose_again_is_nothing_to_drive() -> None:
     assert split(np.array([[1.0, 2.0, 0.5]])) == []
     assert split(np.array([[1.0, 2.0, 0.5]] * 3)) == []
