@@ -11,6 +11,11 @@ and width: one contact point in the wheel's plane, as a tyre has. A rigid cylind
 rests on both rims, which scrub against each other when the robot turns: it turned
 6–12 % slower than commanded, the crowned tyre within 1 %. Against obstacles the
 wheel keeps its true shape.
+
+Skid steering slides all four tyres sideways. On stiff contacts that makes MuJoCo's
+wheels hop and the robot turns at a fifth of the commanded rate, in jerks; compliant
+tyres, as such robots have, slide smoothly. A drive's effective wheel separation
+then is 1.6 (Jackal) to 2 (Husky) times the track, as the makers' settings too say.
 """
 
 from dataclasses import dataclass, replace
@@ -39,7 +44,11 @@ GROUND, OBSTACLE, FREE = 1, 2, 4
 SEEN_SOLID, SEEN, SOLID = 0, 1, 2
 ROBOT_GROUP = 3  # added to the three above
 
-_SERVO_TIME_S = 0.01  # time constant of the wheel speed servo
+_SERVO_TIME_S = 0.002  # time constant of the wheel speed servo; longer ones droop
+_STIFF_IMPRATIO = 10.0  # friction stiffer than contact: little creep
+_STIFF_SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default
+_TYRE_IMPRATIO = 1.0
+_TYRE_SOLIMP = (0.3, 0.8, 0.01, 0.5, 2.0)  # a tyre that gives by millimetres
 
 
 @dataclass(frozen=True)
@@ -83,7 +92,9 @@ def compile_scene(scene: Scene, *, timestep_s: float) -> Compiled:
     if robot is None or robot.drive is None:
         raise InvalidValueError(f"world {scene.name!r} has no robot with a drive")
     spec = _empty_spec(scene, timestep_s)
-    builder = _Builder(spec, scene)
+    skid = len(drive_wheels(robot)) > 2
+    spec.option.impratio = _TYRE_IMPRATIO if skid else _STIFF_IMPRATIO
+    builder = _Builder(spec, scene, _TYRE_SOLIMP if skid else _STIFF_SOLIMP)
     builder.add_ground_if_missing()
     for model in scene.models:
         builder.add_model(model, is_robot=model is robot)
@@ -104,13 +115,15 @@ def _empty_spec(scene: Scene, timestep_s: float) -> mujoco.MjSpec:
     spec.option.timestep = timestep_s
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    spec.option.impratio = 10.0  # less creep of standing wheels
     return spec
 
 
 class _Builder:
-    def __init__(self, spec: mujoco.MjSpec, scene: Scene) -> None:
+    def __init__(
+        self, spec: mujoco.MjSpec, scene: Scene, tyre_solimp: tuple[float, ...]
+    ) -> None:
         self.spec = spec
+        self.tyre_solimp = tyre_solimp
         self.scene = scene
         self.owner: dict[str, str] = {}
         self.ground: set[str] = set()
@@ -235,6 +248,7 @@ class _Builder:
             conaffinity=GROUND,
             friction=min(friction_of(tyre.friction), self.ground_friction),
             priority=1,
+            solimp=self.tyre_solimp,
         )
 
     def add_servos(self, robot: Model, drive: DiffDrive) -> None:

@@ -35,15 +35,15 @@ def _transform(node: XmlNode) -> Transform3:
         return Transform3.identity()
     if node.attributes.get("rotation_format", "euler_rpy") == "quat_xyzw":
         values = node.numbers(7)
-        return Transform3(values[:3], _normalised(node, values[3:]))
-    values = node.numbers(6)
-    angles = values[3:]
+        x, y, z, *quaternion = values
+        return Transform3((x, y, z), _normalised(node, quaternion))
+    x, y, z, *angles = node.numbers(6)
     if node.attributes.get("degrees", "false") in ("true", "1"):
-        angles = tuple(math.radians(angle) for angle in angles)
-    return Transform3(values[:3], quaternion_from_rpy(*angles))
+        angles = [math.radians(angle) for angle in angles]
+    return Transform3((x, y, z), quaternion_from_rpy(*angles))
 
 
-def _normalised(node: XmlNode, values: tuple[float, ...]) -> Quaternion:
+def _normalised(node: XmlNode, values: list[float]) -> Quaternion:
     norm = math.sqrt(sum(value * value for value in values))
     if norm < 1e-6:
         raise node.error("a quaternion of length 0")

@@ -2,7 +2,9 @@
 """SDF sensors and drive plugins (Gazebo classic, Ignition, gz)."""
 
 import math
+from typing import TypedDict
 
+from navette.geometry import Transform3
 from navette.sim.scene import (
     CameraSensor,
     ContactSensor,
@@ -40,17 +42,25 @@ _REPLACED = (
 )
 
 
+class _Common(TypedDict):
+    """What every sensor has."""
+
+    name: str
+    link_T_sensor: Transform3
+    topic: str
+
+
 def read_sensors(
     link: XmlNode, graph: PoseGraph, link_name: str, unsupported: Unsupported
 ) -> tuple[Sensor, ...]:
     """The sensors of a link that the simulator can play."""
     sensors: list[Sensor] = []
     for node in link.all("sensor"):
-        common = {
-            "name": node.name(),
-            "link_T_sensor": graph.resolve_in(link_name, read_pose(node)),
-            "topic": _topic(node),
-        }
+        common = _Common(
+            name=node.name(),
+            link_T_sensor=graph.resolve_in(link_name, read_pose(node)),
+            topic=_topic(node),
+        )
         sensor = _read_sensor(node, common, unsupported)
         if sensor is not None:
             sensors.append(sensor)
@@ -58,7 +68,7 @@ def read_sensors(
 
 
 def _read_sensor(
-    node: XmlNode, common: dict[str, object], unsupported: Unsupported
+    node: XmlNode, common: _Common, unsupported: Unsupported
 ) -> Sensor | None:
     kind = node.need_attribute("type")
     if kind in _LIDAR_TYPES:
@@ -71,7 +81,7 @@ def _read_sensor(
         contact = node.find("contact")
         names = [c.text.strip() for c in contact.all("collision")] if contact else []
         rate = _rate(node, 10.0)
-        return ContactSensor(**common, rate_hz=rate, collisions=tuple(names))  # type: ignore[arg-type]
+        return ContactSensor(**common, rate_hz=rate, collisions=tuple(names))
     unsupported.note(f"sensor of type {kind!r}", node)
     return None
 
@@ -92,7 +102,7 @@ def _topic(node: XmlNode) -> str:
 
 
 def _lidar(
-    node: XmlNode, kind: str, common: dict[str, object], unsupported: Unsupported
+    node: XmlNode, kind: str, common: _Common, unsupported: Unsupported
 ) -> LidarSensor:
     body = node.find("ray") or node.find("lidar")
     if body is None:
@@ -115,7 +125,7 @@ def _lidar(
     if not 0 <= range_min < range_max:
         raise limits.error(f"min {range_min:g} and max {range_max:g} m make no range")
     return LidarSensor(
-        **common,  # type: ignore[arg-type]
+        **common,
         rate_hz=_rate(node, 10.0),
         samples=samples,
         angle_min=angle_min,
@@ -127,7 +137,7 @@ def _lidar(
     )
 
 
-def _camera(node: XmlNode, common: dict[str, object]) -> CameraSensor:
+def _camera(node: XmlNode, common: _Common) -> CameraSensor:
     body = node.need("camera")
     image, clip = body.find("image"), body.find("clip")
     width = round(image.positive("width", 320.0)) if image else 320
@@ -138,7 +148,7 @@ def _camera(node: XmlNode, common: dict[str, object]) -> CameraSensor:
     if fov >= math.pi:
         raise body.error(f"<horizontal_fov> is {fov:g}; a pinhole has less than pi")
     return CameraSensor(
-        **common,  # type: ignore[arg-type]
+        **common,
         rate_hz=_rate(node, 30.0),
         width=width,
         height=height,
@@ -149,9 +159,9 @@ def _camera(node: XmlNode, common: dict[str, object]) -> CameraSensor:
     )
 
 
-def _imu(node: XmlNode, common: dict[str, object]) -> ImuSensor:
+def _imu(node: XmlNode, common: _Common) -> ImuSensor:
     return ImuSensor(
-        **common,  # type: ignore[arg-type]
+        **common,
         rate_hz=_rate(node, 100.0),
         acceleration_stddev=_stddev(node.find("imu", "linear_acceleration", "x")),
         angular_velocity_stddev=_stddev(node.find("imu", "angular_velocity", "x")),

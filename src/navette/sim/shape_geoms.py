@@ -39,6 +39,7 @@ def add_geom(
     conaffinity: int,
     friction: float | None = None,
     priority: int = 0,
+    solimp: tuple[float, ...] | None = None,
 ) -> None:
     """Add one geom to a body; friction is the geometry's own unless given."""
     kind, size = _size(geometry.shape)
@@ -49,7 +50,7 @@ def add_geom(
     x, y, z, w = rotation
     r, g, b, a = geometry.colour or _DEFAULT_COLOUR
     sliding = friction_of(geometry.friction) if friction is None else friction
-    body.add_geom(
+    geom = body.add_geom(
         name=name,
         type=kind,
         size=size,
@@ -64,6 +65,8 @@ def add_geom(
         friction=(sliding, 0.005, 0.0001),
         priority=priority,
     )
+    if solimp is not None:
+        geom.solimp = solimp
 
 
 def _size(shape: Shape) -> tuple[mujoco.mjtGeom, list[float]]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, Transform3, Vector3
-from navette.geometry.se3 import multiply, rotate
+from navette.geometry.se3 import rotate
 from navette.sim.build import Compiled, compile_scene
 from navette.sim.clearance import Clearance, ClearanceProbe
 from navette.sim.contacts import ContactMonitor

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Worlds and robots by name (built in) or by file."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from navette.errors import FileFormatError, UnknownNameError
+from navette.sim.mjcf import read_mjcf
+from navette.sim.occupancy_map import read_map
+from navette.sim.scene import Model, Scene
+from navette.sim.sdf import read_sdf
+from navette.sim.urdf import read_urdf_robot, read_urdf_world
+
+_DATA = Path(__file__).parent / "data"
+_WORLDS = _DATA / "worlds"
+_ROBOTS = _DATA / "robots"
+
+_WORLD_READERS = {
+    ".sdf": read_sdf,
+    ".world": read_sdf,
+    ".urdf": read_urdf_world,
+    ".xml": read_mjcf,
+    ".yaml": read_map,
+    ".yml": read_map,
+}
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot and, when it is built in, the file of its parameters for all nodes."""
+
+    name: str
+    model: Model
+    params_file: Path | None = None
+
+
+def world_names() -> list[str]:
+    """Names of the built-in worlds."""
+    return sorted(path.stem for path in _WORLDS.glob("*.sdf"))
+
+
+def robot_names() -> list[str]:
+    """Names of the built-in robots."""
+    return sorted(path.parent.name for path in _ROBOTS.glob("*/model.sdf"))
+
+
+def load_world(name_or_path: str | Path) -> Scene:
+    """A built-in world by name, or one from a .sdf, .world, .urdf, .xml, .yaml file.
+
+    Raises:
+        UnknownNameError: neither a built-in name nor a file; lists the names.
+        FileFormatError: the file is of no known kind or broken.
+    """
+    if str(name_or_path) in world_names():
+        return replace(
+            read_sdf(_WORLDS / f"{name_or_path}.sdf"), name=str(name_or_path)
+        )
+    path = _existing(name_or_path, "world", world_names())
+    reader = _WORLD_READERS.get(path.suffix.lower())
+    if reader is None:
+        kinds = ", ".join(_WORLD_READERS)
+        raise FileFormatError(path, f"not a kind of world that is read: {kinds}")
+    return reader(path)
+
+
+def load_robot(name_or_path: str | Path) -> Robot:
+    """A built-in robot by name, or the robot in an .sdf or .urdf file.
+
+    Raises:
+        UnknownNameError: neither a built-in name nor a file; lists the names.
+        FileFormatError: the file is broken or holds no model with a drive.
+    """
+    if str(name_or_path) in robot_names():
+        folder = _ROBOTS / str(name_or_path)
+        model = _driven(read_sdf(folder / "model.sdf"), folder / "model.sdf")
+        return Robot(str(name_or_path), model, folder / "params.yaml")
+    path = _existing(name_or_path, "robot", robot_names())
+    if path.suffix.lower() == ".urdf":
+        model = read_urdf_robot(path)
+        return Robot(model.name, model)
+    if path.suffix.lower() in (".sdf", ".world"):
+        model = _driven(read_sdf(path), path)
+        return Robot(model.name, model)
+    raise FileFormatError(path, "not a kind of robot that is read: .sdf, .urdf")
+
+
+def identify_robot(model: Model) -> Robot | None:
+    """The built-in robot that ``model`` is, told by its name and its wheels.
+
+    A world that brings its own copy of a known robot gets that robot's parameters.
+    """
+    for name in robot_names():
+        known = load_robot(name)
+        if known.model.name == model.name and _same_drive(known.model, model):
+            return replace(known, model=model)
+    return None
+
+
+def _same_drive(a: Model, b: Model) -> bool:
+    if a.drive is None or b.drive is None:
+        return False
+    pairs = (
+        (a.drive.wheel_radius, b.drive.wheel_radius),
+        (a.drive.wheel_separation, b.drive.wheel_separation),
+    )
+    return all(abs(p - q) <= 0.02 * p for p, q in pairs)
+
+
+def _driven(scene: Scene, path: Path) -> Model:
+    if scene.robot is None:
+        raise FileFormatError(path, "no model with a differential drive in it")
+    return scene.robot
+
+
+def _existing(name_or_path: str | Path, kind: str, known: list[str]) -> Path:
+    path = Path(name_or_path)
+    if not path.is_file():
+        raise UnknownNameError.of(f"{kind} (nor is it a file)", str(path), known)
+    return path

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MuJoCo model files as worlds: checked here, compiled by MuJoCo itself."""
+
+from pathlib import Path
+
+from navette.sim.scene import Scene
+from navette.sim.xml_tree import XmlNode, parse_xml
+
+_FILE_ATTRIBUTES = ("file", "meshdir", "texturedir", "assetdir", "fileright")
+_REFUSED = ("plugin", "extension")
+
+
+def read_mjcf(path: Path) -> Scene:
+    """A world from an MJCF file; the file's own contents stay as MuJoCo reads them.
+
+    Raises:
+        FileFormatError: not MJCF, unsafe XML, plugins, or files outside its folder.
+    """
+    root = parse_xml(path)
+    if root.tag != "mujoco":
+        raise root.error("an MJCF file starts with <mujoco>")
+    _check(root, {path.resolve()})
+    return Scene(name=root.attributes.get("model", path.stem), mjcf=path)
+
+
+def _check(node: XmlNode, seen: set[Path]) -> None:
+    if node.tag in _REFUSED:
+        raise node.error("plugins are not loaded")
+    for key in _FILE_ATTRIBUTES:
+        value = node.attributes.get(key, "")
+        if value and (Path(value).is_absolute() or ".." in Path(value).parts):
+            raise node.error(f"{key}={value!r} leaves the file's folder")
+    for child in node.children:
+        _check(child, seen)
+    if node.tag == "include" and "file" in node.attributes:
+        inner = (node.path.parent / node.attributes["file"]).resolve()
+        if inner in seen:
+            raise node.error(f"{inner.name!r} is included twice")
+        _check(parse_xml(inner), seen | {inner})
