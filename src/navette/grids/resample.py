@@ -26,6 +26,10 @@ MergeMode = Literal["overwrite", "max"]
 FRACTION_BITS = 32
 ONE = 1 << FRACTION_BITS
 
+# Cells; breaks ties one way for all. Robots start at round poses, where each cell's
+# centre lies on a border of the other grid and rounding would pick either side.
+TIE = 1e-6
+
 Affine = tuple[float, float, float, float]
 
 
@@ -134,8 +138,8 @@ def grid_relation(outer: GridSpec, inner: GridSpec) -> Affine:
     return (
         scale * math.cos(outer_T_inner.yaw),
         scale * math.sin(outer_T_inner.yaw),
-        outer_T_inner.x / outer.resolution,
-        outer_T_inner.y / outer.resolution,
+        outer_T_inner.x / outer.resolution + TIE,
+        outer_T_inner.y / outer.resolution + TIE,
     )
 
 

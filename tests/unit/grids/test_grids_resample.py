@@ -136,3 +136,37 @@ def test_bad_input_is_named() -> None:
             miss=-0.5,
             limit=2.0,
         )
+
+
+def test_far_from_the_sensor_lethal_cells_are_kept() -> None:
+    source = np.zeros((100, 100), np.int8)
+    spec = placed(GridSpec(0.1, 100, 100, Pose2(-5.0, -5.0, 0.0)), Pose2(1, 0, 0.7))
+    target = np.full(MAP.shape, 100, np.int8)
+    merge(target, MAP, source, spec, sensor=(1.0, 0.5), erase_within=2.0)
+    covered = pulled(target, source, spec) == 0
+    row, column = np.mgrid[0 : MAP.height, 0 : MAP.width]
+    x, y = (column + 0.5) * 0.1 - 7.0, (row + 0.5) * 0.1 - 6.0
+    distance = np.hypot(x - 1.0, y - 0.5)
+    assert (target[covered & (distance < 1.999)] == 0).all()
+    assert (target[distance > 2.001] == 100).all()
+
+
+def test_far_from_the_sensor_the_rest_is_overwritten_all_the_same() -> None:
+    source = np.array([[0, 50], [-1, 100]], np.int8)
+    spec = GridSpec(0.1, 2, 2, Pose2(3.0, 3.0, 0.0))
+    target = np.full(MAP.shape, 70, np.int8)
+    merge(target, MAP, source, spec, sensor=(0.0, 0.0), erase_within=0.0)
+    assert target[90:92, 100:102].tolist() == [[0, 50], [70, 100]]
+
+
+@pytest.mark.parametrize("yaw", [0.0, math.pi / 2, math.pi, -math.pi / 2])
+def test_a_wall_has_no_gaps_where_centres_lie_on_borders(yaw) -> None:
+    source = np.zeros((61, 61), np.int8)
+    source[:, 40] = 100
+    spec = placed(GridSpec(0.1, 61, 61, Pose2(-3.05, -3.05, 0.0)), Pose2(0, 0, yaw))
+    target = unknown()
+    merge(target, MAP, source, spec)
+    assert (target == 100).sum() == 61
+    assert (
+        max((target == 100).sum(axis=0).max(), (target == 100).sum(axis=1).max()) == 61
+    )
