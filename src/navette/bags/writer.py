@@ -78,19 +78,11 @@ class BagWriter:
         self._sequences[channel] = 0
         return channel
 
-    def write(
-        self, channel: int, stamp_ns: int, payload: bytes, published_ns: int
-    ) -> None:
-        """Append a message.
-
-        Args:
-            stamp_ns: when it was recorded.
-            payload: CDR with its 4-byte header.
-            published_ns: when it was published.
-        """
+    def write(self, channel: int, stamp_ns: int, payload: bytes) -> None:
+        """Append a message: CDR with its 4-byte header, and when it was heard."""
         sequence = self._sequences[channel] + 1
         self._sequences[channel] = sequence
-        self._mcap.add_message(channel, stamp_ns, payload, published_ns, sequence)
+        self._mcap.add_message(channel, stamp_ns, payload, stamp_ns, sequence)
 
     @property
     def message_count(self) -> int:

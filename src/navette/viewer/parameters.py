@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 from navette.errors import ParameterError
 from navette.viewer.frames import WireParameter
 
@@ -32,6 +34,8 @@ def to_wire(name: str, value: Any) -> WireParameter:
         return WireParameter(name, base64.b64encode(value).decode(), "byte_array")
     if isinstance(value, float):
         return WireParameter(name, value if math.isfinite(value) else None, "float64")
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
     if isinstance(value, bool | int | str) or value is None:
         return WireParameter(name, value)
     return _array_to_wire(name, list(value))
@@ -89,8 +93,9 @@ def _float(parameter: WireParameter, value: object) -> float:
     return float(value)
 
 
-def _bytes_of(parameter: WireParameter) -> bytes:
+def _bytes_of(parameter: WireParameter) -> list[bytes]:
     try:
-        return base64.b64decode(parameter.value, validate=True)
+        data = base64.b64decode(parameter.value, validate=True)
     except (binascii.Error, TypeError, ValueError):
         raise ParameterError(f"parameter {parameter.name!r}: is not base64") from None
+    return [bytes([byte]) for byte in data]

@@ -33,7 +33,7 @@ def write_greetings(path: Path, count: int = 100, *, close: bool = True) -> BagW
     for number in range(count):
         stamp = number * 10_000_000
         payload = serialize(String(data=f"hello {number}"))
-        writer.write(channels[number % 2], stamp, payload, stamp)
+        writer.write(channels[number % 2], stamp, payload)
         if number % 20 == 19:
             writer.flush()
     if close:
@@ -76,7 +76,7 @@ def test_chunks_end_by_size(tmp_path: Path) -> None:
     writer = BagWriter(path)
     channel = writer.add_channel("/chatter", STRING, definition_text(STRING))
     for number in range(100):
-        writer.write(channel, number, bytes(20_000), number)
+        writer.write(channel, number, bytes(20_000))
     writer.close()
     with path.open("rb") as file:
         summary = make_reader(file).get_summary()

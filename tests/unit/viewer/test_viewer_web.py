@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from navette.errors import ParameterError, UnknownNameError
@@ -140,6 +141,7 @@ def test_the_layout_holds_its_panels_together() -> None:
         ([b"A", b"B"], WireParameter("p", "QUI=", "byte_array")),
         ([1, 2], WireParameter("p", [1, 2])),
         ([], WireParameter("p", [])),
+        (np.array([1.0, 2.0]), WireParameter("p", [1.0, 2.0], "float64_array")),
         ((0.5, 2.0), WireParameter("p", [0.5, 2.0], "float64_array")),
         (["a"], WireParameter("p", ["a"])),
         (float("nan"), WireParameter("p", None, "float64")),
@@ -164,7 +166,7 @@ def test_parameters_go_out(value: object, wire: WireParameter) -> None:
         (WireParameter("p", [1, 2.5]), None, [1.0, 2.5]),
         (WireParameter("p", [1, 2]), [3], [1, 2]),
         (WireParameter("p", ["a"]), ["b"], ["a"]),
-        (WireParameter("p", "QUJDRA==", "byte_array"), None, b"ABCD"),
+        (WireParameter("p", "QUJDRA==", "byte_array"), None, [b"A", b"B", b"C", b"D"]),
     ],
 )
 def test_parameters_come_in(

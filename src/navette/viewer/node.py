@@ -1,0 +1,378 @@
+"""The node ``viewer``: shows every topic of its context to Foxglove and browsers.
+
+Two threads meet here. Node methods run on the executor's thread; :class:`_Bridge`
+turns the hub's wishes (socket thread) into events of the executor, and what goes to
+clients passes through the server's queue. Neither thread waits for the other.
+
+Before any topic exists it shows none; topics appear as the graph changes. A topic
+that no client watches is not subscribed.
+"""
+
+import importlib.resources
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from functools import partial
+from pathlib import Path
+from typing import Any, ClassVar
+
+from navette._version import __version__
+from navette.errors import NavetteError, ParameterError, UnknownNameError
+from navette.msgs import definition_text, get_interface, serialize
+from navette.msgs.rcl_interfaces.msg import ParameterEvent, SetParametersResult
+from navette.params import Params
+from navette.runtime.context import Context
+from navette.runtime.node import Node
+from navette.runtime.parameter import Parameter
+from navette.runtime.publisher import Publisher
+from navette.runtime.qos import (
+    qos_profile_best_available,
+    qos_profile_default,
+    qos_profile_parameter_events,
+)
+from navette.runtime.stage import StageNode
+from navette.runtime.subscription import Subscription
+from navette.viewer.assets import AssetFolders
+from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.hub import Hub
+from navette.viewer.layout import build_layout
+from navette.viewer.parameters import from_wire, split_name, to_wire, wire_name
+from navette.viewer.params import ViewerParams
+from navette.viewer.publishing import decode_message
+from navette.viewer.server import ViewerServer
+from navette.viewer.session import Watch
+from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
+from navette.viewer.web import Gate, Site
+
+
+class ViewerNode(StageNode):
+    """The live view; serves from its making until :meth:`close`.
+
+    Args:
+        asset_folders: package name → folder, for ``package://<name>/…`` addresses.
+
+    Raises:
+        InvalidValueError: the port is in use or the address cannot be bound.
+    """
+
+    PARAMS: ClassVar[type[Params]] = ViewerParams
+    params: ViewerParams
+
+    def __init__(
+        self,
+        *,
+        context: Context | None = None,
+        asset_folders: Mapping[str, Path] | None = None,
+        parameter_overrides: Sequence[Parameter[Any]] | None = None,
+    ) -> None:
+        super().__init__(
+            "viewer", context=context, parameter_overrides=parameter_overrides
+        )
+        self._watched: dict[Watch, Subscription[Any]] = {}
+        self._opened: dict[tuple[int, int], tuple[str, Publisher[Any]]] = {}
+        self._definitions: dict[str, str | None] = {}
+        self._refreshing = False
+        self._stop_listening: Callable[[], None] = _nothing
+        self._hub = Hub(
+            _Bridge(self),
+            name="Navette",
+            # The same for a reconnecting client, another for another run.
+            session_id=f"navette-{id(self):x}",
+            assets=AssetFolders(asset_folders or {}),
+        )
+        self._server = self._make_server()
+        try:
+            self._server.start()
+        except NavetteError:
+            super().destroy_node()
+            raise
+        self.add_on_set_parameters_callback(_refuse_changes)
+        self.create_subscription(
+            ParameterEvent,
+            "/parameter_events",
+            self._on_parameter_event,
+            qos_profile_parameter_events,
+            shared=True,
+        )
+        self._stop_listening = self.context.graph.on_change(self._on_graph_change)
+        self._refresh()
+
+    @property
+    def port(self) -> int:
+        """The TCP port that is listened on."""
+        return self._server.port
+
+    @property
+    def url(self) -> str:
+        """The page's address; the same with ``ws://`` is what Foxglove opens."""
+        host = self.params.host
+        if host in ("0.0.0.0", "::", ""):
+            host = "127.0.0.1"
+        return f"http://{f'[{host}]' if ':' in host else host}:{self.port}"
+
+    @property
+    def client_count(self) -> int:
+        """Clients that are connected."""
+        return self._hub.clients
+
+    def close(self) -> None:
+        """Let the clients go, end the thread, leave the graph; twice is harmless."""
+        self.destroy_node()
+
+    def destroy_node(self) -> None:
+        self._server.close()
+        self._stop_listening()
+        self._stop_listening = _nothing
+        super().destroy_node()
+
+    # -- what the robot says -----------------------------------------------------
+
+    def _on_graph_change(self) -> None:
+        """Called from within a change, maybe of many: look once, and later."""
+        if not self._refreshing:
+            self._refreshing = True
+            self.run_soon(self._refresh, "graph")
+
+    def _refresh(self) -> None:
+        self._refreshing = False
+        ends = self._topic_ends()
+        topics = topics_of(ends, self._definition)
+        self._server.call(self._hub.set_topics, topics)
+        self._server.call(self._hub.set_graph, graph_of(ends))
+
+    def _topic_ends(self) -> list[TopicEnd]:
+        """Without what the viewer itself subscribes to: that keeps no topic alive."""
+        own = self.get_fully_qualified_name()
+        found = (
+            TopicEnd(
+                topic=endpoint.topic,
+                type_name=endpoint.type_name,
+                node=endpoint.node_full_name,
+                publishes=endpoint.kind.name == "PUBLISHER",
+                latched=endpoint.qos.is_latched,
+            )
+            for endpoint in self.context.graph.endpoints()
+        )
+        return [end for end in found if end.publishes or end.node != own]
+
+    def _definition(self, topic: str, type_name: str) -> str | None:
+        """The type's text; None, and a warning once, for types nobody knows."""
+        if type_name not in self._definitions:
+            try:
+                self._definitions[type_name] = definition_text(type_name)
+            except UnknownNameError as error:
+                self._definitions[type_name] = None
+                self.get_logger().warning(f"cannot show {topic}: {error}")
+        return self._definitions[type_name]
+
+    def _on_parameter_event(self, event: ParameterEvent) -> None:
+        changed = [
+            _to_wire(event.node, Parameter.from_parameter_msg(parameter))
+            for parameter in (*event.new_parameters, *event.changed_parameters)
+        ]
+        changed += [
+            WireParameter(wire_name(event.node, parameter.name), None)
+            for parameter in event.deleted_parameters
+        ]
+        self._server.call(self._hub.parameters_changed, changed)
+
+    # -- what clients want (executor thread) ---------------------------------------
+
+    def watch(self, watch: Watch) -> None:
+        """Subscribe for a client, or for all of them."""
+        channel = watch.channel
+        try:
+            self._watched[watch] = self.create_subscription(
+                get_interface(channel.type_name),
+                channel.topic,
+                partial(self._forward, watch),
+                qos_profile_best_available,  # latched messages too
+                shared=True,
+            )
+        except NavetteError as error:  # the topic has changed since it was advertised
+            self.get_logger().warning(f"cannot watch {channel.topic}: {error}")
+
+    def unwatch(self, watch: Watch) -> None:
+        subscription = self._watched.pop(watch, None)
+        if subscription is not None:
+            self.destroy_subscription(subscription)
+
+    def _forward(self, watch: Watch, message: Any) -> None:
+        self._server.offer(watch, self.get_clock().now_ns, serialize(message))
+
+    def open_publisher(self, client: int, channel: ClientChannel) -> None:
+        """Raises NavetteError for what cannot be published; as do the next ones."""
+        publisher: Publisher[Any] = self.create_publisher(
+            get_interface(channel.type_name), channel.topic, qos_profile_default
+        )
+        self._opened[client, channel.id] = channel.encoding, publisher
+
+    def close_publisher(self, client: int, channel_id: int) -> None:
+        opened = self._opened.pop((client, channel_id), None)
+        if opened is not None:
+            self.destroy_publisher(opened[1])
+
+    def publish_for(self, client: int, channel_id: int, data: bytes) -> None:
+        opened = self._opened.get((client, channel_id))
+        if opened is not None:
+            encoding, publisher = opened
+            publisher.publish(decode_message(encoding, publisher.msg_type, data))
+
+    def get_wire_parameters(self, names: tuple[str, ...]) -> list[WireParameter]:
+        """The named parameters, or all; names that nobody has are left out."""
+        found = {
+            parameter.name: parameter
+            for node in self.context.nodes
+            for parameter in _parameters_of(node)
+        }
+        if not names:
+            return list(found.values())
+        wanted = (wire_name(*split_name(name)) for name in names)
+        return [found[name] for name in wanted if name in found]
+
+    def set_wire_parameter(self, wire: WireParameter) -> None:
+        """Set one parameter of any node.
+
+        Raises:
+            ParameterError: no such parameter, or the node refuses the value.
+        """
+        node_name, name = split_name(wire.name)
+        for node in self.context.nodes:
+            if node.get_fully_qualified_name() == node_name and node.has_parameter(
+                name
+            ):
+                break
+        else:
+            raise ParameterError(f"parameter {wire.name!r:.120}: nobody has it")
+        value = from_wire(wire, node.get_parameter(name).value)
+        try:
+            parameter: Parameter[Any] = Parameter(name, value=value)
+        except (TypeError, ValueError) as error:
+            raise ParameterError(f"parameter {wire.name!r}: {error}") from None
+        (result,) = node.set_parameters([parameter])
+        if not result.successful:
+            raise ParameterError(f"parameter {wire.name!r}: {result.reason}")
+
+    # -- between the threads -------------------------------------------------------
+
+    def run_soon(self, function: Callable[[], None], source: str) -> None:
+        """Run ``function`` on the executor's thread, as an event of this node."""
+        self.context.loop.call_soon_threadsafe(
+            function, f"viewer {source}", self.get_fully_qualified_name()
+        )
+
+    def answer(self, client: int, work: Callable[[], None]) -> None:
+        """Do a client's request; what is wrong with it is told to that client."""
+        try:
+            work()
+        except NavetteError as error:
+            self._server.call(self._hub.complain, client, str(error))
+        finally:
+            self._server.call(self._hub.done, client)
+
+    def send_parameters(
+        self, client: int, names: tuple[str, ...], request_id: str | None
+    ) -> None:
+        values = self.get_wire_parameters(names)
+        self._server.call(self._hub.parameters, client, values, request_id)
+
+    # -- inside --------------------------------------------------------------------
+
+    def _make_server(self) -> ViewerServer:
+        params = self.params
+        page = importlib.resources.files("navette.viewer") / "data" / "page.html"
+        return ViewerServer(
+            self._hub,
+            Site(
+                page.read_bytes(),
+                build_layout(params.map_frame, params.base_frame),
+                self._health,
+            ),
+            Gate(params.host, params.allowed_origins, params.allowed_hosts),
+            host=params.host,
+            port=params.port,
+            now_ns=lambda: self.get_clock().now_ns,
+            time_rate_hz=params.time_rate_hz,
+            max_clients=params.max_clients,
+        )
+
+    def _health(self) -> dict[str, Any]:
+        return {
+            "status": "ok",
+            "version": __version__,
+            "clients": self._hub.clients,
+            "topics": len(self._hub.channels),
+            "time_s": self.get_clock().now_ns / 1e9,
+        }
+
+
+class _Bridge:
+    """The hub's :class:`~navette.viewer.session.Robot`: wishes become events."""
+
+    def __init__(self, node: ViewerNode) -> None:
+        self._node = node
+
+    def watch(self, watch: Watch) -> None:
+        self._node.run_soon(partial(self._node.watch, watch), "watch")
+
+    def unwatch(self, watch: Watch) -> None:
+        self._node.run_soon(partial(self._node.unwatch, watch), "unwatch")
+
+    def open_publisher(self, client: int, channel: ClientChannel) -> None:
+        self._ask(client, partial(self._node.open_publisher, client, channel))
+
+    def close_publisher(self, client: int, channel_id: int) -> None:
+        self._ask(client, partial(self._node.close_publisher, client, channel_id))
+
+    def publish(self, client: int, channel_id: int, data: bytes) -> None:
+        self._ask(client, partial(self._node.publish_for, client, channel_id, data))
+
+    def get_parameters(
+        self, client: int, names: tuple[str, ...], request_id: str | None
+    ) -> None:
+        send = partial(self._node.send_parameters, client, names, request_id)
+        self._ask(client, send)
+
+    def set_parameters(
+        self,
+        client: int,
+        parameters: tuple[WireParameter, ...],
+        request_id: str | None,
+    ) -> None:
+        def work() -> None:
+            try:
+                for parameter in parameters:
+                    self._node.set_wire_parameter(parameter)
+            finally:
+                # The values as they are now tell what was taken and what refused.
+                if request_id is not None:
+                    names = tuple(parameter.name for parameter in parameters)
+                    self._node.send_parameters(client, names, request_id)
+
+        self._ask(client, work)
+
+    def _ask(self, client: int, work: Callable[[], None]) -> None:
+        self._node.run_soon(partial(self._node.answer, client, work), "request")
+
+
+def _parameters_of(node: Node) -> list[WireParameter]:
+    own = node.get_fully_qualified_name()
+    found = node.get_parameters_by_prefix("").values()
+    return [_to_wire(own, parameter) for parameter in found]
+
+
+def _to_wire(node: str, parameter: Parameter[Any]) -> WireParameter:
+    return to_wire(wire_name(node, parameter.name), parameter.value)
+
+
+def _nothing() -> None:
+    """Nobody is listened to."""
+
+
+def _refuse_changes(parameters: list[Parameter[Any]]) -> SetParametersResult:
+    """The server is made once: its parameters count at the start."""
+    fixed = {field.name for field in fields(ViewerParams)}
+    for parameter in parameters:
+        if parameter.name in fixed:
+            reason = f"{parameter.name} takes effect at the start only"
+            return SetParametersResult(successful=False, reason=reason)
+    return SetParametersResult(successful=True)

@@ -1,0 +1,51 @@
+"""From the ends of topics (who publishes, who subscribes) to what clients are shown."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from navette.viewer.replies import Graph
+from navette.viewer.session import Topic
+
+
+@dataclass(frozen=True)
+class TopicEnd:
+    """One publisher or subscription; ``latched`` publishers keep their last samples."""
+
+    topic: str
+    type_name: str
+    node: str
+    publishes: bool
+    latched: bool = False
+
+
+def topics_of(
+    ends: Iterable[TopicEnd], definition_of: Callable[[str, str], str | None]
+) -> list[Topic]:
+    """Each topic and type once; latched if any of its publishers is.
+
+    Args:
+        definition_of: ros2msg text for a topic's type; None leaves the topic out.
+    """
+    latched: dict[tuple[str, str], bool] = {}
+    for end in ends:
+        key = end.topic, end.type_name
+        latched[key] = latched.get(key, False) or (end.publishes and end.latched)
+    return [
+        Topic(topic, type_name, definition, is_latched)
+        for (topic, type_name), is_latched in latched.items()
+        if (definition := definition_of(topic, type_name)) is not None
+    ]
+
+
+def graph_of(ends: Iterable[TopicEnd]) -> Graph:
+    """Publishing and subscribing nodes by topic."""
+    published: dict[str, set[str]] = {}
+    subscribed: dict[str, set[str]] = {}
+    for end in ends:
+        side = published if end.publishes else subscribed
+        side.setdefault(end.topic, set()).add(end.node)
+    return Graph(_sorted(published), _sorted(subscribed))
+
+
+def _sorted(names: dict[str, set[str]]) -> dict[str, tuple[str, ...]]:
+    return {topic: tuple(sorted(nodes)) for topic, nodes in names.items()}
