@@ -33,7 +33,10 @@ def _section(name: str, cls: Any) -> str:
                 for port in ports
             ]
             lines.append("")
-    lines += ["| parameter | default | unit | allowed | meaning |", "|---|---|---|---|---|"]
+    lines += [
+        "| parameter | default | unit | allowed | meaning |",
+        "|---|---|---|---|---|",
+    ]
     lines += [_parameter_row(field) for field in _fields(cls.PARAMS)]
     return "\n".join([*lines, ""])
 

@@ -4,27 +4,17 @@ import json
 import math
 from dataclasses import asdict, dataclass
 
-
-@dataclass(frozen=True)
-class GoalReport:
-    """One goal: where, how it ended (``reached`` or a named failure), what it cost.
-
-    Seconds are simulated; ``distance_left_m`` is from the axle to the goal when it
-    ended, measured in the simulator; NaN and infinity appear as null.
-    """
-
-    goal: tuple[float, float]
-    result: str
-    time_s: float
-    path_length_m: float
-    distance_left_m: float
+from navette.missions import GoalOutcome
 
 
 @dataclass(frozen=True)
 class RunSummary:
-    """A whole run; ``min_clearance_m`` is from the body to the nearest obstacle."""
+    """A whole run; ``min_clearance_m`` is from the body to the nearest obstacle.
 
-    goals: tuple[GoalReport, ...]
+    Seconds are simulated unless named otherwise.
+    """
+
+    goals: tuple[GoalOutcome, ...]
     contacts: int
     min_clearance_m: float | None
     sim_time_s: float
@@ -38,7 +28,7 @@ class RunSummary:
         return self.contacts == 0 and all(g.result == "reached" for g in self.goals)
 
     def to_json(self) -> str:
-        """One JSON object; numbers rounded to a tenth of a millimetre and so on."""
+        """One JSON object; numbers to four places, NaN and infinity as null."""
         return json.dumps(_plain(asdict(self)))
 
 

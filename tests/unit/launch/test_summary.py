@@ -1,11 +1,12 @@
 import json
 import math
 
-from navette.launch.summary import GoalReport, RunSummary
+from navette.launch.summary import RunSummary
+from navette.missions import GoalOutcome
 
 
 def summary(*results: str, contacts: int = 0) -> RunSummary:
-    goals = tuple(GoalReport((1.0, 2.0), r, 3.0, 4.0, 0.05) for r in results)
+    goals = tuple(GoalOutcome((1.0, 2.0), r, 3.0, 4.0, 0.05) for r in results)
     return RunSummary(goals, contacts, math.inf, 3.0, 0.1, 30.0, 7)
 
 

@@ -1,0 +1,70 @@
+"""Runs a simulation in front of a person or a program, and says how it went."""
+
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from navette.cli.status import StatusScreen
+from navette.errors import CallbackError
+from navette.launch.options import RunOptions
+from navette.launch.simulation import Simulation
+
+SUCCEEDED = 0
+FAILED = 1
+INTERRUPTED = 130
+
+
+def run_simulation(options: RunOptions, *, as_json: bool) -> int:
+    """Run until it is over or interrupted; the exit code of the command.
+
+    0: ended as asked (headless: all goals reached, nothing touched). 1: a goal was
+    not reached, something was touched, or a node raised. 130: a headless run was
+    interrupted before its goals were done.
+    """
+    screen = StatusScreen(options)
+    with screen.starting():
+        simulation = Simulation(options, on_change=screen.on_change)
+    try:
+        return _drive(simulation, screen, as_json=as_json)
+    finally:
+        simulation.close()
+
+
+def _drive(simulation: Simulation, screen: StatusScreen, *, as_json: bool) -> int:
+    failure: CallbackError | None = None
+    with _terminate_as_interrupt(), screen.watching(simulation):
+        try:
+            simulation.run()
+            interrupted = False
+        except KeyboardInterrupt:
+            interrupted = True
+        except CallbackError as error:
+            failure = error
+            interrupted = False
+    summary = simulation.summary()
+    screen.report(summary, interrupted=interrupted)
+    if as_json:
+        sys.stdout.write(summary.to_json() + "\n")
+    if failure is not None:
+        screen.report_failure(failure)
+        return FAILED
+    if not simulation.options.ends_with_goals:
+        return SUCCEEDED
+    if interrupted:
+        return INTERRUPTED
+    return SUCCEEDED if summary.succeeded else FAILED
+
+
+@contextmanager
+def _terminate_as_interrupt() -> Iterator[None]:
+    """SIGTERM ends a run as cleanly as Ctrl-C does."""
+
+    def interrupt(signum: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,151 @@
+"""What the terminal shows of a run; all of it on stderr, so that stdout is data."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from rich.console import Console, RenderableType
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from navette.errors import CallbackError
+from navette.launch.options import RunOptions
+from navette.launch.summary import RunSummary
+
+if TYPE_CHECKING:
+    from navette.launch.monitor import Progress
+    from navette.launch.simulation import Simulation
+
+_REFRESH_HZ = 8
+_WIDTH = 24
+
+
+class StatusScreen:
+    """Lines for what has happened, and on a terminal one live line for what happens."""
+
+    def __init__(self, options: RunOptions) -> None:
+        self._options = options
+        self._console = Console(stderr=True, highlight=False)
+        self._longest_m: dict[str, float] = {}
+        self._reported = ""
+
+    @contextmanager
+    def starting(self) -> Iterator[None]:
+        """While nodes are made and, the first time, kernels compiled."""
+        with self._console.status(
+            "starting (the very first start compiles the kernels, some seconds)",
+            spinner="dots",
+        ):
+            yield
+
+    @contextmanager
+    def watching(self, simulation: "Simulation") -> Iterator[None]:
+        """Show the run until the block ends."""
+        self._show_head(simulation)
+        if not self._console.is_terminal:
+            yield
+            return
+        with Live(
+            get_renderable=lambda: self._line(simulation),
+            console=self._console,
+            refresh_per_second=_REFRESH_HZ,
+            transient=True,
+        ):
+            yield
+
+    def on_change(self, progress: "Progress") -> None:
+        """A line whenever a goal begins, ends or fails."""
+        text = self._event(progress)
+        if text is not None and text.plain != self._reported:
+            self._reported = text.plain
+            stamp = Text(f"{progress.sim_time_s:8.1f} s  ", style="dim")
+            self._console.print(stamp + text, soft_wrap=True)
+
+    def report(self, summary: RunSummary, *, interrupted: bool) -> None:
+        """The end of the run in a few lines."""
+        reached = sum(goal.result == "reached" for goal in summary.goals)
+        clearance = summary.min_clearance_m
+        parts = [
+            f"{reached} of {len(self._options.goals)} goals reached"
+            if self._options.goals
+            else "no goals were given",
+            f"{summary.contacts} contact{'' if summary.contacts == 1 else 's'}",
+            f"closest {clearance:.2f} m" if clearance is not None else "",
+            f"{summary.sim_time_s:.1f} s simulated in {summary.wall_time_s:.1f} s "
+            f"(×{summary.real_time_factor:.1f})",
+        ]
+        word = "interrupted" if interrupted else "done"
+        good = summary.contacts == 0 and reached == len(self._options.goals)
+        self._console.print(
+            Text(f"{word}: ", style="bold green" if good else "bold yellow")
+            + Text(", ".join(part for part in parts if part)),
+            soft_wrap=True,
+        )
+
+    def report_failure(self, error: CallbackError) -> None:
+        """Which node raised, on which topic, when; the robot stands."""
+        self._console.print(Text(f"stopped: {error}", style="bold red"), soft_wrap=True)
+
+    def _show_head(self, simulation: "Simulation") -> None:
+        options = self._options
+        head = Text("Navette", style="bold cyan")
+        head += Text(f"  {options.world}", style="bold")
+        head += Text(f" · {simulation.resolved.robot_name} · seed {options.seed}")
+        self._console.print(head, soft_wrap=True)
+        if simulation.viewer is not None:
+            self._console.print(
+                Text("live view  ", style="dim")
+                + Text(simulation.viewer.url, style="underline bright_blue")
+                + Text("   Ctrl-C ends", style="dim"),
+                soft_wrap=True,
+            )
+
+    def _event(self, progress: "Progress") -> Text | None:
+        if progress.goal is None:
+            return None
+        where = f"goal {_point(progress.goal)}"
+        if progress.state == "reached":
+            return Text(f"✓ {where} reached", style="green")
+        if progress.failed:
+            return Text(f"✗ {where} {progress.state}", style="red")
+        if progress.goal_id not in self._longest_m:
+            self._longest_m[progress.goal_id] = 0.0
+            return Text(f"→ {where}")
+        return None
+
+    def _line(self, simulation: "Simulation") -> RenderableType:
+        progress = simulation.progress()
+        line = Table.grid(padding=(0, 2))
+        line.add_row(
+            Text(f"{progress.sim_time_s:8.1f} s", style="dim"),
+            self._bar(progress),
+            Text(_left(progress)),
+            Text(progress.control or progress.state, style="cyan"),
+            Text(f"×{simulation.real_time_factor():.2f}", style="dim"),
+        )
+        return line
+
+    def _bar(self, progress: "Progress") -> Text:
+        left = progress.distance_left_m
+        if progress.goal is None or left is None:
+            return Text("─" * _WIDTH, style="dim")
+        longest = max(self._longest_m.get(progress.goal_id, 0.0), left, 1e-6)
+        self._longest_m[progress.goal_id] = longest
+        done = round(_WIDTH * (1 - left / longest))
+        return Text("━" * done, style="green") + Text(
+            "─" * (_WIDTH - done), style="dim"
+        )
+
+
+def _left(progress: "Progress") -> str:
+    if progress.goal is None:
+        return "waiting for a goal"
+    to = f"to {_point(progress.goal)}"
+    if progress.distance_left_m is None:
+        return to
+    return f"{progress.distance_left_m:5.1f} m {to}"
+
+
+def _point(goal: tuple[float, float]) -> str:
+    return f"({goal[0]:.1f}, {goal[1]:.1f})"

@@ -1,0 +1,68 @@
+"""What happens in a run, as a person wants to read it: the goal and how it goes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A moment of a run. Metres and simulated seconds."""
+
+    goal: tuple[float, float] | None = None
+    goal_id: str = ""
+    state: str = "starting"
+    control: str = ""
+    distance_left_m: float | None = None
+    failed: bool = False
+    sim_time_s: float = 0.0
+
+
+class MonitorNode(Node):
+    """Listens to what planner and control say of themselves.
+
+    Args:
+        on_change: called whenever the planner's state or goal changes.
+    """
+
+    def __init__(
+        self, *, context: Context, on_change: Callable[[Progress], None]
+    ) -> None:
+        super().__init__("monitor", context=context)
+        self._on_change = on_change
+        self.progress = Progress()
+        for topic, callback in (
+            ("/planner/status", self._on_planner),
+            ("/control/status", self._on_control),
+        ):
+            self.create_subscription(
+                DiagnosticStatus, topic, callback, LATCHED, shared=True
+            )
+
+    def _on_planner(self, status: DiagnosticStatus) -> None:
+        values = {item.key: item.value for item in status.values}
+        before = self.progress
+        goal = (
+            (float(values["goal_x"]), float(values["goal_y"]))
+            if values.get("goal_x")
+            else None
+        )
+        left = values.get("distance_left_m")
+        self.progress = replace(
+            before,
+            goal=goal,
+            goal_id=values.get("goal_id", ""),
+            state=status.message,
+            distance_left_m=float(left) if left else None,
+            failed=status.level >= DiagnosticStatus.ERROR,
+            sim_time_s=self.get_clock().now().nanoseconds / 1e9,
+        )
+        if (before.state, before.goal_id) != (status.message, self.progress.goal_id):
+            self._on_change(self.progress)
+
+    def _on_control(self, status: DiagnosticStatus) -> None:
+        self.progress = replace(self.progress, control=status.message)

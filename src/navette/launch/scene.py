@@ -1,0 +1,53 @@
+"""Which world, which robot, and which parameters come with the robot."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from navette.launch.options import RunOptions
+from navette.sim import (
+    Robot,
+    Scene,
+    derive_parameters,
+    identify_robot,
+    load_robot,
+    load_world,
+)
+
+DEFAULT_ROBOT = "jackal"
+
+
+@dataclass(frozen=True)
+class ResolvedScene:
+    """A world with its robot; parameters from a file or derived from the model."""
+
+    scene: Scene
+    robot_name: str
+    params_file: Path | None
+    derived: dict[str, dict[str, object]]
+
+
+def resolve_scene(options: RunOptions) -> ResolvedScene:
+    """Load what the options name.
+
+    The robot is, in this order: the one asked for, the world's own, the default.
+    A world's own robot that is a copy of a built-in one gets its parameters; an
+    unknown one gets parameters derived from its shape and drive.
+
+    Raises:
+        UnknownNameError: no such world or robot; the text lists those there are.
+        FileFormatError: a file is broken; names file and line.
+    """
+    scene = load_world(options.world)
+    robot = _choose_robot(options, scene)
+    if scene.robot is not robot.model:
+        scene = scene.with_robot(robot.model)
+    derived = {} if robot.params_file else derive_parameters(robot.model)
+    return ResolvedScene(scene, robot.name, robot.params_file, derived)
+
+
+def _choose_robot(options: RunOptions, scene: Scene) -> Robot:
+    if options.robot is not None:
+        return load_robot(options.robot)
+    if scene.robot is None:
+        return load_robot(DEFAULT_ROBOT)
+    return identify_robot(scene.robot) or Robot(scene.robot.name, scene.robot)

@@ -1,0 +1,139 @@
+"""A run of the simulated robot with its navigation, from options to summary."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from navette.bags.node import RecorderNode
+from navette.errors import ParameterError
+from navette.launch.monitor import MonitorNode, Progress
+from navette.launch.options import RunOptions
+from navette.launch.scene import ResolvedScene, resolve_scene
+from navette.launch.stack import NavigationStack
+from navette.launch.summary import RunSummary
+from navette.runtime import (
+    Context,
+    Executor,
+    PacedClock,
+    Stopwatch,
+    TimeSource,
+    VirtualClock,
+)
+from navette.sim.node import SimNode
+from navette.viewer.node import ViewerNode
+
+
+class Simulation:
+    """One robot in one world with the whole stack, in this process.
+
+    Args:
+        options: what to run.
+        on_change: called when the planner's goal or state changes.
+
+    Raises:
+        NavetteError: a name, file, parameter or option is wrong; says which.
+    """
+
+    def __init__(
+        self,
+        options: RunOptions,
+        on_change: Callable[[Progress], None] = lambda progress: None,
+    ) -> None:
+        self.options = options
+        self.resolved = resolve_scene(options)
+        self.context = Context(clock=_clock(options.speed))
+        self._stopwatch = Stopwatch()
+        try:
+            self.context.init(args=[])
+            self._override_parameters(self.resolved)
+            self._create_nodes(on_change)
+        except BaseException:
+            self.close()
+            raise
+
+    def _override_parameters(self, resolved: ResolvedScene) -> None:
+        """The robot's defaults, then the options, then the user's files: last wins."""
+        overrides = self.context.overrides
+        if resolved.params_file is not None:
+            overrides.add_file(resolved.params_file)
+        for node, values in resolved.derived.items():
+            overrides.add(node, values, f"derived from robot {resolved.robot_name}")
+        goals = [value for goal in self.options.goals for value in goal]
+        overrides.add("sim", {"seed": self.options.seed}, "--seed")
+        if goals:
+            overrides.add("missions", {"goals": goals}, "--goal")
+        if self.options.record is not None:
+            images = {"images": self.options.record_images}
+            overrides.add("recorder", images, "--record-images")
+        if not self.options.headless:
+            overrides.add("viewer", {"port": self.options.port}, "--port")
+        for path in self.options.params_files:
+            overrides.add_file(path)
+
+    def _create_nodes(self, on_change: Callable[[Progress], None]) -> None:
+        options, context = self.options, self.context
+        self.recorder = (
+            None
+            if options.record is None
+            else RecorderNode(options.record, context=context)
+        )
+        self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
+        self.stack = NavigationStack.create(context)
+        self.monitor = MonitorNode(context=context, on_change=on_change)
+        self.viewer = None if options.headless else ViewerNode(context=context)
+        context.check_overrides()
+        self._executor = Executor(context=context)
+        for node in context.nodes:
+            self._executor.add_node(node)
+
+    def run(self) -> None:
+        """Run until the goals are done (headless), the time is up or :meth:`stop`.
+
+        Raises:
+            CallbackError: a node raised; names node, topic and stamp. The robot was
+                stopped first.
+        """
+        self._stopwatch = Stopwatch()
+        limit = self.options.max_time_s
+        timeout_ns = None if limit is None else round(limit * 1e9)
+        self._executor.spin_until_complete(self._is_over, timeout_ns)
+
+    def _is_over(self) -> bool:
+        return self.options.ends_with_goals and self.stack.missions.done
+
+    def stop(self) -> None:
+        """End :meth:`run` after the present callback; from any thread."""
+        self._executor.stop()
+
+    def progress(self) -> Progress:
+        """How it goes now."""
+        return replace(
+            self.monitor.progress, sim_time_s=self.context.clock.now_ns / 1e9
+        )
+
+    def real_time_factor(self) -> float:
+        """Simulated seconds per second, over the run so far."""
+        wall_s = self._stopwatch.elapsed_s
+        return self.context.clock.now_ns / 1e9 / wall_s if wall_s > 0 else 0.0
+
+    def summary(self) -> RunSummary:
+        """What came of the run so far; goals not ended count as ``unfinished``."""
+        clearance = self.sim.simulator.min_clearance.distance
+        return RunSummary(
+            goals=tuple(self.stack.missions.outcomes),
+            contacts=self.sim.simulator.contacts.count,
+            min_clearance_m=clearance if math.isfinite(clearance) else None,
+            sim_time_s=self.context.clock.now_ns / 1e9,
+            wall_time_s=self._stopwatch.elapsed_s,
+            real_time_factor=self.real_time_factor(),
+            seed=self.options.seed,
+        )
+
+    def close(self) -> None:
+        """End all nodes, threads and files; twice is harmless."""
+        self.context.try_shutdown()
+
+
+def _clock(speed: float) -> TimeSource:
+    return VirtualClock() if math.isinf(speed) else PacedClock(speed)

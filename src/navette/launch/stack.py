@@ -1,0 +1,45 @@
+"""The nodes of a driving robot, in the order data flows."""
+
+from dataclasses import dataclass
+
+from navette.control.node import ControlNode
+from navette.costmap.node import CostmapNode
+from navette.mapping.node import MapMemoryNode
+from navette.missions.node import MissionNode
+from navette.planning.node import PlannerNode
+from navette.runtime import Context, StageNode
+from navette.sim.node import SimNode
+
+FLOW = ("sim", "costmap", "mapping", "planning", "control", "missions")
+"""The stages, in the order data flows through them."""
+
+NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
+    ("sim", SimNode),
+    ("costmap", CostmapNode),
+    ("map_memory", MapMemoryNode),
+    ("planner", PlannerNode),
+    ("control", ControlNode),
+    ("missions", MissionNode),
+)
+
+
+@dataclass(frozen=True)
+class NavigationStack:
+    """The nodes between sensors and wheels; they meet on topics only."""
+
+    costmap: CostmapNode
+    map_memory: MapMemoryNode
+    planner: PlannerNode
+    control: ControlNode
+    missions: MissionNode
+
+    @classmethod
+    def create(cls, context: Context) -> "NavigationStack":
+        """All nodes, with the parameters that the context's overrides give."""
+        return cls(
+            costmap=CostmapNode(context=context),
+            map_memory=MapMemoryNode(context=context),
+            planner=PlannerNode(context=context),
+            control=ControlNode(context=context),
+            missions=MissionNode(context=context),
+        )
