@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Worlds written in Python, for tests and examples::
 
-    scene = World("corridor").add_box((2, 0), (0.2, 4)).add_cylinder((4, 1), 0.5).scene()
+scene = World("corridor").add_box((2, 0), (0.2, 4)).add_cylinder((4, 1), 0.5).scene()
 """
 
 from collections.abc import Sequence

@@ -8,31 +8,26 @@ multiples of the physics step, and sensors only read.
 """
 
 import math
-from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
 from navette.errors import InvalidValueError
-from navette.geometry import Pose2, Transform3, Vector3
-from navette.geometry.se3 import rotate
-from navette.sim.build import Compiled, compile_scene
+from navette.geometry import Pose2, Transform3
+from navette.sim.build import compile_scene
+from navette.sim.camera import Image
 from navette.sim.clearance import Clearance, ClearanceProbe
 from navette.sim.contacts import ContactMonitor
 from navette.sim.drive import CONTROL_PERIOD_NS, SpeedRamp
-from navette.sim.lidar import Lidar, Scan
-from navette.sim.mount import Mount
+from navette.sim.imu import ImuReading
+from navette.sim.lidar import Scan
 from navette.sim.params import SimParams
-from navette.sim.scene import LidarSensor, Scene
+from navette.sim.robot_state import Motion, RobotState
+from navette.sim.scene import Scene
+from navette.sim.sensors import cameras_of, imus_of, lidars_of
+from navette.sim.wheel_odometry import WheelOdometry
 
 _WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz
-
-
-class Motion(NamedTuple):
-    """Velocity of the base in its own frame: m/s and rad/s."""
-
-    linear: Vector3
-    angular: Vector3
 
 
 class Simulator:
@@ -61,16 +56,21 @@ class Simulator:
         self._data = mujoco.MjData(self.compiled.model)
         self._start = start
         self._ramp = SpeedRamp(self.params)
+        self.state = RobotState(self.compiled.robot, self._data)
         mujoco.mj_kinematics(self.compiled.model, self._data)
         self._probe = ClearanceProbe(self.compiled, self._data)
         self.contacts = ContactMonitor(self.compiled, self._data)
-        self.lidars = _lidars(self.compiled, self.params)
+        self.lidars = tuple(lidars_of(self.compiled, self.params))
+        self.imus = tuple(imus_of(self.compiled))
+        self.cameras = tuple(cameras_of(self.compiled, self.params))
+        drive = self.compiled.robot.drive
+        self._wheel_odometry = WheelOdometry(drive, noise=self.params.wheel_noise)
         self.reset()
 
     def reset(self) -> None:
         """Back to the start: state, time, noise and records."""
         mujoco.mj_resetData(self.compiled.model, self._data)
-        self._rng = np.random.default_rng(self.params.seed)
+        self._seed_noise()
         self._steps = 0
         self._fresh_at = -1
         self._near = True
@@ -78,7 +78,11 @@ class Simulator:
         self.contacts.reset()
         self.min_clearance = Clearance(math.inf, "")
         if self._start is not None:
-            self._place(self._start)
+            floor = self._floor() + 1e-3  # a hair above: no contact to resolve yet
+            self.state.place(Transform3.from_pose2(self._start, z=floor))
+        for imu in self.imus:
+            imu.reset()
+        self._wheel_odometry.reset(self.pose().to_pose2(), self.state.wheel_travel())
         first = self.clearance()
         if self._start is not None and first.distance < 0:
             raise InvalidValueError(
@@ -86,13 +90,12 @@ class Simulator:
                 f"{-first.distance:.2f} m inside {first.obstacle!r}"
             )
 
-    def _place(self, start: Pose2) -> None:
-        robot = self.compiled.robot
-        world_T_base = Transform3.from_pose2(start, z=self._floor() + 1e-3)
-        base_T_root = robot.model_T_base.inverse() @ robot.root_T_model.inverse()
-        pose = world_T_base @ base_T_root
-        x, y, z, w = pose.rotation
-        self._data.qpos[robot.qpos : robot.qpos + 7] = (*pose.translation, w, x, y, z)
+    def _seed_noise(self) -> None:
+        """A stream for each sensor: reading one does not change another's noise."""
+        seeds = np.random.SeedSequence(self.params.seed).spawn(2 + len(self.lidars))
+        self._imu_rng, self._wheel_rng, *self._lidar_rng = map(
+            np.random.default_rng, seeds
+        )
 
     def _floor(self) -> float:
         mujoco.mj_kinematics(self.compiled.model, self._data)
@@ -164,16 +167,12 @@ class Simulator:
             self.min_clearance = clearance
         self.contacts.observe(self._data, self.now_ns)
         motion = self.motion()
-        reach = self._reach()
+        reach = self._probe.reach
         fastest = math.hypot(*motion.linear) + math.hypot(*motion.angular) * reach
         growth = self.params.max_accel_mps2 + self.params.max_yaw_accel_radps2 * reach
         period_s = _WATCH_PERIOD_NS * 1e-9
         margin = 1.5 * period_s * (fastest + growth * period_s) + 0.01
         self._near = clearance.distance < margin
-
-    def _reach(self) -> float:
-        """Farthest point of the robot from its base, m."""
-        return self._probe.reach
 
     def _refresh(self) -> None:
         """Bring body and geom poses up to the present state."""
@@ -183,28 +182,16 @@ class Simulator:
 
     def pose(self) -> Transform3:
         """``world_T_base``: the axle's middle, on the floor."""
-        robot = self.compiled.robot
-        x, y, z, qw, qx, qy, qz = self._data.qpos[robot.qpos : robot.qpos + 7].tolist()
-        world_T_root = Transform3((x, y, z), (qx, qy, qz, qw))
-        return world_T_root @ robot.root_T_model @ robot.model_T_base
+        return self.state.pose()
 
     def motion(self) -> Motion:
         """Velocity of the base in its own frame."""
-        robot = self.compiled.robot
-        v = self._data.qvel[robot.qvel : robot.qvel + 6].tolist()
-        x, y, z, w = self._root_rotation()
-        root_T_base = robot.root_T_model @ robot.model_T_base
-        base_R_root = root_T_base.inverse().rotation
-        v_root = rotate((-x, -y, -z, w), (v[0], v[1], v[2]))
-        omega = (v[3], v[4], v[5])
-        lever = _cross(omega, root_T_base.translation)
-        at_base = (v_root[0] + lever[0], v_root[1] + lever[1], v_root[2] + lever[2])
-        return Motion(rotate(base_R_root, at_base), rotate(base_R_root, omega))
+        return self.state.motion()
 
-    def _root_rotation(self) -> tuple[float, float, float, float]:
-        robot = self.compiled.robot
-        w, x, y, z = self._data.qpos[robot.qpos + 3 : robot.qpos + 7].tolist()
-        return (x, y, z, w)
+    def base_T_link(self, name: str) -> Transform3:
+        """Pose of a link in the base frame now."""
+        self._refresh()
+        return self.state.base_T_link(name)
 
     def clearance(self) -> Clearance:
         """Distance from the robot's body to the nearest obstacle now."""
@@ -215,31 +202,23 @@ class Simulator:
         """A scan of lidar ``index`` now."""
         self._refresh()
         return self.lidars[index].scan(
-            self.compiled.model, self._data, self.now_ns, self._rng
+            self.compiled.model, self._data, self.now_ns, self._lidar_rng[index]
         )
 
+    def imu(self, index: int = 0) -> ImuReading:
+        """A reading of IMU ``index`` now."""
+        self._refresh()
+        return self.imus[index].read(
+            self.state, self.compiled.model, self._data, self.now_ns, self._imu_rng
+        )
 
-def _cross(a: Vector3, b: Vector3) -> Vector3:
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
+    def image(self, index: int = 0) -> Image:
+        """An image (height, width, 3) of camera ``index`` now."""
+        self._refresh()
+        return self.cameras[index].render(self.compiled.model, self._data)
 
-
-def _lidars(compiled: Compiled, params: SimParams) -> tuple[Lidar, ...]:
-    lidars = []
-    for link in compiled.robot.model.links:
-        for sensor in link.sensors:
-            if isinstance(sensor, LidarSensor):
-                mount = Mount(compiled.robot.bodies[link.name], sensor.link_T_sensor)
-                noise = params.lidar_noise_m
-                lidars.append(
-                    Lidar(
-                        sensor,
-                        mount,
-                        noise_m=sensor.noise_stddev if noise < 0 else noise,
-                        dropout=params.lidar_dropout,
-                    )
-                )
-    return tuple(lidars)
+    def wheel_odometry(self) -> WheelOdometry:
+        """Dead reckoning, brought up to now; it started at the true pose."""
+        wheels = self.state.wheel_travel()
+        self._wheel_odometry.update(wheels, self.now_ns, self._wheel_rng)
+        return self._wheel_odometry

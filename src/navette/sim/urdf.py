@@ -51,7 +51,9 @@ def read_urdf_robot(path: Path) -> Model:
     """A URDF robot; it needs a diff-drive plugin in its ``<gazebo>`` extension."""
     model = _read(path)
     if model.drive is None:
-        raise FileFormatError(path, "no differential drive plugin in a <gazebo> element")
+        raise FileFormatError(
+            path, "no differential drive plugin in a <gazebo> element"
+        )
     return model
 
 
@@ -128,7 +130,9 @@ def _link_poses(
             name = carrier[name].need("parent").need_attribute("link")
         if name not in poses:
             if poses:
-                unsupported.note("link without a joint (put at the origin)", links[name])
+                unsupported.note(
+                    "link without a joint (put at the origin)", links[name]
+                )
             poses[name] = Transform3.identity()
         for child in reversed(chain):
             poses[child] = poses[name] @ _origin(carrier[child])
@@ -186,7 +190,9 @@ def _read_link(
     unsupported: Unsupported,
 ) -> Link:
     name = node.name()
-    extensions = [g for g in root.all("gazebo") if g.attributes.get("reference") == name]
+    extensions = [
+        g for g in root.all("gazebo") if g.attributes.get("reference") == name
+    ]
     friction = next(
         (g.number("mu1") for g in extensions if g.find("mu1") is not None), None
     )

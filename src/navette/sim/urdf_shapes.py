@@ -11,7 +11,10 @@ class Materials:
 
     def __init__(self, root: XmlNode) -> None:
         self._colours: dict[str, Colour] = {}
-        for owner in (root, *(v for link in root.all("link") for v in link.all("visual"))):
+        for owner in (
+            root,
+            *(v for link in root.all("link") for v in link.all("visual")),
+        ):
             for node in owner.all("material"):
                 colour = _own_colour(node)
                 if colour is not None and "name" in node.attributes:
@@ -66,7 +69,9 @@ def _shape(geometry: XmlNode, unsupported: Unsupported) -> Shape | None:
         x, y, z = _positive(node, "size", 3)
         return Box((x, y, z))
     if node.tag == "cylinder":
-        return Cylinder(_positive(node, "radius", 1)[0], _positive(node, "length", 1)[0])
+        return Cylinder(
+            _positive(node, "radius", 1)[0], _positive(node, "length", 1)[0]
+        )
     if node.tag == "capsule":
         return Capsule(_positive(node, "radius", 1)[0], _positive(node, "length", 1)[0])
     if node.tag == "sphere":

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An inertial measurement unit."""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Quaternion
+from navette.sim.mount import Mount
+from navette.sim.robot_state import RobotState
+from navette.sim.scene import ImuSensor
+
+_LONGEST_MEAN_NS = 200_000_000
+
+
+class ImuReading(NamedTuple):
+    """In the sensor's frame: rad/s, and m/s² including the reaction to gravity."""
+
+    stamp_ns: int
+    orientation: Quaternion  # world_R_sensor
+    angular_velocity: NDArray[np.float64]
+    linear_acceleration: NDArray[np.float64]
+
+
+class Imu:
+    """Specific force is the mean since the last reading, as integrating units give.
+
+    f = R^T (Δv / Δt − g), v the velocity of the sensor's own point. A first reading,
+    or one after a long pause, is taken as unaccelerated.
+    """
+
+    def __init__(self, sensor: ImuSensor, mount: Mount) -> None:
+        self.sensor = sensor
+        self.mount = mount
+        self._last: tuple[int, NDArray[np.float64]] | None = None
+
+    def reset(self) -> None:
+        self._last = None
+
+    def read(
+        self,
+        state: RobotState,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        stamp_ns: int,
+        rng: np.random.Generator,
+    ) -> ImuReading:
+        """The reading now (kinematics must be fresh)."""
+        position, world_R_sensor = self.mount.world(data)
+        velocity, omega = state.point_velocity(position)
+        acceleration = self._mean_acceleration(velocity, stamp_ns)
+        force = world_R_sensor.T @ (acceleration - model.opt.gravity)
+        rate = world_R_sensor.T @ omega
+        quaternion = np.empty(4)
+        mujoco.mju_mat2Quat(quaternion, world_R_sensor.ravel())
+        w, x, y, z = quaternion.tolist()
+        s = self.sensor
+        if s.acceleration_stddev > 0:
+            force = force + rng.normal(0.0, s.acceleration_stddev, 3)
+        if s.angular_velocity_stddev > 0:
+            rate = rate + rng.normal(0.0, s.angular_velocity_stddev, 3)
+        return ImuReading(stamp_ns, (x, y, z, w), rate, force)
+
+    def _mean_acceleration(
+        self, velocity: NDArray[np.float64], stamp_ns: int
+    ) -> NDArray[np.float64]:
+        last, self._last = self._last, (stamp_ns, velocity)
+        if last is None or not 0 < stamp_ns - last[0] <= _LONGEST_MEAN_NS:
+            return np.zeros(3)  # nothing to compare with: taken as unaccelerated
+        return (velocity - last[1]) / ((stamp_ns - last[0]) * 1e-9)

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What MuJoCo's state says about the robot: pose, motion, wheels, links."""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Transform3, Vector3
+from navette.geometry.se3 import rotate
+from navette.sim.build import RobotIndex
+from navette.sim.scene import JointKind
+
+
+class Motion(NamedTuple):
+    """Velocity of the base in its own frame: m/s and rad/s."""
+
+    linear: Vector3
+    angular: Vector3
+
+
+class RobotState:
+    """Reads the robot out of MuJoCo's arrays; writes only its start pose."""
+
+    def __init__(self, robot: RobotIndex, data: mujoco.MjData) -> None:
+        self._robot = robot
+        self._data = data
+        self._root_T_base = robot.root_T_model @ robot.model_T_base
+        self._base_T_root = self._root_T_base.inverse()
+        self._direction = np.array([wheel.direction for wheel in robot.wheels])
+        self._left = np.array([wheel.side > 0 for wheel in robot.wheels])
+
+    def pose(self) -> Transform3:
+        """``world_T_base``: the axle's middle, on the floor."""
+        return self._root_pose() @ self._root_T_base
+
+    def place(self, world_T_base: Transform3) -> None:
+        """Put the robot somewhere, at rest."""
+        at = self._robot.qpos
+        pose = world_T_base @ self._base_T_root
+        x, y, z, w = pose.rotation
+        self._data.qpos[at : at + 7] = (*pose.translation, w, x, y, z)
+
+    def motion(self) -> Motion:
+        """Velocity of the base in its own frame."""
+        v_world, omega_root = self._root_velocity()
+        x, y, z, w = self._root_pose().rotation
+        v_root = rotate((-x, -y, -z, w), v_world)
+        lever = cross(omega_root, self._root_T_base.translation)
+        at_base = (v_root[0] + lever[0], v_root[1] + lever[1], v_root[2] + lever[2])
+        base_R_root = self._base_T_root.rotation
+        return Motion(rotate(base_R_root, at_base), rotate(base_R_root, omega_root))
+
+    def point_velocity(
+        self, p_world: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Velocity of the body's point at ``p_world`` and angular velocity, world."""
+        v_world, omega_root = self._root_velocity()
+        pose = self._root_pose()
+        omega = np.array(rotate(pose.rotation, omega_root))
+        lever = p_world - np.array(pose.translation)
+        return np.array(v_world) + np.cross(omega, lever), omega
+
+    def wheel_travel(self) -> tuple[float, float]:
+        """How far the left and the right wheels have turned forward, rad (means)."""
+        angles = self._data.qpos[self._robot.wheel_qpos] * self._direction
+        return float(angles[self._left].mean()), float(angles[~self._left].mean())
+
+    def base_T_link(self, name: str) -> Transform3:
+        """Pose of a link in the base frame (kinematics must be fresh)."""
+        body = self._robot.bodies[name]
+        w, x, y, z = self._data.xquat[body].tolist()
+        px, py, pz = self._data.xpos[body].tolist()
+        return self.pose().inverse() @ Transform3((px, py, pz), (x, y, z, w))
+
+    def moving_links(self) -> tuple[str, ...]:
+        """Links that move against the base: everything beyond a moving joint."""
+        moving: list[str] = []
+        joints = self._robot.model.joints
+        for _ in joints:
+            for joint in joints:
+                beyond = joint.kind is not JointKind.FIXED or joint.parent in moving
+                if beyond and joint.child not in moving:
+                    moving.append(joint.child)
+        return tuple(moving)
+
+    def _root_pose(self) -> Transform3:
+        at = self._robot.qpos
+        x, y, z, qw, qx, qy, qz = self._data.qpos[at : at + 7].tolist()
+        return Transform3((x, y, z), (qx, qy, qz, qw))
+
+    def _root_velocity(self) -> tuple[Vector3, Vector3]:
+        """Of a free joint: linear in the world frame, angular in the root's."""
+        at = self._robot.qvel
+        vx, vy, vz, wx, wy, wz = self._data.qvel[at : at + 6].tolist()
+        return (vx, vy, vz), (wx, wy, wz)
+
+
+def cross(a: Vector3, b: Vector3) -> Vector3:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Makes the sensors that a robot's model lists."""
+
+from collections.abc import Iterator
+from typing import TypeVar
+
+from navette.sim.build import Compiled
+from navette.sim.camera import Camera
+from navette.sim.imu import Imu
+from navette.sim.lidar import Lidar
+from navette.sim.mount import Mount
+from navette.sim.params import SimParams
+from navette.sim.scene import CameraSensor, ImuSensor, LidarSensor, Model, Sensor
+
+S = TypeVar("S", bound=Sensor)
+
+
+def sensors_of(model: Model, kind: type[S]) -> Iterator[tuple[str, S]]:
+    """(link name, sensor) of one kind, in the order of the model."""
+    for link in model.links:
+        for sensor in link.sensors:
+            if isinstance(sensor, kind):
+                yield link.name, sensor
+
+
+def lidars_of(compiled: Compiled, params: SimParams) -> Iterator[Lidar]:
+    for link, sensor in sensors_of(compiled.robot.model, LidarSensor):
+        own = params.lidar_noise_m < 0
+        yield Lidar(
+            sensor,
+            _mount(compiled, link, sensor),
+            noise_m=sensor.noise_stddev if own else params.lidar_noise_m,
+            dropout=params.lidar_dropout,
+        )
+
+
+def imus_of(compiled: Compiled) -> Iterator[Imu]:
+    for link, sensor in sensors_of(compiled.robot.model, ImuSensor):
+        yield Imu(sensor, _mount(compiled, link, sensor))
+
+
+def cameras_of(compiled: Compiled, params: SimParams) -> Iterator[Camera]:
+    for link, sensor in sensors_of(compiled.robot.model, CameraSensor):
+        yield Camera(
+            sensor, _mount(compiled, link, sensor), compiled.scene, compiled.model
+        )
+
+
+def _mount(compiled: Compiled, link: str, sensor: Sensor) -> Mount:
+    return Mount(compiled.robot.bodies[link], sensor.link_T_sensor)
