@@ -105,7 +105,7 @@ def get_global_executor(context: Context | None = None) -> Executor:
 
 def spin(node: Node, executor: Executor | None = None) -> None:
     """Run the node's callbacks until shutdown."""
-    executor = executor or get_global_executor(node.context)
+    executor = executor or node.executor or get_global_executor(node.context)
     was_added = executor.add_node(node)
     try:
         executor.spin()

@@ -1,4 +1,4 @@
-"""Command-line arguments of ROS 2 programs: ``--ros-args -r … -p … --params-file …``."""
+"""Command-line arguments of ROS 2 programs: ``--ros-args -r … -p …``."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field

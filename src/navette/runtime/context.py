@@ -45,7 +45,7 @@ class Context:
         self._on_shutdown: list[Callable[[], object]] = []
         self._lock = threading.RLock()
         self._file_sink: FileSink | None = None
-        self._handler = StdlibHandler(self.log)
+        self._handler = StdlibHandler(self.log, lambda: self.loop.running_node)
 
     @property
     def clock(self) -> TimeSource:
@@ -158,12 +158,17 @@ class Context:
         if arguments.log_file is not None:
             self._file_sink = FileSink(arguments.log_file)
             self.log.sinks.append(self._file_sink)
-        logging.getLogger("navette").addHandler(self._handler)
+        package = logging.getLogger("navette")
+        package.addHandler(self._handler)
+        # The hub's levels decide; the standard library's must not come before.
+        if package.level == logging.NOTSET:
+            package.setLevel(logging.DEBUG)
 
     def _stop_logging(self) -> None:
         logging.getLogger("navette").removeHandler(self._handler)
-        self.log.sinks.clear()
+        # The console stays: a program may still say goodbye.
         if self._file_sink is not None:
+            self.log.sinks.remove(self._file_sink)
             self._file_sink.close()
 
 

@@ -1,5 +1,7 @@
 """rclpy's exception names, inside Navette's tree."""
 
+# ruff: noqa: N818 - the names are rclpy's
+
 from typing import Any
 
 from navette.errors import InvalidNameError, NavetteError, ParameterError
@@ -22,6 +24,10 @@ class ROSInterruptException(NavetteError):
 
 class ExternalShutdownException(NavetteError):
     """The context was shut down from outside while spinning."""
+
+
+class InvalidHandle(NavetteError):
+    """A publisher or subscription was used after it was destroyed."""
 
 
 class ShutdownException(NavetteError):

@@ -202,23 +202,34 @@ def _check_filters(filters: dict[str, Any]) -> None:
 
 
 class StdlibHandler(logging.Handler):
-    """Hands what the algorithm modules log (``logging.getLogger``) to a hub."""
+    """Hands what the algorithm modules log (``logging.getLogger``) to a hub.
 
-    def __init__(self, hub: LogHub) -> None:
+    Args:
+        hub: gets the records.
+        running_node: full name of the node whose callback runs, or empty; the record
+            then counts as that node's (``/rosout``, level).
+    """
+
+    def __init__(self, hub: LogHub, running_node: Callable[[], str]) -> None:
         super().__init__()
         self._hub = hub
+        self._running_node = running_node
 
     def emit(self, record: logging.LogRecord) -> None:
         severity = LoggingSeverity(
             min(max(record.levelno // 10 * 10, LoggingSeverity.DEBUG), 50)
         )
-        if severity < self._hub.effective_level(record.name):
+        name = record.name
+        node = self._running_node().strip("/").replace("/", ".")
+        if node:
+            name = f"{node}.{name.rpartition('.')[2]}"
+        if severity < self._hub.effective_level(name):
             return
         self._hub.emit(
             LogRecord(
                 self._hub.now_ns(),
                 severity,
-                record.name,
+                name,
                 record.getMessage(),
                 record.funcName or "",
                 record.pathname,

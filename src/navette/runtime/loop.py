@@ -88,6 +88,7 @@ class EventLoop:
         self._running: Entity | None = None
         self._lock = threading.Lock()
         self._turn = threading.Condition()
+        self._others = 0  # threads that wait while another one drives
 
     # -- adding events ---------------------------------------------------------
 
@@ -137,6 +138,16 @@ class EventLoop:
         self._attention = True
         if self.waiting:
             self._wakeup.set()
+        if self._others:
+            with self._turn:
+                self._turn.notify_all()
+
+    @property
+    def running_node(self) -> str:
+        """Full name of the node whose callback runs in this thread, or empty."""
+        if self._running is None or not self.in_driver_thread:
+            return ""
+        return self._running.origin()[0]
 
     def create_task(
         self,
@@ -218,7 +229,9 @@ class EventLoop:
         """Become the driver; False after a short wait if another thread is."""
         with self._turn:
             if self._driver is not None:
+                self._others += 1
                 self._turn.wait(_TURN_S)
+                self._others -= 1
             if self._driver is None:
                 self._driver = threading.get_ident()
                 return True
@@ -246,6 +259,7 @@ class EventLoop:
             if held is not None:
                 held.release()
             self._running = outer
+            self._attention = True  # what woke this run may concern the outer one
 
     def _run(
         self,

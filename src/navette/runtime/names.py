@@ -91,7 +91,7 @@ def _check_tokens(name: str, kind: type[NameValidationException]) -> None:
                 "each part must start with a letter or '_' and contain only "
                 "letters, digits and underscores"
             )
-            raise kind(name, reason, position)  # type: ignore[call-arg,arg-type]
+            raise kind(name, reason, position)  # type: ignore[call-arg]
         position += len(token) + 1
 
 

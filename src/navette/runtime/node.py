@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
 from typing import Any, TypeVar
 
-from navette.errors import InvalidValueError
+from navette.errors import InvalidValueError, NavetteError
 from navette.msgs import type_name
 from navette.msgs.rcl_interfaces.msg import Log, ParameterEvent
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
@@ -175,10 +175,14 @@ class Node(NodeParameters, NodeGraph):
         undo = watch_endpoint(
             self._context, endpoint, event_callbacks, self._logger, self.call_soon
         )
-        ports = [
-            transport.advertise(endpoint, msg_type)
-            for transport in self._context.graph.transports
-        ]
+        try:
+            ports = [
+                transport.advertise(endpoint, msg_type)
+                for transport in self._context.graph.transports
+            ]
+        except NavetteError:
+            undo()
+            raise
 
         def forget(publisher: Publisher[Any]) -> None:
             undo()
@@ -235,11 +239,15 @@ class Node(NodeParameters, NodeGraph):
         )
         subscription.group.add_entity(subscription)
         self._entities.append(subscription)
-        for transport in self._context.graph.transports:
-            port = transport.subscribe(
-                endpoint, msg_type, subscription.receive, shared=shared or raw
-            )
-            subscription.ports.append(port)
+        try:
+            for transport in self._context.graph.transports:
+                port = transport.subscribe(
+                    endpoint, msg_type, subscription.receive, shared=shared or raw
+                )
+                subscription.ports.append(port)
+        except NavetteError:
+            subscription.destroy()
+            raise
         return subscription
 
     # -- time ------------------------------------------------------------------
@@ -267,7 +275,7 @@ class Node(NodeParameters, NodeGraph):
         return timer
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """A rate of ``frequency`` Hz: ``rate.sleep()`` lets the rest of a period pass."""
+        """``rate.sleep()`` lets the rest of a period of ``frequency`` Hz pass."""
         if frequency <= 0:
             raise InvalidValueError(f"rate {frequency!r} Hz: wanted > 0")
         rate = Rate(

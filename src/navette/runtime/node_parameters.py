@@ -70,7 +70,7 @@ class NodeParameters:
         parameters: Sequence[tuple[Any, ...]],
         ignore_override: bool = False,
     ) -> list[Parameter[Any]]:
-        """Declare (name[, value or type[, descriptor]]) tuples as ``namespace.name``."""
+        """Declare (name[, value or type[, descriptor]]) as ``namespace.name``."""
         declared = []
         for entry in parameters:
             if not 1 <= len(entry) <= 3:
@@ -285,6 +285,7 @@ def _declared_type(
     name: str, value: Any, descriptor: ParameterDescriptor
 ) -> ParameterType | None:
     """The static type, noted in the descriptor; None for dynamic typing."""
+    kind: ParameterType
     if isinstance(value, ParameterType):
         if value is ParameterType.NOT_SET or descriptor.dynamic_typing:
             raise ParameterError(

@@ -86,6 +86,12 @@ def _is_array(value: Any) -> bool:
     return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
 
 
+def _is_numeric_array(value: Any) -> bool:
+    return _is_array(value) and all(
+        _is_item(item, int) or _is_item(item, float) for item in value
+    )
+
+
 def _is_item(item: Any, wanted: type) -> bool:
     if wanted is bytes:
         return isinstance(item, bytes) and len(item) == 1
@@ -182,9 +188,8 @@ def coerced(name: str, value: Any, wanted: ParameterType) -> Any:
     """
     if wanted is ParameterType.DOUBLE and ParameterType.INTEGER.check(value):
         return float(value)
-    if wanted is ParameterType.DOUBLE_ARRAY and _is_array(value):
-        if all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in value):
-            return [float(v) for v in value]
+    if wanted is ParameterType.DOUBLE_ARRAY and _is_numeric_array(value):
+        return [float(v) for v in value]
     if wanted in _ITEMS and _is_array(value) and len(value) == 0:
         return []
     if not wanted.check(value):

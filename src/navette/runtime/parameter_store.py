@@ -164,6 +164,7 @@ class ParameterStore:
 
 def _range_objection(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> str:
     """Why the value is outside the descriptor's range or between its steps."""
+    bounds: Any
     if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
         bounds, exact = descriptor.integer_range[0], True
     elif parameter.type_ is ParameterType.DOUBLE and descriptor.floating_point_range:

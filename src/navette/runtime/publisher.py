@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 from types import TracebackType
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, cast
 
 from navette.errors import MessageError
 from navette.msgs import deserialize, type_name
+from navette.runtime.exceptions import InvalidHandle
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.time import Duration
@@ -80,6 +81,7 @@ class Publisher(Generic[MsgT]):
         """Leave the topic."""
         for port in self.ports:
             port.close()
+        self._send = self._send_nothing
         self._on_destroy(self)
 
     def __enter__(self) -> "Publisher[MsgT]":
@@ -97,11 +99,17 @@ class Publisher(Generic[MsgT]):
         for port in self.ports:
             port.send(message, source_ns, sequence)
 
+    def _send_nothing(self, message: Any, source_ns: int, sequence: int) -> None:
+        raise InvalidHandle(
+            f"publisher of {self.endpoint.topic} (node "
+            f"{self.endpoint.node_full_name}) was destroyed"
+        )
+
     def _converted(self, msg: Any) -> Any:
         if isinstance(msg, self.msg_type):
             return msg
         if isinstance(msg, bytes):
-            return deserialize(msg, self.msg_type)
+            return deserialize(msg, cast(Any, self.msg_type))
         raise MessageError(
             f"topic {self.endpoint.topic}: expected "
             f"{type_name(self.msg_type)}, got {type(msg).__name__}"

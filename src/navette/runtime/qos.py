@@ -14,13 +14,40 @@ from navette.transports.qos import (
     ReliabilityPolicy,
 )
 
+__all__ = [
+    "DurabilityPolicy",
+    "HistoryPolicy",
+    "InvalidQoSProfileException",
+    "LivelinessPolicy",
+    "QoSDurabilityPolicy",
+    "QoSHistoryPolicy",
+    "QoSLivelinessPolicy",
+    "QoSPolicyKind",
+    "QoSPresetProfiles",
+    "QoSProfile",
+    "QoSReliabilityPolicy",
+    "ReliabilityPolicy",
+    "as_profile",
+    "qos_policy_name_from_kind",
+    "qos_profile_action_status_default",
+    "qos_profile_best_available",
+    "qos_profile_default",
+    "qos_profile_parameter_events",
+    "qos_profile_parameters",
+    "qos_profile_rosout_default",
+    "qos_profile_sensor_data",
+    "qos_profile_services_default",
+    "qos_profile_system_default",
+    "qos_profile_unknown",
+]
+
 QoSHistoryPolicy = HistoryPolicy
 QoSReliabilityPolicy = ReliabilityPolicy
 QoSDurabilityPolicy = DurabilityPolicy
 QoSLivelinessPolicy = LivelinessPolicy
 
 
-class InvalidQoSProfileException(InvalidValueError):
+class InvalidQoSProfileException(InvalidValueError):  # noqa: N818 - rclpy's name
     """A profile that contradicts itself."""
 
 

@@ -184,16 +184,17 @@ class Clock:
 
 
 class _Alarm:
-    """Does nothing at a time: the loop goes there and looks around."""
+    """Wakes whoever sleeps until a time, in whatever thread."""
 
-    __slots__ = ("group", "token")
+    __slots__ = ("_loop", "group", "token")
 
     def __init__(self, context: Context) -> None:
+        self._loop = context.loop
         self.group = context.loop.free_group
         self.token = 0
 
     def run(self) -> None:
-        """Nothing to do."""
+        self._loop.wake()
 
     def origin(self) -> tuple[str, str]:
         return "", "sleep"

@@ -37,7 +37,6 @@ class Subscription(Entity, Generic[MsgT]):
     __slots__ = (
         "_callback",
         "_depth",
-        "_lifespan_ns",
         "_loop",
         "_on_destroy",
         "_plain",
@@ -73,7 +72,6 @@ class Subscription(Entity, Generic[MsgT]):
         self.shared = shared
         self.ports: list[SubscriptionPort] = []
         self._depth = endpoint.qos.queue_length or INFINITE_NS
-        self._lifespan_ns = endpoint.qos.lifespan_ns
         self._queue: deque[Item] = deque()
         self._loop = loop
         self._ready = loop.ready

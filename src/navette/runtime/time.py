@@ -172,16 +172,16 @@ class Time:
             return self._ns == other._ns
         return NotImplemented
 
-    def __lt__(self, other: object) -> bool:
+    def __lt__(self, other: object) -> Any:
         return self._compared(other, lambda a, b: a < b)
 
-    def __le__(self, other: object) -> bool:
+    def __le__(self, other: object) -> Any:
         return self._compared(other, lambda a, b: a <= b)
 
-    def __gt__(self, other: object) -> bool:
+    def __gt__(self, other: object) -> Any:
         return self._compared(other, lambda a, b: a > b)
 
-    def __ge__(self, other: object) -> bool:
+    def __ge__(self, other: object) -> Any:
         return self._compared(other, lambda a, b: a >= b)
 
     def to_msg(self) -> TimeMsg:
@@ -209,7 +209,7 @@ class Time:
                 f"{self._clock_type.name} and {other._clock_type.name}"
             )
 
-    def _compared(self, other: object, test: Any) -> bool:
+    def _compared(self, other: object, test: Any) -> Any:
         if not isinstance(other, Time):
             return NotImplemented
         self._check_comparable(other)

@@ -36,7 +36,7 @@ class TimerInfo:
 
 
 class Timer(Entity):
-    """Calls back every ``timer_period_ns`` of its clock; misses no beat, skips late ones.
+    """Calls back every ``timer_period_ns`` of its clock; skips beats it is late for.
 
     Made by :meth:`Node.create_timer`.
     """
@@ -85,8 +85,6 @@ class Timer(Entity):
         )
         if autostart:
             self._arm()
-        else:
-            self.token = -1
 
     @property
     def clock(self) -> Clock:
@@ -151,6 +149,9 @@ class Timer(Entity):
         if self.token == -1:  # canceled while it waited in the queue
             return None
         now = self._clock.now_ns
+        if now < self._next_ns:  # reset, or the clock set back, while it waited
+            self._arm()
+            return None
         expected = self._next_ns
         self._last_ns = now
         self._next_ns = expected + self._period_ns

@@ -106,6 +106,9 @@ class _Topic:
         self.publishers: list[InProcessPublisher] = []
         self.subscriptions: list[InProcessSubscription] = []
 
+    def ports(self) -> "list[InProcessPublisher | InProcessSubscription]":
+        return [*self.publishers, *self.subscriptions]
+
     def matches(self, publisher: InProcessPublisher) -> "list[InProcessSubscription]":
         return [s for s in self.subscriptions if _fits(publisher, s)]
 
@@ -194,25 +197,20 @@ class InProcessTransport(Transport):
             return [
                 port.endpoint
                 for topic in self._topics.values()
-                for port in (*topic.publishers, *topic.subscriptions)
+                for port in topic.ports()
             ]
 
     def close(self) -> None:
         with self._lock:
             topics = list(self._topics.values())
         for topic in topics:
-            for port in (*topic.publishers, *topic.subscriptions):
+            for port in topic.ports():
                 port.close()
 
     def _topic_for(self, endpoint: Endpoint) -> _Topic:
         topic = self._topics.setdefault(endpoint.topic, _Topic(endpoint.type_name))
         if topic.type_name != endpoint.type_name:
-            others = sorted(
-                {
-                    port.endpoint.node_full_name
-                    for port in (*topic.publishers, *topic.subscriptions)
-                }
-            )
+            others = sorted({port.endpoint.node_full_name for port in topic.ports()})
             verb = "publish" if endpoint.kind == EndpointKind.PUBLISHER else "read"
             raise InvalidValueError(
                 f"topic {endpoint.topic} carries {topic.type_name} "

@@ -1,5 +1,7 @@
 """tf2's exception names."""
 
+# ruff: noqa: N818 - the names are tf2's
+
 from navette.errors import InvalidNameError, TransformError
 
 
