@@ -4,11 +4,14 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from navette.cli.status import StatusScreen
 from navette.errors import CallbackError
 from navette.launch.options import RunOptions
-from navette.launch.simulation import Simulation
+
+if TYPE_CHECKING:
+    from navette.launch.simulation import Simulation
 
 SUCCEEDED = 0
 FAILED = 1
@@ -24,6 +27,9 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
     """
     screen = StatusScreen(options)
     with screen.starting():
+        # Imported here: the first time ever this compiles the kernels.
+        from navette.launch.simulation import Simulation
+
         simulation = Simulation(options, on_change=screen.on_change)
     try:
         return _drive(simulation, screen, as_json=as_json)
@@ -31,7 +37,7 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
         simulation.close()
 
 
-def _drive(simulation: Simulation, screen: StatusScreen, *, as_json: bool) -> int:
+def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> int:
     failure: CallbackError | None = None
     with _terminate_as_interrupt(), screen.watching(simulation):
         try:

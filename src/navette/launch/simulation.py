@@ -3,10 +3,8 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 from navette.bags.node import RecorderNode
-from navette.errors import ParameterError
 from navette.launch.monitor import MonitorNode, Progress
 from navette.launch.options import RunOptions
 from navette.launch.scene import ResolvedScene, resolve_scene
