@@ -57,18 +57,21 @@ class Message:
         package, kind, name = self._type_name_.split("/")
         return f"{package}.{kind}.{name}({', '.join(shown)})"
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        values = tuple(getattr(self, name) for name in self._field_types_)
-        return _restore, (self._type_name_, values)
-
     def __copy__(self) -> Self:
         names = self._field_types_
         return type(self)(**{name: getattr(self, name) for name in names})
 
 
 def fields(interface: "type[Message] | Message") -> tuple[Field, ...]:
-    """The fields of a message class: names, types, defaults, in order."""
-    return interface._spec_.fields
+    """The fields of a message class: names, types, defaults, in order.
+
+    Raises:
+        MessageError: it is no message and no message class (but a service, say).
+    """
+    spec = getattr(interface, "_spec_", None)
+    if not isinstance(spec, MessageSpec):
+        raise MessageError(f"{interface!r} is neither a message nor a message class")
+    return spec.fields
 
 
 def refuse_keywords(cls: type[Message], unknown: dict[str, Any]) -> Never:
@@ -76,13 +79,6 @@ def refuse_keywords(cls: type[Message], unknown: dict[str, Any]) -> Never:
     listed = ", ".join(cls._field_types_) or "none"
     named = ", ".join(repr(name) for name in unknown)
     raise MessageError(f"{cls._type_name_} has no field {named}; its fields: {listed}")
-
-
-def _restore(type_name: str, values: tuple[Any, ...]) -> Message:
-    from navette.msgs.classes import get_message_class
-
-    cls = get_message_class(type_name)
-    return cls(**dict(zip(cls._field_types_, values, strict=True)))
 
 
 def _equal(mine: Any, other: Any) -> bool:

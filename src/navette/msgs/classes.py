@@ -119,6 +119,7 @@ def _make_message(spec: MessageSpec) -> type[Message]:
         "__module__": _module_of(spec.name),
         "__doc__": f"{spec.name}: {', '.join(field.name for field in spec.fields)}",
         "__init__": scope["__init__"],
+        "__reduce__": _reduce,
         "_spec_": spec,
         "_type_name_": spec.name,
         "_field_types_": {field.name: idl_type(field.type) for field in spec.fields},
@@ -133,3 +134,14 @@ def _make_message(spec: MessageSpec) -> type[Message]:
     cls: type[Message] = type(spec.name.rpartition("/")[2], (Message,), namespace)
     scope["_cls"] = cls
     return cls
+
+
+def _reduce(message: Message) -> tuple[Any, ...]:
+    """Pickle by type name: the class exists only once somebody asks for it."""
+    values = tuple(getattr(message, name) for name in message._field_types_)
+    return _restore, (message._type_name_, values)
+
+
+def _restore(name: str, values: tuple[Any, ...]) -> Message:
+    cls = get_message_class(name)
+    return cls(**dict(zip(cls._field_types_, values, strict=True)))

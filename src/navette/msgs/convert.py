@@ -27,7 +27,7 @@ def from_dict(cls: type[M], values: Mapping[str, Any]) -> M:
     Raises:
         MessageError: an unknown field (the known ones are listed) or a wrong value.
     """
-    if not isinstance(values, Mapping):
+    if not isinstance(values, Mapping) or not all(isinstance(k, str) for k in values):
         raise MessageError(
             f"{cls._type_name_}: {shortened(values)} is {type(values).__name__}, "
             "wanted fields by name"

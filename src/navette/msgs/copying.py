@@ -40,7 +40,7 @@ def copier_of(cls: type[M]) -> Callable[[M], M]:
     found = _copiers.get(cls)
     if found is None:
         if not issubclass(cls, Message):
-            raise MessageError(f"{cls.__name__} is no message class")
+            raise MessageError(f"{cls!r} is no message class")
         found = _copiers[cls] = _make(cls)
     return found
 

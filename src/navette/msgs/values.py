@@ -203,6 +203,8 @@ def _array_checker(where: str, type_: FieldType) -> Checker:
     allowed = f"a sequence of {type_.base}"
 
     def check(value: Any) -> NDArray[Any]:
+        if type_.base == "byte":
+            value = _joined_bytes(value)
         found = _as_array(where, value, dtype, allowed)
         if found.ndim != 1:
             raise MessageError(
@@ -215,6 +217,15 @@ def _array_checker(where: str, type_: FieldType) -> Checker:
         return np.ascontiguousarray(found)
 
     return check
+
+
+def _joined_bytes(value: Any) -> Any:
+    """rclpy's form of ``byte[]``, a list of single bytes, as one bytes object."""
+    if not isinstance(value, (list, tuple)) or not value:
+        return value
+    if all(isinstance(item, bytes) and len(item) == 1 for item in value):
+        return b"".join(value)
+    return value
 
 
 def _as_array(

@@ -70,8 +70,8 @@ def deserialize(data: bytes | bytearray | memoryview, cls: type[M]) -> M:
 
 
 def _message_class(cls: type) -> type[Message]:
-    if not issubclass(cls, Message) or cls is Message:
-        raise MessageError(f"{cls.__name__} is no message class")
+    if not (isinstance(cls, type) and issubclass(cls, Message)) or cls is Message:
+        raise MessageError(f"{cls!r} is no message class")
     return cls
 
 

@@ -1,0 +1,172 @@
+"""What a field takes and what it refuses."""
+
+from array import array
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from navette.errors import MessageError
+from navette.msgs import validate
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.msgs.geometry_msgs.msg import Point, Polygon, PoseWithCovariance, Vector3
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Path
+from navette.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
+from navette.msgs.sensor_msgs.msg import CompressedImage, JointState, LaserScan
+from navette.msgs.std_msgs.msg import (
+    Bool,
+    ByteMultiArray,
+    Char,
+    Float32,
+    Float64,
+    Int8,
+    String,
+    UInt64,
+    UInt64MultiArray,
+)
+
+
+def test_floats_take_numbers_of_any_kind() -> None:
+    for value in (1, 1.0, np.float32(1), np.float64(1), np.int8(1)):
+        message = Float64(data=value)
+        assert message.data == 1.0
+        assert type(message.data) is float
+    assert np.isnan(Float64(data=float("nan")).data)
+    assert np.isinf(Float32(data=-np.inf).data)
+
+
+def test_integers_take_numpy_scalars() -> None:
+    message = Int8(data=np.int64(-128))
+    assert type(message.data) is int
+    assert message.data == -128
+    assert UInt64(data=2**64 - 1).data == 2**64 - 1
+    assert Char(data=255).data == 255
+    assert Bool(data=np.True_).data is True
+    assert type(String(data=np.str_("a")).data) is str
+
+
+def test_a_byte_is_bytes_as_in_rclpy_and_takes_integers() -> None:
+    assert DiagnosticStatus(level=2).level == DiagnosticStatus.ERROR == b"\x02"
+    assert ByteMultiArray(data=[b"\x01", b"\xff"]).data.tolist() == [1, 255]
+
+
+@pytest.mark.parametrize(
+    ("make", "text"),
+    [
+        (lambda: Float64(data="1"), "Float64.data: '1' is str, wanted a float"),
+        (lambda: Float64(data=True), "is bool, wanted a float"),
+        (lambda: Float64(data=None), "None is NoneType"),
+        (lambda: Float64(data=10**400), "out of range"),
+        (lambda: Float32(data=1e39), r"1e\+39 is out of range, wanted a float32"),
+        (lambda: Int8(data=128), "128 is out of range, wanted an integer from -128"),
+        (lambda: Int8(data=1.0), "1.0 is float, wanted an integer"),
+        (lambda: Int8(data=True), "True is bool, wanted an integer"),
+        (lambda: UInt64(data=-1), "-1 is out of range"),
+        (lambda: Bool(data=1), "1 is int, wanted a bool"),
+        (lambda: String(data=b"x"), "b'x' is bytes, wanted a str"),
+        (lambda: DiagnosticStatus(level=256), "wanted one byte"),
+        (lambda: DiagnosticStatus(level=b""), "wanted one byte"),
+        (lambda: DiagnosticStatus(level=True), "wanted one byte"),
+        (lambda: Path(header=Point()), "wanted a std_msgs/msg/Header"),
+        (
+            lambda: Polygon(points=[Point()]),
+            r"points\[0\]: .* a geometry_msgs/msg/Point32",
+        ),
+        (lambda: Polygon(points=3), "3 is int, wanted a list"),
+        (lambda: JointState(name="abc"), "'abc' is str, wanted a list"),
+        (lambda: JointState(name=["a", 1]), r"name\[1\]: 1 is int, wanted a str"),
+        (lambda: LaserScan(ranges="abc"), "'abc' is str, wanted a sequence"),
+        (lambda: LaserScan(ranges=1.0), "is float, wanted a sequence"),
+        (lambda: LaserScan(ranges=["1"]), "wanted float32"),
+        (lambda: LaserScan(ranges=[None]), "wanted float32"),
+        (lambda: LaserScan(ranges=[[1], [1, 2]]), "wanted a sequence"),
+        (lambda: LaserScan(ranges=np.zeros((2, 2))), r"shape \(2, 2\), wanted one dim"),
+        (lambda: LaserScan(ranges=[1e39]), "do not fit float32"),
+        (lambda: LaserScan(ranges=b"1234"), "is bytes, wanted a sequence"),
+        (lambda: OccupancyGrid(data=[128]), "128 to 128 do not fit int8"),
+        (lambda: OccupancyGrid(data=[0.5]), "elements of float64"),
+        (lambda: OccupancyGrid(data=np.zeros(2, bool)), "elements of bool"),
+        (lambda: UInt64MultiArray(data=[-1]), "do not fit uint64"),
+        (lambda: UInt64MultiArray(data=[2**64]), "wanted a sequence of uint64"),
+        (lambda: PoseWithCovariance(covariance=[0.0]), "1 elements, wanted exactly 36"),
+        (lambda: ParameterValue(bool_array_value=[1]), "wanted bool"),
+    ],
+)
+def test_wrong_values_are_refused_by_name(make: Callable[[], Any], text: str) -> None:
+    with pytest.raises(MessageError, match=text):
+        make()
+    # What rclpy users expect of a wrong type, and of a wrong value.
+    assert issubclass(MessageError, TypeError)
+    assert issubclass(MessageError, ValueError)
+
+
+def test_assignment_checks_as_the_constructor_does() -> None:
+    vector = Vector3()
+    with pytest.raises(MessageError, match=r"geometry_msgs/msg/Vector3\.y: 'fast'"):
+        vector.y = "fast"  # type: ignore[assignment]
+    assert vector == Vector3()
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        [1, 2, 3],
+        (1, 2, 3),
+        range(1, 4),
+        np.array([1, 2, 3]),
+        np.array([1.0, 2.0, 3.0]),
+        np.array([1, 2, 3], ">i2"),
+        np.arange(6)[1:4],
+        np.array([1, 9, 2, 9, 3])[::2],
+        array("f", [1, 2, 3]),
+        memoryview(array("d", [1, 2, 3])),
+    ],
+)
+def test_arrays_come_from_many_things(value: Any) -> None:
+    ranges = LaserScan(ranges=value).ranges
+    assert ranges.dtype == np.float32
+    assert ranges.flags.c_contiguous
+    assert ranges.tolist() == [1.0, 2.0, 3.0]
+
+
+def test_octets_come_from_bytes_and_stay_writable() -> None:
+    source = bytearray(b"\x00\xff")
+    image = CompressedImage(data=source)
+    source[0] = 9
+    image.data[1] = 7
+    assert image.data.tolist() == [0, 7]
+    assert CompressedImage(data=array("B", [1, 2])).data.tobytes() == b"\x01\x02"
+
+
+def test_integers_around_2_to_the_63() -> None:
+    values = [0, 2**63, 2**64 - 1]
+    assert UInt64MultiArray(data=values).data.tolist() == values
+    assert UInt64MultiArray(data=[]).data.dtype == np.uint64
+
+
+def test_floats_in_arrays_may_be_nan_or_infinite() -> None:
+    scan = LaserScan(ranges=[float("inf"), float("nan"), 1.0])
+    assert np.isinf(scan.ranges[0])
+    assert np.isnan(scan.ranges[1])
+
+
+def test_an_array_of_the_right_type_is_kept_as_it_is() -> None:
+    data = np.zeros(4, np.int8)
+    assert OccupancyGrid(data=data).data is data
+
+
+def test_bounds_of_sequences() -> None:
+    from navette.msgs.rcl_interfaces.msg import IntegerRange
+
+    one = IntegerRange(from_value=0, to_value=5)
+    assert ParameterDescriptor(integer_range=[one]).integer_range == [one]
+    with pytest.raises(MessageError, match="2 elements, wanted at most 1"):
+        ParameterDescriptor(integer_range=[one, one])
+
+
+def test_validate_finds_what_was_put_into_a_list() -> None:
+    state = JointState(name=["a"])
+    state.name.append(3)  # type: ignore[arg-type]
+    with pytest.raises(MessageError, match=r"JointState\.name\[1\]: 3 is int"):
+        validate(state)

@@ -1,0 +1,84 @@
+"""The committed modules and stubs; what they cost and what they promise."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from navette.msgs import generate
+
+SNIPPET = """
+import numpy as np
+from numpy.typing import NDArray
+from navette.msgs import copy_message, deserialize, get_interface, serialize
+from navette.msgs.example_interfaces.action import Fibonacci
+from navette.msgs.geometry_msgs.msg import Point, Twist
+from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.std_srvs.srv import SetBool
+from navette.msgs.visualization_msgs.msg import Marker
+
+twist = Twist()
+twist.linear.x = 1.0
+twist = copy_message(deserialize(serialize(twist), Twist))
+scan = LaserScan(ranges=[1, 2])
+scan.ranges = [3.0]
+ranges: NDArray[np.float32] = scan.ranges
+marker = Marker(type=Marker.ARROW, points=[Point(x=1)])
+ok: bool = SetBool.Response(success=True).success
+goal = Fibonacci.Goal(order=3)
+send = Fibonacci.Impl.SendGoalService.Request(goal=goal)
+"""
+MISTAKES = """
+from navette.msgs.geometry_msgs.msg import Twist
+Twist().linear = 3
+Twist().lin
+Twist(lin=3)
+from navette.msgs.geometry_msgs.msg import Twits
+"""
+
+
+def test_committed_files_are_up_to_date() -> None:
+    assert generate.outdated_files() == [], "run: python -m navette.msgs.generate"
+
+
+def test_the_command_writes_what_is_missing(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(generate, "ROOT", tmp_path)
+    assert generate.main(["--check"]) == 1
+    assert not list(tmp_path.iterdir())
+    assert generate.main([]) == 0
+    assert "geometry_msgs" in capsys.readouterr().out
+    assert generate.main(["--check"]) == 0
+    assert generate.main(["--wrong"]) == 2
+
+
+def test_naming_types_needs_no_numpy() -> None:
+    code = (
+        "import sys, navette.msgs, navette.msgs.std_msgs.msg\n"
+        "navette.msgs.interface_names('std_msgs', 'msg')\n"
+        "navette.msgs.type_hash('std_msgs/msg/String')\n"
+        "assert 'numpy' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def mypy(path: Path, code: str) -> str:
+    path.write_text(code)
+    command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary"]
+    cache = f"--cache-dir={path.parent}"
+    done = subprocess.run(
+        [*command, cache, str(path)], capture_output=True, text=True, check=False
+    )
+    return done.stdout + done.stderr
+
+
+@pytest.mark.slow
+def test_stubs_satisfy_a_users_strict_mypy(tmp_path: Path) -> None:
+    assert mypy(tmp_path / "good.py", SNIPPET) == ""
+    complaints = mypy(tmp_path / "bad.py", MISTAKES)
+    for line in range(3, 7):
+        assert f"bad.py:{line}: error" in complaints

@@ -1,0 +1,73 @@
+"""Copies share nothing with their original."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from navette.errors import MessageError
+from navette.msgs import (
+    Message,
+    copier_of,
+    copy_message,
+    fields,
+    get_interface,
+    interface_names,
+    packages,
+)
+from navette.msgs.geometry_msgs.msg import Point, Twist, Vector3
+from navette.msgs.sensor_msgs.msg import JointState
+from navette.msgs.visualization_msgs.msg import Marker
+from navette.testing.messages import random_message
+
+MESSAGES = [
+    f"{package}/msg/{name}"
+    for package in packages()
+    for name in interface_names(package, "msg")
+]
+
+
+def mutable_parts(message: Message) -> Iterator[Any]:
+    """Everything inside that could be changed in place."""
+    yield message
+    for field in fields(message):
+        value = getattr(message, field.name)
+        for part in value if isinstance(value, list) else (value,):
+            if isinstance(part, Message):
+                yield from mutable_parts(part)
+        is_filled_array = isinstance(value, np.ndarray) and value.size
+        if isinstance(value, list) or is_filled_array:
+            yield value
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_a_copy_is_equal_and_apart(name: str) -> None:
+    message = random_message(get_interface(name), np.random.default_rng(7))
+    copied = copy_message(message)
+    assert type(copied) is type(message)
+    assert copied == message
+    mine = {id(part) for part in mutable_parts(message)}
+    assert mine.isdisjoint(id(part) for part in mutable_parts(copied))
+
+
+def test_a_wrong_element_put_into_a_list_is_named() -> None:
+    marker = Marker(points=[Point()])
+    marker.points.append("here")  # type: ignore[arg-type]
+    with pytest.raises(MessageError, match=r"Marker\.points\[1\]: 'here' is str"):
+        copy_message(marker)
+
+
+def test_only_messages_are_copied() -> None:
+    with pytest.raises(MessageError, match="no message class"):
+        copy_message(3)  # type: ignore[type-var]
+
+
+def test_copier_and_subclasses() -> None:
+    class Command(Twist):
+        """A user's own kind of twist."""
+
+    command = Command(linear=Vector3(x=1.0))
+    assert type(copy_message(command)) is Command
+    assert copier_of(Twist)(Twist()) == Twist()
+    assert copy_message(JointState(name=["a"])).name == ["a"]
