@@ -19,7 +19,6 @@ from navette.msgs.interface import MessageSpec, short_name
 from navette.msgs.registry import DEFINITIONS, get_message_spec
 from navette.testing.messages import random_message
 
-
 # It has no wstring, and reads a char as text where ROS 2 has an unsigned byte.
 FAULTS = ("wstring", "char")
 
