@@ -29,7 +29,11 @@ from navette.viewer.outbox import Outbox
 from navette.viewer.session import Session, Watch
 from navette.viewer.web import Answer, Gate, Site, refuse
 
+# Connections that come, go and fail to open are every day's business: only what is
+# wrong in here is worth a line.
 _log = logging.getLogger(__name__)
+_log.setLevel(logging.ERROR)
+_log.addFilter(lambda record: record.msg != "opening handshake failed")
 
 _MAX_FRAME = 16 * 2**20  # bytes of one client frame; a larger one ends the connection
 _MAX_PENDING = 64  # requests of one client that may wait for the program
