@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.grids import GridSpec
 
@@ -19,14 +20,23 @@ def obstacle_points(
     """Centres (N, 2), metres, map, of the lethal cells in a square around a pose.
 
     Args:
-        cost: (H, W) 0 … 100, −1 unknown. Unknown cells are no obstacles here: behind
-            every hit the grid is unknown, and the body's own place may be as well.
+        cost: (H, W), or flat in that order; 0 … 100, −1 unknown. Unknown cells
+            are no obstacles here: behind every hit the grid is unknown, and the
+            body's own place may be as well.
         spec: geometry of ``cost`` in its frame.
         map_T_grid: pose of that frame in the map at the costmap's stamp.
         lethal: value from which a cell counts.
         around: pose (map) in whose surroundings obstacles matter.
         reach: half the edge of the square, metres.
+
+    Raises:
+        InvalidValueError: ``cost`` has not as many cells as ``spec`` says.
     """
+    if cost.size != spec.width * spec.height:
+        raise InvalidValueError(
+            f"costmap of {cost.size} cells: wanted {spec.width} x {spec.height}"
+        )
+    cost = cost.reshape(spec.shape)
     grid_T_around = map_T_grid.inverse() @ around
     row, column = spec.cell_of(grid_T_around.x, grid_T_around.y)
     half = int(reach / spec.resolution) + 1

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from navette.control.limits import MotionLimits
-from navette.errors import ParameterError
+from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint
 from navette.params import Params, param
 
@@ -126,9 +126,6 @@ class ControlParams(Params):
     idle_zeros: int = param(
         5, "zero commands before an idle controller falls silent", at_least=1
     )
-    status_rate_hz: float = param(
-        2.0, "least rate of /control/status", unit="Hz", at_least=0.5
-    )
 
     def check(self) -> None:
         if max(self.cruise_speed_mps, self.reverse_speed_mps) > self.max_speed_mps:
@@ -142,7 +139,10 @@ class ControlParams(Params):
                 f"lookahead_min_m {self.lookahead_min_m:g}: wanted <= lookahead_m "
                 f"{self.lookahead_m:g}"
             )
-        Footprint.from_flat(self.footprint)
+        try:
+            Footprint.from_flat(self.footprint)
+        except InvalidValueError as error:
+            raise ParameterError(f"parameter 'footprint': {error}") from error
 
     def limits(self) -> MotionLimits:
         """The part that bounds commands."""

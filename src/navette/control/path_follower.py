@@ -40,13 +40,13 @@ class PathFollower:
         )  # fmt: skip
         self.reset()
 
-    def reset(self) -> None:
-        """Forget the path and stop at once."""
+    def reset(self, rest: ControlState = ControlState.IDLE) -> None:
+        """Forget the path and stop at once; ``rest`` says why."""
         self._with.steering.reset()
         self._pieces: list[Piece] = []
         self._active: PieceDrive | TurnInPlace | None = None
         self._goal = (0.0, 0.0)
-        self._rest: ControlState | None = ControlState.IDLE
+        self._rest: ControlState | None = rest
         self._last: Command | None = None
         self._clearance = math.inf
         self._blocked = False

@@ -11,11 +11,15 @@ from navette.geometry import Pose2
 
 FARTHEST_M = 1e8  # from the map's origin; UTM northings reach 1e7
 _FASTEST = 1e3  # m/s, rad/s
+UNKNOWN_POSE = Pose2(math.nan, math.nan, math.nan)
 
 
 @dataclass(frozen=True)
 class FollowerInputs:
-    """What one step sees: pose of the base in the map, motion (m/s, rad/s), ages."""
+    """What one step sees: pose of the base in the map, motion (m/s, rad/s), ages.
+
+    A robot whose place is not known (:data:`UNKNOWN_POSE`) is not moved.
+    """
 
     pose: Pose2
     speed: float

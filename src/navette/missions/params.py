@@ -1,7 +1,9 @@
 """Parameters of the missions stage."""
 
+import math
 from dataclasses import dataclass
 
+from navette.errors import ParameterError
 from navette.params import Params, param
 
 
@@ -21,3 +23,17 @@ class MissionParams(Params):
     )
     wait_for_map: bool = param(True, "send the first goal only once /map was seen")
     rate_hz: float = param(10.0, "checks per second", unit="Hz", at_least=1.0)
+
+    def check(self) -> None:
+        if len(self.goals) % 2:
+            raise ParameterError(
+                f"parameter 'goals': {len(self.goals)} numbers; wanted pairs x, y"
+            )
+        if not all(map(math.isfinite, self.goals)):
+            raise ParameterError(
+                f"parameter 'goals': {self.goals}; wanted finite numbers"
+            )
+
+    def goal_points(self) -> list[tuple[float, float]]:
+        """The goals as points (x, y), metres."""
+        return list(zip(self.goals[0::2], self.goals[1::2], strict=True))

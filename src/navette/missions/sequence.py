@@ -69,8 +69,8 @@ class GoalSequence:
         stop_on_failure: bool = False,
     ) -> None:
         self._pending: deque[Point] = deque()
-        self._timeout_ns = timeout_ns
-        self._stop_on_failure = stop_on_failure
+        self.timeout_ns = timeout_ns
+        self.stop_on_failure = stop_on_failure
         self._heard = PlannerReport("", "")
         self._before_goal = self._heard
         self._place: Point | None = None
@@ -137,9 +137,9 @@ class GoalSequence:
 
     def check(self, now_ns: int) -> None:
         """End the active goal if its time is over."""
-        if self._active is None or not self._timeout_ns:
+        if self._active is None or not self.timeout_ns:
             return
-        if now_ns - self._began_ns >= self._timeout_ns:
+        if now_ns - self._began_ns >= self.timeout_ns:
             self._end(TIMED_OUT, now_ns)
 
     def _is_old(self, report: PlannerReport) -> bool:
@@ -157,7 +157,7 @@ class GoalSequence:
             GoalOutcome(goal, result, seconds, self._path_length, left)
         )
         self._active = None
-        if result != REACHED and self._stop_on_failure:
+        if result != REACHED and self.stop_on_failure:
             while self._pending:
                 skipped = self._pending.popleft()
                 self.outcomes.append(GoalOutcome(skipped, SKIPPED, 0.0, 0.0, math.inf))

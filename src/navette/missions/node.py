@@ -1,0 +1,143 @@
+"""The node ``missions``: sends goals to the planner, one after the other.
+
+It waits with the first goal until somebody reads /goal_point, the planner was heard
+and (unless switched off) a map was seen; then it publishes each goal once.
+"""
+
+from typing import Any
+
+from navette.missions.params import MissionParams
+from navette.missions.sequence import GoalOutcome, GoalSequence, PlannerReport, Point
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.msgs.geometry_msgs.msg import PointStamped
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.runtime.odometry import PoseTracker
+from navette.runtime.stage import Input, Output, StageNode
+from navette.runtime.time import ns_to_stamp
+
+
+class MissionNode(StageNode):
+    """Drives a list of goals; more can be added at any time."""
+
+    PARAMS = MissionParams
+    INPUTS = (
+        Input(
+            topic="/planner/status",
+            type="diagnostic_msgs/msg/DiagnosticStatus",
+            role="what becomes of the goal",
+            rate_hz=2.0,
+            depth=1,
+            latched=True,
+            callback="on_planner_status",
+        ),
+        Input(
+            topic="/odom/filtered",
+            type="nav_msgs/msg/Odometry",
+            role="path length and distance left",
+            rate_hz=10.0,
+            callback="on_odometry",
+        ),
+        Input(
+            topic="/map",
+            type="nav_msgs/msg/OccupancyGrid",
+            role="sign that planning can begin",
+            depth=1,
+            latched=True,
+            callback="on_map",
+        ),
+    )
+    OUTPUTS = (
+        Output(
+            topic="/goal_point",
+            type="geometry_msgs/msg/PointStamped",
+            role="the next goal",
+        ),
+    )
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("missions", **kwargs)
+        params: MissionParams = self.params
+        self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
+        self._map_seen = self._planner_heard = False
+        self._sequence = GoalSequence(
+            params.goal_points(),
+            timeout_ns=round(params.goal_timeout_s * 1e9),
+            stop_on_failure=params.on_failure == "stop",
+        )
+        self.create_timer(1 / params.rate_hz, self._check)
+
+    @property
+    def done(self) -> bool:
+        """Whether every goal has its outcome."""
+        return self._sequence.done
+
+    @property
+    def active_goal(self) -> Point | None:
+        """The goal under way (x, y; m, map), if any."""
+        return self._sequence.active
+
+    @property
+    def outcomes(self) -> list[GoalOutcome]:
+        """What became of the goals that have ended, in order."""
+        return list(self._sequence.outcomes)
+
+    def add_goal(self, x: float, y: float) -> None:
+        """One more goal (m, map) after the others.
+
+        Raises:
+            InvalidValueError: not finite.
+        """
+        self._sequence.add(x, y)
+
+    def on_planner_status(self, msg: DiagnosticStatus) -> None:
+        """The planner says how it goes; perhaps the goal is done."""
+        self._planner_heard = True
+        goal_id = next((v.value for v in msg.values if v.key == "goal_id"), "")
+        self._sequence.hear(PlannerReport(goal_id, msg.message), self._now_ns)
+        self._go_on()
+
+    def on_odometry(self, msg: Odometry) -> None:
+        """Count the way driven."""
+        if self._tracker.update(msg) and self._tracker.latest is not None:
+            self._sequence.move(self._tracker.latest.x, self._tracker.latest.y)
+
+    def on_map(self, msg: OccupancyGrid) -> None:
+        """The planner can have its map by now."""
+        self._map_seen = True
+
+    def on_params_changed(self, old: MissionParams) -> None:
+        """New goals are added; times and failure rule hold from the next goal on."""
+        params: MissionParams = self.params
+        if params.goals != old.goals:
+            for goal in params.goal_points():
+                self._sequence.add(*goal)
+        self._sequence.timeout_ns = round(params.goal_timeout_s * 1e9)
+        self._sequence.stop_on_failure = params.on_failure == "stop"
+
+    @property
+    def _now_ns(self) -> int:
+        return self.get_clock().now_ns
+
+    def _check(self) -> None:
+        self._sequence.check(self._now_ns)
+        self._go_on()
+
+    def _go_on(self) -> None:
+        """Publish the next goal if it is its turn and the planner can take it."""
+        map_ready = self._map_seen or not self.params.wait_for_map
+        if not (
+            map_ready and self._planner_heard and self.has_listeners("/goal_point")
+        ):
+            return
+        goal = self._sequence.start_next(self._now_ns)
+        if goal is None:
+            return
+        self.get_logger().info(
+            f"goal {len(self.outcomes) + 1} of {self._sequence.total}: "
+            f"({goal[0]:g}, {goal[1]:g})"
+        )
+        msg = PointStamped()
+        msg.header.frame_id = self.params.map_frame
+        msg.header.stamp = ns_to_stamp(self._now_ns)
+        msg.point.x, msg.point.y = goal
+        self.publish("/goal_point", msg)
