@@ -7,6 +7,7 @@ they meet (the method of tf2's BufferCore; T. Foote, "tf: The transform library"
 from navette.geometry import Transform3
 from navette.runtime.tf.exceptions import (
     ConnectivityException,
+    ExtrapolationException,
     InvalidArgumentException,
     LookupException,
 )
@@ -14,6 +15,55 @@ from navette.runtime.tf.frame_history import FrameHistory
 
 _MAX_DEPTH = 1000
 _NORM_TOLERANCE = 1e-3
+
+
+class _Way:
+    """The frames from target and from source up to where they meet (excluded)."""
+
+    __slots__ = ("_from_source", "_from_target")
+
+    def __init__(
+        self, from_target: list[FrameHistory], from_source: list[FrameHistory]
+    ) -> None:
+        self._from_target = [(h, h.parent) for h in from_target]
+        self._from_source = [(h, h.parent) for h in from_source]
+
+    def newest_common_ns(self) -> int:
+        """The newest time that all moving frames reach; 0 if none moves."""
+        return min(
+            (
+                history.newest_ns
+                for history, _ in (*self._from_target, *self._from_source)
+                if not history.is_static
+            ),
+            default=0,
+        )
+
+    def at(self, stamp_ns: int) -> Transform3 | None:
+        """target_T_source; None if a frame had another parent at that time."""
+        common_T_source = _joined(self._from_source, stamp_ns)
+        common_T_target = _joined(self._from_target, stamp_ns)
+        if common_T_source is None or common_T_target is None:
+            return None
+        if not self._from_target:
+            return common_T_source
+        target_T_common = common_T_target.inverse()
+        return (
+            target_T_common @ common_T_source if self._from_source else target_T_common
+        )
+
+
+def _joined(path: list[tuple[FrameHistory, str]], stamp_ns: int) -> Transform3 | None:
+    """top_T_bottom along a path that starts at the bottom."""
+    top_T_bottom: Transform3 | None = None
+    for history, expected_parent in path:
+        parent_T_child, parent = history.at(stamp_ns)
+        if parent != expected_parent:
+            return None
+        top_T_bottom = (
+            parent_T_child if top_T_bottom is None else parent_T_child @ top_T_bottom
+        )
+    return Transform3.identity() if top_T_bottom is None else top_T_bottom
 
 
 class BufferCore:
@@ -27,6 +77,7 @@ class BufferCore:
         self.cache_ns = cache_ns
         self._frames: dict[str, FrameHistory] = {}
         self._parents: set[str] = set()
+        self._ways: dict[tuple[str, str], _Way] = {}
 
     def set(
         self,
@@ -49,6 +100,9 @@ class BufferCore:
         if history is None or history.is_static != is_static:
             history = FrameHistory(child, self.cache_ns, is_static=is_static)
             self._frames[child] = history
+            self._ways.clear()
+        elif history.parent != parent:
+            self._ways.clear()
         history.insert(stamp_ns, _checked(parent_T_child, child), parent)
         self._parents.add(parent)
 
@@ -59,29 +113,22 @@ class BufferCore:
             LookupException, ConnectivityException, ExtrapolationException
         """
         target, source = frame_name(target), frame_name(source)
-        self._check_known(target, source)
         if target == source:
+            self._check_known(target)
             return Transform3.identity(), stamp_ns
+        way = self._way(target, source)
         if stamp_ns == 0:
-            stamp_ns = self.newest_common_ns(target, source)
-        return self._chain(target, source, stamp_ns), stamp_ns
+            stamp_ns = way.newest_common_ns()
+        target_T_source = way.at(stamp_ns)
+        if target_T_source is None:
+            target_T_source = self._chain(target, source, stamp_ns)
+        return target_T_source, stamp_ns
 
     def newest_common_ns(self, target: str, source: str) -> int:
         """The newest time at which every moving frame between the two has a sample."""
         target, source = frame_name(target), frame_name(source)
         self._check_known(target, source)
-        up_target = self._ancestors(target)
-        up_source = self._ancestors(source)
-        common = next((frame for frame in up_source if frame in up_target), None)
-        if common is None:
-            raise self._not_connected(target, source)
-        stamps = [
-            history.newest_ns
-            for path in (up_target, up_source)
-            for frame in path[: path.index(common)]
-            if not (history := self._frames[frame]).is_static
-        ]
-        return min(stamps, default=0)
+        return 0 if target == source else self._way(target, source).newest_common_ns()
 
     def frames(self) -> list[str]:
         """All known frames, parents included, sorted."""
@@ -97,38 +144,51 @@ class BufferCore:
     def clear(self) -> None:
         self._frames.clear()
         self._parents.clear()
+        self._ways.clear()
 
     def drop_moving(self) -> None:
         """Forget what is not static (after a jump back in time)."""
         self._frames = {n: h for n, h in self._frames.items() if h.is_static}
+        self._ways.clear()
+
+    def _way(self, target: str, source: str) -> "_Way":
+        """The chain between two frames as the tree is now; kept until it changes."""
+        way = self._ways.get((target, source))
+        if way is None:
+            self._check_known(target, source)
+            up_target, up_source = self._ancestors(target), self._ancestors(source)
+            common = next((frame for frame in up_source if frame in up_target), None)
+            if common is None:
+                raise self._not_connected(target, source)
+            way = self._ways[target, source] = _Way(
+                [self._frames[f] for f in up_target[: up_target.index(common)]],
+                [self._frames[f] for f in up_source[: up_source.index(common)]],
+            )
+        return way
 
     def _chain(self, target: str, source: str, stamp_ns: int) -> Transform3:
-        # root_T_source for every frame on the way up from the source, then the same
-        # from the target until the two ways meet.
-        up: dict[str, Transform3] = {source: Transform3.identity()}
-        frame, upper_T_source = source, up[source]
-        failure: Exception | None = None
-        for _ in range(_MAX_DEPTH):
-            history = self._frames.get(frame)
-            if history is None or frame == target:
-                break
+        """target_T_source where parents were others at that time than they are now."""
+        up_target, top_of_target = self._up(target, stamp_ns)
+        up_source, top_of_source = self._up(source, stamp_ns)
+        for frame, common_T_source in up_source.items():
+            if frame in up_target:
+                return up_target[frame].inverse() @ common_T_source
+        raise top_of_source or top_of_target or self._not_connected(target, source)
+
+    def _up(
+        self, frame: str, stamp_ns: int
+    ) -> tuple[dict[str, Transform3], ExtrapolationException | None]:
+        """ancestor_T_frame of the frame and its ancestors, and why it went no higher."""
+        upper_T_frame = Transform3.identity()
+        found = {frame: upper_T_frame}
+        while (history := self._frames.get(frame)) and len(found) < _MAX_DEPTH:
             try:
-                upper_T_frame, frame = history.at(stamp_ns)
-            except Exception as error:
-                failure = error
-                break
-            upper_T_source = upper_T_frame @ upper_T_source
-            up[frame] = upper_T_source
-        frame, upper_T_target = target, Transform3.identity()
-        for _ in range(_MAX_DEPTH):
-            if frame in up:
-                return upper_T_target.inverse() @ up[frame]
-            history = self._frames.get(frame)
-            if history is None:
-                break
-            upper_T_frame, frame = history.at(stamp_ns)
-            upper_T_target = upper_T_frame @ upper_T_target
-        raise failure or self._not_connected(target, source)
+                upper_T_lower, frame = history.at(stamp_ns)
+            except ExtrapolationException as error:
+                return found, error  # what lies above may not be needed
+            upper_T_frame = upper_T_lower @ upper_T_frame
+            found[frame] = upper_T_frame
+        return found, None
 
     def _ancestors(self, frame: str) -> list[str]:
         """The frame, its parent and so on, as they are now."""
