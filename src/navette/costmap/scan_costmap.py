@@ -96,6 +96,10 @@ class ScanCostmap:
             )
         return inflate(cost, self._table, raise_unknown=False)
 
+    def warm_up(self) -> None:
+        """Load or compile the kernels now, not at the first scan."""
+        self.build(Scan(np.ones(2, np.float32), 0.0, 0.1, 0.1, 2.0))
+
     def _margins(
         self, scan: Scan, directions: NDArray[np.float64]
     ) -> NDArray[np.float32]:

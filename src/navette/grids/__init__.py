@@ -1,5 +1,6 @@
 """Grid arrays: cells, rays, distance, inflation, resampling."""
 
+from navette.grids.alignment import placed
 from navette.grids.cells import FREE, LETHAL, UNKNOWN
 from navette.grids.clearance import (
     body_clearance,
@@ -11,9 +12,11 @@ from navette.grids.clearance import (
 )
 from navette.grids.compare import Changes, compare
 from navette.grids.distance import distance_field, distance_squared
+from navette.grids.evidence import accumulate
 from navette.grids.inflation import cost_table, inflate
+from navette.grids.merge import merge
+from navette.grids.messages import grid_from_message, grid_to_message
 from navette.grids.rays import beam_directions, trace_beams
-from navette.grids.resample import accumulate, merge, placed
 from navette.grids.spec import GridSpec
 
 __all__ = [
@@ -38,4 +41,6 @@ __all__ = [
     "placed",
     "Changes",
     "compare",
+    "grid_to_message",
+    "grid_from_message",
 ]

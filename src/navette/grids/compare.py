@@ -6,9 +6,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from navette.grids.alignment import grid_relation, related_cell
 from navette.grids.cells import FREE, LETHAL
 from navette.grids.checks import at_least, grid_array
-from navette.grids.resample import grid_relation, related_cell
 from navette.grids.spec import GridSpec
 
 

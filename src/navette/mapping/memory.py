@@ -1,7 +1,7 @@
 """The map: what the costmaps seen so far add up to."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,11 +47,18 @@ class MapMemory:
     """
 
     def __init__(self, params: MapMemoryParams) -> None:
+        self.configure(params)
+        self.reset()
+
+    def configure(self, params: MapMemoryParams) -> None:
+        """Use other values from now on; :meth:`MapMemoryParams.shape` must not change.
+
+        A map that has outgrown a smaller ``max_size`` keeps its size.
+        """
         self.params = params
         self._footprint = (
             Footprint.from_flat(params.footprint) if params.footprint else None
         )
-        self.reset()
 
     def reset(self) -> None:
         """Forget everything: all cells unknown, the extent as at the start."""
@@ -103,6 +110,16 @@ class MapMemory:
             center=costmap.sensor,
             radius=self.params.change_range,
         )
+
+    def warm_up(self) -> None:
+        """Load or compile the kernels now, not at the first costmap."""
+        trial = MapMemory(replace(self.params, size=self.params.resolution))
+        cells = np.full((1, 1), LETHAL, np.int8)
+        spec = GridSpec(self.params.resolution, 1, 1, trial.spec.origin)
+        here = trial.spec.origin
+        costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0.0, 0)
+        trial.fuse(costmap)
+        trial.changes(costmap)
 
     def _grow(self, corners: NDArray[np.float64]) -> None:
         growth = grow_to_hold(

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from navette.errors import ParameterError
+from navette.errors import InvalidValueError, ParameterError
+from navette.geometry import Footprint
 from navette.params import Params, param
 
 
@@ -88,7 +89,27 @@ class MapMemoryParams(Params):
         0.65, "log_odds: belief from which on a cell is lethal", above=0.5, below=1.0
     )
 
+    def frames(self) -> tuple[str, str]:
+        """(map frame, base frame)."""
+        return (self.map_frame, self.base_frame)
+
+    def shape(self) -> tuple[object, ...]:
+        """The values that cannot change without starting the map anew."""
+        return (
+            *self.frames(),
+            self.resolution,
+            self.size,
+            self.center_x,
+            self.center_y,
+            self.fusion,
+        )
+
     def check(self) -> None:
+        if self.footprint:
+            try:
+                Footprint.from_flat(self.footprint)
+            except InvalidValueError as error:
+                raise ParameterError(f"parameter 'footprint': {error}") from None
         if self.max_size < self.size:
             raise ParameterError(
                 f"parameter 'max_size': {self.max_size} m; wanted at least the size, "

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from navette.errors import InvalidValueError, ParameterError
+from navette.errors import ParameterError
 from navette.geometry import Pose2
 from navette.grids import GridSpec, placed
 from navette.mapping import MapMemory, MapMemoryParams, PlacedCostmap
@@ -195,5 +195,5 @@ def test_bad_parameters_are_named(values, text) -> None:
 
 
 def test_bad_footprint_is_named() -> None:
-    with pytest.raises(InvalidValueError, match="footprint"):
+    with pytest.raises(ParameterError, match="'footprint': footprint: 3 numbers"):
         memory(footprint=(0.0, 1.0, 2.0))

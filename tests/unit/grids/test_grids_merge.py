@@ -109,6 +109,17 @@ def test_log_odds_add_up_and_stay_within_the_limit() -> None:
     assert np.isnan(field).sum() == field.size - 3
 
 
+def test_log_odds_count_a_hit_as_a_hit_at_any_rotation() -> None:
+    for yaw in np.linspace(-3.0, 3.0, 31):
+        source = np.zeros((30, 30), np.int8)
+        source[[0, 15, 29], [0, 12, 29]] = 100
+        spec = placed(GridSpec(0.1, 30, 30), Pose2(0.3, -0.2, float(yaw)))
+        field = np.full(MAP.shape, np.nan, np.float32)
+        accumulate(field, MAP, source, spec, hit=0.8, miss=-0.5, limit=2.0)
+        assert (field > 0).sum() == 3
+        np.testing.assert_allclose(field[field > 0], 0.8, rtol=1e-6)
+
+
 def test_log_odds_of_a_coarse_source() -> None:
     field = np.full(MAP.shape, np.nan, np.float32)
     spec = GridSpec(0.4, 1, 1, Pose2(0.0, 0.0, 0.0))

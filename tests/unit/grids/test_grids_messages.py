@@ -1,0 +1,38 @@
+import numpy as np
+import pytest
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+from navette.grids import GridSpec, grid_from_message, grid_to_message
+from navette.msgs import deserialize, serialize
+from navette.msgs.nav_msgs.msg import OccupancyGrid
+
+SPEC = GridSpec(0.1, 4, 3, Pose2(-1.5, 2.0, 0.5))
+CELLS = np.arange(-1, 11, dtype=np.int8).reshape(3, 4)
+
+
+def test_round_trip_in_process_and_over_a_wire() -> None:
+    msg = grid_to_message(CELLS, SPEC, "map", 3_000_000_007)
+    assert msg.header.frame_id == "map"
+    assert (msg.header.stamp.sec, msg.header.stamp.nanosec) == (3, 7)
+    for each in (msg, deserialize(serialize(msg), OccupancyGrid)):
+        cells, spec = grid_from_message(each)
+        np.testing.assert_array_equal(cells, CELLS)
+        assert (spec.resolution, spec.shape) == (0.1, (3, 4))
+        assert spec.origin == pytest.approx(SPEC.origin)
+
+
+def test_cells_are_shared_not_copied() -> None:
+    msg = grid_to_message(CELLS, SPEC, "map", 0)
+    assert np.shares_memory(grid_from_message(msg)[0], CELLS)
+
+
+def test_what_is_no_grid_is_named() -> None:
+    msg = grid_to_message(CELLS, SPEC, "map", 0)
+    msg.info.width = 5
+    with pytest.raises(InvalidValueError, match="12 cells, wanted 5 x 3 = 15"):
+        grid_from_message(msg)
+    with pytest.raises(InvalidValueError, match="grid resolution"):
+        grid_from_message(OccupancyGrid())
+    with pytest.raises(InvalidValueError, match="cells: shape"):
+        grid_to_message(CELLS[:2], SPEC, "map", 0)
