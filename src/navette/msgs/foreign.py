@@ -3,20 +3,21 @@
 import re
 
 from navette.errors import FileFormatError, UnknownNameError
-from navette.msgs.interface import MessageSpec
+from navette.msgs.interface import FieldType, MessageSpec
 from navette.msgs.parser import parse_message
-from navette.msgs.registry import add_specs, full_name, get_spec
+from navette.msgs.registry import add_specs, full_name, get_message_spec
 
 
 def load_definition_text(name: str, text: str) -> None:
     """Make a message known from the ``ros2msg`` text that was sent along with it.
 
-    ``text`` is of the form that ``definition_text`` gives. Types that are known already
-    stay; another definition of a known name is refused.
+    ``text`` is of the form that ``definition_text`` gives. A type that is known already
+    stays as it is, if its fields are the same: constants and defaults do not travel,
+    and they differ between releases of ROS 2.
 
     Raises:
         FileFormatError: the text is broken, refers to types that it does not hold and
-            nobody else defines, or contradicts a known type.
+            nobody else defines, or gives a known type other fields.
     """
     source = f"definition of {name}"
     top, *contained = re.split(r"^={80,}\n", text, flags=re.MULTILINE)
@@ -32,9 +33,13 @@ def load_definition_text(name: str, text: str) -> None:
 
 def _is_known(spec: MessageSpec, source: str) -> bool:
     try:
-        known = get_spec(spec.name)
+        known = get_message_spec(spec.name)
     except UnknownNameError:
         return False
-    if known != spec:
-        raise FileFormatError(source, f"{spec.name} is known with another definition")
+    if _on_the_wire(known) != _on_the_wire(spec):
+        raise FileFormatError(source, f"{spec.name} is known with other fields")
     return True
+
+
+def _on_the_wire(spec: MessageSpec) -> list[tuple[str, FieldType]]:
+    return [(field.name, field.type) for field in spec.fields]

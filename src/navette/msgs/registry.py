@@ -60,10 +60,11 @@ def full_name(name: str) -> str:
         InvalidNameError: neither of the two forms.
     """
     parts = name.split("/")
-    if len(parts) == 2 and all(parts):
-        return f"{parts[0]}/msg/{parts[1]}"
-    if len(parts) == 3 and parts[1] in KINDS and all(parts):
-        return name
+    if all(part.isidentifier() for part in parts):
+        if len(parts) == 2:
+            return f"{parts[0]}/msg/{parts[1]}"
+        if len(parts) == 3 and parts[1] in KINDS:
+            return name
     raise InvalidNameError(
         f"interface name {name!r}: wanted 'package/msg/Name' (or srv, action)"
     )

@@ -130,6 +130,9 @@ def test_types_from_their_text() -> None:
     load_definition_text("registry_bag/Outer", definition_text("registry_bag/Outer"))
     for name in ("nav_msgs/msg/Odometry", "shape_msgs/msg/SolidPrimitive"):
         load_definition_text(name, definition_text(name))
+    # An older release lacked a constant.
+    load_definition_text("std_msgs/msg/Bool", "uint8 NEW=1\nbool data\n")
+    assert not hasattr(get_interface("std_msgs/msg/Bool"), "NEW")
 
 
 @pytest.mark.parametrize(
@@ -138,7 +141,7 @@ def test_types_from_their_text() -> None:
         ("int32 x y z\n", r"definition of .*:1: "),
         ("registry_lost/Inner inner\n", "unknown interface package 'registry_lost'"),
         ("=" * 80 + "\nint32 x\n", "wanted 'MSG: package/Name'"),
-        ("=" * 80 + "\nMSG: std_msgs/String\nint32 x\n", "known with another"),
+        ("=" * 80 + "\nMSG: std_msgs/String\nint32 x\n", "known with other fields"),
     ],
 )
 def test_broken_texts(text: str, reason: str) -> None:

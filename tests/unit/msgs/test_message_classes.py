@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 
 from navette.errors import InvalidNameError, MessageError, UnknownNameError
-from navette.msgs import fields, get_interface, type_name
+from navette.msgs import (
+    copy_message,
+    deserialize,
+    fields,
+    get_interface,
+    load_definition_text,
+    serialize,
+    type_name,
+)
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.example_interfaces.action import Fibonacci
@@ -112,6 +120,15 @@ def test_a_message_without_fields() -> None:
     assert fields(Empty) == ()
 
 
+def test_fields_named_like_python_keywords() -> None:
+    load_definition_text("class_cases/msg/Move", "int32 from 3\nint32 to\n")
+    move = get_interface("class_cases/msg/Move")
+    message = move(**{"from": 1, "to": 2})
+    assert getattr(message, "from") == 1
+    assert getattr(move(to=2), "from") == 3
+    assert deserialize(serialize(message), move) == message == copy_message(message)
+
+
 def test_the_same_name_gives_the_same_class() -> None:
     assert get_interface("std_msgs/msg/String") is String
     assert get_interface("std_msgs/String") is String
@@ -147,7 +164,9 @@ def test_action_classes() -> None:
     )
 
 
-@pytest.mark.parametrize("name", ["Twist", "a/b/C/d", "geometry_msgs/foo/Twist", ""])
+@pytest.mark.parametrize(
+    "name", ["Twist", "a/b/C/d", "geometry_msgs/foo/Twist", "a/msg/B c", ""]
+)
 def test_malformed_names(name: str) -> None:
     with pytest.raises(InvalidNameError, match="wanted 'package/msg/Name'"):
         get_interface(name)

@@ -31,6 +31,28 @@ GOLDEN = {
     "service_msgs/msg/ServiceEventInfo": "41bcbbe0",
     "example_interfaces/srv/AddTwoInts": "e118de6b",
 }
+# In full, as ``ros2 topic info -v`` and ``ros2 action info -v`` print them.
+PRINTED = {
+    "geometry_msgs/msg/Twist": (
+        "9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"
+    ),
+    "geometry_msgs/msg/TwistStamped": (
+        "5f0fcd4f81d5d06ad9b4c4c63e3ea51b82d6ae4d0558f1d475229b1121db6f64"
+    ),
+    "action_msgs/srv/CancelGoal": (
+        "573d8b0a534451d7bc2ac8c5ffde8ac14b8593b7001175d0cd6516dcbeb8689a"
+    ),
+    "action_msgs/msg/GoalStatusArray": (
+        "6c1684b00f177d37438febe6e709fc4e2b0d4248dca4854946f9ed8b30cda83e"
+    ),
+}
+ROTATE_ABSOLUTE = {
+    "_SendGoal": "3d5d3cfcbb721f88038eaedcd4af95565360a82b36f1983e3a6c7448d2d18fbe",
+    "_GetResult": "f96fd02477be2a47122fca142e960d407b24850c6eac72047872ba764473c4ef",
+    "_FeedbackMessage": (
+        "bef10993e1ee82b35f99f7e390bac1e6cc64e2a3090536887832e122aa71f1b5"
+    ),
+}
 FIBONACCI = {
     "_Goal": "834005bd",
     "_Result": "cf622af2",
@@ -52,6 +74,19 @@ def test_parts_of_an_action(part: str, digits: str) -> None:
     text = "int64 number\n---\nint64[] sequence\n---\nint64 progress\n"
     add_specs([parse_action(name, text)], ["rob599"])
     assert type_hash(name + part).removeprefix("RIHS01_")[:8] == digits
+
+
+@pytest.mark.parametrize(("name", "digits"), PRINTED.items())
+def test_whole_hashes(name: str, digits: str) -> None:
+    assert type_hash(name) == f"RIHS01_{digits}"
+
+
+@pytest.mark.parametrize(("part", "digits"), ROTATE_ABSOLUTE.items())
+def test_whole_hashes_of_an_action(part: str, digits: str) -> None:
+    name = "turtlesim_msgs/action/RotateAbsolute"
+    text = "float32 theta\n---\nfloat32 delta\n---\nfloat32 remaining\n"
+    add_specs([parse_action(name, text)], ["turtlesim"])
+    assert type_hash(name + part) == f"RIHS01_{digits}"
 
 
 def test_form_of_a_hash() -> None:
