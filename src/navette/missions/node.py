@@ -92,8 +92,11 @@ class MissionNode(StageNode):
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
         """The planner says how it goes; perhaps the goal is done."""
         self._planner_heard = True
-        goal_id = next((v.value for v in msg.values if v.key == "goal_id"), "")
-        self._sequence.hear(PlannerReport(goal_id, msg.message), self._now_ns)
+        values = {pair.key: pair.value for pair in msg.values}
+        report = PlannerReport(
+            values.get("goal_id", ""), msg.message, values.get("result")
+        )
+        self._sequence.hear(report, self._now_ns)
         self._go_on()
 
     def on_odometry(self, msg: Odometry) -> None:

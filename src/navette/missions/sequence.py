@@ -25,7 +25,7 @@ FAILURES = frozenset(
         TIMED_OUT,
     }
 )
-"""Planner results after which it has given the goal up."""
+"""Messages of a planner that has given the goal up."""
 
 Point = tuple[float, float]
 
@@ -46,10 +46,23 @@ class GoalOutcome:
 
 @dataclass(frozen=True)
 class PlannerReport:
-    """What the planner says; ``goal_id`` tells its goals apart, "" if it does not."""
+    """What the planner says.
+
+    ``goal_id`` tells its goals apart, "" if it does not. ``result`` says how the goal
+    ended, "" while under way; None from a planner that says it by message only.
+    """
 
     goal_id: str
     message: str
+    result: str | None = None
+
+    @property
+    def end(self) -> str:
+        """How the goal ended, or "" if it has not."""
+        if self.result is not None:
+            return self.result
+        is_end = self.message == REACHED or self.message in FAILURES
+        return self.message if is_end else ""
 
 
 class GoalSequence:
@@ -132,8 +145,8 @@ class GoalSequence:
         if self._active is None or self._is_old(report):
             return
         self._before_goal = PlannerReport("", "")
-        if report.message == REACHED or report.message in FAILURES:
-            self._end(report.message, now_ns)
+        if report.end:
+            self._end(report.end, now_ns)
 
     def check(self, now_ns: int) -> None:
         """End the active goal if its time is over."""

@@ -88,6 +88,15 @@ def test_what_the_planner_says_on_its_way_ends_nothing() -> None:
     assert sequence.active == (1.0, 0.0)
 
 
+def test_a_planner_that_tries_again_has_not_given_up() -> None:
+    sequence = GoalSequence([(1.0, 0.0)])
+    sequence.start_next(0)
+    sequence.hear(PlannerReport("1", "no_path", ""), S)
+    assert not sequence.done
+    sequence.hear(PlannerReport("1", "no_path", "no_path"), 2 * S)
+    assert sequence.outcomes[0].result == "no_path"
+
+
 def test_a_goal_times_out() -> None:
     sequence = GoalSequence([(1.0, 0.0)], timeout_ns=10 * S)
     sequence.start_next(5 * S)
