@@ -170,7 +170,8 @@ def _new_tree(spec: GridSpec, motions: Motions, max_expansions: int) -> Tree:
 def _goal_array(goal: LatticeGoal, per_metre: float) -> NDArray[np.float64]:
     yaw = math.nan if goal.yaw is None else goal.yaw
     pull = goal.pull * per_metre
-    return np.array([goal.x, goal.y, goal.tolerance_m, yaw, goal.yaw_tolerance, pull])
+    where = goal.x, goal.y, goal.tolerance_m
+    return np.array([*where, yaw, goal.yaw_tolerance, pull, per_metre])
 
 
 def _retrace(

@@ -90,14 +90,17 @@ def grow(
 ) -> tuple[int, int]:
     """Grow the tree from ``start``; (node at the goal or −1, nodes expanded).
 
-    ``goal`` is x, y, tolerance, yaw or NaN, yaw tolerance, units per metre off.
+    ``goal`` is x, y, tolerance, yaw or NaN, yaw tolerance, units per metre off, and
+    units of a metre.
     """
     state = tree.queue
     clearance = _clearance(scene, start[0], start[1], start[2], scene.margin_m)
     escape_m = clearance - 1e-3
     bucket = _plant(scene, tree, start, clearance < scene.margin_m)
-    push(pool, tree.heads, state, bucket, 0)
-    used, expanded = 1, 0
+    # int64 from the start: a literal would compile the callee a second time.
+    used: Any = np.int64(1)
+    push(pool, tree.heads, state, bucket, used - 1)
+    expanded = 0
     best, best_node = np.int64(NOWHERE), -1
     turn = 2 * np.pi / moves.headings
     while state[WAITING] > 0 and expanded < budget and bucket < best >> SHIFT:
@@ -106,13 +109,14 @@ def grow(
             bucket += 1
             continue
         x, y = tree.position[node, 0], tree.position[node, 1]
-        at = _bin(tree, scene.frame, x, y, tree.links[node, HEADING], moves.headings)
+        heading: Any = np.int64(tree.links[node, HEADING])
+        at = _bin(tree, scene.frame, x, y, heading, moves.headings)
         if node != 0 and tree.kept[at] != ROOM - tree.links[node, G]:
             continue
         expanded += 1
-        yaw = start[2] + tree.links[node, HEADING] * turn
+        yaw = start[2] + heading * turn
         if not tree.links[node, ESCAPING]:
-            total = tree.links[node, G] + _arrival(goal, x, y, yaw)
+            total = tree.links[node, G] + _arrival(scene, goal, x, y, yaw)
             if total < best:
                 best, best_node = total, node
         pool = reserve(pool, state, 8)
@@ -157,7 +161,7 @@ def _branch(
         ahead, factor = _cell_values(scene, x_new, y_new)
         if factor < 0.0 or (ahead >= UNREACHED and not escaping):
             continue
-        heading = (tree.links[node, HEADING] + moves.turns[m]) % moves.headings
+        heading = np.int64(tree.links[node, HEADING] + moves.turns[m]) % moves.headings
         at = _bin(tree, scene.frame, x_new, y_new, heading, moves.headings)
         g = tree.links[node, G] + _step_cost(moves, tree.links[node, MOVE], m, factor)
         if ROOM - g <= tree.kept[at] or used >= tree.links.shape[0]:
@@ -261,8 +265,11 @@ def _bin(tree: Any, frame: Any, x: float, y: float, heading: int, headings: int)
 
 
 @njit(cache=True)
-def _arrival(goal: Any, x: float, y: float, yaw: float) -> int:
-    """What arriving here adds in units; NOWHERE where it is not the goal."""
+def _arrival(scene: Any, goal: Any, x: float, y: float, yaw: float) -> int:
+    """What arriving here adds in units; NOWHERE where it is not the goal.
+
+    So much for each metre off, and for a cramped end as much as a metre driven.
+    """
     off = math.hypot(x - goal[0], y - goal[1])
     if off > goal[2]:
         return NOWHERE
@@ -270,4 +277,6 @@ def _arrival(goal: Any, x: float, y: float, yaw: float) -> int:
         error = abs((yaw - goal[3] + math.pi) % (2 * math.pi) - math.pi)
         if error > goal[4]:
             return NOWHERE
-    return int(goal[5] * off)
+    lack = scene.comfort_m - _clearance(scene, x, y, yaw, scene.comfort_m)
+    cramped = lack / (scene.comfort_m - scene.margin_m) if lack > 0.0 else 0.0
+    return int(goal[5] * off + goal[6] * cramped)

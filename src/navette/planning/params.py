@@ -67,6 +67,13 @@ class PlannerParams(Params):
         0.1, "distance to the path's end at which the robot need not stand still",
         unit="m", above=0.0,
     )  # fmt: skip
+    goal_yaw_tolerance_rad: float = param(
+        0.2, "heading error at which a goal pose counts as reached", unit="rad",
+        above=0.0, at_most=3.2,
+    )  # fmt: skip
+    deviation_m: float = param(
+        0.8, "distance from the path at which it is planned anew", unit="m", above=0.0
+    )
     path_spacing_m: float = param(
         0.1, "largest distance between poses of the path", unit="m", above=0.0
     )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from navette.geometry import Footprint, Pose2
 from navette.grids import GridSpec
 from navette.planning.detour import DetourPlanner, Target
-from navette.planning.footprint_check import check_path
+from navette.planning.footprint_check import check_path, clearances
 from navette.planning.goals import nearest_reachable
 from navette.planning.outcome import Outcome
 from navette.planning.params import PlannerParams
@@ -25,6 +25,8 @@ from navette.planning.route import GridRouter
 
 # Share of the goal tolerance by which a route may simply be cut short.
 _CUT_SHARE = 0.5
+# Margins of clearance at the path's end: robots stop a little short or long.
+_ROOMY_END = 2.0
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,13 @@ class Planner:
         self._body: BodyShape | None = None
         self._grids: dict[float, PlanningGrid] = {}
 
+    def with_params(self, params: PlannerParams) -> "Planner":
+        """Another planner on the same map."""
+        other = Planner(params)
+        if self._map is not None:
+            other.set_map(*self._map)
+        return other
+
     def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
         """Take a map (H, W): −1 unknown, 0 free … 100 occupied."""
         if self._map is None or self._map[1].resolution != spec.resolution:
@@ -103,6 +112,21 @@ class Planner:
         squeezed = self._plan_with(tight, start, goal)
         return squeezed if squeezed.outcome.has_path else plan
 
+    def plan_on_grid(self, start: Pose2, goal: Goal) -> Plan | None:
+        """A path that the grid's search alone finds, with the full margin, or None.
+
+        Cheap: what to ask when there is a path and only a better one is of interest.
+        """
+        if self._refusal(start, goal) is not None:
+            return None
+        margin = self.params.clearance_margin_m
+        grid = self._opened(margin, start)
+        route = self.router.route(grid, self.body, start, (goal.x, goal.y), goal.yaw)
+        if route is None:
+            return None
+        poses = self._cut_to_fit(grid, start, goal, route)
+        return None if poses is None else self._planned(goal, poses, margin, 0)
+
     def cost_of(self, poses: Poses) -> float:
         """What driving these poses is worth on the newest map; see path_cost."""
         return path_cost(
@@ -123,21 +147,29 @@ class Planner:
 
     def _plan_with(self, margin_m: float, start: Pose2, goal: Goal) -> Plan:
         grid = self._opened(margin_m, start)
-        end, why_not = self._end(grid, start, goal)
-        if end is None:
-            return Plan(why_not)
-        route = self.router.route(grid, self.body, start, end, goal.yaw)
-        assert route is not None, "the end was chosen among reachable cells"
-        checked = self._cut_to_fit(grid, start, goal, route)
-        if checked is not None:
-            return self._planned(goal, checked, margin_m, 0)
+        route = self.router.route(grid, self.body, start, (goal.x, goal.y), goal.yaw)
+        if route is None:
+            end, why_not = self._end_nearby(grid, start, goal)
+            if end is None:
+                return Plan(why_not)
+            route = self.router.route(grid, self.body, start, end, goal.yaw)
+            assert route is not None, "the end was chosen among reachable cells"
+        fitting = self._cut_to_fit(grid, start, goal, route)
+        if fitting is not None and not self._ends_cramped(grid, fitting):
+            return self._planned(goal, fitting, margin_m, 0)
         detour = DetourPlanner(grid, self.body, self.params, self.router).plan(
             start, Target(goal.x, goal.y, goal.yaw, self._reach_m), route
         )
-        if detour.poses is None:
+        poses = fitting if detour.poses is None else detour.poses
+        if poses is None:
             why = Outcome.SEARCH_LIMIT if detour.exhausted else Outcome.NO_PATH
             return Plan(why, expansions=detour.expansions)
-        return self._planned(goal, detour.poses, margin_m, detour.expansions)
+        return self._planned(goal, poses, margin_m, detour.expansions)
+
+    def _ends_cramped(self, grid: PlanningGrid, route: Poses) -> bool:
+        """Whether a robot that stops a little long would be too close."""
+        last = clearances(route[-1:], grid, self.body)
+        return bool(last[0] < _ROOMY_END * grid.margin_m)
 
     @property
     def _reach_m(self) -> float:
@@ -158,12 +190,10 @@ class Planner:
         assert cell is not None, "the start lies in the map"
         return open_at(grid, cell, self.body)
 
-    def _end(
+    def _end_nearby(
         self, grid: PlanningGrid, start: Pose2, goal: Goal
     ) -> tuple[tuple[float, float] | None, Outcome]:
-        """Where the path is to end, or None and the reason."""
-        if self.router.connects(grid, (start.x, start.y), (goal.x, goal.y)):
-            return (goal.x, goal.y), Outcome.OK
+        """Where the path may end instead of at the goal, or None and the reason."""
         cell = grid.cell_of(start.x, start.y)
         assert cell is not None, "the start lies in the map"
         near, outcome = nearest_reachable(
@@ -178,12 +208,27 @@ class Planner:
         sweep = turn_in_place(start.x, start.y, start.yaw, float(route[0, 2]))
         check = check_path(np.concatenate([sweep, route]), grid, self.body)
         if check.first_bad is None:
-            return route
+            return self._cut_for_comfort(grid, goal, route)
         kept = route[: max(0, check.first_bad - len(sweep))]
         if goal.yaw is not None or len(kept) < 2:
             return None
         missing = math.dist(kept[-1, :2], (goal.x, goal.y))
-        return kept if missing <= _CUT_SHARE * self.params.goal_tolerance_m else None
+        if missing > _CUT_SHARE * self.params.goal_tolerance_m:
+            return None
+        return self._cut_for_comfort(grid, goal, kept)
+
+    def _cut_for_comfort(self, grid: PlanningGrid, goal: Goal, route: Poses) -> Poses:
+        """The route up to where its end has some room, if that is near enough."""
+        away = np.hypot(route[:, 0] - goal.x, route[:, 1] - goal.y)
+        near = away <= _CUT_SHARE * self.params.goal_tolerance_m
+        first = len(route) - int(np.argmin(near[::-1])) if not near.all() else 1
+        tail = route[first:]
+        if goal.yaw is not None or not len(tail):
+            return route
+        roomy = clearances(tail, grid, self.body) >= _ROOMY_END * grid.margin_m
+        if not roomy.any():
+            return route
+        return route[: first + int(np.flatnonzero(roomy)[-1]) + 1]
 
     def _planned(
         self, goal: Goal, poses: Poses, margin_m: float, expansions: int

@@ -61,15 +61,6 @@ class GridRouter:
         line[0], line[-1] = ends
         return self._with_headings(line, grid, body, start, goal_yaw)
 
-    def connects(
-        self,
-        grid: PlanningGrid,
-        start_xy: tuple[float, float],
-        goal_xy: tuple[float, float],
-    ) -> bool:
-        """Whether cells lead from start to goal."""
-        return self._cells(grid, start_xy, goal_xy) is not None
-
     def _cells(
         self,
         grid: PlanningGrid,

@@ -15,7 +15,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from navette.planning.traversal import STRAIGHT, EdgeTable, with_rim
+from navette.errors import InvalidValueError
+from navette.planning.traversal import STRAIGHT, EdgeTable
 
 Points = NDArray[np.float64]
 
@@ -36,17 +37,14 @@ def pull(
     """
     table = table or EdgeTable()
     factor = table.straight / STRAIGHT
-    rimmed = with_rim(cost)
-    line: Points = np.ascontiguousarray(points, np.float64) + 1.0
+    cost, line = _checked(cost, points)
     for _ in range(passes):
         # Backwards each time: the first pass leaves its slack at the far side.
         fine = _cut(line)
         kept = np.empty(len(fine), np.int64)
-        count = _pull_once(rimmed, fine, factor, np.empty(len(fine)), kept)
+        count = _pull_once(cost, fine, factor, np.empty(len(fine)), kept)
         line = fine[kept[:count]][::-1]
-    if passes % 2:
-        line = line[::-1]
-    return np.ascontiguousarray(line - 1.0)
+    return np.ascontiguousarray(line[::-1] if passes % 2 else line)
 
 
 def line_cost(
@@ -54,16 +52,31 @@ def line_cost(
 ) -> float:
     """Cost of a polyline (N, 2) of u, v in cells; a free cell's width costs 1.
 
-    Infinite when it meets a closed cell or leaves the grid.
+    Infinite when it meets a closed cell.
     """
     table = table or EdgeTable()
-    line = np.ascontiguousarray(points, np.float64) + 1.0
-    return float(_line_cost(with_rim(cost), line, table.straight / STRAIGHT))
+    cost, line = _checked(cost, points)
+    return float(_line_cost(cost, line, table.straight / STRAIGHT))
 
 
 def centers(cells: NDArray[np.int64]) -> Points:
     """Cells (N, 2) row, column → their centres (N, 2) u, v."""
     return np.ascontiguousarray(cells[:, ::-1] + 0.5, np.float64)
+
+
+def _checked(
+    cost: NDArray[np.uint8], points: Points
+) -> tuple[NDArray[np.uint8], Points]:
+    """Both as the kernels take them: a line between points inside stays inside."""
+    line = np.ascontiguousarray(points, np.float64)
+    height, width = cost.shape
+    inside = (line >= 0).all() and (line < (width, height)).all()
+    if cost.dtype != np.uint8 or line.ndim != 2 or len(line) < 1 or not inside:
+        raise InvalidValueError(
+            f"line of shape {line.shape} on a {cost.dtype} grid of {height} x {width} "
+            f"cells: wanted (N, 2) points u, v inside a uint8 grid"
+        )
+    return np.ascontiguousarray(cost), line
 
 
 @njit(cache=True)
