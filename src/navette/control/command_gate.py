@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from navette.control.limits import STOP, Command, MotionLimits
+from navette.control.limits import Command, MotionLimits
 from navette.control.states import ControlState
 
 _ROUNDING = 1e-6
@@ -54,10 +54,3 @@ class CommandGate:
         ):
             return ControlState.COMMAND_OVER_LIMIT
         return None
-
-    def admit(
-        self, command: Command, ages: InputAges
-    ) -> tuple[Command, ControlState | None]:
-        """The command and None, or zero and the reason."""
-        reason = self.stale(ages) or self.refusal(command)
-        return (STOP, reason) if reason else (command, None)

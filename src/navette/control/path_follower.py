@@ -100,6 +100,8 @@ class PathFollower:
         last = self._with.limits.clamp(last)
         self._with.turn_gain.update(last.turn_rate, inputs.turn_rate, dt)
         wanted = self._steer(inputs)
+        if wanted.state.rests:
+            return self._stop(wanted.state)
         command = self._accelerate(last, wanted, dt)
         command, blocked = self._keep_clear(inputs.pose, wanted, command)
         state = ControlState.BLOCKED if blocked else wanted.state
@@ -121,7 +123,7 @@ class PathFollower:
         missed = math.dist(self._goal, (inputs.pose.x, inputs.pose.y))
         reached = missed <= self._params.goal_tolerance_m
         self._rest = ControlState.REACHED if reached else ControlState.MISSED_GOAL
-        return Wanted(STOP, self._rest, brakes=True)
+        return Wanted(STOP, self._rest)
 
     def _activate(self, start_window: float = 0.3) -> None:
         """Make the first piece left the active one."""
