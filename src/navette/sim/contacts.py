@@ -35,6 +35,11 @@ class ContactMonitor:
         self.episodes: list[ContactEpisode] = []
         self._open: dict[str, int] = {}  # obstacle → index of its newest episode
 
+    @property
+    def count(self) -> int:
+        """Number of contact episodes so far."""
+        return len(self.episodes)
+
     def reset(self) -> None:
         self.episodes.clear()
         self._open.clear()

@@ -27,7 +27,7 @@ class SpeedRamp:
     """
 
     def __init__(self, params: SimParams) -> None:
-        self._params = params
+        self.params = params
         self.speed = _STOP
         self._target = _STOP
         self._expires_ns: int | None = None
@@ -40,7 +40,7 @@ class SpeedRamp:
         """Take a command; False (and no change) if it is not finite."""
         if not (math.isfinite(linear) and math.isfinite(angular)):
             return False
-        p = self._params
+        p = self.params
         self._target = BodySpeed(
             min(max(linear, -p.max_reverse_speed_mps), p.max_speed_mps),
             min(max(angular, -p.max_yaw_rate_radps), p.max_yaw_rate_radps),
@@ -54,8 +54,8 @@ class SpeedRamp:
         if self._expires_ns is not None and now_ns >= self._expires_ns:
             self._target, self._expires_ns = _STOP, None
         period_s = CONTROL_PERIOD_NS * 1e-9
-        dv = self._params.max_accel_mps2 * period_s
-        dw = self._params.max_yaw_accel_radps2 * period_s
+        dv = self.params.max_accel_mps2 * period_s
+        dw = self.params.max_yaw_accel_radps2 * period_s
         v, w = self.speed.linear, self.speed.angular
         self.speed = BodySpeed(
             v + min(max(self._target.linear - v, -dv), dv),

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from navette.sim.build import SEEN, SEEN_SOLID, SOLID
 from navette.sim.mount import Mount
+from navette.sim.params import SimParams
 from navette.sim.scene import LidarSensor
 
 
@@ -31,13 +32,10 @@ class Scan:
 class Lidar:
     """Casts the beams of one sensor; never sees the robot that carries it."""
 
-    def __init__(
-        self, sensor: LidarSensor, mount: Mount, *, noise_m: float, dropout: float
-    ) -> None:
+    def __init__(self, sensor: LidarSensor, mount: Mount, params: SimParams) -> None:
         self.sensor = sensor
         self.mount = mount
-        self._noise_m = noise_m
-        self._dropout = dropout
+        self.set_noise(params)
         n = sensor.samples
         angles = np.linspace(sensor.angle_min, sensor.angle_max, n)
         self.angle_increment = float(angles[1] - angles[0]) if n > 1 else 0.0
@@ -48,6 +46,12 @@ class Lidar:
         self._groups[[SEEN_SOLID, SEEN if sensor.sees_visuals else SOLID]] = 1
         self._geom = np.empty(n, dtype=np.int32)
         self._distance = np.empty(n)
+
+    def set_noise(self, params: SimParams) -> None:
+        """Noise and lost beams from now on; below 0 the sensor's own noise."""
+        own = params.lidar_noise_m < 0
+        self._noise_m = self.sensor.noise_stddev if own else params.lidar_noise_m
+        self._dropout = params.lidar_dropout
 
     def scan(
         self,

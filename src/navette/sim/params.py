@@ -67,3 +67,14 @@ class SimParams(Params):
     joint_tf_rate_hz: float = param(
         10.0, "/tf of turning wheels", unit="Hz", above=0.0, at_most=50.0
     )
+
+
+# What the simulator or its topics are built from: changing it needs a new start.
+FIXED_AT_START = frozenset(
+    {
+        *("timestep_s", "seed", "camera_renderer", "odometry", "wheel_noise"),
+        *("map_frame", "odom_frame", "base_frame", "odometry_child_frame"),
+        *("link_frame_prefix", "clock_rate_hz", "odometry_rate_hz", "tf_rate_hz"),
+        "joint_tf_rate_hz",
+    }
+)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from navette.geometry import Transform3, Vector3
 from navette.geometry.se3 import rotate
 from navette.sim.build import RobotIndex
-from navette.sim.scene import JointKind
+from navette.sim.scene import JointKind, Model
 
 
 class Motion(NamedTuple):
@@ -67,23 +67,12 @@ class RobotState:
         angles = self._data.qpos[self._robot.wheel_qpos] * self._direction
         return float(angles[self._left].mean()), float(angles[~self._left].mean())
 
-    def base_T_link(self, name: str) -> Transform3:
+    def link_in_base(self, name: str) -> Transform3:
         """Pose of a link in the base frame (kinematics must be fresh)."""
         body = self._robot.bodies[name]
         w, x, y, z = self._data.xquat[body].tolist()
         px, py, pz = self._data.xpos[body].tolist()
         return self.pose().inverse() @ Transform3((px, py, pz), (x, y, z, w))
-
-    def moving_links(self) -> tuple[str, ...]:
-        """Links that move against the base: everything beyond a moving joint."""
-        moving: list[str] = []
-        joints = self._robot.model.joints
-        for _ in joints:
-            for joint in joints:
-                beyond = joint.kind is not JointKind.FIXED or joint.parent in moving
-                if beyond and joint.child not in moving:
-                    moving.append(joint.child)
-        return tuple(moving)
 
     def _root_pose(self) -> Transform3:
         at = self._robot.qpos
@@ -95,6 +84,17 @@ class RobotState:
         at = self._robot.qvel
         vx, vy, vz, wx, wy, wz = self._data.qvel[at : at + 6].tolist()
         return (vx, vy, vz), (wx, wy, wz)
+
+
+def moving_links(model: Model) -> tuple[str, ...]:
+    """Links that move against the base: everything beyond a joint that moves."""
+    moving: list[str] = []
+    for _ in model.joints:
+        for joint in model.joints:
+            beyond = joint.kind is not JointKind.FIXED or joint.parent in moving
+            if beyond and joint.child not in moving:
+                moving.append(joint.child)
+    return tuple(moving)
 
 
 def cross(a: Vector3, b: Vector3) -> Vector3:

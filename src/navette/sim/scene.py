@@ -242,6 +242,14 @@ class Scene:
         return next((m for m in self.models if m.drive is not None), None)
 
     def with_robot(self, robot: Model) -> "Scene":
-        """The same scene with ``robot`` in place of its own, if it had one."""
+        """The same scene with ``robot`` instead of its own, if it had one.
+
+        It takes the own robot's place on the floor, or else stands at ``start``;
+        the pose that the model itself carries is added to that.
+        """
+        own = self.robot
+        place = self.start
+        if own is not None:
+            place = Transform3.from_pose2(own.world_T_model.to_pose2())
         others = tuple(m for m in self.models if m.drive is None)
-        return replace(self, models=(*others, robot))
+        return replace(self, models=(*others, robot.at(place @ robot.world_T_model)))

@@ -25,13 +25,7 @@ def sensors_of(model: Model, kind: type[S]) -> Iterator[tuple[str, S]]:
 
 def lidars_of(compiled: Compiled, params: SimParams) -> Iterator[Lidar]:
     for link, sensor in sensors_of(compiled.robot.model, LidarSensor):
-        own = params.lidar_noise_m < 0
-        yield Lidar(
-            sensor,
-            _mount(compiled, link, sensor),
-            noise_m=sensor.noise_stddev if own else params.lidar_noise_m,
-            dropout=params.lidar_dropout,
-        )
+        yield Lidar(sensor, _mount(compiled, link, sensor), params)
 
 
 def imus_of(compiled: Compiled) -> Iterator[Imu]:

@@ -102,6 +102,12 @@ class Simulator:
         ground = np.flatnonzero(self.compiled.is_ground)
         return float(self._data.geom_xpos[ground[0], 2]) if len(ground) else 0.0
 
+    def change_params(self, params: SimParams) -> None:
+        """Take new limits, timeout and lidar noise; the rest is fixed at the start."""
+        self.params = self._ramp.params = params
+        for lidar in self.lidars:
+            lidar.set_noise(params)
+
     @property
     def now_ns(self) -> int:
         return self._steps * self._step_ns
@@ -188,10 +194,10 @@ class Simulator:
         """Velocity of the base in its own frame."""
         return self.state.motion()
 
-    def base_T_link(self, name: str) -> Transform3:
-        """Pose of a link in the base frame now."""
+    def link_in_base(self, name: str) -> Transform3:
+        """``base_T_link`` now."""
         self._refresh()
-        return self.state.base_T_link(name)
+        return self.state.link_in_base(name)
 
     def clearance(self) -> Clearance:
         """Distance from the robot's body to the nearest obstacle now."""

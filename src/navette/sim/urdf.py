@@ -110,16 +110,7 @@ def _link_poses(
     links = {node.name(): node for node in root.all("link")}
     if not links:
         raise root.error("a robot without links")
-    carrier: dict[str, XmlNode] = {}
-    for node in joints:
-        child = node.need("child").need_attribute("link")
-        parent = node.need("parent").need_attribute("link")
-        for end in (parent, child):
-            if end not in links:
-                raise node.error(f"no link {end!r}")
-        if child in carrier:
-            raise node.error(f"link {child!r} is the child of two joints")
-        carrier[child] = node
+    carrier = _carriers(joints, links)
     poses: dict[str, Transform3] = {}
     for name in links:
         chain: list[str] = []
@@ -127,17 +118,34 @@ def _link_poses(
             if name in chain:
                 raise carrier[name].error("joints form a circle")
             chain.append(name)
-            name = carrier[name].need("parent").need_attribute("link")
+            name = _end(carrier[name], "parent")
         if name not in poses:
             if poses:
-                unsupported.note(
-                    "link without a joint (put at the origin)", links[name]
-                )
+                kind = "link without a joint (put at the origin)"
+                unsupported.note(kind, links[name])
             poses[name] = Transform3.identity()
         for child in reversed(chain):
             poses[child] = poses[name] @ _origin(carrier[child])
             name = child
     return poses
+
+
+def _carriers(joints: list[XmlNode], links: dict[str, XmlNode]) -> dict[str, XmlNode]:
+    """The joint that carries each link."""
+    carrier: dict[str, XmlNode] = {}
+    for node in joints:
+        child = _end(node, "child")
+        for end in (_end(node, "parent"), child):
+            if end not in links:
+                raise node.error(f"no link {end!r}")
+        if child in carrier:
+            raise node.error(f"link {child!r} is the child of two joints")
+        carrier[child] = node
+    return carrier
+
+
+def _end(joint: XmlNode, tag: str) -> str:
+    return joint.need(tag).need_attribute("link")
 
 
 def _read_joint(
@@ -146,7 +154,7 @@ def _read_joint(
     kind = node.need_attribute("type")
     if kind not in _KINDS:
         unsupported.note(f"joint of type {kind!r} (made fixed)", node)
-    child = node.need("child").need_attribute("link")
+    child = _end(node, "child")
     axis = node.find("axis")
     x, y, z = (
         axis.parse_numbers(axis.attributes.get("xyz", "1 0 0"), 3)
@@ -160,7 +168,7 @@ def _read_joint(
     return Joint(
         name=node.name(),
         kind=_KINDS.get(kind, JointKind.FIXED),
-        parent=node.need("parent").need_attribute("link"),
+        parent=_end(node, "parent"),
         child=child,
         model_T_joint=poses[child],
         axis=(x, y, z),

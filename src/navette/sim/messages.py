@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulator's plain values as ROS messages."""
+
+import numpy as np
+
+from navette.geometry import Transform3
+from navette.geometry.se3 import rotate
+from navette.msgs.builtin_interfaces.msg import Time
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from navette.msgs.geometry_msgs.msg import (
+    Point,
+    Pose,
+    PoseWithCovariance,
+    Quaternion,
+    Transform,
+    TransformStamped,
+    Twist,
+    TwistWithCovariance,
+    Vector3,
+)
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.msgs.sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan
+from navette.msgs.std_msgs.msg import Header
+from navette.sim.camera import Image as Pixels
+from navette.sim.camera import focal_length
+from navette.sim.contacts import ContactEpisode
+from navette.sim.imu import ImuReading
+from navette.sim.lidar import Scan
+from navette.sim.robot_state import Motion, cross
+from navette.sim.scene import CameraSensor, ImuSensor
+
+
+def time_message(stamp_ns: int) -> Time:
+    seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
+    return Time(sec=seconds, nanosec=nanoseconds)
+
+
+def header(stamp_ns: int, frame: str) -> Header:
+    return Header(stamp=time_message(stamp_ns), frame_id=frame)
+
+
+def transform_message(
+    stamp_ns: int, parent: str, child: str, parent_T_child: Transform3
+) -> TransformStamped:
+    (x, y, z), (qx, qy, qz, qw) = parent_T_child
+    return TransformStamped(
+        header=header(stamp_ns, parent),
+        child_frame_id=child,
+        transform=Transform(
+            translation=Vector3(x=x, y=y, z=z),
+            rotation=Quaternion(x=qx, y=qy, z=qz, w=qw),
+        ),
+    )
+
+
+def odometry_message(
+    stamp_ns: int,
+    frames: tuple[str, str],
+    frame_T_base: Transform3,
+    motion: Motion,
+    base_T_child: Transform3,
+) -> Odometry:
+    """Pose and velocity of a point fixed to the base, the velocity in its own axes.
+
+    ``frames`` are the frame of the pose and the child frame.
+    """
+    (x, y, z), (qx, qy, qz, qw) = frame_T_base @ base_T_child
+    lever = cross(motion.angular, base_T_child.translation)
+    vx, vy, vz = (a + b for a, b in zip(motion.linear, lever, strict=True))
+    child_R_base = base_T_child.inverse().rotation
+    vx, vy, vz = rotate(child_R_base, (vx, vy, vz))
+    wx, wy, wz = rotate(child_R_base, motion.angular)
+    return Odometry(
+        header=header(stamp_ns, frames[0]),
+        child_frame_id=frames[1],
+        pose=PoseWithCovariance(
+            pose=Pose(
+                position=Point(x=x, y=y, z=z),
+                orientation=Quaternion(x=qx, y=qy, z=qz, w=qw),
+            )
+        ),
+        twist=TwistWithCovariance(
+            twist=Twist(
+                linear=Vector3(x=vx, y=vy, z=vz), angular=Vector3(x=wx, y=wy, z=wz)
+            )
+        ),
+    )
+
+
+def scan_message(scan: Scan, stamp_ns: int, frame: str, period_s: float) -> LaserScan:
+    return LaserScan(
+        header=header(stamp_ns, frame),
+        angle_min=scan.angle_min,
+        angle_max=scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1),
+        angle_increment=scan.angle_increment,
+        scan_time=period_s,
+        range_min=scan.range_min,
+        range_max=scan.range_max,
+        ranges=scan.ranges,
+    )
+
+
+def imu_message(
+    reading: ImuReading, sensor: ImuSensor, stamp_ns: int, frame: str
+) -> Imu:
+    qx, qy, qz, qw = reading.orientation
+    wx, wy, wz = reading.angular_velocity.tolist()
+    ax, ay, az = reading.linear_acceleration.tolist()
+    return Imu(
+        header=header(stamp_ns, frame),
+        orientation=Quaternion(x=qx, y=qy, z=qz, w=qw),
+        angular_velocity=Vector3(x=wx, y=wy, z=wz),
+        angular_velocity_covariance=_diagonal(sensor.angular_velocity_stddev),
+        linear_acceleration=Vector3(x=ax, y=ay, z=az),
+        linear_acceleration_covariance=_diagonal(sensor.acceleration_stddev),
+    )
+
+
+def _diagonal(stddev: float) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+    return (np.eye(3) * stddev**2).ravel()
+
+
+def image_message(pixels: Pixels, stamp_ns: int, frame: str) -> Image:
+    height, width, _ = pixels.shape
+    return Image(
+        header=header(stamp_ns, frame),
+        height=height,
+        width=width,
+        encoding="rgb8",
+        step=3 * width,
+        data=pixels.reshape(-1),
+    )
+
+
+def camera_info_message(sensor: CameraSensor, stamp_ns: int, frame: str) -> CameraInfo:
+    """A pinhole without distortion."""
+    f = focal_length(sensor)
+    cx, cy = sensor.width / 2, sensor.height / 2
+    return CameraInfo(
+        header=header(stamp_ns, frame),
+        height=sensor.height,
+        width=sensor.width,
+        distortion_model="plumb_bob",
+        d=np.zeros(5),
+        k=np.array([f, 0, cx, 0, f, cy, 0, 0, 1.0]),
+        r=np.eye(3).ravel(),
+        p=np.array([f, 0, cx, 0, 0, f, cy, 0, 0, 0, 1.0, 0]),
+    )
+
+
+def contact_message(episode: ContactEpisode, count: int) -> DiagnosticStatus:
+    """A new contact: who touched what, when, and how many there were."""
+    values = {
+        "part": episode.part,
+        "obstacle": episode.obstacle,
+        "time_s": f"{episode.start_ns / 1e9:.3f}",
+        "count": str(count),
+    }
+    return DiagnosticStatus(
+        level=DiagnosticStatus.ERROR,
+        name="sim: contact",
+        message=f"{episode.part} touched {episode.obstacle}",
+        values=[KeyValue(key=key, value=value) for key, value in values.items()],
+    )

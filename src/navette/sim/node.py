@@ -1,0 +1,315 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulated robot as a node."""
+
+from collections.abc import Callable
+from typing import Any
+
+from navette.geometry import Pose2, Transform3
+from navette.msgs.geometry_msgs.msg import Twist
+from navette.msgs.rcl_interfaces.msg import SetParametersResult
+from navette.msgs.rosgraph_msgs.msg import Clock
+from navette.msgs.std_msgs.msg import String
+from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.runtime import Input, Output, StageNode
+from navette.sim import messages
+from navette.sim.description import describe_robot, describe_world
+from navette.sim.frames import RobotFrames
+from navette.sim.params import FIXED_AT_START, SimParams
+from navette.sim.robot_state import Motion
+from navette.sim.scene import CameraSensor, ImuSensor, LidarSensor, Scene, Sensor
+from navette.sim.sensors import sensors_of
+from navette.sim.simulator import Simulator
+
+_HEARTBEAT_S = 0.1  # physics goes on, and contacts are told, without any listener
+
+
+class SimNode(StageNode):
+    """One robot in one world: takes speed commands, gives sensors and truth.
+
+    Physics advances when something is due: a message somebody listens to, a command,
+    or the heartbeat. A message is only built while somebody listens to its topic.
+    Before the first command the robot stands (or falls to the floor).
+
+    Args:
+        scene: the world with the robot in it.
+        start: where the robot stands; without it, where the scene puts it.
+    """
+
+    PARAMS = SimParams
+    INPUTS = (
+        Input(
+            topic="/cmd_vel",
+            type="geometry_msgs/msg/Twist",
+            role="wanted speed; clamped to the limits, zero after the timeout",
+            callback="on_cmd_vel",
+        ),
+    )
+    OUTPUTS = (
+        Output(
+            topic="/clock", type="rosgraph_msgs/msg/Clock", role="time", rate_hz=100.0
+        ),
+        Output(
+            topic="/lidar", type="sensor_msgs/msg/LaserScan", role="scan", rate_hz=10
+        ),
+        Output(
+            topic="/imu",
+            type="sensor_msgs/msg/Imu",
+            role="orientation, turn rate, specific force",
+        ),
+        Output(topic="/camera", type="sensor_msgs/msg/Image", role="image", rate_hz=30),
+        Output(
+            topic="/camera_info",
+            type="sensor_msgs/msg/CameraInfo",
+            role="the camera's geometry",
+            rate_hz=30,
+        ),
+        Output(
+            topic="/odom/filtered",
+            type="nav_msgs/msg/Odometry",
+            role="where the robot takes itself to be",
+            rate_hz=50,
+        ),
+        Output(
+            topic="/ground_truth",
+            type="nav_msgs/msg/Odometry",
+            role="where the axle's middle truly is, in the world frame",
+            rate_hz=50,
+        ),
+        Output(
+            topic="/tf",
+            type="tf2_msgs/msg/TFMessage",
+            role="moving frames",
+            rate_hz=50,
+        ),
+        Output(
+            topic="/tf_static",
+            type="tf2_msgs/msg/TFMessage",
+            role="fixed frames",
+            depth=1,
+            latched=True,
+        ),
+        Output(
+            topic="/contacts",
+            type="diagnostic_msgs/msg/DiagnosticStatus",
+            role="each time the robot starts to touch something it should not",
+        ),
+        Output(
+            topic="/robot_description",
+            type="std_msgs/msg/String",
+            role="URDF of the robot",
+            depth=1,
+            latched=True,
+        ),
+        Output(
+            topic="/world_description",
+            type="std_msgs/msg/String",
+            role="URDF of the world",
+            depth=1,
+            latched=True,
+        ),
+    )
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        start: Pose2 | None = None,
+        node_name: str = "sim",
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(node_name, **kwargs)
+        self.simulator = Simulator(scene, self.params, start=start)
+        self._origin_ns = self.get_clock().now().nanoseconds
+        self.frames = RobotFrames(self.simulator.compiled.robot, self.params)
+        p = self.params
+        self._child_frame = p.odometry_child_frame or p.base_frame
+        self._base_T_child = self.frames.fixed_pose(self._child_frame)
+        self._contacts_told = 0
+        self.add_on_set_parameters_callback(self._refuse_fixed)
+        self._publish_latched()
+        self._create_timers()
+
+    def reset(self) -> None:
+        """Robot and world back to the start; the clock goes on."""
+        self.simulator.reset()
+        self._origin_ns = self.get_clock().now().nanoseconds
+        self._contacts_told = 0
+
+    def on_cmd_vel(self, msg: Twist) -> None:
+        """Refuse what is not finite (the robot keeps its last command)."""
+        self._advance()
+        if not self.simulator.command(msg.linear.x, msg.angular.z):
+            self.get_logger().error(
+                f"refused /cmd_vel: linear.x {msg.linear.x}, angular.z "
+                f"{msg.angular.z} must be finite",
+                throttle_duration_sec=1.0,
+            )
+
+    def on_params_changed(self, old: SimParams) -> None:
+        self.simulator.change_params(self.params)
+
+    def _refuse_fixed(self, parameters: list[Any]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name in FIXED_AT_START:
+                reason = f"parameter {parameter.name!r} is read at the start only"
+                return SetParametersResult(successful=False, reason=reason)
+        return SetParametersResult(successful=True)
+
+    def _advance(self) -> int:
+        """Bring physics to the present; the stamp of its state."""
+        now_ns: int = self.get_clock().now().nanoseconds
+        self.simulator.advance_to(now_ns - self._origin_ns)
+        return self._origin_ns + self.simulator.now_ns
+
+    # Outputs
+
+    def _publish_latched(self) -> None:
+        p, stamp = self.params, self._origin_ns
+        transforms = [
+            messages.transform_message(stamp, f.parent, f.name, f.parent_T_frame)
+            for f in self.frames.fixed
+        ]
+        if p.odom_frame != p.map_frame:
+            origin = Transform3.identity()
+            transforms.append(
+                messages.transform_message(stamp, p.map_frame, p.odom_frame, origin)
+            )
+        self.publish("/tf_static", TFMessage(transforms=transforms))
+        compiled = self.simulator.compiled
+        robot = describe_robot(compiled, self.frames)
+        self.publish("/robot_description", String(data=robot))
+        world = describe_world(compiled, p.map_frame)
+        self.publish("/world_description", String(data=world))
+
+    def _create_timers(self) -> None:
+        p = self.params
+        self.create_timer(_HEARTBEAT_S, self._beat)
+        self._every(p.clock_rate_hz, self._publish_clock, "/clock")
+        self._every(p.odometry_rate_hz, self._publish_odometry, "/odom/filtered")
+        self._every(p.odometry_rate_hz, self._publish_truth, "/ground_truth")
+        self._every(p.tf_rate_hz, self._publish_base_tf, "/tf")
+        if self.frames.moving:
+            self._every(p.joint_tf_rate_hz, self._publish_joint_tf, "/tf")
+        self._create_sensor_timers(LidarSensor, "/lidar", self._publish_scan)
+        self._create_sensor_timers(ImuSensor, "/imu", self._publish_imu)
+        self._create_sensor_timers(CameraSensor, "/camera", self._publish_image)
+        self._create_sensor_timers(CameraSensor, "/camera_info", self._publish_info)
+
+    def _every(
+        self, rate_hz: float, publish: Callable[[int], None], *topics: str
+    ) -> None:
+        """Call ``publish(stamp)`` at a rate, while somebody listens."""
+
+        def tick() -> None:
+            if any(map(self.has_listeners, topics)):
+                publish(self._advance())
+
+        self.create_timer(1.0 / rate_hz, tick)
+
+    def _create_sensor_timers(
+        self,
+        kind: type[Sensor],
+        topic: str,
+        publish: Callable[[str, int, str, int], None],
+    ) -> None:
+        """Timers of all sensors of a kind; the first has the plain topic."""
+        model = self.simulator.compiled.robot.model
+        for index, (link, sensor) in enumerate(sensors_of(model, kind)):
+            own = topic if index == 0 else self._further_topic(topic, sensor)
+            frame = self.frames.of_sensor(link, sensor)
+
+            def tick(
+                stamp: int, own: str = own, index: int = index, frame: str = frame
+            ) -> None:
+                publish(own, index, frame, stamp)
+
+            self._every(sensor.rate_hz, tick, own)
+
+    def _further_topic(self, topic: str, sensor: Sensor) -> str:
+        plain = "".join(c if c.isalnum() else "_" for c in sensor.name)
+        name = f"{topic}/{plain}"
+        like = self.publishers_by_topic[topic]
+        self.publishers_by_topic[name] = self.create_publisher(
+            like.msg_type, name, like.qos_profile
+        )
+        return name
+
+    def _beat(self) -> None:
+        self._advance()
+        episodes = self.simulator.contacts.episodes
+        for number in range(self._contacts_told, len(episodes)):
+            episode = episodes[number]
+            self.get_logger().warning(
+                f"contact: {episode.part} touched {episode.obstacle}"
+            )
+            told = messages.contact_message(episode, number + 1)
+            self.publish("/contacts", told)
+        self._contacts_told = len(episodes)
+
+    def _publish_clock(self, stamp_ns: int) -> None:
+        self.publish("/clock", Clock(clock=messages.time_message(stamp_ns)))
+
+    def _publish_odometry(self, stamp_ns: int) -> None:
+        odom_T_base, motion = self._odometry()
+        message = messages.odometry_message(
+            stamp_ns,
+            (self.params.odom_frame, self._child_frame),
+            odom_T_base,
+            motion,
+            self._base_T_child,
+        )
+        self.publish("/odom/filtered", message)
+
+    def _odometry(self) -> tuple[Transform3, Motion]:
+        """Pose and motion of the base as the robot knows them."""
+        if self.params.odometry == "true":
+            return self.simulator.pose(), self.simulator.motion()
+        wheels = self.simulator.wheel_odometry()
+        motion = Motion((wheels.speed, 0.0, 0.0), (0.0, 0.0, wheels.yaw_rate))
+        return Transform3.from_pose2(wheels.pose), motion
+
+    def _publish_truth(self, stamp_ns: int) -> None:
+        message = messages.odometry_message(
+            stamp_ns,
+            (self.params.map_frame, self.params.base_frame),
+            self.simulator.pose(),
+            self.simulator.motion(),
+            Transform3.identity(),
+        )
+        self.publish("/ground_truth", message)
+
+    def _publish_base_tf(self, stamp_ns: int) -> None:
+        p = self.params
+        odom_T_base, _ = self._odometry()
+        transform = messages.transform_message(
+            stamp_ns, p.odom_frame, p.base_frame, odom_T_base
+        )
+        self.publish("/tf", TFMessage(transforms=[transform]))
+
+    def _publish_joint_tf(self, stamp_ns: int) -> None:
+        transforms = [
+            messages.transform_message(
+                stamp_ns, self.frames.base, frame, self.simulator.link_in_base(link)
+            )
+            for link, frame in self.frames.moving.items()
+        ]
+        self.publish("/tf", TFMessage(transforms=transforms))
+
+    def _publish_scan(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
+        period_s = 1.0 / self.simulator.lidars[index].sensor.rate_hz
+        scan = self.simulator.scan(index)
+        self.publish(topic, messages.scan_message(scan, stamp_ns, frame, period_s))
+
+    def _publish_imu(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
+        sensor = self.simulator.imus[index].sensor
+        reading = self.simulator.imu(index)
+        self.publish(topic, messages.imu_message(reading, sensor, stamp_ns, frame))
+
+    def _publish_image(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
+        pixels = self.simulator.image(index)
+        self.publish(topic, messages.image_message(pixels, stamp_ns, frame))
+
+    def _publish_info(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
+        sensor = self.simulator.cameras[index].sensor
+        info = messages.camera_info_message(sensor, stamp_ns, frame)
+        self.publish(topic, info)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters for a robot that nobody described: from its shape and its drive."""
+
+import math
+from collections.abc import Iterator
+
+from navette.geometry import Transform3, Vector3
+from navette.sim.drive_geometry import base_of
+from navette.sim.scene import (
+    Box,
+    Capsule,
+    Cylinder,
+    Ellipsoid,
+    Geometry,
+    Model,
+    Plane,
+    Shape,
+    Sphere,
+)
+
+_CORNERS = 12  # of the polygon drawn around a circle
+
+Point2 = tuple[float, float]
+
+
+def footprint_of(model: Model) -> tuple[Point2, ...]:
+    """Convex outline of everything solid, seen from above, in the base frame."""
+    base_T_model = base_of(model).inverse()
+    points = [
+        (x, y)
+        for link in model.links
+        for geometry in link.geometries
+        if geometry.collides
+        for x, y, _ in _outline(geometry, base_T_model @ link.model_T_link)
+    ]
+    return convex_hull(points)
+
+
+def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
+    """Parameters by node name; speeds from the drive's limits, else by size.
+
+    Defaults for a robot of radius r (m): 1 m/s, or slower below half a metre; one
+    second to full speed, half a second to full turn.
+    """
+    assert model.drive is not None, "derive_parameters() of a model without a drive"
+    outline = footprint_of(model)
+    flat = [round(value, 4) for point in outline for value in point]
+    radius = max(math.hypot(x, y) for x, y in outline)
+    limits = model.drive.limits
+    speed = limits.speed or min(1.0, 2.0 * radius)
+    reverse = limits.reverse_speed or speed / 2
+    yaw_rate = limits.yaw_rate or min(2.0, speed / max(radius, 0.1))
+    acceleration = limits.acceleration or speed
+    yaw_acceleration = limits.yaw_acceleration or 2 * yaw_rate
+    cruise = 0.7 * speed
+    return {
+        "sim": {
+            "max_speed_mps": speed,
+            "max_reverse_speed_mps": reverse,
+            "max_yaw_rate_radps": yaw_rate,
+            "max_accel_mps2": acceleration,
+            "max_yaw_accel_radps2": yaw_acceleration,
+        },
+        "map_memory": {"footprint": flat},
+        "planner": {"footprint": flat},
+        "control": {
+            "footprint": flat,
+            "cruise_speed_mps": cruise,
+            "reverse_speed_mps": min(reverse, cruise / 2),
+            "max_speed_mps": speed,
+            "max_turn_rate_radps": 0.7 * yaw_rate,
+            "acceleration_mps2": min(acceleration, 1.0),
+            "deceleration_mps2": min(acceleration, 1.0),
+            "turn_acceleration_radps2": min(yaw_acceleration, 2.0),
+        },
+    }
+
+
+def convex_hull(points: list[Point2]) -> tuple[Point2, ...]:
+    """Corners in counter-clockwise order (Andrew's monotone chain, 1979)."""
+    ordered = sorted({(round(x, 6), round(y, 6)) for x, y in points})
+
+    def chain(sequence: list[Point2]) -> list[Point2]:
+        kept: list[Point2] = []
+        for point in sequence:
+            while len(kept) > 1 and _turn(kept[-2], kept[-1], point) <= 1e-9:
+                kept.pop()
+            kept.append(point)
+        return kept[:-1]
+
+    return tuple(chain(ordered) + chain(ordered[::-1]))
+
+
+def _turn(a: Point2, b: Point2, c: Point2) -> float:
+    """Twice the signed area of the triangle: above 0 is a left turn."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _outline(geometry: Geometry, base_T_link: Transform3) -> Iterator[Vector3]:
+    base_T_shape = base_T_link @ geometry.link_T_shape
+    return map(base_T_shape.apply, _surface(geometry.shape))
+
+
+def _surface(shape: Shape) -> Iterator[Vector3]:
+    """Points whose convex hull holds the shape."""
+    if isinstance(shape, Plane):
+        return
+    if isinstance(shape, Cylinder):
+        for x, y in _circle(shape.radius):
+            yield (x, y, shape.length / 2)
+            yield (x, y, -shape.length / 2)
+        return
+    x, y, z = _half_extent(shape)
+    if isinstance(shape, Box):
+        for sx, sy, sz in _SIGNS:
+            yield (sx * x, sy * y, sz * z)
+        return
+    for u, v in _circle(1.0):  # three great circles
+        yield (u * x, v * y, 0.0)
+        yield (u * x, 0.0, v * z)
+        yield (0.0, u * y, v * z)
+
+
+_SIGNS = [(a, b, c) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
+
+
+def _half_extent(shape: Box | Capsule | Sphere | Ellipsoid) -> Vector3:
+    if isinstance(shape, Box):
+        x, y, z = shape.size
+        return (x / 2, y / 2, z / 2)
+    if isinstance(shape, Sphere):
+        return (shape.radius,) * 3
+    if isinstance(shape, Capsule):
+        return (shape.radius, shape.radius, shape.radius + shape.length / 2)
+    return shape.radii
+
+
+def _circle(radius: float) -> Iterator[Point2]:
+    """Corners of a regular polygon around the circle."""
+    outer = radius / math.cos(math.pi / _CORNERS)
+    for i in range(_CORNERS):
+        angle = math.tau * i / _CORNERS
+        yield (outer * math.cos(angle), outer * math.sin(angle))
