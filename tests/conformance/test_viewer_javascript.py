@@ -1,0 +1,137 @@
+"""The live view in the eyes of published JavaScript: client, codec and a browser."""
+
+import json
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.msgs.geometry_msgs.msg import PointStamped
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.sensor_msgs.msg import Image, LaserScan
+from navette.msgs.std_msgs.msg import Header, String
+from navette.runtime import Context, Node
+from navette.runtime.qos import QoSDurabilityPolicy, QoSProfile
+
+JAVASCRIPT = Path(__file__).parent / "js"
+sys.path.append(str(Path(__file__).parents[1] / "unit" / "viewer"))
+
+from viewer_harness import Program  # noqa: E402 - from the unit tests' folder
+
+LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+RANGES = [1.5, float("inf"), 2.25]
+
+
+class Robot(Node):
+    """Publishes one of each that the scripts look at; notes goals."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__("robot", context=context)
+        self.declare_parameter("speed_mps", 1.0)
+        self.goal = threading.Event()
+        self.goals: list[PointStamped] = []
+        self.chatter = self.create_publisher(String, "/chatter", 10)
+        self.lidar = self.create_publisher(LaserScan, "/lidar", 10)
+        self.odometry = self.create_publisher(Odometry, "/odom/filtered", 10)
+        self.create_publisher(Image, "/camera", 10)
+        self.create_subscription(PointStamped, "/goal_point", self.on_goal, 10)
+        grid = OccupancyGrid(header=Header(frame_id="map"))
+        grid.data = np.array([0, 100, -1], np.int8)
+        self.create_publisher(OccupancyGrid, "/map", LATCHED).publish(grid)
+        status = DiagnosticStatus(name="planner", message="waiting_for_goal")
+        self.create_publisher(DiagnosticStatus, "/planner/status", LATCHED).publish(
+            status
+        )
+        self.create_timer(0.02, self.on_timer)
+
+    def on_timer(self) -> None:
+        self.chatter.publish(String(data="grüezi"))
+        self.lidar.publish(LaserScan(ranges=RANGES))
+        odometry = Odometry()
+        odometry.pose.pose.position.x = -6.25
+        self.odometry.publish(odometry)
+
+    def on_goal(self, goal: PointStamped) -> None:
+        self.goals.append(goal)
+        self.goal.set()
+
+
+@pytest.fixture
+def program() -> Iterator[Program]:
+    with Program(Robot) as running:
+        yield running
+
+
+def run_node(script: str, *arguments: str) -> Any:
+    """What a script prints; skipped where Node.js or its packages are missing."""
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("Node.js is not installed")
+    if not (JAVASCRIPT / "node_modules").is_dir():
+        pytest.skip("npm packages are missing: npm ci --prefix tests/conformance/js")
+    done = subprocess.run(
+        [node, str(JAVASCRIPT / script), *arguments],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def robot_of(program: Program) -> Robot:
+    node = program.nodes[0]
+    assert isinstance(node, Robot)
+    return node
+
+
+def assert_goal_arrived(program: Program) -> None:
+    robot = robot_of(program)
+    assert robot.goal.wait(10.0)
+    (goal,) = robot.goals
+    assert (goal.point.x, goal.point.y, goal.header.frame_id) == (6.0, -12.5, "map")
+
+
+@pytest.mark.slow
+def test_the_published_client_and_codec_understand_it(program: Program) -> None:
+    seen = run_node("client.mjs", f"ws://{program.address}")
+    assert seen["errors"] == []
+    assert seen["info"]["metadata"] == {"ROS_DISTRO": "jazzy"}
+    assert seen["messages"]["/chatter"]["value"] == {"data": "grüezi"}
+    assert seen["messages"]["/map"]["value"]["data"] == [0, 100, -1]
+    # JSON writes infinity as null.
+    assert seen["messages"]["/lidar"]["value"]["ranges"] == [1.5, None, 2.25]
+    assert int(seen["messages"]["/lidar"]["stamp"]) > 10**18
+    assert seen["topics"]["/lidar"] == "sensor_msgs/msg/LaserScan"
+    assert seen["parameters"]["/robot.speed_mps"] == 1
+    assert {"name": "/chatter", "publisherIds": ["/robot"]} in seen["graph"][
+        "publishedTopics"
+    ]
+    assert_goal_arrived(program)
+
+
+@pytest.mark.slow
+def test_the_page_works_in_a_browser(program: Program) -> None:
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None:
+        pytest.skip("Chromium is not installed")
+    seen = run_node("page.mjs", program.viewer.url, chromium)
+    assert seen["problems"] == []
+    assert seen["title"] == "Navette"
+    assert seen["address"] == seen["foxglove"] == f"ws://{program.address}"
+    assert seen["position"] == "−6.25, 0.00 m"
+    rows = {row[0]: row for row in seen["rows"]}
+    assert rows["/chatter"][2] == "robot"
+    assert rows["/chatter"][3].endswith("Hz")
+    # A camera is left alone until somebody asks.
+    assert rows["/camera"][3] == "measure"
+    assert "/robot" in seen["nodes"]
+    assert_goal_arrived(program)
