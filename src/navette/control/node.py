@@ -91,8 +91,11 @@ class ControlNode(StageNode):
         self._follower = PathFollower(params)
         self._path = np.empty((0, 3))
         self._costmap: OccupancyGrid | None = None  # not placed yet
+        self._base_T_costmap: tuple[str, Pose2] | None = None  # fixed, by frame
         self._costmap_ns = self._placed_ns = _NEVER  # arrival of the newest, the placed
-        self._odometry_ns = self._planner_ns = _NEVER
+        self._odometry: Odometry | None = None  # newest, not used yet
+        self._odometry_ns = self._located_ns = _NEVER  # arrival of it, of the one used
+        self._planner_ns = _NEVER
         self._zeros_left = 0
         self._ticks_to_report = 0
         self._status = StatusReporter(self, "/control/status")
@@ -113,9 +116,9 @@ class ControlNode(StageNode):
         self._take_path(_poses(msg))
 
     def on_odometry(self, msg: Odometry) -> None:
-        """Follow the robot."""
-        if self._tracker.update(msg):
-            self._odometry_ns = self._now_ns
+        """Keep the newest for the next tick; odometry may come much more often."""
+        self._odometry = msg
+        self._odometry_ns = self._now_ns
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Keep the newest costmap until the pose at its stamp is known."""
@@ -131,6 +134,8 @@ class ControlNode(StageNode):
         params: ControlParams = self.params
         if (params.base_frame, params.map_frame) != (old.base_frame, old.map_frame):
             self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
+            self._base_T_costmap = None
+            self._located_ns = _NEVER
         if params.rate_hz != old.rate_hz:
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(1 / params.rate_hz, self._tick)
@@ -161,7 +166,8 @@ class ControlNode(StageNode):
         self._path = poses
 
     def _tick(self) -> None:
-        """Place the costmap, ask the follower, publish."""
+        """Locate the robot, place the costmap, ask the follower, publish."""
+        self._locate()
         self._place_costmap()
         speed, turn_rate = self._tracker.velocity
         pose = self._pose_now() or UNKNOWN_POSE
@@ -170,9 +176,14 @@ class ControlNode(StageNode):
         self._send(output)
         self._report(output)
 
+    def _locate(self) -> None:
+        if self._odometry is not None and self._tracker.update(self._odometry):
+            self._located_ns = self._odometry_ns
+        self._odometry = None
+
     def _ages(self) -> InputAges:
         return InputAges(
-            odometry_s=self._age_s(self._odometry_ns),
+            odometry_s=self._age_s(self._located_ns),
             costmap_s=self._age_s(self._placed_ns),
             planner_s=self._age_s(self._planner_ns),
         )
@@ -224,11 +235,13 @@ class ControlNode(StageNode):
         frame = msg.header.frame_id
         if frame == self.params.map_frame:
             return Pose2(0.0, 0.0, 0.0)
+        if self._base_T_costmap is None or self._base_T_costmap[0] != frame:
+            base_T_frame = self._tracker.transform_to_base(frame)
+            if base_T_frame is None:
+                return None
+            self._base_T_costmap = (frame, base_T_frame)
         map_T_base = self._pose_at(stamp_to_ns(msg.header.stamp))
-        base_T_frame = self._tracker.transform_to_base(frame)
-        if map_T_base is None or base_T_frame is None:
-            return None
-        return map_T_base @ base_T_frame
+        return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
 
     def _send(self, output: FollowerOutput) -> None:
         """Publish the command; at rest a few zeros and then nothing."""

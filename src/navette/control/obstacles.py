@@ -1,6 +1,10 @@
 """From a costmap to the obstacle points around the robot."""
 
+import math
+from typing import Any
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
@@ -17,7 +21,7 @@ def obstacle_points(
     around: Pose2,
     reach: float,
 ) -> NDArray[np.float64]:
-    """Centres (N, 2), metres, map, of the lethal cells in a square around a pose.
+    """Centres (N, 2), metres, map, of the lethal cells within reach of a pose.
 
     Args:
         cost: (H, W), or flat in that order; 0 … 100, −1 unknown. Unknown cells
@@ -27,7 +31,7 @@ def obstacle_points(
         map_T_grid: pose of that frame in the map at the costmap's stamp.
         lethal: value from which a cell counts.
         around: pose (map) in whose surroundings obstacles matter.
-        reach: half the edge of the square, metres.
+        reach: distance from it, metres.
 
     Raises:
         InvalidValueError: ``cost`` has not as many cells as ``spec`` says.
@@ -36,13 +40,48 @@ def obstacle_points(
         raise InvalidValueError(
             f"costmap of {cost.size} cells: wanted {spec.width} x {spec.height}"
         )
-    cost = cost.reshape(spec.shape)
-    grid_T_around = map_T_grid.inverse() @ around
-    row, column = spec.cell_of(grid_T_around.x, grid_T_around.y)
-    half = int(reach / spec.resolution) + 1
-    top, left = max(0, row - half), max(0, column - half)
-    window = cost[top : max(0, row + half + 1), left : max(0, column + half + 1)]
-    cells = np.argwhere(window >= lethal)
-    if not len(cells):
-        return np.empty((0, 2))
-    return map_T_grid.apply(spec.centers_of(cells + np.array([top, left])))
+    map_T_origin = map_T_grid @ spec.origin
+    origin_T_around = map_T_origin.inverse() @ around
+    return _gather(
+        cost.reshape(spec.shape),
+        lethal,
+        origin_T_around.x / spec.resolution,
+        origin_T_around.y / spec.resolution,
+        reach / spec.resolution,
+        spec.resolution,
+        *map_T_origin,
+    )
+
+
+@njit(cache=True)
+def _gather(
+    cost: Any,
+    lethal: int,
+    column: float,
+    row: float,
+    reach: float,
+    resolution: float,
+    x: float,
+    y: float,
+    yaw: float,
+) -> NDArray[np.float64]:
+    """Lethal cells within ``reach`` of (column, row), both in cells, as points.
+
+    ``x, y, yaw``: pose of the grid's corner in the frame of the points.
+    """
+    top, left = max(0, int(row - reach)), max(0, int(column - reach))
+    bottom = max(top, min(cost.shape[0], int(row + reach) + 1))
+    right = max(left, min(cost.shape[1], int(column + reach) + 1))
+    points = np.empty(((bottom - top) * (right - left), 2))
+    count = 0
+    c, s = math.cos(yaw) * resolution, math.sin(yaw) * resolution
+    for i in range(top, bottom):
+        line = cost[i]
+        v = i + 0.5
+        for j in range(left, right):
+            u = j + 0.5
+            if line[j] >= lethal and (u - column) ** 2 + (v - row) ** 2 <= reach**2:
+                points[count, 0] = x + c * u - s * v
+                points[count, 1] = y + s * u + c * v
+                count += 1
+    return points[:count].copy()

@@ -58,6 +58,7 @@ class MissionNode(StageNode):
         super().__init__("missions", **kwargs)
         params: MissionParams = self.params
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
+        self._odometry: Odometry | None = None  # newest, not counted yet
         self._map_seen = self._planner_heard = False
         self._sequence = GoalSequence(
             params.goal_points(),
@@ -92,6 +93,7 @@ class MissionNode(StageNode):
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
         """The planner says how it goes; perhaps the goal is done."""
         self._planner_heard = True
+        self._count_way()
         values = {pair.key: pair.value for pair in msg.values}
         report = PlannerReport(
             values.get("goal_id", ""), msg.message, values.get("result")
@@ -100,9 +102,8 @@ class MissionNode(StageNode):
         self._go_on()
 
     def on_odometry(self, msg: Odometry) -> None:
-        """Count the way driven."""
-        if self._tracker.update(msg) and self._tracker.latest is not None:
-            self._sequence.move(self._tracker.latest.x, self._tracker.latest.y)
+        """Keep the newest; a few a second are enough to count the way driven."""
+        self._odometry = msg
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """The planner can have its map by now."""
@@ -122,8 +123,17 @@ class MissionNode(StageNode):
         return self.get_clock().now_ns
 
     def _check(self) -> None:
+        self._count_way()
         self._sequence.check(self._now_ns)
         self._go_on()
+
+    def _count_way(self) -> None:
+        odometry, self._odometry = self._odometry, None
+        if odometry is None or not self._tracker.update(odometry):
+            return
+        place = self._tracker.latest
+        assert place is not None, "the tracker took the odometry"
+        self._sequence.move(place.x, place.y)
 
     def _go_on(self) -> None:
         """Publish the next goal if it is its turn and the planner can take it."""
