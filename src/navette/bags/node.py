@@ -64,21 +64,24 @@ class RecorderNode(StageNode):
         context: Context | None = None,
         parameter_overrides: Sequence[Parameter[Any]] | None = None,
     ) -> None:
-        # First: where there is no file, there is no node to take down either.
-        self._writer: BagWriter | None = BagWriter(Path(path))
+        self.path = Path(path)
         #: What ended the recording early, if anything did.
         self.error: FileFormatError | None = None
-        self.path = Path(path)
+        self._writer: BagWriter | None = None
+        self._stop_listening: Callable[[], None] = _nothing
         super().__init__(
             "recorder", context=context, parameter_overrides=parameter_overrides
         )
+        try:
+            self._writer = BagWriter(self.path)
+        except FileFormatError:
+            self.destroy_node()
+            raise
         self._recorded: set[tuple[str, str]] = set()
         self._message_count = 0
         self._refreshing = False
         self._flush_timer = self._new_flush_timer()
-        self._stop_listening: Callable[[], None] = self.context.graph.on_change(
-            self._on_graph_change
-        )
+        self._stop_listening = self.context.graph.on_change(self._on_graph_change)
         self._refresh()
 
     @property

@@ -19,6 +19,8 @@ from mcap.writer import CompressionType, Writer
 from navette.errors import FileFormatError
 
 _CHUNK_BYTES = 256 * 1024
+# Larger than any chunk: a chunk and its index reach the system in one piece.
+_BUFFER_BYTES = 4 * 2**20
 _LIBRARY = "navette"
 
 
@@ -35,17 +37,21 @@ class BagWriter:
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
-            self._file = path.open("wb")
+            self._file = path.open("wb", buffering=_BUFFER_BYTES)
         except OSError as error:
             reason = error.strerror or str(error)
             raise FileFormatError(path, f"cannot be written: {reason}") from error
         # Any: several of mcap's methods carry no types.
         self._mcap: Any = Writer(
-            self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD
+            # Chunks are ended here, so that each is handed on as soon as it is done.
+            self._file,
+            chunk_size=_BUFFER_BYTES,
+            compression=CompressionType.ZSTD,
         )
         self._mcap.start(profile="ros2", library=_LIBRARY)
         self._schemas: dict[str, int] = {}
         self._sequences: dict[int, int] = {}
+        self._unfinished = 0
 
     def add_channel(
         self,
@@ -83,6 +89,9 @@ class BagWriter:
         sequence = self._sequences[channel] + 1
         self._sequences[channel] = sequence
         self._mcap.add_message(channel, stamp_ns, payload, stamp_ns, sequence)
+        self._unfinished += len(payload)
+        if self._unfinished > _CHUNK_BYTES:
+            self.flush()
 
     @property
     def message_count(self) -> int:
@@ -91,6 +100,7 @@ class BagWriter:
 
     def flush(self) -> None:
         """Finish the chunk and hand it to the system: it outlives this process."""
+        self._unfinished = 0
         self._mcap.flush()
 
     def close(self) -> None:
