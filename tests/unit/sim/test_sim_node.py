@@ -1,0 +1,266 @@
+"""The simulated robot as a node: topics, frames, commands, contacts."""
+
+import math
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+
+from navette.errors import ParameterError
+from navette.geometry import Pose2
+from navette.msgs.geometry_msgs.msg import Twist, Vector3
+from navette.runtime import Context, Executor, Node, Parameter, VirtualClock
+from navette.runtime.odometry import PoseTracker
+from navette.sim import Scene, World, load_robot, load_world
+from navette.sim.node import SimNode
+
+SECOND = 10**9
+
+
+@dataclass
+class Run:
+    """A SimNode with ears."""
+
+    sim: SimNode
+    ears: Node
+    executor: Executor
+    heard: dict[str, list[Any]] = field(default_factory=lambda: defaultdict(list))
+
+    def listen(self, *topics: str) -> None:
+        for topic in topics:
+            publisher = self.sim.publishers_by_topic[topic]
+            self.ears.create_subscription(
+                publisher.msg_type,
+                topic,
+                self.heard[topic].append,
+                publisher.qos_profile,
+            )
+
+    def drive(self, linear: float, angular: float) -> None:
+        publisher = self.ears.create_publisher(Twist, "/cmd_vel", 10)
+        command = Twist(linear=Vector3(x=linear), angular=Vector3(z=angular))
+        self.ears.create_timer(0.1, lambda: publisher.publish(command))
+
+    def spin(self, seconds: float) -> None:
+        self.executor.spin_for(round(seconds * SECOND))
+
+
+def _run(
+    scene: Scene | None = None,
+    robot: str = "course",
+    start: Pose2 | None = None,
+    **parameters: object,
+) -> Run:
+    context = Context(clock=VirtualClock())
+    context.init(args=[])
+    known = load_robot(robot)
+    assert known.params_file is not None
+    context.overrides.add_file(known.params_file)
+    context.overrides.add("sim", parameters, "test")
+    scene = (scene or load_world("course")).with_robot(known.model)
+    sim = SimNode(scene, start=start, context=context)
+    ears = Node("ears", context=context)
+    executor = Executor(context=context)
+    executor.add_node(sim)
+    executor.add_node(ears)
+    return Run(sim, ears, executor)
+
+
+def test_rates_and_stamps() -> None:
+    run = _run()
+    run.listen("/lidar", "/odom/filtered", "/clock", "/tf", "/imu", "/ground_truth")
+    run.spin(1.0)
+    counts = {topic: len(messages) for topic, messages in run.heard.items()}
+    assert counts == {
+        "/lidar": 10,
+        "/odom/filtered": 50,
+        "/clock": 100,
+        "/tf": 50 + 10,
+        "/imu": 100,
+        "/ground_truth": 50,
+    }
+    stamp = run.heard["/lidar"][0].header.stamp
+    assert (stamp.sec, stamp.nanosec) == (0, 100_000_000)
+    last = run.heard["/clock"][-1].clock
+    assert (last.sec, last.nanosec) == (1, 0)
+
+
+def test_the_course_profile_has_the_public_frames() -> None:
+    run = _run()
+    run.listen("/odom/filtered", "/ground_truth", "/lidar", "/tf", "/tf_static")
+    run.spin(0.2)
+    odometry = run.heard["/odom/filtered"][-1]
+    assert odometry.header.frame_id == "sim_world"
+    assert odometry.child_frame_id == "robot/chassis/lidar"
+    assert odometry.pose.pose.position.x == pytest.approx(-6.0 + 1.3, abs=0.01)
+    truth = run.heard["/ground_truth"][-1]
+    assert truth.child_frame_id == "robot"
+    assert truth.pose.pose.position.x == pytest.approx(-6.0, abs=0.01)
+    assert run.heard["/lidar"][-1].header.frame_id == "robot/chassis/lidar"
+    moving = {t.child_frame_id for m in run.heard["/tf"] for t in m.transforms}
+    assert moving == {
+        "robot",
+        "robot/left_wheel",
+        "robot/right_wheel",
+        "robot/caster",
+    }
+    (static,) = run.heard["/tf_static"]
+    parents = {t.child_frame_id: t.header.frame_id for t in static.transforms}
+    assert parents["robot/chassis"] == "robot"
+    assert parents["robot/chassis/lidar"] == "robot/chassis"
+    optical = "robot/chassis/camera/optical"
+    assert parents[optical] == "robot/chassis/camera"
+
+
+def test_odometry_of_the_lidar_leads_to_the_base() -> None:
+    """The velocity of a point ahead of the axle, in its own axes."""
+    run = _run(World().scene(), start=Pose2(0, 0, 0.4))
+    run.listen("/odom/filtered")
+    tracker = PoseTracker(run.ears, "robot", "sim_world")
+    run.drive(0.4, 0.5)
+    run.spin(3.0)
+    last = run.heard["/odom/filtered"][-1]
+    assert last.twist.twist.linear.y == pytest.approx(0.5 * 1.3, abs=0.02)
+    assert tracker.update(last)
+    truth = run.sim.simulator.pose().to_pose2()
+    assert tracker.latest == pytest.approx(truth, abs=1e-3)
+    assert tracker.velocity == pytest.approx((0.4, 0.5), abs=0.01)
+
+
+def test_other_robots_have_map_odom_and_base_link() -> None:
+    run = _run(load_world("arena"), robot="turtlebot3_burger")
+    run.listen("/odom/filtered", "/tf_static", "/lidar")
+    run.spin(0.3)
+    odometry = run.heard["/odom/filtered"][-1]
+    assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_link")
+    (static,) = run.heard["/tf_static"]
+    parents = {t.child_frame_id: t.header.frame_id for t in static.transforms}
+    assert parents["odom"] == "map"
+    assert parents["chassis"] == "base_link"
+    assert run.heard["/lidar"][-1].header.frame_id == "chassis/lidar"
+
+
+def test_camera_comes_with_its_geometry() -> None:
+    run = _run()
+    run.listen("/camera", "/camera_info")
+    run.spin(0.11)
+    image, info = run.heard["/camera"][0], run.heard["/camera_info"][0]
+    assert (image.width, image.height, image.encoding) == (320, 240, "rgb8")
+    assert len(image.data) == 320 * 240 * 3
+    assert info.header == image.header
+    assert info.k[0] == pytest.approx(160 / math.tan(1.047 / 2))
+    assert image.header.frame_id == "robot/chassis/camera/optical"
+
+
+def test_a_sensor_without_listeners_is_never_read(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    run = _run()
+
+    def fail(*_: object) -> None:
+        raise AssertionError("read without a listener")
+
+    for name in ("scan", "image", "imu"):
+        monkeypatch.setattr(run.sim.simulator, name, fail)
+    run.spin(0.5)
+    assert run.sim.simulator.now_ns == SECOND // 2  # yet time went on
+
+
+def test_descriptions_are_there_for_late_listeners() -> None:
+    run = _run()
+    run.spin(1.0)
+    run.listen("/robot_description", "/world_description", "/tf_static")
+    run.spin(0.1)
+    assert '<link name="robot/chassis">' in run.heard["/robot_description"][0].data
+    assert '<link name="sim_world">' in run.heard["/world_description"][0].data
+    assert run.heard["/tf_static"]
+
+
+def test_commands_drive_and_time_out() -> None:
+    run = _run(World().scene())
+    publisher = run.ears.create_publisher(Twist, "/cmd_vel", 10)
+    publisher.publish(Twist(linear=Vector3(x=0.5)))
+    run.spin(0.45)
+    assert run.sim.simulator.motion().linear[0] == pytest.approx(0.5, abs=0.05)
+    run.spin(1.0)
+    assert abs(run.sim.simulator.motion().linear[0]) < 0.01
+
+
+def test_bad_commands_are_refused_and_logged() -> None:
+    run = _run(World().scene())
+    logged: list[Any] = []
+    from navette.msgs.rcl_interfaces.msg import Log
+
+    run.ears.create_subscription(Log, "/rosout", logged.append, 10)
+    publisher = run.ears.create_publisher(Twist, "/cmd_vel", 10)
+    publisher.publish(Twist(linear=Vector3(x=math.nan)))
+    run.spin(0.5)
+    assert any("refused /cmd_vel" in record.msg for record in logged)
+    assert abs(run.sim.simulator.motion().linear[0]) < 1e-3
+
+
+def test_contacts_are_told() -> None:
+    run = _run(World().add_box((3.0, 0.0), (1.0, 4.0)).scene())
+    run.listen("/contacts")
+    run.drive(0.8, 0.0)
+    run.spin(4.0)
+    (told,) = run.heard["/contacts"]
+    assert "robot/chassis touched box" in told.message
+    assert {pair.key for pair in told.values} >= {"part", "obstacle", "time_s"}
+    assert run.sim.simulator.contacts.count == 1
+
+
+def test_limits_change_while_running_and_frames_do_not() -> None:
+    run = _run(World().scene())
+    (limit,) = run.sim.set_parameters([Parameter("max_speed_mps", value=0.2)])
+    assert limit.successful
+    (frame,) = run.sim.set_parameters([Parameter("map_frame", value="other")])
+    assert not frame.successful
+    assert "start" in frame.reason
+    run.drive(1.0, 0.0)
+    run.spin(2.0)
+    assert run.sim.simulator.motion().linear[0] == pytest.approx(0.2, abs=0.01)
+
+
+def test_an_unknown_child_frame_lists_the_known() -> None:
+    with pytest.raises(ParameterError, match="'nose' is not fixed"):
+        _run(odometry_child_frame="nose")
+
+
+def test_wheel_odometry_drifts() -> None:
+    run = _run(
+        World().scene(), robot="jackal", odometry="wheel", wheel_noise=0.05, seed=3
+    )
+    run.listen("/odom/filtered", "/ground_truth")
+    run.drive(0.5, 0.4)
+    run.spin(6.0)
+    odometry, truth = run.heard["/odom/filtered"][-1], run.heard["/ground_truth"][-1]
+    a, b = odometry.pose.pose.position, truth.pose.pose.position
+    assert 0.01 < math.hypot(a.x - b.x, a.y - b.y) < 1.5
+    assert odometry.twist.twist.linear.x == pytest.approx(0.5, abs=0.2)
+
+
+def test_the_same_run_twice_gives_the_same_messages() -> None:
+    def record() -> list[Any]:
+        run = _run(load_world("arena"), robot="jackal", seed=5, lidar_noise_m=0.01)
+        run.listen("/lidar", "/odom/filtered", "/imu")
+        run.drive(0.5, 0.2)
+        run.spin(1.0)
+        return [run.heard[t] for t in ("/lidar", "/odom/filtered", "/imu")]
+
+    assert record() == record()
+
+
+def test_reset_starts_over() -> None:
+    run = _run()
+    run.drive(0.5, 0.0)
+    run.spin(2.0)
+    run.sim.reset()
+    assert run.sim.simulator.pose().to_pose2() == pytest.approx(
+        Pose2(-6, 0, 0), abs=0.01
+    )
+    run.listen("/odom/filtered")
+    run.spin(0.1)
+    stamp = run.heard["/odom/filtered"][-1].header.stamp
+    assert stamp.sec == 2  # the clock goes on
