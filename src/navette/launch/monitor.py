@@ -1,5 +1,6 @@
 """What happens in a run, as a person wants to read it: the goal and how it goes."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -46,18 +47,14 @@ class MonitorNode(Node):
     def _on_planner(self, status: DiagnosticStatus) -> None:
         values = {item.key: item.value for item in status.values}
         before = self.progress
-        goal = (
-            (float(values["goal_x"]), float(values["goal_y"]))
-            if values.get("goal_x")
-            else None
-        )
-        left = values.get("distance_left_m")
+        goal = _number(values, "goal_x"), _number(values, "goal_y")
+        left = _number(values, "distance_left_m")
         self.progress = replace(
             before,
-            goal=goal,
+            goal=None if math.isnan(goal[0]) else goal,
             goal_id=values.get("goal_id", ""),
             state=status.message,
-            distance_left_m=float(left) if left else None,
+            distance_left_m=None if math.isnan(left) else left,
             failed=status.level >= DiagnosticStatus.ERROR,
             sim_time_s=self.get_clock().now().nanoseconds / 1e9,
         )
@@ -66,3 +63,8 @@ class MonitorNode(Node):
 
     def _on_control(self, status: DiagnosticStatus) -> None:
         self.progress = replace(self.progress, control=status.message)
+
+
+def _number(values: dict[str, str], key: str) -> float:
+    """A figure of a status; NaN where there is none."""
+    return float(values.get(key) or math.nan)

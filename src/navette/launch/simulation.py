@@ -13,6 +13,7 @@ from navette.launch.summary import RunSummary
 from navette.runtime import (
     Context,
     Executor,
+    LoggingSeverity,
     PacedClock,
     Stopwatch,
     TimeSource,
@@ -43,7 +44,7 @@ class Simulation:
         self.context = Context(clock=_clock(options.speed))
         self._stopwatch = Stopwatch()
         try:
-            self.context.init(args=[])
+            self.context.init(args=[], console_level=LoggingSeverity.WARN)
             self._override_parameters(self.resolved)
             self._create_nodes(on_change)
         except BaseException:

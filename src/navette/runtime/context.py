@@ -13,6 +13,7 @@ from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.clock import SystemClock, TimeSource
 from navette.runtime.graph import Graph
 from navette.runtime.log import LogHub, StdlibHandler
+from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.log_sinks import ConsoleSink, FileSink
 from navette.runtime.loop import EventLoop
 from navette.runtime.overrides import ParameterOverrides
@@ -69,8 +70,12 @@ class Context:
         *,
         initialize_logging: bool = True,
         domain_id: int | None = None,
+        console_level: LoggingSeverity = LoggingSeverity.DEBUG,
     ) -> None:
-        """Read the arguments (``sys.argv`` if None) and become valid."""
+        """Read the arguments (``sys.argv`` if None) and become valid.
+
+        What is less severe than ``console_level`` goes to file and /rosout only.
+        """
         with self._lock:
             if self._initialized:
                 raise RuntimeError("Context.init() must only be called once")
@@ -79,7 +84,7 @@ class Context:
             self.overrides.add_arguments(arguments.parameters, "command line")
             self.arguments = arguments
             if initialize_logging:
-                self._start_logging(arguments)
+                self._start_logging(arguments, console_level)
             self._initialized = True
 
     def init_if_needed(self) -> None:
@@ -150,11 +155,13 @@ class Context:
     ) -> None:
         self.try_shutdown()
 
-    def _start_logging(self, arguments: RosArguments) -> None:
+    def _start_logging(
+        self, arguments: RosArguments, console_level: LoggingSeverity
+    ) -> None:
         for name, level in arguments.log_levels:
             self.log.set_level(name or "", level)
         if arguments.enable_stdout:
-            self.log.sinks.append(ConsoleSink())
+            self.log.sinks.append(ConsoleSink(least=console_level))
         if arguments.log_file is not None:
             self._file_sink = FileSink(arguments.log_file)
             self.log.sinks.append(self._file_sink)

@@ -27,12 +27,25 @@ def format_record(record: LogRecord) -> str:
 
 
 class ConsoleSink:
-    """Writes to standard error; coloured only on a terminal."""
+    """Writes to standard error; coloured only on a terminal.
 
-    def __init__(self, stream: TextIO | None = None) -> None:
+    Args:
+        stream: where to instead of standard error.
+        least: records below this severity go elsewhere only.
+    """
+
+    def __init__(
+        self,
+        stream: TextIO | None = None,
+        *,
+        least: LoggingSeverity = LoggingSeverity.DEBUG,
+    ) -> None:
         self._stream = stream
+        self._least = least
 
     def __call__(self, record: LogRecord) -> None:
+        if record.severity < self._least:
+            return
         # Looked up late: programs and tests replace sys.stderr.
         stream = self._stream or sys.stderr
         line = format_record(record)
