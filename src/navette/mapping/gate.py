@@ -14,7 +14,8 @@ class FusionGate:
       into view), so that a robot that waits, or one that is fast, is not left with an
       old map until the next timer; not more often than ``change_period``.
 
-    Never while the robot turns faster than ``max_yaw_rate``.
+    Never while the robot spins, falls or tilts: its scan is smeared, or of another
+    height than the robot drives at.
     """
 
     def __init__(self, params: MapMemoryParams) -> None:
@@ -30,7 +31,7 @@ class FusionGate:
         self, costmap: PlacedCostmap, memory: MapMemory, now_ns: int
     ) -> bool:
         """Whether to fuse a costmap that has just arrived."""
-        if self._spins(costmap):
+        if self._is_unsteady(costmap):
             return False
         if self._last is None:
             return True
@@ -44,7 +45,7 @@ class FusionGate:
     def on_timer(self, newest: PlacedCostmap) -> bool:
         """Whether to fuse the newest costmap on the timer."""
         last = self._last
-        if self._spins(newest) or last is newest:
+        if self._is_unsteady(newest) or last is newest:
             return False
         if last is None:
             return True
@@ -58,5 +59,10 @@ class FusionGate:
         """Remember that ``costmap`` joined the map."""
         self._last, self._last_ns = costmap, now_ns
 
-    def _spins(self, costmap: PlacedCostmap) -> bool:
-        return abs(costmap.yaw_rate) > self.params.max_yaw_rate
+    def _is_unsteady(self, costmap: PlacedCostmap) -> bool:
+        motion, params = costmap.motion, self.params
+        return (
+            abs(motion.yaw_rate) > params.max_yaw_rate
+            or abs(motion.vertical_speed) > params.max_vertical_speed
+            or motion.tilt > params.max_tilt
+        )

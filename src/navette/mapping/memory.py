@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,20 @@ from navette.mapping.params import MapMemoryParams
 from navette.mapping.under_body import cells_under
 
 
+class Motion(NamedTuple):
+    """How the robot moved when a costmap was seen."""
+
+    yaw_rate: float = 0.0
+    """rad/s"""
+    vertical_speed: float = 0.0
+    """m/s"""
+    tilt: float = 0.0
+    """angle between the body's z axis and the map's, rad"""
+
+
+STEADY = Motion()
+
+
 @dataclass(frozen=True, eq=False)
 class PlacedCostmap:
     """A costmap with the pose that the robot had when it was seen."""
@@ -34,9 +49,8 @@ class PlacedCostmap:
     """(x, y) of the sensor in the map frame, m"""
     map_T_base: Pose2
     """at ``stamp_ns``"""
-    yaw_rate: float
-    """rad/s, then"""
     stamp_ns: int
+    motion: Motion = STEADY
 
 
 class MapMemory:
@@ -117,7 +131,7 @@ class MapMemory:
         cells = np.full((1, 1), LETHAL, np.int8)
         spec = GridSpec(self.params.resolution, 1, 1, trial.spec.origin)
         here = trial.spec.origin
-        costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0.0, 0)
+        costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0)
         trial.fuse(costmap)
         trial.changes(costmap)
 

@@ -5,14 +5,16 @@ that joins it. Costmaps are placed with the pose interpolated at their stamp; wi
 odometry or transforms they are dropped and the map stays as it is.
 """
 
+import math
 from typing import Any, ClassVar
 
 from navette.errors import InvalidValueError
 from navette.grids import grid_from_message, grid_to_message, placed
 from navette.mapping.gate import FusionGate
-from navette.mapping.memory import MapMemory, PlacedCostmap
+from navette.mapping.memory import STEADY, MapMemory, Motion, PlacedCostmap
 from navette.mapping.params import MapMemoryParams
 from navette.mapping.placement import PlacementQueue, Ready
+from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.odometry import PoseTracker
@@ -66,6 +68,10 @@ class MapMemoryNode(StageNode):
     def on_odometry(self, msg: Odometry) -> None:
         """Follow the robot; place the costmaps that waited for this."""
         self._tracker.update(msg)
+        twist = msg.twist.twist
+        self._motion = Motion(
+            twist.angular.z, twist.linear.z, _tilt_of(msg.pose.pose.orientation)
+        )
         if self._waiting:
             self._place_waiting()
 
@@ -105,6 +111,7 @@ class MapMemoryNode(StageNode):
         self._restart()
 
     def _restart(self) -> None:
+        self._motion = STEADY
         self._memory.reset()
         self._gate.reset()
         self._waiting = PlacementQueue[OccupancyGrid](
@@ -143,8 +150,8 @@ class MapMemoryNode(StageNode):
             placed(spec, map_T_sensor),
             (map_T_sensor.x, map_T_sensor.y),
             ready.map_T_base,
-            self._tracker.velocity[1],
             ready.stamp_ns,
+            self._motion,
         )
 
     def _take(self, costmap: PlacedCostmap) -> None:
@@ -171,3 +178,9 @@ class MapMemoryNode(StageNode):
 
     def _now_ns(self) -> int:
         return self.get_clock().now().nanoseconds
+
+
+def _tilt_of(q: Quaternion) -> float:
+    """Angle between the turned z axis and z, rad."""
+    upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y)
+    return math.acos(min(1.0, max(-1.0, upright)))

@@ -53,6 +53,18 @@ class MapMemoryParams(Params):
         unit="rad/s",
         above=0.0,
     )
+    max_vertical_speed: float = param(
+        0.3,
+        "no fusing while falling or rising faster: the scan is of another height",
+        unit="m/s",
+        above=0.0,
+    )
+    max_tilt: float = param(
+        0.15,
+        "no fusing while tilted further: the scan looks over or under obstacles",
+        unit="rad",
+        above=0.0,
+    )
     fuse_on_change: bool = param(
         True, "fuse at once when a costmap contradicts the map near the robot"
     )

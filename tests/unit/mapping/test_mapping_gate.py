@@ -3,18 +3,24 @@ import pytest
 
 from navette.geometry import Pose2
 from navette.grids import GridSpec, placed
-from navette.mapping import FusionGate, MapMemory, MapMemoryParams, PlacedCostmap
+from navette.mapping import (
+    FusionGate,
+    MapMemory,
+    MapMemoryParams,
+    Motion,
+    PlacedCostmap,
+)
 
 SPEC = GridSpec(0.1, 41, 41, Pose2(-2.05, -2.05, 0.0))
 SECOND = 1_000_000_000
 
 
-def costmap(x=0.0, yaw=0.0, *, yaw_rate=0.0, obstacle=False) -> PlacedCostmap:
+def costmap(x=0.0, yaw=0.0, *, obstacle=False, **motion) -> PlacedCostmap:
     cells = np.zeros(SPEC.shape, np.int8)
     if obstacle:
         cells[15:25, 35] = 100
     pose = Pose2(x, 0.0, yaw)
-    return PlacedCostmap(cells, placed(SPEC, pose), (x, 0.0), pose, yaw_rate, 0)
+    return PlacedCostmap(cells, placed(SPEC, pose), (x, 0.0), pose, 0, Motion(**motion))
 
 
 def gate_and_memory(**values) -> tuple[FusionGate, MapMemory]:
@@ -59,6 +65,16 @@ def test_nothing_is_fused_while_spinning() -> None:
     spinning = costmap(3.0, 1.0, yaw_rate=2.0, obstacle=True)
     assert not gate.on_timer(spinning)
     assert not gate.on_arrival(spinning, memory, SECOND)
+
+
+@pytest.mark.parametrize(
+    "motion", [{"vertical_speed": -1.0}, {"vertical_speed": 1.0}, {"tilt": 0.3}]
+)
+def test_nothing_is_fused_while_falling_or_tilted(motion) -> None:
+    gate, memory = gate_and_memory()
+    assert not gate.on_arrival(costmap(**motion), memory, 0)
+    assert not gate.on_timer(costmap(**motion))
+    assert gate.on_arrival(costmap(vertical_speed=-0.1, tilt=0.05), memory, 0)
 
 
 def test_a_robot_that_stands_still_sees_what_changed() -> None:

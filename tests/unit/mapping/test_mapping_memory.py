@@ -18,7 +18,7 @@ def memory(**values) -> MapMemory:
 
 
 def costmap(cells: np.ndarray, pose: Pose2 = ORIGIN) -> PlacedCostmap:
-    return PlacedCostmap(cells, placed(SPEC, pose), (pose.x, pose.y), pose, 0.0, 0)
+    return PlacedCostmap(cells, placed(SPEC, pose), (pose.x, pose.y), pose, 0)
 
 
 def unknown() -> np.ndarray:

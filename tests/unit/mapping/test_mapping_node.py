@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from navette.errors import ParameterError
-from navette.geometry import Pose2, quaternion_from_yaw
+from navette.geometry import Pose2, quaternion_from_rpy
 from navette.grids import GridSpec, grid_from_message, grid_to_message
 from navette.mapping.node import MapMemoryNode
 from navette.msgs.geometry_msgs.msg import (
@@ -29,8 +29,16 @@ AHEAD = 1.3  # of the sensor before the base, m
 MS = 1_000_000
 
 
-def odometry(x: float, yaw: float, stamp_ns: int, yaw_rate: float = 0.0) -> Odometry:
-    qx, qy, qz, qw = quaternion_from_yaw(yaw)
+def odometry(
+    x: float,
+    yaw: float,
+    stamp_ns: int,
+    *,
+    yaw_rate: float = 0.0,
+    fall: float = 0.0,
+    roll: float = 0.0,
+) -> Odometry:
+    qx, qy, qz, qw = quaternion_from_rpy(roll, 0.0, yaw)
     pose = Pose(
         position=Point(x=x, y=0.0), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw)
     )
@@ -38,7 +46,9 @@ def odometry(x: float, yaw: float, stamp_ns: int, yaw_rate: float = 0.0) -> Odom
         header=Header(stamp=ns_to_stamp(stamp_ns), frame_id="map"),
         child_frame_id="base_link",
         pose=PoseWithCovariance(pose=pose),
-        twist=TwistWithCovariance(twist=Twist(angular=Vector3(z=yaw_rate))),
+        twist=TwistWithCovariance(
+            twist=Twist(linear=Vector3(z=-fall), angular=Vector3(z=yaw_rate))
+        ),
     )
 
 
@@ -216,6 +226,21 @@ def test_moving_fuses_on_the_timer() -> None:
             rig.run_ms(100)
         # First one, then every second tick of the timer: 2 m.
         assert rig.maps.count == 2 + 3
+
+
+@pytest.mark.parametrize("motion", [{"fall": 3.0}, {"roll": -0.3}])
+def test_what_was_seen_while_falling_does_not_become_the_map(motion) -> None:
+    """The course robot spawns 1 m up: its first scans look over every obstacle."""
+    with GraphHarness() as graph:
+        rig = Rig(graph)
+        rig.odometry(0.0, 0.0, 0, **motion)
+        rig.costmap(free(), 0)
+        rig.run_ms(20)
+        assert rig.maps.count == 1
+        rig.odometry(0.0, 0.0, 100 * MS)
+        rig.costmap(with_post(1.0, 0.0), 100 * MS)
+        rig.run_ms(20)
+        assert rig.maps.count == 2
 
 
 def test_time_that_goes_back_starts_the_map_anew() -> None:
