@@ -85,6 +85,8 @@ class Simulation:
         self._executor = Executor(context=context)
         for node in context.nodes:
             self._executor.add_node(node)
+        if options.ends_with_goals:
+            self.stack.missions.on_done = self.stop
 
     def run(self) -> None:
         """Run until the goals are done (headless), the time is up or :meth:`stop`.
@@ -95,11 +97,10 @@ class Simulation:
         """
         self._stopwatch = Stopwatch()
         limit = self.options.max_time_s
-        timeout_ns = None if limit is None else round(limit * 1e9)
-        self._executor.spin_until_complete(self._is_over, timeout_ns)
-
-    def _is_over(self) -> bool:
-        return self.options.ends_with_goals and self.stack.missions.done
+        if limit is None:
+            self._executor.spin()
+        else:
+            self._executor.spin_until(round(limit * 1e9))
 
     def stop(self) -> None:
         """End :meth:`run` after the present callback; from any thread."""

@@ -4,6 +4,7 @@ It waits with the first goal until somebody reads /goal_point, the planner was h
 and (unless switched off) a map was seen; then it publishes each goal once.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 from navette.missions.params import MissionParams
@@ -60,6 +61,8 @@ class MissionNode(StageNode):
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
         self._odometry: Odometry | None = None  # newest, not counted yet
         self._map_seen = self._planner_heard = False
+        #: Called when the last goal has its outcome.
+        self.on_done: Callable[[], None] | None = None
         self._sequence = GoalSequence(
             params.goal_points(),
             timeout_ns=round(params.goal_timeout_s * 1e9),
@@ -137,6 +140,10 @@ class MissionNode(StageNode):
 
     def _go_on(self) -> None:
         """Publish the next goal if it is its turn and the planner can take it."""
+        if self._sequence.done:
+            if self._sequence.total and self.on_done is not None:
+                self.on_done()
+            return
         map_ready = self._map_seen or not self.params.wait_for_map
         if not (
             map_ready and self._planner_heard and self.has_listeners("/goal_point")
