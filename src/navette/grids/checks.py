@@ -1,6 +1,6 @@
 """Arrays that enter a kernel: the right type and shape, or a clear error.
 
-Kernels are compiled for writable C-ordered arrays of one dtype. Anything else
+Kernels are compiled for writable, aligned C-ordered arrays of one dtype. Anything else
 would be compiled again (a second of waiting), so it is copied here instead.
 """
 
@@ -40,7 +40,7 @@ def kernel_array(
         raise InvalidValueError(f"{name}: {array.ndim}-D, wanted {ndim}-D")
     if array.size == 0 and not allow_empty:
         raise InvalidValueError(f"{name}: shape {array.shape} is empty")
-    if array.flags.c_contiguous and array.flags.writeable:
+    if array.flags.carray:  # C order, aligned, writable
         return array
     return np.array(array, order="C")
 
@@ -55,7 +55,7 @@ def output_array(
         raise InvalidValueError(
             f"{name}: {array.dtype} {array.shape}, wanted {np.dtype(dtype)} {shape}"
         )
-    if not (array.flags.c_contiguous and array.flags.writeable):
+    if not array.flags.carray:
         raise InvalidValueError(f"{name}: wanted a writable C-ordered array")
     return array
 

@@ -14,12 +14,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from navette.errors import InvalidValueError
 from navette.grids.checks import at_least, kernel_array
 
 # Columns worked on at a time: a few registers that stay in the first-level cache.
 BLOCK = 64
 # Largest radius whose sums of squares, up to 2 · (radius + 1)², fit 16 bits.
 RADIUS_16_BIT = 179
+# Largest radius whose square fits the int32 of the result.
+MAX_RADIUS = 46_339
 
 
 def distance_squared(
@@ -39,6 +42,9 @@ def distance_squared(
     scratch = Scratch(occupied.shape, radius_cells)
     squared = np.empty(occupied.shape, np.int32)
     _squared_kernel(occupied, scratch.columns, scratch.padded, scratch.row, squared)
+    if scratch.radius < radius_cells:
+        nothing = (scratch.radius + 1) ** 2
+        squared[squared == nothing] = (radius_cells + 1) ** 2
     return squared
 
 
@@ -58,10 +64,10 @@ def distance_field(
     occupied = kernel_array("occupied", occupied, np.uint8)
     at_least("resolution", resolution, 1e-9)
     at_least("max_distance_m", max_distance_m, 0.0)
-    radius = math.ceil(max_distance_m / resolution)
-    scratch = Scratch(occupied.shape, radius)
-    metres = resolution * np.sqrt(np.arange((radius + 1) ** 2 + 1))
+    scratch = Scratch(occupied.shape, math.ceil(max_distance_m / resolution))
+    metres = resolution * np.sqrt(np.arange((scratch.radius + 1) ** 2 + 1))
     table = np.minimum(metres, max_distance_m).astype(np.float32)
+    table[-1] = max_distance_m  # nothing found
     field = np.empty(occupied.shape, np.float32)
     _field_kernel(occupied, scratch.columns, scratch.padded, scratch.row, table, field)
     return field
@@ -71,6 +77,7 @@ class Scratch:
     """The work arrays of the distance kernels, in the smallest integers that do.
 
     Attributes:
+        radius: cells to search, at most the grid's diagonal: beyond is nothing.
         columns: (H, W) distance along the column, cells.
         padded: (W + 2 · radius,) squares of one row of it, with its margins.
         row: (W,) squared distances of that row, cells².
@@ -78,10 +85,12 @@ class Scratch:
 
     def __init__(self, shape: tuple[int, ...], radius_cells: int) -> None:
         at_least("radius_cells", radius_cells, 0)
+        if radius_cells > MAX_RADIUS:
+            raise InvalidValueError(
+                f"radius_cells: {radius_cells}, wanted at most {MAX_RADIUS}"
+            )
         height, width = shape
-        # Beyond the grid's diagonal there is nothing to find, but results are
-        # still clipped at the radius that was asked for.
-        self.radius = int(radius_cells)
+        self.radius = min(int(radius_cells), math.ceil(math.hypot(height, width)))
         small = self.radius <= RADIUS_16_BIT
         self.columns = np.empty((height, width), np.uint8 if small else np.int32)
         squares = np.uint16 if small else np.int32

@@ -87,6 +87,9 @@ def inflate(
             f"table: {table.size} entries, wanted (radius + 1)² + 1; see cost_table"
         )
     scratch = Scratch(cost.shape, radius)
+    if scratch.radius < radius:
+        table = table[: (scratch.radius + 1) ** 2 + 1].copy()
+        table[-1] = UNKNOWN  # nothing found
     lethal = (cost >= LETHAL).view(np.uint8)
     inflated = np.empty_like(cost)
     lowest = np.int8(UNKNOWN if raise_unknown else FREE)

@@ -55,7 +55,7 @@ def trace_beams(
     Returns:
         The number of beams that hit something inside the grid.
     """
-    if not (cost.flags.writeable and cost.flags.c_contiguous):
+    if isinstance(cost, np.ndarray) and not cost.flags.carray:
         raise InvalidValueError("cost: wanted a writable C-ordered array")
     grid = grid_array("cost", cost, np.int8, spec)
     rays = kernel_array("directions", directions, np.float64, allow_empty=True)

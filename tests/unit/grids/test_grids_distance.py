@@ -4,6 +4,7 @@ from scipy.ndimage import distance_transform_edt
 
 from navette.errors import InvalidValueError
 from navette.grids import distance_field, distance_squared
+from navette.grids.checks import kernel_array
 
 
 def oracle(occupied: np.ndarray, radius: int) -> np.ndarray:
@@ -35,6 +36,16 @@ def test_everything_is_far_without_obstacles() -> None:
     assert (distance_squared(np.zeros((5, 300), np.uint8), 7) == 64).all()
 
 
+def test_radius_beyond_the_grid_costs_nothing_and_changes_nothing() -> None:
+    occupied = np.zeros((12, 30), np.uint8)
+    assert (distance_squared(occupied, 40_000) == 40_001**2).all()
+    assert (distance_field(occupied, 0.1, 1000.0) == 1000.0).all()
+    occupied[0, 0] = 1
+    assert distance_squared(occupied, 40_000)[11, 29] == 11**2 + 29**2
+    field = distance_field(occupied, 0.1, 1000.0)
+    assert field[11, 29] == pytest.approx(0.1 * np.hypot(11, 29))
+
+
 def test_field_is_in_metres_and_clipped() -> None:
     occupied = np.zeros((3, 9), np.uint8)
     occupied[1, 0] = 1
@@ -56,6 +67,13 @@ def test_read_only_and_strided_arrays_are_taken() -> None:
     np.testing.assert_array_equal(distance_squared(occupied.T, 6), expected.T)
 
 
+def test_unaligned_arrays_are_taken() -> None:
+    """Messages from a wire hold views into its bytes."""
+    ranges = np.frombuffer(b"x" + np.ones(4, np.float32).tobytes(), np.float32, 4, 1)
+    assert not ranges.flags.aligned
+    assert kernel_array("ranges", ranges, np.float32, 1).flags.carray
+
+
 @pytest.mark.parametrize(
     ("occupied", "radius", "text"),
     [
@@ -63,6 +81,7 @@ def test_read_only_and_strided_arrays_are_taken() -> None:
         (np.zeros(3, np.uint8), 2, "occupied: 1-D, wanted 2-D"),
         (np.zeros((0, 3), np.uint8), 2, r"occupied: shape \(0, 3\)"),
         ([[0]], 2, "occupied: list, wanted a uint8 array"),
+        (np.zeros((3, 3), np.uint8), 50_000, "wanted at most 46339"),
         (np.zeros((3, 3), np.uint8), -1, "radius_cells: -1, wanted a value >= 0"),
     ],
 )
