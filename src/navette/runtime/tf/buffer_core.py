@@ -178,7 +178,7 @@ class BufferCore:
     def _up(
         self, frame: str, stamp_ns: int
     ) -> tuple[dict[str, Transform3], ExtrapolationException | None]:
-        """ancestor_T_frame of the frame and its ancestors, and why it went no higher."""
+        """ancestor_T_frame of all ancestors, and what kept it from going higher."""
         upper_T_frame = Transform3.identity()
         found = {frame: upper_T_frame}
         while (history := self._frames.get(frame)) and len(found) < _MAX_DEPTH:

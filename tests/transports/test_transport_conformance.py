@@ -1,0 +1,269 @@
+"""What every transport must do; each implementation runs the same suite."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from navette.errors import InvalidValueError
+from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.msgs.std_msgs.msg import Float64, String
+from navette.transports import (
+    DurabilityPolicy,
+    Endpoint,
+    EndpointKind,
+    EndpointQos,
+    HistoryPolicy,
+    InProcessTransport,
+    Item,
+    PublisherPort,
+    QoSPolicyKind,
+    ReliabilityPolicy,
+    SubscriptionPort,
+    Transport,
+    TransportObserver,
+)
+
+TRANSPORTS: dict[str, Callable[[], Transport]] = {"in-process": InProcessTransport}
+
+LATCHED = EndpointQos(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class Bench:
+    """Opens ports on a transport and notes what arrives."""
+
+    def __init__(self, transport: Transport) -> None:
+        self.transport = transport
+        self._count = 0
+
+    def _endpoint(
+        self, kind: EndpointKind, topic: str, type_name: str, qos: EndpointQos
+    ) -> Endpoint:
+        self._count += 1
+        gid = self._count.to_bytes(16, "big")
+        return Endpoint(kind, topic, type_name, qos, f"n{self._count}", "/", gid)
+
+    def publisher(
+        self,
+        topic: str = "/t",
+        *,
+        qos: EndpointQos | None = None,
+        cls: type = String,
+        type_name: str = "std_msgs/msg/String",
+    ) -> PublisherPort:
+        kind = EndpointKind.PUBLISHER
+        endpoint = self._endpoint(kind, topic, type_name, qos or EndpointQos())
+        return self.transport.advertise(endpoint, cls)
+
+    def subscription(
+        self,
+        topic: str = "/t",
+        *,
+        qos: EndpointQos | None = None,
+        shared: bool = False,
+        cls: type = String,
+        type_name: str = "std_msgs/msg/String",
+    ) -> tuple[list[Item], SubscriptionPort]:
+        items: list[Item] = []
+        kind = EndpointKind.SUBSCRIPTION
+        endpoint = self._endpoint(kind, topic, type_name, qos or EndpointQos())
+        port = self.transport.subscribe(endpoint, cls, items.append, shared=shared)
+        return items, port
+
+
+@pytest.fixture(params=list(TRANSPORTS))
+def bench(request: pytest.FixtureRequest) -> Iterator[Bench]:
+    transport = TRANSPORTS[request.param]()
+    yield Bench(transport)
+    transport.close()
+
+
+def texts(items: list[Item]) -> list[str]:
+    return [item[0].data for item in items]
+
+
+def test_samples_arrive_in_order_with_stamp_and_sequence(bench: Bench) -> None:
+    items, _ = bench.subscription()
+    publisher = bench.publisher()
+    for number in (1, 2, 3):
+        publisher.send(String(data=f"m{number}"), 100 * number, number)
+    assert texts(items) == ["m1", "m2", "m3"]
+    assert [(item[1], item[3]) for item in items] == [(100, 1), (200, 2), (300, 3)]
+
+
+def test_every_subscription_of_the_topic_gets_it_and_no_other(bench: Bench) -> None:
+    first, _ = bench.subscription()
+    second, _ = bench.subscription()
+    other, _ = bench.subscription("/other")
+    bench.publisher().send(String(data="x"), 0, 1)
+    assert (texts(first), texts(second), other) == (["x"], ["x"], [])
+
+
+def test_what_the_publisher_edits_later_is_not_seen(bench: Bench) -> None:
+    copied, _ = bench.subscription()
+    shared, _ = bench.subscription(shared=True)
+    message = String(data="before")
+    bench.publisher().send(message, 0, 1)
+    message.data = "after"
+    assert (texts(copied), texts(shared)) == (["before"], ["before"])
+
+
+def test_what_a_subscriber_edits_is_not_seen_by_others(bench: Bench) -> None:
+    first, _ = bench.subscription()
+    second, _ = bench.subscription()
+    shared, _ = bench.subscription(shared=True)
+    bench.publisher().send(String(data="x"), 0, 1)
+    first[0][0].data = "mine"
+    assert (texts(second), texts(shared)) == (["x"], ["x"])
+
+
+def test_arrays_are_not_shared_between_copies(bench: Bench) -> None:
+    kind: dict[str, Any] = {
+        "cls": OccupancyGrid,
+        "type_name": "nav_msgs/msg/OccupancyGrid",
+    }
+    first, _ = bench.subscription(**kind)
+    second, _ = bench.subscription(**kind)
+    grid = OccupancyGrid(data=[1, 2, 3])
+    bench.publisher(**kind).send(grid, 0, 1)
+    grid.data[0] = 9
+    first[0][0].data[1] = 9
+    assert list(second[0][0].data) == [1, 2, 3]
+
+
+def test_late_joiner_gets_the_last_depth_samples(bench: Bench) -> None:
+    publisher = bench.publisher(qos=LATCHED)
+    for number in range(1, 6):
+        publisher.send(String(data=f"m{number}"), number, number)
+    all_kept, _ = bench.subscription(qos=LATCHED)
+    one_only = EndpointQos.latched(1)
+    newest, _ = bench.subscription(qos=one_only)
+    shared, _ = bench.subscription(qos=LATCHED, shared=True)
+    volatile, _ = bench.subscription()
+    assert texts(all_kept) == ["m3", "m4", "m5"]
+    assert texts(shared) == ["m3", "m4", "m5"]
+    assert texts(newest) == ["m5"]
+    assert volatile == []
+
+
+def test_latched_samples_are_copies(bench: Bench) -> None:
+    publisher = bench.publisher(qos=LATCHED)
+    message = String(data="before")
+    publisher.send(message, 0, 1)
+    message.data = "after"
+    first, _ = bench.subscription(qos=LATCHED)
+    first[0][0].data = "mine"
+    second, _ = bench.subscription(qos=LATCHED)
+    assert texts(second) == ["before"]
+
+
+def test_keep_all_keeps_all(bench: Bench) -> None:
+    qos = EndpointQos(
+        history=HistoryPolicy.KEEP_ALL, durability=DurabilityPolicy.TRANSIENT_LOCAL
+    )
+    publisher = bench.publisher(qos=qos)
+    for number in range(100):
+        publisher.send(String(data=str(number)), 0, number + 1)
+    items, _ = bench.subscription(qos=qos)
+    assert len(items) == 100
+
+
+@pytest.mark.parametrize(
+    ("offered", "requested", "kind"),
+    [
+        (BEST_EFFORT, EndpointQos(), QoSPolicyKind.RELIABILITY),
+        (EndpointQos(), LATCHED, QoSPolicyKind.DURABILITY),
+        (EndpointQos(), EndpointQos(deadline_ns=10), QoSPolicyKind.DEADLINE),
+    ],
+)
+def test_incompatible_qos_is_reported_and_does_not_match(
+    bench: Bench, offered: EndpointQos, requested: EndpointQos, kind: QoSPolicyKind
+) -> None:
+    reports: list[tuple[str, str, tuple[QoSPolicyKind, ...]]] = []
+
+    class Observer(TransportObserver):
+        def incompatible_qos(
+            self,
+            publisher: Endpoint,
+            subscription: Endpoint,
+            policies: tuple[QoSPolicyKind, ...],
+        ) -> None:
+            reports.append((publisher.node_name, subscription.node_name, policies))
+
+    bench.transport.observe(Observer())
+    publisher = bench.publisher(qos=offered)
+    items, port = bench.subscription(qos=requested)
+    publisher.send(String(data="x"), 0, 1)
+    assert items == []
+    assert (publisher.matched_count, port.matched_count) == (0, 0)
+    assert reports == [("n1", "n2", (kind,))]
+
+
+def test_reliable_offer_satisfies_best_effort_request(bench: Bench) -> None:
+    publisher = bench.publisher()
+    items, _ = bench.subscription(qos=BEST_EFFORT)
+    publisher.send(String(data="x"), 0, 1)
+    assert texts(items) == ["x"]
+
+
+def test_another_type_on_the_topic_is_an_error_that_names_both(bench: Bench) -> None:
+    bench.publisher()
+    with pytest.raises(InvalidValueError, match=r"/t carries std_msgs/msg/String.*n1"):
+        bench.subscription(cls=Float64, type_name="std_msgs/msg/Float64")
+
+
+def test_the_type_is_free_again_when_all_have_left(bench: Bench) -> None:
+    bench.publisher().close()
+    items, _ = bench.subscription(cls=Float64, type_name="std_msgs/msg/Float64")
+    publisher = bench.publisher(cls=Float64, type_name="std_msgs/msg/Float64")
+    publisher.send(Float64(data=1.5), 0, 1)
+    assert items[0][0].data == 1.5
+
+
+def test_closed_ports_neither_give_nor_get(bench: Bench) -> None:
+    publisher = bench.publisher()
+    gone, gone_port = bench.subscription()
+    stays, stays_port = bench.subscription()
+    gone_port.close()
+    gone_port.close()
+    publisher.send(String(data="a"), 0, 1)
+    publisher.close()
+    publisher.send(String(data="b"), 0, 2)
+    assert (gone, texts(stays)) == ([], ["a"])
+    assert (publisher.matched_count, stays_port.matched_count) == (0, 0)
+
+
+def test_graph_lists_endpoints_and_tells_of_changes(bench: Bench) -> None:
+    events: list[str] = []
+
+    class Observer(TransportObserver):
+        def graph_changed(self) -> None:
+            events.append("changed")
+
+        def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+            events.append(f"{publisher.node_name}>{subscription.node_name}")
+
+        def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+            events.append(f"{publisher.node_name}|{subscription.node_name}")
+
+    bench.transport.observe(Observer())
+    publisher = bench.publisher()
+    _, port = bench.subscription()
+    names = [(e.node_name, e.kind, e.topic) for e in bench.transport.endpoints()]
+    assert names == [
+        ("n1", EndpointKind.PUBLISHER, "/t"),
+        ("n2", EndpointKind.SUBSCRIPTION, "/t"),
+    ]
+    port.close()
+    publisher.close()
+    assert bench.transport.endpoints() == []
+    assert events == ["changed", "n1>n2", "changed", "n1|n2", "changed", "changed"]
+
+
+def test_no_subscription_no_work(bench: Bench) -> None:
+    class Loud:
+        def __getattr__(self, name: str) -> Any:
+            raise AssertionError("the message was looked at")
+
+    bench.publisher().send(Loud(), 0, 1)

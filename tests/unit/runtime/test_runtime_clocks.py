@@ -1,0 +1,134 @@
+"""Virtual, paced and system clocks, on a wall clock that the test moves."""
+
+import pytest
+
+from navette.errors import InvalidValueError
+from navette.runtime import PacedClock, SystemClock, VirtualClock
+from navette.runtime import clock as clock_module
+from navette.runtime.clock import Wakeup
+
+
+class FakeWall:
+    """Stands in for the ``time`` module: waits move it, nothing else does."""
+
+    def __init__(self) -> None:
+        self.now_s = 1000.0
+
+    def monotonic(self) -> float:
+        return self.now_s
+
+    def time_ns(self) -> int:
+        return round(self.now_s * 1e9)
+
+
+class FakeWakeup(Wakeup):
+    """A wait takes its whole time, or ends at once if ``is_set``."""
+
+    def __init__(self, wall: FakeWall) -> None:
+        super().__init__()
+        self.wall = wall
+        self.is_set = False
+        self.waits_s: list[float | None] = []
+
+    def wait(self, timeout_s: float | None) -> bool:
+        self.waits_s.append(timeout_s)
+        if not self.is_set:
+            assert timeout_s is not None, "would wait for ever"
+            self.wall.now_s += timeout_s
+        return self.is_set
+
+
+@pytest.fixture
+def wall(monkeypatch: pytest.MonkeyPatch) -> FakeWall:
+    fake = FakeWall()
+    monkeypatch.setattr(clock_module, "time", fake)
+    return fake
+
+
+def test_virtual_clock_is_there_at_once(wall: FakeWall) -> None:
+    clock, wakeup = VirtualClock(5), FakeWakeup(wall)
+    assert clock.go_to(10**12, wakeup)
+    assert clock.now_ns == 10**12
+    assert wakeup.waits_s == []
+
+
+def test_virtual_clock_never_goes_back(wall: FakeWall) -> None:
+    clock = VirtualClock(10)
+    clock.go_to(5, FakeWakeup(wall))
+    assert clock.now_ns == 10
+
+
+def test_paced_clock_waits_at_its_factor(wall: FakeWall) -> None:
+    clock, wakeup = PacedClock(2.0), FakeWakeup(wall)
+    for second in range(1, 5):
+        assert clock.go_to(second * 10**9, wakeup)
+    assert wakeup.waits_s == pytest.approx([0.5] * 4)
+    assert clock.real_time_factor == pytest.approx(2.0)
+    assert clock.lag_s == 0.0
+
+
+def test_paced_clock_makes_up_for_a_short_delay(wall: FakeWall) -> None:
+    clock, wakeup = PacedClock(1.0), FakeWakeup(wall)
+    clock.go_to(10**9, wakeup)
+    wall.now_s += 0.1
+    clock.go_to(2 * 10**9, wakeup)
+    assert wakeup.waits_s == pytest.approx([1.0, 0.9])
+
+
+def test_paced_clock_does_not_rush_after_a_long_delay(wall: FakeWall) -> None:
+    clock, wakeup = PacedClock(1.0), FakeWakeup(wall)
+    clock.go_to(10**9, wakeup)
+    wall.now_s += 10.0
+    clock.go_to(2 * 10**9, wakeup)
+    assert clock.lag_s == pytest.approx(9.0)
+    clock.go_to(3 * 10**9, wakeup)
+    assert wakeup.waits_s[-1] == pytest.approx(1.0)
+
+
+def test_paced_clock_stays_where_it_is_when_woken(wall: FakeWall) -> None:
+    clock, wakeup = PacedClock(1.0), FakeWakeup(wall)
+    wakeup.is_set = True
+    assert not clock.go_to(10**9, wakeup)
+    assert clock.now_ns == 0
+
+
+def test_paused_clock_stands(wall: FakeWall) -> None:
+    clock, wakeup = PacedClock(1.0), FakeWakeup(wall)
+    clock.paused = True
+    wakeup.is_set = True
+    assert not clock.go_to(10**9, wakeup)
+    assert wakeup.waits_s == [None]
+    clock.paused = False
+    wall.now_s += 100.0
+    wakeup.is_set = False
+    clock.factor = 4.0
+    clock.go_to(10**9, wakeup)
+    assert wakeup.waits_s[-1] == pytest.approx(0.25)
+
+
+def test_system_clock_waits_for_real(wall: FakeWall) -> None:
+    clock, wakeup = SystemClock(), FakeWakeup(wall)
+    start = clock.now_ns
+    assert clock.go_to(start + 2 * 10**9, wakeup)
+    assert clock.now_ns == pytest.approx(start + 2 * 10**9)
+    assert clock.go_to(start, wakeup)
+    assert len(wakeup.waits_s) == 1
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, float("inf"), float("nan")])
+def test_wrong_factor_is_refused(factor: float) -> None:
+    with pytest.raises(InvalidValueError, match="real-time factor"):
+        PacedClock(factor)
+
+
+def test_wrong_start_is_refused() -> None:
+    with pytest.raises(InvalidValueError, match="start"):
+        VirtualClock(-1)
+
+
+def test_wakeup_ends_a_wait() -> None:
+    wakeup = Wakeup()
+    wakeup.set()
+    assert wakeup.wait(None)
+    wakeup.clear()
+    assert not wakeup.wait(0.0)

@@ -1,0 +1,339 @@
+"""The event loop: order, nesting, threads, coroutines, errors."""
+
+import threading
+
+import pytest
+
+from navette.errors import CallbackError
+from navette.runtime import Context, Executor, Future, Node, VirtualClock
+from navette.runtime.callback_groups import (
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
+from navette.runtime.loop import EventLoop
+
+
+@pytest.fixture
+def loop() -> EventLoop:
+    return EventLoop(VirtualClock())
+
+
+def test_events_run_by_time_then_by_order_of_making(loop: EventLoop) -> None:
+    order: list[str] = []
+    for time_ns, name in ((20, "c"), (10, "a"), (20, "d"), (10, "b")):
+        loop.call_at(time_ns, lambda name=name: order.append(name))
+    loop.call_soon(lambda: order.append("now"))
+    loop.run()
+    assert order == ["now", "a", "b", "c", "d"]
+    assert loop.clock.now_ns == 20
+
+
+def test_an_event_made_for_the_present_comes_after_those_that_are_ready(
+    loop: EventLoop,
+) -> None:
+    order: list[str] = []
+
+    def first() -> None:
+        order.append("first")
+        loop.call_at(10, lambda: order.append("made at 10 for 10"))
+
+    loop.call_at(10, first)
+    loop.call_at(10, lambda: order.append("second"))
+    loop.run()
+    assert order == ["first", "second", "made at 10 for 10"]
+
+
+def test_run_until_includes_that_time_and_ends_at_it(loop: EventLoop) -> None:
+    hits: list[int] = []
+    for time_ns in (5, 10, 11):
+        loop.call_at(time_ns, lambda t=time_ns: hits.append(t))
+    loop.run(until_ns=10)
+    assert (hits, loop.clock.now_ns) == ([5, 10], 10)
+    loop.run(until_ns=100)
+    assert (hits, loop.clock.now_ns) == ([5, 10, 11], 100)
+
+
+def test_a_canceled_call_does_not_happen_nor_move_time(loop: EventLoop) -> None:
+    loop.call_at(50, lambda: pytest.fail("was canceled")).cancel()
+    loop.run()
+    assert loop.clock.now_ns == 0
+
+
+def test_a_limit_counts_events(loop: EventLoop) -> None:
+    hits: list[int] = []
+    for number in range(3):
+        loop.call_soon(lambda n=number: hits.append(n))
+    loop.run(limit=2)
+    assert hits == [0, 1]
+
+
+def test_done_is_asked_between_events(loop: EventLoop) -> None:
+    hits: list[int] = []
+    for number in range(3):
+        loop.call_soon(lambda n=number: hits.append(n))
+    loop.run(done=lambda: len(hits) == 2)
+    assert hits == [0, 1]
+    loop.run()
+    assert hits == [0, 1, 2]
+
+
+def test_closed_loop_runs_nothing(loop: EventLoop) -> None:
+    loop.call_soon(lambda: pytest.fail("must not run"))
+    loop.close()
+    loop.run()
+
+
+def test_error_names_source_and_stamp_and_keeps_the_cause(loop: EventLoop) -> None:
+    def bad() -> None:
+        raise ValueError("broken")
+
+    loop.call_at(1_500_000_000, bad, "my source", "/my_node")
+    with pytest.raises(CallbackError, match="broken") as caught:
+        loop.run()
+    assert caught.value.node == "/my_node"
+    assert caught.value.source == "my source"
+    assert caught.value.stamp_ns == 1_500_000_000
+    assert isinstance(caught.value.__cause__, ValueError)
+
+
+def test_the_loop_goes_on_after_an_error_if_asked_to(loop: EventLoop) -> None:
+    hits: list[str] = []
+
+    def bad() -> None:
+        raise ValueError("broken")
+
+    loop.call_soon(bad)
+    loop.call_soon(lambda: hits.append("after"))
+    with pytest.raises(CallbackError):
+        loop.run()
+    loop.run()
+    assert hits == ["after"]
+
+
+def test_nested_run_lets_other_events_happen_in_between(loop: EventLoop) -> None:
+    order: list[str] = []
+
+    def waits() -> None:
+        order.append("waits")
+        loop.run(until_ns=loop.clock.now_ns + 10)
+        order.append("waited")
+
+    loop.call_at(5, waits)
+    loop.call_at(8, lambda: order.append("meanwhile"))
+    loop.call_at(30, lambda: order.append("later"))
+    loop.run()
+    assert order == ["waits", "meanwhile", "waited", "later"]
+
+
+def test_error_inside_a_nested_run_is_wrapped_once(loop: EventLoop) -> None:
+    def bad() -> None:
+        raise ValueError("inner")
+
+    def waits() -> None:
+        loop.run(until_ns=100)
+
+    loop.call_at(5, waits, "outer")
+    loop.call_at(8, bad, "inner source")
+    with pytest.raises(CallbackError) as caught:
+        loop.run()
+    assert caught.value.source == "inner source"
+
+
+def test_call_from_another_thread_wakes_a_waiting_loop() -> None:
+    # The system clock with nothing to do waits until somebody calls.
+    executor = Executor(clock=None, context=_context())
+    arrived: list[int] = []
+
+    def deliver() -> None:
+        arrived.append(threading.get_ident())
+        executor.stop()
+
+    thread = threading.Thread(
+        target=lambda: executor.call_soon_threadsafe(deliver), name="caller"
+    )
+    executor.call_soon_threadsafe(thread.start)
+    executor.spin()
+    thread.join()
+    assert arrived == [threading.get_ident()]
+
+
+def test_only_one_thread_drives_and_the_other_sees_the_result() -> None:
+    executor = Executor(context=_context())
+    future: Future[str] = Future(executor=executor)
+    spinning = threading.Event()
+    executor.call_soon_threadsafe(spinning.set)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    assert spinning.wait(5.0)
+    executor.call_soon_threadsafe(lambda: future.set_result("done"))
+    executor.loop.run(done=future.done)
+    assert future.result() == "done"
+    executor.stop()
+    thread.join(5.0)
+    assert not thread.is_alive()
+
+
+def _context() -> Context:
+    context = Context()
+    context.init(args=[])
+    return context
+
+
+# -- callback groups -----------------------------------------------------------
+
+
+@pytest.mark.parametrize("reentrant", [False, True])
+def test_group_decides_what_may_start_while_a_callback_waits(reentrant: bool) -> None:
+    context = Context(clock=VirtualClock())
+    node = Node("n", context=context)
+    executor = Executor(context=context)
+    executor.add_node(node)
+    order: list[str] = []
+    group = ReentrantCallbackGroup() if reentrant else MutuallyExclusiveCallbackGroup()
+
+    def slow() -> None:
+        order.append("slow begins")
+        timer_slow.cancel()
+        executor.spin_for(1_000_000_000)
+        order.append("slow ends")
+
+    timer_slow = node.create_timer(1.0, slow, group)
+    timer_same = node.create_timer(1.2, lambda: order.append("same group"), group)
+    timer_other = node.create_timer(1.3, lambda: order.append("other group"))
+    executor.spin_until(1_900_000_000)
+    timer_same.cancel()
+    timer_other.cancel()
+    if reentrant:
+        assert order == ["slow begins", "same group", "other group", "slow ends"]
+    else:
+        assert order == ["slow begins", "other group", "slow ends", "same group"]
+
+
+# -- coroutines ----------------------------------------------------------------
+
+
+def test_coroutine_callback_waits_without_stopping_others() -> None:
+    context = Context(clock=VirtualClock())
+    node = Node("n", context=context)
+    executor = Executor(context=context)
+    executor.add_node(node)
+    order: list[str] = []
+    answer: Future[int] = Future(executor=executor)
+
+    async def asks() -> None:
+        timer.cancel()
+        order.append("asks")
+        order.append(f"got {await answer}")
+
+    timer = node.create_timer(1.0, asks, ReentrantCallbackGroup())
+    context.loop.call_at(2_000_000_000, lambda: answer.set_result(42))
+    context.loop.call_at(1_500_000_000, lambda: order.append("meanwhile"))
+    executor.spin_for(3_000_000_000)
+    assert order == ["asks", "meanwhile", "got 42"]
+
+
+def test_suspended_coroutine_keeps_its_exclusive_group() -> None:
+    context = Context(clock=VirtualClock())
+    node = Node("n", context=context)
+    executor = Executor(context=context)
+    executor.add_node(node)
+    order: list[str] = []
+    answer: Future[None] = Future(executor=executor)
+
+    async def asks() -> None:
+        first.cancel()
+        await answer
+        order.append("resumed")
+
+    first = node.create_timer(1.0, asks)
+    second = node.create_timer(1.5, lambda: (order.append("second"), second.cancel()))
+    context.loop.call_at(2_000_000_000, lambda: answer.set_result(None))
+    executor.spin_for(3_000_000_000)
+    assert order == ["resumed", "second"]
+
+
+def test_coroutine_that_raises_after_a_wait_stops_the_executor() -> None:
+    context = Context(clock=VirtualClock())
+    node = Node("n", context=context)
+    executor = Executor(context=context)
+    executor.add_node(node)
+    answer: Future[None] = Future(executor=executor)
+
+    async def fails() -> None:
+        await answer
+        raise ValueError("too late")
+
+    node.create_timer(1.0, fails)
+    context.loop.call_at(1_500_000_000, lambda: answer.set_result(None))
+    with pytest.raises(CallbackError, match="too late") as caught:
+        executor.spin_for(2_000_000_000)
+    assert caught.value.node == "/n"
+    assert caught.value.stamp_ns == 1_500_000_000
+
+
+def test_task_gives_its_result_and_can_be_awaited(loop: EventLoop) -> None:
+    async def inner() -> int:
+        return 20
+
+    async def outer() -> int:
+        return 1 + await loop.create_task(inner())
+
+    task = loop.create_task(outer())
+    loop.run()
+    assert task.done()
+    assert task.result() == 21
+
+
+def test_error_of_an_awaited_task_goes_to_who_awaits(loop: EventLoop) -> None:
+    async def inner() -> None:
+        raise ValueError("inner")
+
+    async def outer() -> str:
+        try:
+            await loop.create_task(inner())
+        except ValueError as error:
+            return f"caught {error}"
+        return "missed"
+
+    task = loop.create_task(outer())
+    loop.run()
+    assert task.result() == "caught inner"
+
+
+def test_error_of_a_task_nobody_awaits_stops_the_loop(loop: EventLoop) -> None:
+    async def bad() -> None:
+        raise ValueError("unseen")
+
+    loop.create_task(bad())
+    with pytest.raises(CallbackError, match="unseen"):
+        loop.run()
+
+
+def test_awaiting_something_foreign_is_a_clear_error(loop: EventLoop) -> None:
+    class Foreign:
+        def __await__(self):  # type: ignore[no-untyped-def]
+            yield "foreign"
+
+    async def bad() -> None:
+        await Foreign()
+
+    loop.create_task(bad())
+    with pytest.raises(CallbackError, match="cannot await str here"):
+        loop.run()
+
+
+def test_future_rules(loop: EventLoop) -> None:
+    seen: list[object] = []
+    future: Future[int] = Future()
+    future.add_done_callback(lambda f: seen.append(f.result()))
+    future.set_result(3)
+    future.add_done_callback(lambda f: seen.append("late"))
+    assert seen == [3, "late"]
+    canceled: Future[int] = Future()
+    canceled.cancel()
+    assert canceled.cancelled()
+    assert canceled.done()
+    failed: Future[int] = Future()
+    failed.set_exception(ValueError("no"))
+    with pytest.raises(ValueError, match="no"):
+        failed.result()

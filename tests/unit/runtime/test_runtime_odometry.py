@@ -1,0 +1,173 @@
+"""Poses of the base on the map, from every kind of odometry."""
+
+import math
+
+import pytest
+
+from navette.geometry import Pose2, Transform3, quaternion_from_yaw
+from navette.msgs.geometry_msgs.msg import Quaternion
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.runtime import Node, ns_to_stamp
+from navette.runtime.odometry import PoseTracker
+from navette.runtime.tf import StaticTransformBroadcaster, TransformBroadcaster
+from navette.runtime.tf.conversions import transform_stamped
+from navette.testing import GraphHarness
+
+S = 1_000_000_000
+
+
+def odometry(
+    stamp_ns: int,
+    pose: Pose2,
+    *,
+    frame: str = "map",
+    child: str = "base_link",
+    v: float = 0.0,
+    vy: float = 0.0,
+    omega: float = 0.0,
+) -> Odometry:
+    message = Odometry(child_frame_id=child)
+    message.header.stamp = ns_to_stamp(stamp_ns)
+    message.header.frame_id = frame
+    message.pose.pose.position.x = pose.x
+    message.pose.pose.position.y = pose.y
+    x, y, z, w = quaternion_from_yaw(pose.yaw)
+    message.pose.pose.orientation = Quaternion(x=x, y=y, z=z, w=w)
+    message.twist.twist.linear.x = v
+    message.twist.twist.linear.y = vy
+    message.twist.twist.angular.z = omega
+    return message
+
+
+def send_static(graph: GraphHarness, parent: str, child: str, pose: Pose2) -> None:
+    StaticTransformBroadcaster(graph.node).sendTransform(
+        transform_stamped(parent, child, 0, Transform3.from_pose2(pose))
+    )
+    graph.run_for(0)
+
+
+@pytest.fixture
+def tracker(graph: GraphHarness) -> PoseTracker:
+    node = graph.add(Node("stage", context=graph.context))
+    return PoseTracker(node, "base_link", "map")
+
+
+def test_plain_odometry_is_taken_as_it_is(tracker: PoseTracker) -> None:
+    assert tracker.latest is None
+    assert tracker.stamp_ns is None
+    assert tracker.update(odometry(S, Pose2(1, 2, 0.5), v=0.4, omega=0.2))
+    assert tracker.latest == pytest.approx((1, 2, 0.5))
+    assert tracker.stamp_ns == S
+    assert tracker.velocity == pytest.approx((0.4, 0.2))
+
+
+def test_odometry_of_a_sensor_ahead_becomes_that_of_the_base(
+    graph: GraphHarness,
+) -> None:
+    """The course world's odometry is the lidar's, 1.3 m ahead of the axle."""
+    node = graph.add(Node("stage", context=graph.context))
+    tracker = PoseTracker(node, "robot", "sim_world")
+    message = odometry(
+        S,
+        Pose2(1.3, 5.0, math.pi / 2),
+        frame="sim_world",
+        child="robot/chassis/lidar",
+        v=0.5,
+        vy=1.3 * 0.4,
+        omega=0.4,
+    )
+    assert not tracker.update(message)  # the mounting is not known yet
+    assert tracker.latest is None
+    send_static(graph, "robot", "robot/chassis", Pose2(0.5, 0, 0))
+    send_static(graph, "robot/chassis", "robot/chassis/lidar", Pose2(0.8, 0, 0))
+    assert tracker.update(message)
+    assert tracker.latest == pytest.approx((1.3, 3.7, math.pi / 2))
+    # Turning, the lidar swings sideways; the axle only rolls.
+    assert tracker.velocity == pytest.approx((0.5, 0.4))
+
+
+def test_velocity_of_a_turned_sensor(graph: GraphHarness, tracker: PoseTracker) -> None:
+    send_static(graph, "base_link", "side", Pose2(0, 0.5, math.pi / 2))
+    # At 0.5 m to the left, turning left slows the point: v − ω·0.5, along its −y.
+    tracker.update(
+        odometry(S, Pose2(0, 0, 0), child="side", vy=-(1.0 - 0.2), omega=0.4)
+    )
+    assert tracker.velocity == pytest.approx((1.0, 0.4))
+
+
+def test_odometry_frame_by_transform(graph: GraphHarness, tracker: PoseTracker) -> None:
+    message = odometry(S, Pose2(1, 0, 0), frame="odom")
+    assert not tracker.update(message)
+    send_static(graph, "map", "odom", Pose2(10, 0, math.pi / 2))
+    assert tracker.update(message)
+    assert tracker.latest == pytest.approx((10, 1, math.pi / 2))
+
+
+def test_moving_odometry_frame(graph: GraphHarness, tracker: PoseTracker) -> None:
+    moving = TransformBroadcaster(graph.node)
+    assert not tracker.update(odometry(S, Pose2(0, 0, 0), frame="odom"))
+    for stamp, x in ((1, 1.0), (2, 2.0)):
+        moving.sendTransform(
+            transform_stamped(
+                "map", "odom", stamp * S, Transform3.from_pose2(Pose2(x, 0, 0))
+            )
+        )
+        graph.run_for(0)
+        assert tracker.update(odometry(stamp * S, Pose2(0, 0, 0), frame="odom"))
+        assert tracker.latest == pytest.approx((x, 0, 0))
+
+
+def test_pose_at_a_stamp(tracker: PoseTracker) -> None:
+    for second in range(1, 4):
+        tracker.update(odometry(second * S, Pose2(second, 0, 0)))
+    assert tracker.pose_at(S) == pytest.approx((1, 0, 0))
+    assert tracker.pose_at(5 * S // 2) == pytest.approx((2.5, 0, 0))
+    assert tracker.pose_at(3 * S) == pytest.approx((3, 0, 0))
+    assert tracker.pose_at(S - 1) is None
+    assert tracker.pose_at(3 * S + 1) is None
+
+
+def test_yaw_is_interpolated_the_short_way(tracker: PoseTracker) -> None:
+    tracker.update(odometry(0, Pose2(0, 0, math.pi - 0.1)))
+    tracker.update(odometry(S, Pose2(0, 0, -math.pi + 0.1)))
+    pose = tracker.pose_at(S // 2)
+    assert pose is not None
+    assert abs(pose.yaw) == pytest.approx(math.pi)
+
+
+def test_history_is_bounded(graph: GraphHarness) -> None:
+    node = graph.add(Node("stage", context=graph.context))
+    tracker = PoseTracker(node, "base_link", "map", history_s=1.0)
+    for step in range(100):
+        tracker.update(odometry(step * S // 10, Pose2(step, 0, 0)))
+    assert tracker.pose_at(89 * S // 10) is not None
+    assert tracker.pose_at(88 * S // 10) is None
+
+
+def test_time_set_back_begins_a_new_history(tracker: PoseTracker) -> None:
+    for second in (5, 6):
+        tracker.update(odometry(second * S, Pose2(second, 0, 0)))
+    tracker.update(odometry(6 * S, Pose2(60, 0, 0)))
+    assert tracker.pose_at(6 * S) == pytest.approx((60, 0, 0))
+    tracker.update(odometry(S, Pose2(1, 0, 0)))
+    assert tracker.stamp_ns == S
+    assert tracker.pose_at(5 * S) is None
+    tracker.reset()
+    assert tracker.latest is None
+
+
+def test_nonsense_is_refused_and_said(
+    graph: GraphHarness, tracker: PoseTracker
+) -> None:
+    logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
+    assert not tracker.update(odometry(S, Pose2(math.nan, 0, 0)))
+    assert tracker.latest is None
+    graph.run_for(0)
+    assert logs.last.msg == "odometry not used: odometry is not finite"
+
+
+def test_sensor_frames(graph: GraphHarness, tracker: PoseTracker) -> None:
+    assert tracker.transform_to_base("base_link") == pytest.approx((0, 0, 0))
+    assert tracker.transform_to_base("lidar") is None
+    send_static(graph, "base_link", "lidar", Pose2(0.2, 0.1, 0.3))
+    assert tracker.transform_to_base("lidar") == pytest.approx((0.2, 0.1, 0.3))

@@ -1,0 +1,259 @@
+"""Parameter files and arguments: format, matching, precedence, loud mistakes."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from navette.errors import FileFormatError, InvalidValueError, ParameterError
+from navette.runtime import Context, Node, VirtualClock
+from navette.runtime.arguments import parse_ros_arguments, remove_ros_args
+from navette.runtime.log_levels import LoggingSeverity
+from navette.runtime.overrides import ParameterOverrides
+from navette.runtime.parameter_files import (
+    parse_parameters,
+    parse_value,
+    read_parameter_file,
+)
+
+FILE = """
+planner:
+  ros__parameters:
+    method: astar
+    tolerance: 0.5
+    footprint: [0.5, 0.5, -0.5, 0.5]
+    nested:
+      depth.of: {it: 3}
+/robot:
+  control:
+    ros__parameters: {gain: 2, names: [a, b]}
+/**:
+  ros__parameters:
+    use_sim_time: true
+"""
+
+
+def test_nodes_and_nested_names() -> None:
+    assert parse_parameters(FILE) == [
+        (
+            "/planner",
+            {
+                "method": "astar",
+                "tolerance": 0.5,
+                "footprint": [0.5, 0.5, -0.5, 0.5],
+                "nested.depth.of.it": 3,
+            },
+        ),
+        ("/robot/control", {"gain": 2, "names": ["a", "b"]}),
+        ("/**", {"use_sim_time": True}),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1", 1),
+        ("-0x10", -16),
+        ("0o17", 15),
+        ("1.0", 1.0),
+        ("1e5", 1e5),
+        ("1.5e-3", 1.5e-3),
+        (".5", 0.5),
+        ("-.inf", float("-inf")),
+        ("true", True),
+        ("off", False),
+        ("text", "text"),
+        ("'1'", "1"),
+        ("2001-01-01", "2001-01-01"),
+        ("1:30", "1:30"),
+        ("[1, 2.5]", [1.0, 2.5]),
+        ("[]", []),
+        ("a: b: c", "a: b: c"),
+        ("/scan", "/scan"),
+        ("", ""),
+        ("null", "null"),
+    ],
+)
+def test_scalars_as_ros_reads_them(text: str, value: Any) -> None:
+    parsed = parse_value(text)
+    assert parsed == value
+    assert type(parsed) is type(value)
+
+
+@pytest.mark.parametrize(
+    "text", ["{a: 1}", "[1, a]", "[[1]]", "[1, true]", "[null]", "!!binary aGk="]
+)
+def test_values_that_no_parameter_has(text: str) -> None:
+    with pytest.raises(ParameterError, match="not a parameter value"):
+        parse_value(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("a: [1", "not YAML"),
+        ("- 1", "node_name"),
+        ("node: 3", "ros__parameters"),
+        ("node: {ros__parameters: 3}", "name: value"),
+        ("a: &x [1, *x]", "ros__parameters"),
+        ("n: {ros__parameters: &x {b: *x}}", "nested deeper"),
+        ("[" * 5000, "nested too deeply|not YAML"),
+        ("!!python/object/apply:os.system ['true']", "not YAML"),
+    ],
+)
+def test_broken_and_hostile_files(text: str, reason: str) -> None:
+    with pytest.raises(FileFormatError, match=reason):
+        parse_parameters(text, "some.yaml")
+
+
+def test_alias_bomb_ends_early() -> None:
+    lines = ["a0: &a0 {x: 1, y: 2}"]
+    for i in range(1, 25):
+        lines.append(f"a{i}: &a{i} {{l: *a{i - 1}, r: *a{i - 1}}}")
+    body = "\n".join(f"    {line}" for line in lines)
+    with pytest.raises(FileFormatError, match="more than"):
+        parse_parameters(f"n:\n  ros__parameters:\n{body}\n")
+
+
+def test_error_names_file_and_line(tmp_path: Path) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text("a:\n  b: [1\n  c: 2\n", encoding="utf-8")
+    with pytest.raises(FileFormatError) as caught:
+        read_parameter_file(path)
+    assert caught.value.path == path
+    assert caught.value.line is not None
+    with pytest.raises(FileFormatError, match="cannot be read"):
+        read_parameter_file(tmp_path / "missing.yaml")
+
+
+# -- which nodes ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("pattern", "node", "fits"),
+    [
+        ("planner", "/planner", True),
+        ("/planner", "/planner", True),
+        ("planner", "/robot/planner", False),
+        ("/robot/planner", "/robot/planner", True),
+        ("/**", "/a/b/c", True),
+        ("/**/planner", "/planner", True),
+        ("/**/planner", "/a/b/planner", True),
+        ("/*/planner", "/a/planner", True),
+        ("/*/planner", "/a/b/planner", False),
+        ("/robot*/planner", "/robot7/planner", True),
+        ("/a.b", "/axb", False),
+    ],
+)
+def test_patterns(pattern: str, node: str, fits: bool) -> None:
+    overrides = ParameterOverrides()
+    overrides.add(pattern, {"x": 1}, "test")
+    assert ("x" in overrides.for_node(node)) is fits
+
+
+def make_node(args: list[str], name: str = "planner", **kwargs: Any) -> Node:
+    context = Context(clock=VirtualClock())
+    context.init(["--ros-args", *args])
+    return Node(name, context=context, **kwargs)
+
+
+def test_last_word_wins(tmp_path: Path) -> None:
+    first, second = tmp_path / "1.yaml", tmp_path / "2.yaml"
+    first.write_text("planner: {ros__parameters: {a: 1, b: 1, c: 1}}")
+    second.write_text("/**: {ros__parameters: {b: 2, c: 2}}")
+    node = make_node(
+        ["--params-file", str(first), "--params-file", str(second), "-p", "c:=3"]
+    )
+    values = [node.declare_parameter(name, 0).value for name in "abcd"]
+    assert values == [1, 2, 3, 0]
+
+
+def test_parameter_for_one_node_by_its_bare_name() -> None:
+    node = make_node(["-p", "planner:x:=1", "-p", "other:y:=1"], namespace="/robot")
+    assert node.declare_parameter("x", 0).value == 1
+    assert node.declare_parameter("y", 0).value == 0
+
+
+def test_an_int_in_a_file_is_taken_for_a_double() -> None:
+    value = make_node(["-p", "x:=1"]).declare_parameter("x", 0.5).value
+    assert isinstance(value, float)
+
+
+def test_wrong_type_from_outside_names_everything() -> None:
+    node = make_node(["-p", "x:=fast"])
+    with pytest.raises(
+        ParameterError, match=r"/planner.*'x'.*'fast'.*DOUBLE.*command line -p x"
+    ):
+        node.declare_parameter("x", 0.5)
+
+
+def test_check_passes_when_everything_is_known() -> None:
+    node = make_node(["-p", "x:=1", "-p", "planner:y:=1"])
+    node.declare_parameters("", [("x", 0), ("y", 0)])
+    node.context.check_overrides()
+
+
+def test_check_names_unknown_parameters_and_the_known_ones() -> None:
+    node = make_node(["-p", "planner:sped:=1"])
+    node.declare_parameter("speed", 0)
+    with pytest.raises(ParameterError, match=r"-p planner:sped.*'sped'.*speed"):
+        node.context.check_overrides()
+
+
+def test_check_names_files_that_match_no_node(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text("planer: {ros__parameters: {x: 1}}")
+    node = make_node(["--params-file", str(path)])
+    with pytest.raises(ParameterError, match=r"robot.yaml: no node matches.*/planner"):
+        node.context.check_overrides()
+
+
+def test_values_for_all_need_one_node_that_knows_them() -> None:
+    node = make_node(["-p", "x:=1"])
+    other = Node("other", context=node.context)
+    with pytest.raises(ParameterError, match="unknown parameter 'x'"):
+        node.context.check_overrides([node, other])
+    other.declare_parameter("x", 0)
+    node.context.check_overrides([node, other])
+
+
+def test_node_that_takes_anything_passes() -> None:
+    make_node(
+        ["-p", "x:=1"], allow_undeclared_parameters=True
+    ).context.check_overrides()
+
+
+# -- the command line ----------------------------------------------------------
+
+
+def test_arguments() -> None:
+    found = parse_ros_arguments(
+        [
+            *("prog", "--own", "--ros-args", "-r", "a:=b", "-p", "n:x:=[1, 2]"),
+            *("--params-file", "f.yaml", "--log-level", "debug"),
+            *("--log-level", "planner:=WARN", "--disable-rosout-logs"),
+            *("--disable-external-lib-logs", "-e", "/enclave", "c:=d", "--", "last"),
+        ]
+    )
+    assert found.other == ["prog", "--own", "last"]
+    assert [(r.match, r.replacement) for r in found.remaps] == [("a", "b"), ("c", "d")]
+    assert found.parameters == [("n", "x", [1, 2]), Path("f.yaml")]
+    assert found.log_levels == [
+        (None, LoggingSeverity.DEBUG),
+        ("planner", LoggingSeverity.WARN),
+    ]
+    assert (found.enable_rosout, found.enclave) == (False, "/enclave")
+
+
+@pytest.mark.parametrize(
+    "args",
+    [["--what"], ["-p"], ["-p", "x"], ["--log-level", "loud"], ["-r", "x"], ["stray"]],
+)
+def test_bad_arguments_are_named(args: list[str]) -> None:
+    with pytest.raises(InvalidValueError):
+        parse_ros_arguments(["--ros-args", *args])
+
+
+def test_remove_ros_args() -> None:
+    args = ["prog", "-a", "--ros-args", "-r", "a:=b", "--", "-b", "--ros-args", "-p"]
+    assert remove_ros_args(args) == ["prog", "-a", "-b"]
