@@ -89,8 +89,8 @@ class Motions:
                 costs.append(self.turn_cost_m * self.heading_step)
             else:
                 factor = 1.0 if direction > 0 else self.reverse_factor
-                # A hair over the straight piece, or the path weaves for nothing.
-                costs.append(self.step_m * factor * (1.05 if turn else 1.0))
+                # More than the straight piece, or the path weaves for nothing.
+                costs.append(self.step_m * factor * (1.1 if turn else 1.0))
         return np.array(costs)
 
     def _samples(self, direction: int, turn: int) -> int:

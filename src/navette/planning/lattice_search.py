@@ -24,6 +24,8 @@ NOWHERE = 1 << 60
 # The guide knows no headings and asks too little; weighted A* (Pohl 1970) gives up
 # optimality, within this factor, for not looking at every way to turn on the spot.
 GREED = 1.5
+# Ends this near the goal are equal: nobody shunts about for a few centimetres.
+GOOD_ENOUGH_M = 0.1
 # A pose at the margin costs this many times a comfortable one more.
 DISCOMFORT = 2.0
 
@@ -120,7 +122,9 @@ def grow(
             if total < best:
                 best, best_node = total, node
         pool = reserve(pool, state, 8)
-        used = _branch(scene, moves, tree, node, yaw, escape_m, used, pool, bucket)
+        used, bucket = _branch(
+            scene, moves, tree, node, yaw, escape_m, used, pool, bucket
+        )
     return best_node, expanded
 
 
@@ -147,8 +151,13 @@ def _branch(
     used: int,
     pool: Any,
     bucket: int,
-) -> int:
-    """Try every move from ``node``; returns the number of nodes in the tree."""
+) -> tuple[int, int]:
+    """Try every move from ``node``; (nodes in the tree, first bucket in use).
+
+    The guide is greedy, so a move may promise less than the pose it starts from: the
+    first bucket goes down then.
+    """
+    first = bucket
     x, y = tree.position[node, 0], tree.position[node, 1]
     cos, sin = math.cos(yaw), math.sin(yaw)
     escaping = tree.links[node, ESCAPING] != 0
@@ -180,11 +189,11 @@ def _branch(
         tree.links[used, PARENT], tree.links[used, MOVE] = node, m
         tree.links[used, ESCAPING] = escaping and clearance < scene.margin_m
         slot = _promise(g, ahead) >> SHIFT
-        slot = slot if slot > bucket else bucket
-        last = bucket + BUCKETS - 2
+        first = slot if slot < first else first
+        last = first + BUCKETS - 2
         push(pool, tree.heads, tree.queue, slot if slot < last else last, used)
         used += 1
-    return used
+    return used, first
 
 
 @njit(cache=True)
@@ -241,12 +250,27 @@ def _clearance(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> f
 
 @njit(cache=True)
 def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
-    """(cost to go, price of a metre) at a point; the price is −1 outside."""
+    """(cost to go, price of a metre) at a point; the price is −1 outside.
+
+    The cost to go is interpolated between cell centres: in whole cells it would
+    jump by several moves' worth, and the search after it.
+    """
     u, v = _to_cells(scene.frame, x, y)
     height, width = scene.guide.shape
     if not (0.0 <= u < width and 0.0 <= v < height):
         return NOWHERE, -1.0
-    return scene.guide[int(v), int(u)], float(scene.factor[int(v), int(u)])
+    row, column = int(v), int(u)
+    ahead, factor = scene.guide[row, column], float(scene.factor[row, column])
+    u, v = u - 0.5, v - 0.5
+    if not (0.0 <= u < width - 1 and 0.0 <= v < height - 1):
+        return ahead, factor
+    row, column = int(v), int(u)
+    a, b = scene.guide[row, column], scene.guide[row, column + 1]
+    c, d = scene.guide[row + 1, column], scene.guide[row + 1, column + 1]
+    if a >= UNREACHED or b >= UNREACHED or c >= UNREACHED or d >= UNREACHED:
+        return ahead, factor
+    u, v = u - column, v - row
+    return int((a + (b - a) * u) * (1.0 - v) + (c + (d - c) * u) * v), factor
 
 
 @njit(cache=True)
@@ -279,4 +303,5 @@ def _arrival(scene: Any, goal: Any, x: float, y: float, yaw: float) -> int:
             return NOWHERE
     lack = scene.comfort_m - _clearance(scene, x, y, yaw, scene.comfort_m)
     cramped = lack / (scene.comfort_m - scene.margin_m) if lack > 0.0 else 0.0
+    off = off - GOOD_ENOUGH_M if off > GOOD_ENOUGH_M else 0.0
     return int(goal[5] * off + goal[6] * cramped)

@@ -1,0 +1,116 @@
+"""On any small grid the searches find the cheapest way, and a legal one."""
+
+import heapq
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from navette.planning import breadth_first, dijkstra
+from navette.planning.astar import AStar
+from navette.planning.string_pulling import centers, line_cost, pull
+from navette.planning.traversal import (
+    DEAREST,
+    DIAGONAL,
+    LETHAL,
+    STRAIGHT,
+    EdgeTable,
+    steps_cost,
+)
+
+Cell = tuple[int, int]
+COSTS = st.one_of(st.just(0), st.just(LETHAL), st.integers(0, LETHAL))
+GRIDS = st.tuples(st.integers(1, 9), st.integers(1, 9)).flatmap(
+    lambda shape: arrays.arrays(np.uint8, shape, elements=COSTS)
+)
+WEIGHTS = st.sampled_from([0.0, 0.7, 3.0, 40.0])
+ASTAR = AStar()
+
+
+def brute_force(cost: np.ndarray, start: Cell, goal: Cell, weight: float) -> int | None:
+    """Dijkstra with a heap over a dict of edges."""
+    free = {tuple(cell) for cell in np.argwhere(cost < LETHAL).tolist()}
+    best, waiting = {start: 0}, [(0, start)]
+    if not {start, goal} <= free:
+        return None
+    while waiting:
+        g, (row, column) = heapq.heappop(waiting)
+        if (row, column) == goal:
+            return g
+        for dr, dc in ((a, b) for a in (-1, 0, 1) for b in (-1, 0, 1) if a or b):
+            to = (row + dr, column + dc)
+            if not {to, (row + dr, column), (row, column + dc)} <= free:
+                continue
+            unit = DIAGONAL if dr and dc else STRAIGHT
+            there = g + round(unit * (1 + weight * int(cost[to]) / DEAREST))
+            if there < best.get(to, 1 << 60):
+                best[to] = there
+                heapq.heappush(waiting, (there, to))
+    return None
+
+
+@given(GRIDS, st.data(), WEIGHTS)
+def test_astar_and_dijkstra_find_the_cheapest_way(
+    cost: np.ndarray, data: st.DataObject, weight: float
+) -> None:
+    start, goal = (ends(data, cost.shape) for _ in range(2))
+    table = EdgeTable(weight=weight)
+    expected = brute_force(cost, start, goal, weight)
+    for search in (ASTAR.search, dijkstra.search):
+        found = search(cost, start, goal, table=table)
+        if expected is None:
+            assert found is None
+            continue
+        assert found is not None
+        cells, units = found
+        assert units == expected == steps_cost(cells, cost, table)
+        check_legal(cells, cost, start, goal)
+
+
+@given(GRIDS, st.data())
+def test_breadth_first_finds_the_fewest_moves(
+    cost: np.ndarray, data: st.DataObject
+) -> None:
+    start, goal = (ends(data, cost.shape) for _ in range(2))
+    found = breadth_first.search(cost, start, goal)
+    cheapest = ASTAR.search(cost, start, goal)
+    assert (found is None) == (cheapest is None)
+    if found is not None and cheapest is not None:
+        check_legal(found[0], cost, start, goal)
+        assert len(found[0]) <= len(cheapest[0])
+
+
+@given(GRIDS, st.data(), WEIGHTS)
+def test_pulled_lines_are_legal_and_not_dearer(
+    cost: np.ndarray, data: st.DataObject, weight: float
+) -> None:
+    start, goal = (ends(data, cost.shape) for _ in range(2))
+    table = EdgeTable(weight=weight)
+    found = ASTAR.search(cost, start, goal, table=table)
+    if found is None:
+        return
+    before = centers(found[0])
+    line = pull(cost, before, table=table)
+    allowed = line_cost(cost, before, table=table) * (1 + 1e-6)
+    assert line_cost(cost, line, table=table) <= allowed + 1e-9
+    np.testing.assert_allclose(line[[0, -1]], before[[0, -1]])
+
+
+def ends(data: st.DataObject, shape: tuple[int, ...]) -> Cell:
+    return (
+        data.draw(st.integers(0, shape[0] - 1)),
+        data.draw(st.integers(0, shape[1] - 1)),
+    )
+
+
+def check_legal(cells: np.ndarray, cost: np.ndarray, start: Cell, goal: Cell) -> None:
+    assert tuple(cells[0]) == start
+    assert tuple(cells[-1]) == goal
+    assert (cost[cells[:, 0], cells[:, 1]] < LETHAL).all()
+    steps = np.diff(cells, axis=0)
+    assert (np.abs(steps).max(axis=1) == 1).all()
+    beside = cost[cells[:-1, 0] + steps[:, 0], cells[:-1, 1]]
+    across = cost[cells[:-1, 0], cells[:-1, 1] + steps[:, 1]]
+    assert (beside < LETHAL).all()
+    assert (across < LETHAL).all()
