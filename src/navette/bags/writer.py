@@ -12,10 +12,8 @@ lost with the process, so flush often.
 
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
-from mcap.writer import CompressionType, Writer
-
+from navette.bags.mcap_file import McapFile
 from navette.errors import FileFormatError
 
 _CHUNK_BYTES = 256 * 1024
@@ -41,17 +39,8 @@ class BagWriter:
         except OSError as error:
             reason = error.strerror or str(error)
             raise FileFormatError(path, f"cannot be written: {reason}") from error
-        # Any: several of mcap's methods carry no types.
-        self._mcap: Any = Writer(
-            # Chunks are ended here, so that each is handed on as soon as it is done.
-            self._file,
-            chunk_size=_BUFFER_BYTES,
-            compression=CompressionType.ZSTD,
-        )
-        self._mcap.start(profile="ros2", library=_LIBRARY)
+        self._mcap = McapFile(self._file, profile="ros2", library=_LIBRARY)
         self._schemas: dict[str, int] = {}
-        self._sequences: dict[int, int] = {}
-        self._unfinished = 0
 
     def add_channel(
         self,
@@ -71,37 +60,26 @@ class BagWriter:
         """
         schema = self._schemas.get(type_name)
         if schema is None:
-            schema = self._mcap.register_schema(
-                type_name, "ros2msg", definition.encode()
-            )
+            schema = self._mcap.add_schema(type_name, "ros2msg", definition.encode())
             self._schemas[type_name] = schema
-        channel: int = self._mcap.register_channel(
-            topic,
-            "cdr",
-            schema,
-            {"offered_qos_profiles": qos, "topic_type_hash": type_hash},
-        )
-        self._sequences[channel] = 0
-        return channel
+        metadata = {"offered_qos_profiles": qos, "topic_type_hash": type_hash}
+        return self._mcap.add_channel(topic, "cdr", schema, metadata)
 
     def write(self, channel: int, stamp_ns: int, payload: bytes) -> None:
         """Append a message: CDR with its 4-byte header, and when it was heard."""
-        sequence = self._sequences[channel] + 1
-        self._sequences[channel] = sequence
-        self._mcap.add_message(channel, stamp_ns, payload, stamp_ns, sequence)
-        self._unfinished += len(payload)
-        if self._unfinished > _CHUNK_BYTES:
+        self._mcap.add_message(channel, stamp_ns, payload)
+        if self._mcap.chunk_size > _CHUNK_BYTES:
             self.flush()
 
     @property
     def message_count(self) -> int:
         """Messages written so far."""
-        return sum(self._sequences.values())
+        return self._mcap.message_count
 
     def flush(self) -> None:
         """Finish the chunk and hand it to the system: it outlives this process."""
-        self._unfinished = 0
-        self._mcap.flush()
+        self._mcap.end_chunk()
+        self._file.flush()
 
     def close(self) -> None:
         """Write the index and close; closing twice is harmless."""
