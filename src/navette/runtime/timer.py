@@ -155,9 +155,9 @@ class Timer(Entity):
         expected = self._next_ns
         self._last_ns = now
         self._next_ns = expected + self._period_ns
-        if self._next_ns < now:  # late by more than a period: skip, keep the phase
-            periods_late = -((self._next_ns - now) // self._period_ns)
-            self._next_ns += periods_late * self._period_ns
+        if self._next_ns <= now:  # late by a period or more: skip, keep the phase
+            missed = (now - self._next_ns) // self._period_ns + 1
+            self._next_ns += missed * self._period_ns
         # Armed before the callback: what that schedules for the same time is later.
         self._arm()
         if self._callback is None:

@@ -1,0 +1,265 @@
+"""rclpy's module-level functions and what programs do with them."""
+
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+import navette
+from navette.errors import InvalidValueError
+from navette.msgs.std_msgs.msg import String
+from navette.runtime import Context, Executor, Future, Node, VirtualClock
+from navette.runtime.context import get_default_context, reset_default_context
+from navette.runtime.exceptions import NotInitializedException
+
+
+@pytest.fixture(autouse=True)
+def fresh_default_context() -> Iterator[None]:
+    reset_default_context()
+    yield
+    get_default_context().try_shutdown()
+    reset_default_context()
+
+
+def start() -> None:
+    navette.init(args=[], clock=VirtualClock())
+
+
+def test_life_cycle() -> None:
+    assert not navette.ok()
+    with pytest.raises(NotInitializedException, match=r"navette\.init"):
+        navette.Node("early")
+    start()
+    assert navette.ok()
+    node = navette.create_node("n")
+    node.destroy_node()
+    node.destroy_node()
+    navette.shutdown()
+    assert not navette.ok()
+    navette.shutdown()  # a second one does no harm
+    navette.try_shutdown()
+    start()
+    assert navette.ok()
+
+
+def test_shutdown_before_init_and_init_twice() -> None:
+    with pytest.raises(RuntimeError, match="before it can be shut down"):
+        navette.shutdown()
+    start()
+    with pytest.raises(RuntimeError, match="only be called once"):
+        start()
+
+
+def test_init_as_a_context_manager() -> None:
+    with navette.init(args=[], clock=VirtualClock()):
+        assert navette.ok()
+    assert not navette.ok()
+
+
+def test_shutdown_destroys_nodes_and_calls_back() -> None:
+    start()
+    called: list[str] = []
+    navette.get_default_context().on_shutdown(lambda: called.append("down"))
+    node = navette.Node("n")
+    navette.shutdown()
+    assert called == ["down"]
+    assert node.get_fully_qualified_node_names() == []
+
+
+def test_spin_until_shutdown_from_a_callback() -> None:
+    start()
+    node = navette.Node("n")
+    ticks: list[int] = []
+
+    def tick() -> None:
+        ticks.append(1)
+        if len(ticks) == 3:
+            navette.shutdown()
+
+    node.create_timer(1.0, tick)
+    navette.spin(node)
+    assert len(ticks) == 3
+    assert not navette.ok()
+
+
+def test_virtual_spin_ends_when_nothing_is_left_to_happen() -> None:
+    start()
+    navette.spin(navette.Node("idle"))
+
+
+def test_spin_once_runs_one_event() -> None:
+    start()
+    node = navette.Node("n")
+    heard: list[str] = []
+    publisher = node.create_publisher(String, "t", 10)
+    node.create_subscription(String, "t", lambda m: heard.append(m.data), 10)
+    for text in "abc":
+        publisher.publish(String(data=text))
+    navette.spin_once(node)
+    assert heard == ["a"]
+    navette.spin_once(node, timeout_sec=0)
+    assert heard == ["a", "b"]
+
+
+def test_spin_once_waits_for_the_timeout_at_most() -> None:
+    start()
+    node = navette.Node("n")
+    navette.spin_once(node, timeout_sec=0.25)
+    assert node.get_clock().now().nanoseconds == 250_000_000
+
+
+def test_loop_with_spin_once_and_rate() -> None:
+    """The lecture's loop: publish, spin once, sleep; one message a turn is handled."""
+    start()
+    talker, listener = navette.Node("talker"), navette.Node("listener")
+    heard: list[str] = []
+    publisher = talker.create_publisher(String, "t", 10)
+    listener.create_subscription(String, "t", lambda m: heard.append(m.data), 2)
+    rate = listener.create_rate(10)
+    for turn in range(3):
+        for number in range(3):
+            publisher.publish(String(data=f"{turn}{number}"))
+        rate.sleep()
+        navette.spin_once(listener, timeout_sec=0)
+    assert heard == ["01", "11", "21"]
+
+
+def test_spin_until_future_complete() -> None:
+    start()
+    node = navette.Node("n")
+    future: Future[str] = Future()
+    node.create_timer(1.0, lambda: future.set_result("there"))
+    navette.spin_until_future_complete(node, future, timeout_sec=0.5)
+    assert not future.done()
+    navette.spin_until_future_complete(node, future)
+    assert future.result() == "there"
+
+
+def test_spin_until_future_complete_inside_a_callback() -> None:
+    start()
+    node = navette.Node("n")
+    group = navette.ReentrantCallbackGroup()
+    future: Future[int] = Future()
+    results: list[int | None] = []
+
+    def ask() -> None:
+        asking.cancel()
+        navette.spin_until_future_complete(node, future)
+        results.append(future.result())
+
+    asking = node.create_timer(1.0, ask)
+    answering = node.create_timer(
+        2.0, lambda: (future.set_result(7), answering.cancel()), group
+    )
+    navette.spin(node)
+    assert results == [7]
+
+
+def test_rate_sleeps_while_another_thread_spins() -> None:
+    """The usual rclpy program: spin in the background, a loop of one's own in front."""
+    navette.init(args=[])
+    node = navette.Node("n")
+    spinning = threading.Event()
+    timer = node.create_timer(0.001, spinning.set)
+    thread = threading.Thread(target=navette.spin, args=(node,))
+    thread.start()
+    assert spinning.wait(5.0)
+    timer.cancel()
+    rate = node.create_rate(200.0)
+    before = node.get_clock().now()
+    rate.sleep()
+    rate.sleep()
+    assert (node.get_clock().now() - before).nanoseconds >= 5_000_000
+    navette.shutdown()
+    thread.join(5.0)
+    assert not thread.is_alive()
+
+
+def test_publishing_from_another_thread_wakes_the_spinning_one() -> None:
+    navette.init(args=[])
+    node = navette.Node("n")
+    publisher = node.create_publisher(String, "t", 10)
+    heard: list[str] = []
+
+    def receive(message: String) -> None:
+        heard.append(message.data)
+        navette.shutdown()
+
+    node.create_subscription(String, "t", receive, 10)
+    thread = threading.Thread(target=publisher.publish, args=(String(data="x"),))
+    node.context.loop.call_soon(thread.start)
+    navette.spin(node)
+    thread.join()
+    assert heard == ["x"]
+
+
+def test_executor_and_nodes_must_share_the_context() -> None:
+    first, second = Context(clock=VirtualClock()), Context(clock=VirtualClock())
+    node = Node("n", context=first)
+    with pytest.raises(InvalidValueError, match="/n belongs to another context"):
+        Executor(context=second).add_node(node)
+    with pytest.raises(InvalidValueError, match=r"cannot change.*/n"):
+        Executor(context=first, clock=VirtualClock())
+
+
+def test_executor_keeps_its_nodes() -> None:
+    executor = navette.MultiThreadedExecutor(4, clock=VirtualClock())
+    node = Node("n", context=executor.context)
+    assert executor.add_node(node)
+    assert not executor.add_node(node)
+    assert executor.get_nodes() == [node]
+    assert node.executor is executor
+    other = navette.SingleThreadedExecutor(context=executor.context)
+    node.executor = other
+    assert (executor.get_nodes(), other.get_nodes()) == ([], [node])
+    with other:
+        pass
+    assert node.executor is None
+
+
+def test_executor_conditions() -> None:
+    executor = Executor(clock=VirtualClock())
+    node = Node("n", context=executor.context)
+    executor.add_node(node)
+    ticks: list[int] = []
+    node.create_timer(1.0, lambda: ticks.append(executor.now_ns))
+    assert executor.spin_until_complete(lambda: len(ticks) == 2)
+    assert not executor.spin_until_complete(lambda: False, timeout_ns=3_000_000_000)
+    assert executor.now_ns == 5_000_000_000
+    node.create_timer(0.5, executor.stop)
+    executor.spin()
+    assert executor.now_ns == 5_500_000_000
+
+
+def test_create_task_on_the_executor() -> None:
+    executor = Executor(clock=VirtualClock())
+    task = executor.create_task(lambda a, b=0: a + b, 1, b=2)
+    executor.spin_until_future_complete(task)
+    assert task.result() == 3
+
+
+def test_lazy_names_are_those_of_the_runtime() -> None:
+    from navette import runtime
+
+    for name in navette.__all__:
+        assert getattr(navette, name) is getattr(runtime, name, navette.__version__)
+    assert "Node" in dir(navette)
+    with pytest.raises(AttributeError, match="no attribute 'Nod'"):
+        _ = navette.Nod
+
+
+def test_remove_ros_args() -> None:
+    assert navette.remove_ros_args(["p", "--ros-args", "-r", "a:=b"]) == ["p"]
+
+
+def test_domain_id(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    context = Context()
+    context.init(args=[])
+    assert context.get_domain_id() == 7
+    given = Context()
+    given.init(args=[], domain_id=3)
+    assert given.get_domain_id() == 3
+    monkeypatch.setenv("ROS_DOMAIN_ID", "seven")
+    with pytest.raises(InvalidValueError, match="ROS_DOMAIN_ID 'seven'"):
+        Context().init(args=[])
