@@ -11,6 +11,7 @@ from navette.sim import (
     identify_robot,
     load_robot,
     load_world,
+    robot_names,
 )
 
 DEFAULT_ROBOT = "jackal"
@@ -29,7 +30,8 @@ class ResolvedScene:
 def resolve_scene(options: RunOptions) -> ResolvedScene:
     """Load what the options name.
 
-    The robot is, in this order: the one asked for, the world's own, the default.
+    The robot is, in this order: the one asked for, the world's own, the built-in one
+    of the same name as the built-in world, the default.
     A world's own robot that is a copy of a built-in one gets its parameters; an
     unknown one gets parameters derived from its shape and drive.
 
@@ -49,5 +51,6 @@ def _choose_robot(options: RunOptions, scene: Scene) -> Robot:
     if options.robot is not None:
         return load_robot(options.robot)
     if scene.robot is None:
-        return load_robot(DEFAULT_ROBOT)
+        namesake = options.world in robot_names()
+        return load_robot(options.world if namesake else DEFAULT_ROBOT)
     return identify_robot(scene.robot) or Robot(scene.robot.name, scene.robot)

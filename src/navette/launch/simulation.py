@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from navette.bags.node import RecorderNode
+from navette.errors import CallbackError
 from navette.launch.monitor import MonitorNode, Progress
 from navette.launch.options import RunOptions
 from navette.launch.scene import ResolvedScene, resolve_scene
@@ -21,6 +22,10 @@ from navette.runtime import (
 )
 from navette.sim.node import SimNode
 from navette.viewer.node import ViewerNode
+
+
+HALT_NS = 1_000_000_000
+"""Simulated time that a robot is given to brake after a node raised."""
 
 
 class Simulation:
@@ -97,10 +102,27 @@ class Simulation:
         """
         self._stopwatch = Stopwatch()
         limit = self.options.max_time_s
-        if limit is None:
-            self._executor.spin()
-        else:
-            self._executor.spin_until(round(limit * 1e9))
+        try:
+            if limit is None:
+                self._executor.spin()
+            else:
+                self._executor.spin_until(round(limit * 1e9))
+        except CallbackError as error:
+            self._halt(error)
+            raise
+
+    def _halt(self, error: CallbackError) -> None:
+        """Bring the robot to rest: a zero command, and time for it to brake.
+
+        Only simulator and watchers go on; the others may depend on what failed.
+        """
+        self.stack.control.destroy_node()
+        watchers = (self.sim, self.recorder, self.viewer)
+        for node in self._executor.get_nodes():
+            if node not in watchers:
+                self._executor.remove_node(node)
+        if error.node != self.sim.get_fully_qualified_name():
+            self._executor.spin_for(HALT_NS)
 
     def stop(self) -> None:
         """End :meth:`run` after the present callback; from any thread."""

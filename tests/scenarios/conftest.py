@@ -1,0 +1,27 @@
+"""A run without a window, as fast as it goes; closed when the test ends."""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from navette.launch import RunOptions
+from navette.launch.simulation import Simulation
+
+MakeSimulation = Callable[..., Simulation]
+
+
+@pytest.fixture
+def simulate() -> Iterator[MakeSimulation]:
+    """Makes simulations from keywords of RunOptions."""
+    made: list[Simulation] = []
+
+    def make(**options: Any) -> Simulation:
+        defaults: dict[str, Any] = {"headless": True, "speed": math.inf}
+        made.append(Simulation(RunOptions(**{**defaults, **options})))
+        return made[-1]
+
+    yield make
+    for simulation in made:
+        simulation.close()
