@@ -72,6 +72,7 @@ class ViewerNode(StageNode):
         self._definitions: dict[str, str | None] = {}
         self._refreshing = False
         self._stop_listening: Callable[[], None] = _nothing
+        self._frames = ("map", "base_link")
         self._hub = Hub(
             _Bridge(self),
             name="Navette",
@@ -134,10 +135,23 @@ class ViewerNode(StageNode):
 
     def _refresh(self) -> None:
         self._refreshing = False
+        self._frames = (
+            self._frame("map_frame", "map"),
+            self._frame("base_frame", "base_link"),
+        )
         ends = self._topic_ends()
         topics = topics_of(ends, self._definition)
         self._server.call(self._hub.set_topics, topics)
         self._server.call(self._hub.set_graph, graph_of(ends))
+
+    def _frame(self, parameter: str, default: str) -> str:
+        """The viewer's own parameter, else what the first node that has it says."""
+        for node in (self, *self.context.nodes):
+            if node.has_parameter(parameter):
+                frame = str(node.get_parameter(parameter).value)
+                if frame:
+                    return frame
+        return default
 
     def _topic_ends(self) -> list[TopicEnd]:
         """Without what the viewer itself subscribes to: that keeps no topic alive."""
@@ -284,7 +298,7 @@ class ViewerNode(StageNode):
             self._hub,
             Site(
                 page.read_bytes(),
-                build_layout(params.map_frame, params.base_frame),
+                lambda: build_layout(*self._frames),
                 self._health,
             ),
             Gate(params.host, params.allowed_origins, params.allowed_hosts),

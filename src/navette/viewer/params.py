@@ -16,8 +16,12 @@ class ViewerParams(Params):
     port: int = param(
         8765, "TCP port to listen on; 0 takes a free one", at_least=0, at_most=65535
     )
-    map_frame: str = param("map", "frame that the bundled layout shows")
-    base_frame: str = param("base_link", "frame that the bundled layout may follow")
+    map_frame: str = param(
+        "", "frame that the bundled layout shows; empty takes the other nodes' own"
+    )
+    base_frame: str = param(
+        "", "frame that the layout follows; empty takes the other nodes' own"
+    )
     max_clients: int = param(
         32, "clients at the same time; more are refused", at_least=1
     )

@@ -92,11 +92,11 @@ class Site:
     def __init__(
         self,
         page: bytes,
-        layout: Mapping[str, Any],
+        layout: Callable[[], Mapping[str, Any]],
         health: Callable[[], Mapping[str, Any]],
     ) -> None:
         self._page = page
-        self._layout = json.dumps(layout, indent=2).encode()
+        self._layout = layout
         self._health = health
 
     def answer(self, method: str, target: str) -> Answer:
@@ -109,7 +109,8 @@ class Site:
         elif path == "/layout.json":
             download = 'attachment; filename="navette-layout.json"'
             headers = {"Content-Disposition": download}
-            answer = Answer(200, "application/json", self._layout, headers)
+            body = json.dumps(self._layout(), indent=2).encode()
+            answer = Answer(200, "application/json", body, headers)
         elif path == "/health":
             body = json.dumps(self._health()).encode()
             answer = Answer(200, "application/json", body)

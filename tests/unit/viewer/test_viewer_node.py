@@ -343,6 +343,19 @@ def test_the_same_port_answers_http(program: Program) -> None:
     assert get(program, "/", Host="evil.example")[0] == 403
 
 
+def test_the_layout_shows_the_frames_of_the_running_nodes() -> None:
+    def planner(context: Context) -> Node:
+        node = Node("planner", context=context)
+        node.declare_parameter("map_frame", "sim_world")
+        return node
+
+    with Program(planner) as program, Client(program.address) as client:
+        client.get_parameters()
+        layout = json.loads(get(program, "/layout.json")[2])
+        assert layout["configById"]["3D!drive"]["followTf"] == "sim_world"
+        assert layout["configById"]["3D!follow"]["followTf"] == "base_link"
+
+
 def test_pages_of_strangers_cannot_open_the_socket(program: Program) -> None:
     with pytest.raises(InvalidStatus, match="403"):
         Client(program.address, origin="https://evil.example")

@@ -95,7 +95,7 @@ def test_strangers_are_refused(
 
 
 def test_the_site_has_three_pages() -> None:
-    site = Site(b"<html>", {"layout": 1}, lambda: {"status": "ok"})
+    site = Site(b"<html>", lambda: {"layout": 1}, lambda: {"status": "ok"})
     page = site.answer("GET", "/")
     assert (page.status, page.body) == (200, b"<html>")
     assert "default-src 'none'" in page.headers["Content-Security-Policy"]
