@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from navette.sim.build import SEEN, SEEN_SOLID, SOLID
 from navette.sim.mount import Mount
 from navette.sim.params import SimParams
+from navette.sim.ray_kernels import cast_fan
 from navette.sim.scene import LidarSensor
+from navette.sim.shape_table import ShapeTable
 
 
 @dataclass(frozen=True)
@@ -32,19 +34,23 @@ class Scan:
 class Lidar:
     """Casts the beams of one sensor; never sees the robot that carries it."""
 
-    def __init__(self, sensor: LidarSensor, mount: Mount, params: SimParams) -> None:
+    def __init__(
+        self,
+        sensor: LidarSensor,
+        mount: Mount,
+        params: SimParams,
+        model: mujoco.MjModel,
+    ) -> None:
         self.sensor = sensor
         self.mount = mount
         self.set_noise(params)
+        groups = (SEEN_SOLID, SEEN if sensor.sees_visuals else SOLID)
+        self._shapes = ShapeTable(model, groups)
         n = sensor.samples
-        angles = np.linspace(sensor.angle_min, sensor.angle_max, n)
-        self.angle_increment = float(angles[1] - angles[0]) if n > 1 else 0.0
-        self._beams_sensor = np.stack(
-            [np.cos(angles), np.sin(angles), np.zeros(n)], axis=1
+        self._angles = np.linspace(sensor.angle_min, sensor.angle_max, n)
+        self.angle_increment = (
+            float(self._angles[1] - self._angles[0]) if n > 1 else 0.0
         )
-        self._groups = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
-        self._groups[[SEEN_SOLID, SEEN if sensor.sees_visuals else SOLID]] = 1
-        self._geom = np.empty(n, dtype=np.int32)
         self._distance = np.empty(n)
 
     def set_noise(self, params: SimParams) -> None:
@@ -62,27 +68,11 @@ class Lidar:
     ) -> Scan:
         """Cast all beams in the present state (kinematics must be fresh)."""
         s = self.sensor
-        position, rotation = self.mount.world(data)
-        beams_world = self._beams_sensor @ rotation.T
-        distance = self._distance
-        mujoco.mj_multiRay(
-            model,
-            data,
-            position,
-            beams_world.ravel(),
-            self._groups,
-            True,  # static geoms too
-            -1,
-            self._geom,
-            distance,
-            None,
-            s.samples,
-            s.range_max,
-        )
-        hit = (distance >= 0) & (distance <= s.range_max)
+        distance = self._cast(model, data)
+        ranges = np.where(distance <= s.range_max, distance, np.inf)
         if self._noise_m > 0:
-            distance = distance + rng.normal(0.0, self._noise_m, s.samples)
-        ranges = np.where(hit, distance, np.inf).astype(np.float32)
+            ranges += rng.normal(0.0, self._noise_m, s.samples)
+        ranges = ranges.astype(np.float32)
         ranges[ranges < s.range_min] = -np.inf
         if self._dropout > 0:
             ranges[rng.random(s.samples) < self._dropout] = np.nan
@@ -94,3 +84,21 @@ class Lidar:
             s.range_max,
             ranges,
         )
+
+    def _cast(self, model: mujoco.MjModel, data: mujoco.MjData) -> NDArray[np.float64]:
+        """True distances (N,) m, inf where nothing is hit."""
+        shapes = self._shapes
+        shapes.update(data)
+        origin, world_R_sensor = self.mount.world(data)
+        reach = self.sensor.range_max
+        if shapes.has_others:
+            beams = np.stack(
+                [np.cos(self._angles), np.sin(self._angles), 0 * self._angles], axis=1
+            )
+            beams_world = beams @ world_R_sensor.T
+            return shapes.cast_with_mujoco(model, data, origin, beams_world, reach)[0]
+        cast_fan(
+            shapes.kind, shapes.size, shapes.position, shapes.rotation, origin,
+            world_R_sensor, self._angles, reach, self._distance,
+        )  # fmt: skip
+        return self._distance

@@ -25,7 +25,7 @@ def sensors_of(model: Model, kind: type[S]) -> Iterator[tuple[str, S]]:
 
 def lidars_of(compiled: Compiled, params: SimParams) -> Iterator[Lidar]:
     for link, sensor in sensors_of(compiled.robot.model, LidarSensor):
-        yield Lidar(sensor, _mount(compiled, link, sensor), params)
+        yield Lidar(sensor, _mount(compiled, link, sensor), params, compiled.model)
 
 
 def imus_of(compiled: Compiled) -> Iterator[Imu]:
