@@ -1,0 +1,225 @@
+"""The planner's searches beside pyastar2d and scikit-image.
+
+Each run answers the next of a dozen queries across the map; the median is per query.
+Navette's costs are checked against SciPy's Dijkstra on the same graph (diagonal moves
+need both orthogonals free). The peers solve an easier problem: pyastar2d charges
+diagonals like straight moves, both cut corners.
+
+With ``--movingai DIR`` the scenarios of MovingAI maps in that folder are checked as
+well: every length must be exact.
+"""
+
+import argparse
+import itertools
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pyastar2d
+from harness import Benchmark
+from scipy.ndimage import distance_transform_edt
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra as scipy_dijkstra
+from skimage.graph import MCP_Geometric
+
+from navette.geometry import Pose2
+from navette.grids import GridSpec
+from navette.planning import Goal, Planner, PlannerParams, dijkstra
+from navette.planning.astar import AStar
+from navette.planning.string_pulling import centers, pull
+from navette.planning.traversal import LETHAL, MOVES, Cell, EdgeTable, steps_cost
+
+Query = tuple[Cell, Cell]
+
+
+def obstacle_map(size: int, seed: int = 1) -> np.ndarray:
+    """Rectangles over 18 % of the map (uint8, lethal or free)."""
+    rng = np.random.default_rng(seed)
+    cost = np.zeros((size, size), np.uint8)
+    while (cost > 0).mean() < 0.18:
+        row, column = rng.integers(0, size, 2)
+        height, width = rng.integers(size // 64, size // 12, 2)
+        cost[row : row + height, column : column + width] = LETHAL
+    return cost
+
+
+def cost_field(obstacles: np.ndarray) -> np.ndarray:
+    """Costs that fall with the distance to the obstacles."""
+    distance = distance_transform_edt(obstacles == 0)
+    falling = np.clip(252 * np.exp(-distance / 10), 0, 252)
+    return np.where(obstacles > 0, LETHAL, falling).astype(np.uint8)
+
+
+def far_queries(cost: np.ndarray, count: int = 12, seed: int = 2) -> list[Query]:
+    """Free cells that lie far apart and are connected."""
+    rng = np.random.default_rng(seed)
+    free = np.argwhere(cost < LETHAL)
+    search = AStar().search
+    queries: list[Query] = []
+    while len(queries) < count:
+        a, b = (tuple(c) for c in free[rng.integers(0, len(free), 2)].tolist())
+        if math.dist(a, b) > 0.6 * len(cost) and search(cost, a, b) is not None:
+            queries.append((a, b))
+    return queries
+
+
+def each_in_turn(
+    queries: list[Query], run: Callable[[Cell, Cell], object]
+) -> Callable[[], object]:
+    """A contender that answers one query a call."""
+    turn = itertools.cycle(queries)
+    return lambda: run(*next(turn))
+
+
+def graph_of(cost: np.ndarray, table: EdgeTable) -> coo_matrix:
+    """The grid as a graph for SciPy: an edge per legal move."""
+    index = np.arange(cost.size).reshape(cost.shape)
+    free = table.straight[cost] > 0
+    rows, columns, weights = [], [], []
+    for dr, dc in MOVES:
+        here = _shifted(-dr, -dc, cost.shape)
+        there = _shifted(dr, dc, cost.shape)
+        legal = free[here] & free[there]
+        if dr and dc:
+            legal &= free[_mixed(here, there)] & free[_mixed(there, here)]
+        units = (table.diagonal if dr and dc else table.straight)[cost[there]]
+        rows.append(index[here][legal])
+        columns.append(index[there][legal])
+        weights.append(units[legal])
+    data = np.concatenate(weights).astype(np.float64)
+    at = np.concatenate(rows), np.concatenate(columns)
+    return coo_matrix((data, at), shape=(cost.size, cost.size)).tocsr()
+
+
+def _shifted(dr: int, dc: int, shape: tuple[int, ...]) -> tuple[slice, slice]:
+    """The part of a grid that has a neighbour at (−dr, −dc)."""
+    return (
+        slice(max(0, dr), shape[0] + min(0, dr)),
+        slice(max(0, dc), shape[1] + min(0, dc)),
+    )
+
+
+def _mixed(a: tuple[slice, slice], b: tuple[slice, slice]) -> tuple[slice, slice]:
+    return a[0], b[1]
+
+
+def check_exact(cost: np.ndarray, table: EdgeTable, query: Query) -> None:
+    """Ours equals SciPy's Dijkstra, and the cells add up to it."""
+    start, goal = (int(np.ravel_multi_index(c, cost.shape)) for c in query)
+    expected = scipy_dijkstra(graph_of(cost, table), indices=start)[goal]
+    for search in (AStar().search, dijkstra.search):
+        found = search(cost, *query, table=table)
+        assert found is not None
+        assert found[1] == expected == steps_cost(found[0], cost, table)
+
+
+def add_searches(bench: Benchmark, name: str, cost: np.ndarray, weight: float) -> None:
+    table, astar = EdgeTable(weight=weight), AStar()
+    queries = far_queries(cost)
+    check_exact(cost, table, queries[0])
+    price = 1 + weight * cost.astype(np.float32) / 252
+    weights = np.where(cost == LETHAL, np.float32(np.inf), price).astype(np.float32)
+    prices = np.where(cost == LETHAL, -1.0, price)
+    contenders = {
+        "navette": each_in_turn(
+            queries, lambda s, g: astar.search(cost, s, g, table=table)
+        ),
+        "pyastar2d": each_in_turn(
+            queries,
+            lambda s, g: pyastar2d.astar_path(weights, s, g, allow_diagonal=True),
+        ),
+        "skimage MCP": each_in_turn(
+            queries, lambda s, g: MCP_Geometric(prices).find_costs([s], [g])
+        ),
+        "navette dijkstra": each_in_turn(
+            queries, lambda s, g: dijkstra.search(cost, s, g, table=table)
+        ),
+    }
+    bench.case(name, contenders, "costs equal SciPy's Dijkstra")
+
+
+def add_string_pulling(bench: Benchmark, cost: np.ndarray) -> None:
+    table, search = EdgeTable(), AStar().search
+    lines = [centers(search(cost, s, g)[0]) for s, g in far_queries(cost)]  # type: ignore[index]
+    turn = itertools.cycle(lines)
+    bench.case(
+        f"string pulling {len(cost)}²",
+        {"navette": lambda: pull(cost, next(turn), table=table)},
+    )
+
+
+def add_whole_plans(bench: Benchmark) -> None:
+    """The long body of the course's robot in an arena: map, route, tight corner."""
+    outline = (1.5, 0.7, -0.5, 0.7, -0.5, -0.7, 1.5, -0.7)
+    spec = GridSpec(0.1, 300, 300, Pose2(-15.0, -15.0, 0.0))
+    occupancy = np.zeros(spec.shape, np.int8)
+    occupancy[:3] = occupancy[-3:] = occupancy[:, :3] = occupancy[:, -3:] = 100
+    for row, column in ((80, 90), (140, 140), (210, 70), (230, 190), (120, 230)):
+        occupancy[row : row + 25, column : column + 25] = 100
+    planner = Planner(PlannerParams(footprint=outline))
+    planner.set_map(occupancy, spec)
+    easy = Pose2(-12.0, -12.0, 0.8), Goal(12.0, 11.0)
+    tight = Pose2(-13.1, -13.1, math.radians(-135)), Goal(-5.0, -12.0)
+    for ask in (easy, tight):
+        assert planner.plan(*ask).outcome.has_path
+
+    def prepare() -> object:
+        planner.set_map(occupancy, spec)
+        return planner.grid()
+
+    bench.case("prepare a 300² map", {"navette": prepare})
+    bench.case("plan across it, 34 m", {"navette": lambda: planner.plan(*easy)})
+    bench.case("plan out of a corner", {"navette": lambda: planner.plan(*tight)})
+
+
+def check_movingai(folder: Path) -> None:
+    """Print, map by map, how many scenario lengths are exact."""
+    exact = total = 0
+    for path in sorted(folder.glob("*.map")):
+        good, count = _check_map(path)
+        print(f"  {path.name:<28} {good} of {count} lengths exact")
+        exact, total = exact + good, total + count
+    print(f"  {'all':<28} {exact} of {total}")
+    if exact != total or not total:
+        raise SystemExit(f"MovingAI: {exact} of {total} lengths exact")
+
+
+def _check_map(path: Path) -> tuple[int, int]:
+    lines = path.read_text().splitlines()
+    height = int(lines[1].split()[1])
+    free = [[0 if c in ".GS" else LETHAL for c in line] for line in lines[4:][:height]]
+    cost, search = np.array(free, np.uint8), AStar().search
+    good = count = 0
+    for line in Path(f"{path}.scen").read_text().splitlines()[1:]:
+        column, row, goal_column, goal_row, text = line.split()[4:9]
+        found = search(cost, (int(row), int(column)), (int(goal_row), int(goal_column)))
+        assert found is not None, line
+        diagonal = np.abs(np.diff(found[0], axis=0)).sum(axis=1) == 2
+        length = (~diagonal).sum() + math.sqrt(2) * diagonal.sum()
+        # Some files give six significant digits, some two decimals.
+        digits = len(text.partition(".")[2])
+        tolerance = max(0.51 * 10.0**-digits, float(text) * 5e-6)
+        good, count = good + (abs(length - float(text)) <= tolerance), count + 1
+    return good, count
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, add_help=False)
+    parser.add_argument("--movingai", type=Path)
+    known, rest = parser.parse_known_args()
+    if known.movingai is not None:
+        check_movingai(known.movingai)
+    bench = Benchmark("planner", __doc__)
+    for size in (512, 1024):
+        add_searches(bench, f"uniform {size}²", obstacle_map(size), 0.0)
+    for size in (1024, 2048):
+        field = cost_field(obstacle_map(size))
+        add_searches(bench, f"cost field {size}²", field, 3.0)
+    add_string_pulling(bench, obstacle_map(1024))
+    add_whole_plans(bench)
+    bench.main(rest)
+
+
+if __name__ == "__main__":
+    main()
