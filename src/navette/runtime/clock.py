@@ -32,14 +32,14 @@ class Wakeup:
 
     def wait(self, timeout_s: float | None) -> bool:
         """True if woken; False once ``timeout_s`` (None = for ever) is over."""
-        deadline = None if timeout_s is None else time.monotonic() + timeout_s
+        deadline = None if timeout_s is None else time.perf_counter() + timeout_s
         while True:
             left = _LONGEST_WAIT_S
             if deadline is not None:
-                left = min(left, deadline - time.monotonic())
+                left = min(left, deadline - time.perf_counter())
             if self._event.wait(max(left, 0.0)):
                 return True
-            if deadline is not None and time.monotonic() >= deadline:
+            if deadline is not None and time.perf_counter() >= deadline:
                 return False
 
 
@@ -103,7 +103,7 @@ class PacedClock(VirtualClock):
         super().__init__(start_ns)
         self._factor = self._checked(factor)
         self._paused = False
-        self._anchor_wall_s = time.monotonic()
+        self._anchor_wall_s = time.perf_counter()
         self._anchor_ns = start_ns
         self._first: tuple[float, int] | None = None
         self.lag_s = 0.0
@@ -132,7 +132,7 @@ class PacedClock(VirtualClock):
         """Virtual over wall time since the first wait; 0.0 before it."""
         if self._first is None:
             return 0.0
-        wall_s = time.monotonic() - self._first[0]
+        wall_s = time.perf_counter() - self._first[0]
         return (self.now_ns - self._first[1]) / 1e9 / wall_s if wall_s > 0 else 0.0
 
     def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
@@ -142,17 +142,17 @@ class PacedClock(VirtualClock):
             self._anchor()
             self._first = (self._anchor_wall_s, self.now_ns)
         due_s = self._anchor_wall_s + (target_ns - self._anchor_ns) / 1e9 / self._factor
-        left_s = due_s - time.monotonic()
+        left_s = due_s - time.perf_counter()
         if left_s > 0 and wakeup.wait(left_s):
             return False
         self.now_ns = max(self.now_ns, target_ns)
-        self.lag_s = max(0.0, time.monotonic() - due_s)
+        self.lag_s = max(0.0, time.perf_counter() - due_s)
         if self.lag_s > _MAX_CATCH_UP_S:
             self._anchor()
         return True
 
     def _anchor(self) -> None:
-        self._anchor_wall_s = time.monotonic()
+        self._anchor_wall_s = time.perf_counter()
         self._anchor_ns = self.now_ns
 
     @staticmethod
@@ -166,15 +166,15 @@ class PacedClock(VirtualClock):
 
 def monotonic_ns() -> int:
     """The machine's steady clock, for STEADY_TIME and for measuring."""
-    return time.monotonic_ns()
+    return time.perf_counter_ns()
 
 
 class Stopwatch:
     """Wall time since its making, for progress reports and limits."""
 
     def __init__(self) -> None:
-        self._start_ns = time.monotonic_ns()
+        self._start_ns = time.perf_counter_ns()
 
     @property
     def elapsed_s(self) -> float:
-        return (time.monotonic_ns() - self._start_ns) / 1e9
+        return (time.perf_counter_ns() - self._start_ns) / 1e9

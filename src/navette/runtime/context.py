@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from navette.runtime.node import Node
 
 
+_LONGEST_CALLBACK_S = 2.0
+
+
 class Context:
     """What nodes share. ``clock`` decides how time passes (default: the system's).
 
@@ -112,6 +115,9 @@ class Context:
                 return
             self._shut_down = True
         self.loop.close()
+        # The nodes must not be taken from under a callback of another thread; one
+        # that blocks for longer (a sleep, a join of this thread) is not waited for.
+        self.loop.wait_for_end(_LONGEST_CALLBACK_S)
         callbacks, self._on_shutdown = self._on_shutdown, []
         for callback in callbacks:
             callback()

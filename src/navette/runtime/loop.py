@@ -189,6 +189,18 @@ class EventLoop:
         """Whether the caller runs inside a callback of this loop."""
         return self._driver == threading.get_ident()
 
+    @property
+    def is_driven_elsewhere(self) -> bool:
+        """Whether another thread than the caller's drives the loop."""
+        return self._driver is not None and self._driver != threading.get_ident()
+
+    def wait_for_end(self, timeout_s: float) -> bool:
+        """After :meth:`close`: wait until no other thread runs a callback."""
+        if self.in_driver_thread:
+            return True
+        with self._turn:
+            return self._turn.wait_for(lambda: self._driver is None, timeout_s)
+
     def run(
         self,
         *,

@@ -91,21 +91,17 @@ class Node(NodeParameters, NodeGraph):
         self._info = NodeInfo(
             self.get_name(), self.get_namespace(), self._context.arguments.enclave
         )
-        self._context.graph.add_node(self._info)
-        self._context.nodes.append(self)
         self._rosout: Publisher[Any] | None = None
-        if enable_rosout and self._context.arguments.enable_rosout:
-            self._rosout = self.create_publisher(
-                Log, "/rosout", qos_profile_rosout_default
-            )
-            self._context.log.sinks.append(self._to_rosout)
-        self._parameter_events = self.create_publisher(
-            ParameterEvent, "/parameter_events", qos_profile_parameter_events
-        )
-        if automatically_declare_parameters_from_overrides:
-            for name, override in self._overrides.items():
-                self.declare_parameter(name, override.value)
-        self._time_source = TimeSource(self)
+        self._join_graph()
+        try:
+            self._open(enable_rosout and self._context.arguments.enable_rosout)
+            if automatically_declare_parameters_from_overrides:
+                for name, override in self._overrides.items():
+                    self.declare_parameter(name, override.value)
+            self._time_source = TimeSource(self)
+        except NavetteError:
+            self.destroy_node()  # leave no half-made node in the graph
+            raise
 
     # -- who it is -------------------------------------------------------------
 
@@ -166,7 +162,6 @@ class Node(NodeParameters, NodeGraph):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
-        qos_overriding_options: Any = None,
         publisher_class: type[Publisher[Any]] = Publisher,
     ) -> Publisher[MsgT]:
         """A publisher on ``topic`` (relative, private or global; remapped)."""
@@ -203,7 +198,6 @@ class Node(NodeParameters, NodeGraph):
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
-        qos_overriding_options: Any = None,
         raw: bool = False,
         shared: bool = False,
     ) -> Subscription[MsgT]:
@@ -340,6 +334,26 @@ class Node(NodeParameters, NodeGraph):
         self._executor = None
         for group in self._groups:
             group.hold()
+
+    def _join_graph(self) -> None:
+        full_name = self.get_fully_qualified_name()
+        if full_name in self.get_fully_qualified_node_names():
+            self._logger.warning(
+                f"there is a node {full_name} already: names should be unique"
+            )
+        self._context.graph.add_node(self._info)
+        self._context.nodes.append(self)
+
+    def _open(self, rosout: bool) -> None:
+        """The topics that every node has."""
+        if rosout:
+            self._rosout = self.create_publisher(
+                Log, "/rosout", qos_profile_rosout_default
+            )
+            self._context.log.sinks.append(self._to_rosout)
+        self._parameter_events = self.create_publisher(
+            ParameterEvent, "/parameter_events", qos_profile_parameter_events
+        )
 
     def _own_group(self, group: CallbackGroup | None) -> CallbackGroup:
         if group is None:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from navette.errors import ParameterError, UnknownNameError
+from navette.errors import NavetteError, ParameterError, UnknownNameError
 from navette.msgs import get_interface
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.params import Params
@@ -81,6 +81,13 @@ class StageNode(Node):
 
     def __init__(self, node_name: str, **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
+        try:
+            self._set_up()
+        except NavetteError:
+            self.destroy_node()  # leave no half-made node in the graph
+            raise
+
+    def _set_up(self) -> None:
         self.params = declare_params(self, self.PARAMS)
         self._check_unknown_overrides()
         self.add_on_set_parameters_callback(self._check_params)

@@ -72,7 +72,7 @@ class Subscription(Entity, Generic[MsgT]):
         self.shared = shared
         self.ports: list[SubscriptionPort] = []
         self._depth = endpoint.qos.queue_length or INFINITE_NS
-        self._queue: deque[Item] = deque()
+        self._queue: deque[Item] = deque(maxlen=endpoint.qos.queue_length)
         self._loop = loop
         self._ready = loop.ready
         self._received = 0
@@ -109,13 +109,16 @@ class Subscription(Entity, Generic[MsgT]):
             if self._loop.waiting:
                 self._loop.wake()
         else:
-            queue.append(item)
-            queue.popleft()
+            queue.append(item)  # and the oldest falls out, in one step
+            if self._loop.is_driven_elsewhere:
+                # Its thread may have taken a sample just before: then the queue was
+                # not full, and this one needs an event. One too many is harmless.
+                self._ready.append(self)
 
     def run(self) -> Any:
         """Call back with the oldest sample of the queue."""
         queue = self._queue
-        if not queue:  # destroyed while the event waited
+        if not queue:  # destroyed while the event waited, or one event too many
             return None
         if self._plain:
             return self._callback(queue.popleft()[0])

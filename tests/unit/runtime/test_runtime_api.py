@@ -193,6 +193,60 @@ def test_publishing_from_another_thread_wakes_the_spinning_one() -> None:
     assert heard == ["x"]
 
 
+def test_full_queue_fed_from_another_thread_keeps_the_newest() -> None:
+    navette.init(args=[])
+    node = navette.Node("n")
+    publisher = node.create_publisher(String, "t", 10)
+    heard: list[str] = []
+
+    def receive(message: String) -> None:
+        heard.append(message.data)
+        if message.data == "last":
+            navette.shutdown()
+
+    node.create_subscription(String, "t", receive, 1)
+
+    def talk() -> None:
+        for number in range(500):
+            publisher.publish(String(data=str(number)))
+        publisher.publish(String(data="last"))
+
+    thread = threading.Thread(target=talk)
+    node.context.loop.call_soon(thread.start)
+    navette.spin(node)
+    thread.join()
+    assert heard[-1] == "last"
+    numbers = [int(text) for text in heard[:-1]]
+    assert numbers == sorted(set(numbers))
+
+
+def test_shutdown_from_another_thread_waits_for_the_callback() -> None:
+    navette.init(args=[])
+    node = navette.Node("n")
+    order: list[str] = []
+    begun = threading.Event()
+    closing = threading.Event()
+
+    def slow() -> None:
+        begun.set()
+        assert closing.wait(5.0)
+        node.create_publisher(String, "still_there", 1)
+        order.append("callback ends")
+
+    def close() -> None:
+        assert begun.wait(5.0)
+        node.context.on_shutdown(lambda: order.append("nodes go"))
+        closing.set()
+        navette.shutdown()
+
+    node.context.loop.call_soon(slow)
+    thread = threading.Thread(target=close)
+    thread.start()
+    navette.spin(node)
+    thread.join()
+    assert order == ["callback ends", "nodes go"]
+
+
 def test_executor_and_nodes_must_share_the_context() -> None:
     first, second = Context(clock=VirtualClock()), Context(clock=VirtualClock())
     node = Node("n", context=first)

@@ -215,3 +215,11 @@ def test_what_an_algorithm_logs_outside_callbacks_reaches_the_console(
     assert re.search(
         r"\[WARN\] .*\[navette\.planning\.astar\]: alone", capsys.readouterr().err
     )
+
+
+def test_two_nodes_of_one_name_are_warned_about(
+    graph: GraphHarness, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Node("twin", context=graph.context)
+    Node("twin", context=graph.context)
+    assert "there is a node /twin already" in capsys.readouterr().err

@@ -190,6 +190,15 @@ def test_wrong_values_from_outside_are_loud(argument: str, reason: str) -> None:
         harness("-p", argument)
 
 
+def test_refused_stage_leaves_nothing_in_the_graph() -> None:
+    graph = GraphHarness(args=["--ros-args", "-p", "echo:gain:=7"])
+    before = graph.context.graph.endpoints()
+    with pytest.raises(ParameterError):
+        Echo(context=graph.context)
+    assert graph.context.graph.endpoints() == before
+    assert graph.context.nodes == [graph.node]
+
+
 def test_values_for_all_nodes_need_not_be_known() -> None:
     _, node = harness("-p", "something:=1")
     assert node.params == EchoParams()

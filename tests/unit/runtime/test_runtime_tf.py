@@ -6,9 +6,18 @@ from typing import Any
 
 import pytest
 
-from navette.errors import TransformError
-from navette.geometry import Pose2, Transform3
-from navette.msgs.geometry_msgs.msg import TransformStamped
+from navette.errors import InvalidValueError, TransformError
+from navette.geometry import Pose2, Transform3, yaw_of
+from navette.msgs.geometry_msgs.msg import (
+    Point,
+    PointStamped,
+    PoseStamped,
+    TransformStamped,
+    Vector3,
+    Vector3Stamped,
+)
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.msgs.std_msgs.msg import Header
 from navette.runtime import (
     Buffer,
     Duration,
@@ -301,3 +310,26 @@ def test_bad_transform_is_logged_and_the_rest_is_taken(graph: GraphHarness) -> N
     graph.run_for(0.0)
     assert buffer.can_transform("map", "good", 0)
     assert "'bad' is not finite" in logs.last.msg
+
+
+def test_stamped_messages_in_another_frame() -> None:
+    buffer = Buffer()
+    buffer.set_transform_static(
+        transform_stamped("map", "base", 0, at(1, 2, math.pi / 2))
+    )
+    header = Header(frame_id="base")
+    point = buffer.transform(
+        PointStamped(header=header, point=Point(x=1.0, y=0.0, z=0.5)), "map"
+    )
+    assert point.header.frame_id == "map"
+    assert (point.point.x, point.point.y, point.point.z) == pytest.approx((1, 3, 0.5))
+    vector = buffer.transform(
+        Vector3Stamped(header=header, vector=Vector3(x=1.0)), "map"
+    )
+    assert (vector.vector.x, vector.vector.y) == pytest.approx((0, 1))
+    pose = buffer.transform(PoseStamped(header=header), "map")
+    q = pose.pose.orientation
+    assert (pose.pose.position.x, pose.pose.position.y) == pytest.approx((1, 2))
+    assert yaw_of((q.x, q.y, q.z, q.w)) == pytest.approx(math.pi / 2)
+    with pytest.raises(InvalidValueError, match="cannot transform a Odometry"):
+        buffer.transform(Odometry(header=header), "map")

@@ -5,6 +5,12 @@ from navette.runtime.tf.broadcasters import (
     TransformBroadcaster,
 )
 from navette.runtime.tf.buffer import Buffer
+from navette.runtime.tf.do_transform import (
+    do_transform_point,
+    do_transform_pose,
+    do_transform_pose_stamped,
+    do_transform_vector3,
+)
 from navette.runtime.tf.exceptions import (
     ConnectivityException,
     ExtrapolationException,
@@ -24,4 +30,8 @@ __all__ = [
     "TransformBroadcaster",
     "TransformException",
     "TransformListener",
+    "do_transform_point",
+    "do_transform_pose",
+    "do_transform_pose_stamped",
+    "do_transform_vector3",
 ]

@@ -9,6 +9,7 @@ from navette.runtime.future import Future
 from navette.runtime.ros_clock import JumpThreshold, TimeJump
 from navette.runtime.tf.buffer_core import BufferCore
 from navette.runtime.tf.conversions import transform_from_msg, transform_stamped
+from navette.runtime.tf.do_transform import do_transform
 from navette.runtime.tf.exceptions import TransformException
 from navette.runtime.time import Duration, Time, stamp_to_ns
 
@@ -103,6 +104,16 @@ class Buffer:
         return transform_stamped(
             target_frame, source_frame, stamp_ns, target_T_fixed @ fixed_T_source
         )
+
+    def transform(
+        self, object_stamped: Any, target_frame: str, timeout: Duration | None = None
+    ) -> Any:
+        """A PointStamped, PoseStamped or Vector3Stamped in another frame."""
+        header = object_stamped.header
+        transform = self.lookup_transform(
+            target_frame, header.frame_id, header.stamp, timeout
+        )
+        return do_transform(object_stamped, transform)
 
     def can_transform(
         self,
