@@ -4,9 +4,9 @@
 import math
 from dataclasses import dataclass
 
-from navette.sim.params import SimParams
+from navette.sim.params import CONTROL_PERIOD_S, SimParams
 
-CONTROL_PERIOD_NS = 10_000_000  # a motor controller's cycle
+CONTROL_PERIOD_NS = round(CONTROL_PERIOD_S * 1e9)
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,8 @@ class SpeedRamp:
         """Speed for the next control period."""
         if self._expires_ns is not None and now_ns >= self._expires_ns:
             self._target, self._expires_ns = _STOP, None
-        period_s = CONTROL_PERIOD_NS * 1e-9
-        dv = self.params.max_accel_mps2 * period_s
-        dw = self.params.max_yaw_accel_radps2 * period_s
+        dv = self.params.max_accel_mps2 * CONTROL_PERIOD_S
+        dw = self.params.max_yaw_accel_radps2 * CONTROL_PERIOD_S
         v, w = self.speed.linear, self.speed.angular
         self.speed = BodySpeed(
             v + min(max(self._target.linear - v, -dv), dv),

@@ -10,7 +10,7 @@ from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.tf2_msgs.msg import TFMessage
-from navette.runtime import Input, Output, StageNode
+from navette.runtime import Input, Output, StageNode, Timer
 from navette.sim import messages
 from navette.sim.description import describe_robot, describe_world
 from navette.sim.frames import RobotFrames
@@ -119,20 +119,27 @@ class SimNode(StageNode):
     ) -> None:
         super().__init__(node_name, **kwargs)
         self.simulator = Simulator(scene, self.params, start=start)
-        self._origin_ns = self.get_clock().now().nanoseconds
+        self._origin_ns = self.get_clock().now_ns
         self.frames = RobotFrames(self.simulator.compiled.robot, self.params)
         p = self.params
         self._child_frame = p.odometry_child_frame or p.base_frame
         self._base_T_child = self.frames.fixed_pose(self._child_frame)
         self._contacts_told = 0
+        self._sleepers: list[tuple[Timer, tuple[str, ...]]] = []
         self.add_on_set_parameters_callback(self._refuse_fixed)
         self._publish_latched()
         self._create_timers()
+        self._forget_graph = self.context.graph.on_change(self._wake_and_rest)
+        self._wake_and_rest()
+
+    def destroy_node(self) -> None:
+        self._forget_graph()
+        super().destroy_node()
 
     def reset(self) -> None:
         """Robot and world back to the start; the clock goes on."""
         self.simulator.reset()
-        self._origin_ns = self.get_clock().now().nanoseconds
+        self._origin_ns = self.get_clock().now_ns
         self._contacts_told = 0
 
     def on_cmd_vel(self, msg: Twist) -> None:
@@ -157,7 +164,7 @@ class SimNode(StageNode):
 
     def _advance(self) -> int:
         """Bring physics to the present; the stamp of its state."""
-        now_ns: int = self.get_clock().now().nanoseconds
+        now_ns = self.get_clock().now_ns
         self.simulator.advance_to(now_ns - self._origin_ns)
         return self._origin_ns + self.simulator.now_ns
 
@@ -201,10 +208,19 @@ class SimNode(StageNode):
         """Call ``publish(stamp)`` at a rate, while somebody listens."""
 
         def tick() -> None:
-            if any(map(self.has_listeners, topics)):
-                publish(self._advance())
+            publish(self._advance())
 
-        self.create_timer(1.0 / rate_hz, tick)
+        timer = self.create_timer(1.0 / rate_hz, tick, autostart=False)
+        self._sleepers.append((timer, topics))
+
+    def _wake_and_rest(self) -> None:
+        """Run the timers of topics that somebody listens to, and no others."""
+        for timer, topics in self._sleepers:
+            wanted = any(map(self.has_listeners, topics))
+            if wanted and timer.is_canceled():
+                timer.reset()
+            elif not wanted and not timer.is_canceled():
+                timer.cancel()
 
     def _create_sensor_timers(
         self,

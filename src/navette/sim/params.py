@@ -3,14 +3,23 @@
 
 from dataclasses import dataclass
 
+from navette.errors import ParameterError
 from navette.params import Params, param
+
+CONTROL_PERIOD_S = 0.01  # a motor controller's cycle
 
 
 @dataclass(frozen=True, kw_only=True)
 class SimParams(Params):
     """A robot's limits, what its sensors suffer from, and its frames."""
 
-    timestep_s: float = param(0.002, "physics step", unit="s", above=0.0, at_most=0.02)
+    timestep_s: float = param(
+        0.002,
+        "physics step; a whole number of them makes 10 ms",
+        unit="s",
+        at_least=0.0005,
+        at_most=0.01,
+    )
     seed: int = param(0, "seed of all noise", at_least=0)
 
     command_timeout_s: float = param(
@@ -67,6 +76,14 @@ class SimParams(Params):
     joint_tf_rate_hz: float = param(
         10.0, "/tf of turning wheels", unit="Hz", above=0.0, at_most=50.0
     )
+
+    def check(self) -> None:
+        steps = CONTROL_PERIOD_S / self.timestep_s
+        if abs(steps - round(steps)) > 1e-6:
+            raise ParameterError(
+                f"parameter 'timestep_s': {self.timestep_s!r} is not allowed; wanted a "
+                f"whole part of {CONTROL_PERIOD_S} s, such as 0.001, 0.002, 0.0025, 0.005"
+            )
 
 
 # What the simulator or its topics are built from: changing it needs a new start.

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from navette.errors import ParameterError
 from navette.geometry import Pose2
 from navette.sim import (
     Scene,
@@ -248,10 +249,16 @@ def test_wheel_odometry_drifts_only_with_slip_and_noise() -> None:
 
 
 def test_a_longer_step_is_as_accurate() -> None:
-    params = SimParams(timestep_s=0.004, command_timeout_s=0.0)
+    params = SimParams(timestep_s=0.005, command_timeout_s=0.0)
     simulator = Simulator(_scene(World()), params, start=Pose2(0, 0, 0))
     v, w = _settled(simulator, 0.8, 0.5)
     assert (v, w) == pytest.approx((0.8, 0.5), rel=0.02)
+
+
+@pytest.mark.parametrize("step", [0.003, 0.004, 0.02, 0.0])
+def test_steps_that_do_not_fit_the_motor_cycle_are_refused(step: float) -> None:
+    with pytest.raises(ParameterError, match="'timestep_s'"):
+        SimParams(timestep_s=step)
 
 
 def test_limits_can_change_on_the_way() -> None:
