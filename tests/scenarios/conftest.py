@@ -8,6 +8,7 @@ import pytest
 
 from navette.launch import RunOptions
 from navette.launch.simulation import Simulation
+from navette.sim import Scene
 
 MakeSimulation = Callable[..., Simulation]
 
@@ -17,9 +18,9 @@ def simulate() -> Iterator[MakeSimulation]:
     """Makes simulations from keywords of RunOptions."""
     made: list[Simulation] = []
 
-    def make(**options: Any) -> Simulation:
+    def make(scene: Scene | None = None, **options: Any) -> Simulation:
         defaults: dict[str, Any] = {"headless": True, "speed": math.inf}
-        made.append(Simulation(RunOptions(**{**defaults, **options})))
+        made.append(Simulation(RunOptions(**{**defaults, **options}), scene=scene))
         return made[-1]
 
     yield make

@@ -27,8 +27,8 @@ class ResolvedScene:
     derived: dict[str, dict[str, object]]
 
 
-def resolve_scene(options: RunOptions) -> ResolvedScene:
-    """Load what the options name.
+def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedScene:
+    """Load what the options name; a ``scene`` made in Python replaces their world.
 
     The robot is, in this order: the one asked for, the world's own, the built-in one
     of the same name as the built-in world, the default.
@@ -39,7 +39,8 @@ def resolve_scene(options: RunOptions) -> ResolvedScene:
         UnknownNameError: no such world or robot; the text lists those there are.
         FileFormatError: a file is broken; names file and line.
     """
-    scene = load_world(options.world)
+    if scene is None:
+        scene = load_world(options.world)
     robot = _choose_robot(options, scene)
     if scene.robot is not robot.model:
         scene = scene.with_robot(robot.model)

@@ -20,6 +20,7 @@ from navette.runtime import (
     TimeSource,
     VirtualClock,
 )
+from navette.sim import Scene
 from navette.sim.node import SimNode
 from navette.viewer.node import ViewerNode
 
@@ -34,6 +35,8 @@ class Simulation:
     Args:
         options: what to run.
         on_change: called when the planner's goal or state changes.
+        scene: a world made in Python (:class:`navette.sim.World`) instead of the
+            one that the options name.
 
     Raises:
         NavetteError: a name, file, parameter or option is wrong; says which.
@@ -43,9 +46,11 @@ class Simulation:
         self,
         options: RunOptions,
         on_change: Callable[[Progress], None] = lambda progress: None,
+        *,
+        scene: Scene | None = None,
     ) -> None:
         self.options = options
-        self.resolved = resolve_scene(options)
+        self.resolved = resolve_scene(options, scene)
         self.context = Context(clock=_clock(options.speed))
         self._stopwatch = Stopwatch()
         try:
@@ -87,9 +92,9 @@ class Simulation:
         self.monitor = MonitorNode(context=context, on_change=on_change)
         self.viewer = None if options.headless else ViewerNode(context=context)
         context.check_overrides()
-        self._executor = Executor(context=context)
+        self.executor = Executor(context=context)
         for node in context.nodes:
-            self._executor.add_node(node)
+            self.executor.add_node(node)
         if options.ends_with_goals:
             self.stack.missions.on_done = self.stop
 
@@ -104,9 +109,9 @@ class Simulation:
         limit = self.options.max_time_s
         try:
             if limit is None:
-                self._executor.spin()
+                self.executor.spin()
             else:
-                self._executor.spin_until(round(limit * 1e9))
+                self.executor.spin_until(round(limit * 1e9))
         except CallbackError as error:
             self._halt(error)
             raise
@@ -118,15 +123,15 @@ class Simulation:
         """
         self.stack.control.destroy_node()
         watchers = (self.sim, self.recorder, self.viewer)
-        for node in self._executor.get_nodes():
+        for node in self.executor.get_nodes():
             if node not in watchers:
-                self._executor.remove_node(node)
+                self.executor.remove_node(node)
         if error.node != self.sim.get_fully_qualified_name():
-            self._executor.spin_for(HALT_NS)
+            self.executor.spin_for(HALT_NS)
 
     def stop(self) -> None:
         """End :meth:`run` after the present callback; from any thread."""
-        self._executor.stop()
+        self.executor.stop()
 
     def progress(self) -> Progress:
         """How it goes now."""

@@ -1,0 +1,81 @@
+"""Goals that cannot be: a named result within a second, robot at rest, program alive."""
+
+import math
+
+import pytest
+
+from navette.launch.simulation import Simulation
+from navette.msgs.geometry_msgs.msg import PointStamped
+from navette.sim import World
+
+from .conftest import MakeSimulation
+
+SECOND = 1_000_000_000
+
+
+def send_goal(simulation: Simulation, x: float, y: float, frame: str) -> None:
+    node = simulation.monitor
+    publisher = node.create_publisher(PointStamped, "/goal_point", 10)
+    goal = PointStamped()
+    goal.header.frame_id = frame
+    goal.point.x, goal.point.y = x, y
+    publisher.publish(goal)
+    node.destroy_publisher(publisher)
+
+
+def speed(simulation: Simulation) -> float:
+    motion = simulation.sim.simulator.motion()
+    return math.hypot(*motion.linear) + abs(motion.angular[2])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("x", "y", "frame", "result"),
+    [
+        (-2.6, 0.0, "sim_world", "goal_blocked"),  # just inside a cylinder
+        (-14.8, 0.0, "sim_world", "goal_blocked"),  # in the wall
+        (1e4, 0.0, "sim_world", "goal_outside_map"),
+        (math.nan, 0.0, "sim_world", "goal_not_finite"),
+        (1.0, math.inf, "sim_world", "goal_not_finite"),
+        (1.0, 1.0, "nowhere", "unknown_frame"),
+    ],
+)
+def test_a_goal_that_cannot_be_is_named_and_the_next_one_driven(
+    simulate: MakeSimulation, x: float, y: float, frame: str, result: str
+) -> None:
+    simulation = simulate(world="course")
+    simulation.executor.spin_until(3 * SECOND)
+    send_goal(simulation, x, y, frame)
+    simulation.executor.spin_for(SECOND)
+    assert simulation.progress().state == result
+    assert simulation.progress().failed
+    assert speed(simulation) < 0.01
+
+    send_goal(simulation, -6.0, -2.0, "sim_world")
+    simulation.executor.spin_until_complete(
+        lambda: simulation.progress().state == "reached", 30 * SECOND
+    )
+    assert simulation.progress().state == "reached"
+
+
+@pytest.mark.slow
+def test_a_goal_beyond_closed_walls_has_no_path(simulate: MakeSimulation) -> None:
+    room = World("room").add_walls((8.0, 8.0))
+    simulation = simulate(scene=room.scene(), goals=((6.0, 0.0),), max_time_s=20.0)
+    simulation.run()
+    (outcome,) = simulation.summary().goals
+    assert outcome.result in {"no_path", "goal_blocked", "goal_outside_map"}
+    assert outcome.time_s <= 1.0
+    assert simulation.summary().contacts == 0
+
+
+@pytest.mark.slow
+def test_a_bad_goal_on_the_way_stops_the_robot(simulate: MakeSimulation) -> None:
+    simulation = simulate(world="course")
+    simulation.executor.spin_until(2 * SECOND)
+    send_goal(simulation, 6.0, -12.0, "sim_world")
+    simulation.executor.spin_for(5 * SECOND)
+    assert speed(simulation) > 0.3
+    send_goal(simulation, math.nan, 0.0, "sim_world")
+    simulation.executor.spin_for(2 * SECOND)
+    assert speed(simulation) < 0.01
