@@ -44,6 +44,7 @@ class Executor:
             self._context.use_clock(clock)
         self._nodes: list[Node] = []
         self._stopping = False
+        self._depth = 0  # spins under way, nested ones counted
 
     @property
     def context(self) -> Context:
@@ -180,10 +181,15 @@ class Executor:
     ) -> None:
         if timeout_s is not None and timeout_s >= 0:
             until_ns = self.now_ns + round(timeout_s * 1e9)
-        self._stopping = False
-        self.loop.run(
-            until_ns=until_ns, done=done, limit=limit, stop=lambda: self._stopping
-        )
+        if self._depth == 0:  # a nested spin must not swallow the outer one's stop
+            self._stopping = False
+        self._depth += 1
+        try:
+            self.loop.run(
+                until_ns=until_ns, done=done, limit=limit, stop=lambda: self._stopping
+            )
+        finally:
+            self._depth -= 1
 
 
 class SingleThreadedExecutor(Executor):

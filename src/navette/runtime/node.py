@@ -5,7 +5,6 @@ from types import TracebackType
 from typing import Any, TypeVar
 
 from navette.errors import InvalidValueError, NavetteError
-from navette.msgs import type_name
 from navette.msgs.rcl_interfaces.msg import Log, ParameterEvent
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.callback_groups import (
@@ -24,33 +23,25 @@ from navette.runtime.names import (
 )
 from navette.runtime.node_graph import NodeGraph
 from navette.runtime.node_parameters import NodeParameters
+from navette.runtime.node_topics import NodeTopics
 from navette.runtime.overrides import Override, ParameterOverrides
 from navette.runtime.parameter import Parameter
 from navette.runtime.parameter_store import Changes, ParameterStore
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (
-    QoSProfile,
-    as_profile,
     qos_profile_parameter_events,
     qos_profile_rosout_default,
 )
-from navette.runtime.qos_events import (
-    PublisherEventCallbacks,
-    SubscriptionEventCallbacks,
-    watch_endpoint,
-)
 from navette.runtime.rate import Rate
 from navette.runtime.ros_clock import Clock, ROSClock
-from navette.runtime.subscription import Subscription
 from navette.runtime.time import ns_to_stamp, seconds_to_ns
 from navette.runtime.time_source import TimeSource
 from navette.runtime.timer import Timer
-from navette.transports import Endpoint, EndpointKind
 
 MsgT = TypeVar("MsgT")
 
 
-class Node(NodeParameters, NodeGraph):
+class Node(NodeTopics, NodeParameters, NodeGraph):
     """Owns publishers, subscriptions, timers and parameters under one name.
 
     Args as in rclpy; ``parameter_overrides`` win over everything else.
@@ -141,108 +132,8 @@ class Node(NodeParameters, NodeGraph):
         return self._default_group
 
     @property
-    def publishers(self) -> Iterator[Publisher[Any]]:
-        return (e for e in self._entities if isinstance(e, Publisher))
-
-    @property
-    def subscriptions(self) -> Iterator[Subscription[Any]]:
-        return (e for e in self._entities if isinstance(e, Subscription))
-
-    @property
     def timers(self) -> Iterator[Timer]:
         return (e for e in self._entities if isinstance(e, Timer))
-
-    # -- topics ----------------------------------------------------------------
-
-    def create_publisher(
-        self,
-        msg_type: type[MsgT],
-        topic: str,
-        qos_profile: QoSProfile | int,
-        *,
-        callback_group: CallbackGroup | None = None,
-        event_callbacks: PublisherEventCallbacks | None = None,
-        publisher_class: type[Publisher[Any]] = Publisher,
-    ) -> Publisher[MsgT]:
-        """A publisher on ``topic`` (relative, private or global; remapped)."""
-        qos = as_profile(qos_profile)
-        endpoint = self._endpoint(EndpointKind.PUBLISHER, msg_type, topic, qos)
-        undo = watch_endpoint(
-            self._context, endpoint, event_callbacks, self._logger, self.call_soon
-        )
-        try:
-            ports = [
-                transport.advertise(endpoint, msg_type)
-                for transport in self._context.graph.transports
-            ]
-        except NavetteError:
-            undo()
-            raise
-
-        def forget(publisher: Publisher[Any]) -> None:
-            undo()
-            self._forget(publisher)
-
-        publisher = publisher_class(
-            msg_type, endpoint, qos, ports, self._context.loop, forget
-        )
-        self._entities.append(publisher)
-        return publisher
-
-    def create_subscription(
-        self,
-        msg_type: type[MsgT],
-        topic: str,
-        callback: Callable[..., Any],
-        qos_profile: QoSProfile | int,
-        *,
-        callback_group: CallbackGroup | None = None,
-        event_callbacks: SubscriptionEventCallbacks | None = None,
-        raw: bool = False,
-        shared: bool = False,
-    ) -> Subscription[MsgT]:
-        """Call ``callback(msg)`` or ``callback(msg, info)`` for every sample.
-
-        Args:
-            raw: give the serialised bytes.
-            shared: give the one object that all shared subscriptions get, uncopied:
-                look, do not alter.
-        """
-        if not callable(callback):
-            raise TypeError(f"topic {topic}: callback {callback!r} is not callable")
-        qos = as_profile(qos_profile)
-        endpoint = self._endpoint(EndpointKind.SUBSCRIPTION, msg_type, topic, qos)
-        undo = watch_endpoint(
-            self._context, endpoint, event_callbacks, self._logger, self.call_soon
-        )
-
-        def forget(subscription: Subscription[Any]) -> None:
-            undo()
-            self._forget(subscription)
-
-        subscription: Subscription[MsgT] = Subscription(
-            msg_type,
-            endpoint,
-            callback,
-            self._own_group(callback_group),
-            qos,
-            self._context.loop,
-            forget,
-            raw=raw,
-            shared=shared,
-        )
-        subscription.group.add_entity(subscription)
-        self._entities.append(subscription)
-        try:
-            for transport in self._context.graph.transports:
-                port = transport.subscribe(
-                    endpoint, msg_type, subscription.receive, shared=shared or raw
-                )
-                subscription.ports.append(port)
-        except NavetteError:
-            subscription.destroy()
-            raise
-        return subscription
 
     # -- time ------------------------------------------------------------------
 
@@ -283,12 +174,6 @@ class Node(NodeParameters, NodeGraph):
         self._context.loop.call_soon(function, source, self.get_fully_qualified_name())
 
     # -- taking down -----------------------------------------------------------
-
-    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        return self._destroy(publisher)
-
-    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        return self._destroy(subscription)
 
     def destroy_timer(self, timer: Timer) -> bool:
         return self._destroy(timer)
@@ -364,23 +249,6 @@ class Node(NodeParameters, NodeGraph):
             if self._executor is None:
                 group.hold()
         return group
-
-    def _endpoint(
-        self, kind: EndpointKind, msg_type: type, topic: str, qos: QoSProfile
-    ) -> Endpoint:
-        if self._destroyed:
-            raise InvalidValueError(
-                f"node {self.get_fully_qualified_name()} was destroyed"
-            )
-        return Endpoint(
-            kind=kind,
-            topic=self.resolve_topic_name(topic),
-            type_name=type_name(msg_type),
-            qos=qos.to_endpoint_qos(),
-            node_name=self.get_name(),
-            node_namespace=self.get_namespace(),
-            gid=self._context.graph.new_gid(),
-        )
 
     def _forget(self, entity: Any) -> None:
         if entity in self._entities:

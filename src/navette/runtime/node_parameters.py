@@ -123,7 +123,7 @@ class NodeParameters:
             raise ParameterError(f"node {node}: {error}{where}") from None
 
     def undeclare_parameter(self, name: str) -> None:
-        self._known(name)
+        self._declared(name)
         if self._store.descriptors[name].read_only:
             raise ParameterImmutableException(name)
         self._store.remove(name)
@@ -244,7 +244,7 @@ class NodeParameters:
         alternative_value: ParameterValue | None = None,
     ) -> ParameterValue:
         """Replace the descriptor; the value must fit it, or the alternative is set."""
-        self._known(name)
+        self._declared(name)
         if self._store.descriptors[name].read_only:
             raise ParameterImmutableException(name)
         old = self._store.values[name], self._store.descriptors[name]
@@ -265,10 +265,13 @@ class NodeParameters:
     # -- inside ----------------------------------------------------------------
 
     def _known(self, name: str) -> Parameter[Any]:
+        if self._store.allow_undeclared and name not in self._store.values:
+            return Parameter(name, ParameterType.NOT_SET)
+        return self._declared(name)
+
+    def _declared(self, name: str) -> Parameter[Any]:
         parameter = self._store.values.get(name)
         if parameter is None:
-            if self._store.allow_undeclared:
-                return Parameter(name, ParameterType.NOT_SET)
             raise ParameterNotDeclaredException(
                 name, self.get_fully_qualified_name(), list(self._store.values)
             )

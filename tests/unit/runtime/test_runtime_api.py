@@ -285,6 +285,21 @@ def test_executor_conditions() -> None:
     assert executor.now_ns == 5_500_000_000
 
 
+def test_a_nested_spin_does_not_swallow_a_stop() -> None:
+    executor = Executor(clock=VirtualClock())
+    node = Node("n", context=executor.context)
+    executor.add_node(node)
+
+    def stop_then_wait() -> None:
+        executor.stop()
+        executor.spin_for(1_000_000_000)
+
+    node.create_timer(1.0, stop_then_wait)
+    node.create_timer(10.0, lambda: pytest.fail("was stopped"))
+    executor.spin()
+    assert executor.now_ns < 3_000_000_000
+
+
 def test_create_task_on_the_executor() -> None:
     executor = Executor(clock=VirtualClock())
     task = executor.create_task(lambda a, b=0: a + b, 1, b=2)

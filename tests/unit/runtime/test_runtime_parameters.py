@@ -160,6 +160,8 @@ def test_undeclared_parameters_may_be_allowed() -> None:
     assert node.set_parameters([Parameter("x", T.NOT_SET)])[0].successful
     assert not node.has_parameter("x")
     assert node.known_parameters() is None
+    with pytest.raises(ParameterNotDeclaredException):
+        node.undeclare_parameter("x")
 
 
 def test_code_overrides_win_over_defaults() -> None:
