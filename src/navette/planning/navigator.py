@@ -29,6 +29,8 @@ _STOP = np.empty((0, 3))
 _STANDING_SHARE = 0.5
 # A new way must also be this much shorter: plans differ by centimetres anyway.
 _WORTH_SWITCHING_M = 0.5
+# Better ways are looked for this often, if the map became cheaper anywhere.
+_COMPARE_PERIOD_NS = 2_000_000_000
 # Nearer to the path's end than this, arriving is looked for with every odometry.
 _NEAR_END_M = 1.0
 
@@ -53,7 +55,7 @@ class Navigator:
         self._cost_seen: NDArray[np.uint8] | None = None
         self._published: Poses | None = None
         self._to_publish: Poses | None = None
-        self._stepped_ns = 0
+        self._stepped_ns = self._compared_ns = 0
 
     def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
         """Take a map (H, W); the next step looks at what it means for the path."""
@@ -114,6 +116,7 @@ class Navigator:
             return
         if now_ns < self._stepped_ns:  # the clock was set back
             self._patience.begin(now_ns)
+            self._compared_ns = now_ns
         self._stepped_ns = now_ns
         if robot is None or stale:
             self._drop_path()
@@ -148,7 +151,8 @@ class Navigator:
             changed and not self._stands(plan, progress)
         ):
             self._replan(robot.pose, self._goal)
-        elif changed:
+        elif now_ns - self._compared_ns >= _COMPARE_PERIOD_NS:
+            self._compared_ns = now_ns
             self._switch_if_better(progress, robot.pose, self._goal)
         if self._plan is not None and self._progress is not None:
             left = self._progress.distance_left_m
@@ -166,16 +170,21 @@ class Navigator:
         """Leave a path that stands only for one that is cheaper by the margin."""
         if not self._some_cost_fell():
             return
-        other = self.planner.plan_on_grid(here, goal)
         now_costs = self.planner.cost_of(progress.ahead)
-        if other is not None and other.cost < min(
-            (1 - self.params.switch_gain) * now_costs, now_costs - _WORTH_SWITCHING_M
-        ):
+        worth = (1 - self.params.switch_gain) * now_costs
+        worth = min(worth, now_costs - _WORTH_SWITCHING_M)
+        reach = math.dist((here.x, here.y), (goal.x, goal.y))
+        if reach - self.params.goal_tolerance_m >= worth:
+            return  # not even the straight line is better by the margin
+        other = self.planner.plan_on_grid(here, goal)
+        if other is not None and other.cost < worth:
             self._adopt(other)
 
     def _some_cost_fell(self) -> bool:
         before, after = self._cost_seen, self.planner.grid().cost
         self._cost_seen = after
+        if after is before:
+            return False
         if before is None or before.shape != after.shape:
             return True
         return bool((after < before).any())

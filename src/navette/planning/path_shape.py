@@ -60,9 +60,13 @@ def headed(points: Points) -> Poses:
     return np.column_stack([points, np.append(yaw, yaw[-1])])
 
 
-def turn_in_place(x: float, y: float, yaw: float, to_yaw: float) -> Poses:
-    """Poses (N, 3) from one heading to another, both included, the short way."""
+def turn_in_place(
+    x: float, y: float, yaw: float, to_yaw: float, *, long_way: bool = False
+) -> Poses:
+    """Poses (N, 3) from one heading to another, both included."""
     turn = math.remainder(to_yaw - yaw, math.tau)
+    if long_way:
+        turn -= math.copysign(math.tau, turn)
     count = max(1, math.ceil(abs(turn) / TURN_STEP))
     angles = yaw + turn * np.arange(count + 1) / count
     angles = np.remainder(angles + np.pi, 2 * np.pi) - np.pi

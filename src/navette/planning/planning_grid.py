@@ -19,6 +19,8 @@ from navette.planning.traversal import DEAREST, LETHAL, Cell, EdgeTable
 # Share of the full clearance cost that sets in at once where the body could no
 # longer turn in place: a step keeps paths out of there, a slope alone would not.
 _STEP = 0.2
+# Steps of distance in which costs are tabulated.
+_LEVEL_M = 0.004
 
 
 @dataclass(frozen=True)
@@ -170,11 +172,10 @@ def _prepared(
         params.clearance_weight, params.unknown_cost, params.map_cost_weight, 1e-3
     )
     scale = DEAREST / weight
-    levels = (distance_m * np.float32(1000 / 4)).astype(np.int32)
-    table = _clearance_table(
-        int(levels.max()) + 1, closed_m, free_m, params.clearance_weight * scale
-    )
-    cost = table[levels]
+    levels = (distance_m * np.float32(1 / _LEVEL_M)).astype(np.int32)
+    count = round((free_m + spec.resolution) / _LEVEL_M) + 2
+    full = params.clearance_weight * scale
+    cost = _clearance_table(count, closed_m, free_m, full).take(levels, mode="clip")
     if params.map_cost_weight > 0:
         own = np.clip(occupancy, 0, 99) * (params.map_cost_weight * scale / 99)
         np.maximum(cost, own.astype(np.uint8), out=cost)
@@ -190,8 +191,8 @@ def _prepared(
 def _clearance_table(
     levels: int, closed_m: float, free_m: float, full: float
 ) -> NDArray[np.uint8]:
-    """Cost by distance in steps of 4 mm: closed, then falling, then free."""
-    distance = (np.arange(levels) + 0.5) * 0.004
+    """Cost by distance in small steps: closed, then falling, then free."""
+    distance = (np.arange(levels) + 0.5) * _LEVEL_M
     slope = (free_m - distance) / (free_m - closed_m)
     falling = full * (_STEP + (1 - _STEP) * slope)
     table = np.where(distance < free_m, falling, 0.0)

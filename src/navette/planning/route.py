@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from navette.geometry import Pose2, angle_difference
 from navette.planning import breadth_first, dijkstra
 from navette.planning.astar import AStar
+from navette.planning.footprint_check import clearances
 from navette.planning.params import PlannerParams
 from navette.planning.path_shape import (
     Poses,
@@ -20,6 +21,9 @@ from navette.planning.path_shape import (
 )
 from navette.planning.planning_grid import BodyShape, PlanningGrid
 from navette.planning.string_pulling import centers, pull
+
+# From this angle on the two ways round are nearly as long.
+_ABOUT_FACE = 2.4
 
 _Search = Callable[..., tuple[NDArray[np.int64], int] | None]
 
@@ -91,13 +95,26 @@ class GridRouter:
                 resample(smooth(resample(line, spacing), grid, keep_m), spacing)
             )
             if self.turns_first(start, poses):
-                poses = joined(
-                    turn_in_place(start.x, start.y, start.yaw, poses[0, 2]), poses
-                )
+                poses = joined(self._turn(grid, body, start, poses[0, 2]), poses)
         if goal_yaw is None:
             return poses
         x, y, yaw = poses[-1].tolist()
-        return joined(poses, turn_in_place(x, y, yaw, goal_yaw))
+        return joined(poses, self._turn(grid, body, Pose2(x, y, yaw), goal_yaw))
+
+    def _turn(
+        self, grid: PlanningGrid, body: BodyShape, at: Pose2, to_yaw: float
+    ) -> Poses:
+        """A turn in place: the short way, or the long one if that has the room."""
+        short = turn_in_place(at.x, at.y, at.yaw, to_yaw)
+        if abs(angle_difference(to_yaw, at.yaw)) < _ABOUT_FACE:
+            return short
+        comfort = grid.margin_m + self.params.comfort_m
+        room = clearances(short, grid, body, enough_m=comfort).min()
+        if room >= comfort:
+            return short
+        long = turn_in_place(at.x, at.y, at.yaw, to_yaw, long_way=True)
+        better = clearances(long, grid, body, enough_m=comfort).min() > room
+        return long if better else short
 
     def turns_first(self, start: Pose2, poses: Poses) -> bool:
         """Whether the robot must turn in place before it follows the poses."""

@@ -221,7 +221,7 @@ def test_a_much_better_way_is_taken_when_it_opens() -> None:
     drive.steps(2)
     assert drive.path[:, 1].max() > 7
     drive.change_map((4.5, 4.7), (1, 4), 0)
-    drive.step()
+    drive.steps(4)
     assert drive.path[:, 1].max() < 5
     assert drive.navigator.report.replans == 1
 
