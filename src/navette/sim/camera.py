@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.sim.build import SEEN, SEEN_SOLID
+from navette.sim.masks import SEEN, SEEN_SOLID
 from navette.sim.mount import Mount
 from navette.sim.ray_kernels import cast_image
 from navette.sim.scene import CameraSensor, Scene

@@ -7,7 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.sim.build import OBSTACLE, Compiled
+from navette.sim.build import Compiled
+from navette.sim.masks import OBSTACLE
 
 
 @dataclass(frozen=True)

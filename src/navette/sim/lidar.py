@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.sim.build import SEEN, SEEN_SOLID, SOLID
+from navette.sim.masks import SEEN, SEEN_SOLID, SOLID
 from navette.sim.mount import Mount
 from navette.sim.params import SimParams
 from navette.sim.ray_kernels import cast_fan
@@ -58,6 +58,14 @@ class Lidar:
         own = params.lidar_noise_m < 0
         self._noise_m = self.sensor.noise_stddev if own else params.lidar_noise_m
         self._dropout = params.lidar_dropout
+
+    def warm_up(self) -> None:
+        """Compile what casts the beams, which takes seconds on the very first run."""
+        empty = np.zeros((0, 3))
+        cast_fan(
+            np.zeros(0, dtype=np.int64), empty, empty, np.zeros((0, 3, 3)),
+            np.zeros(3), np.eye(3), self._angles, 1.0, self._distance,
+        )  # fmt: skip
 
     def scan(
         self,

@@ -119,6 +119,8 @@ class SimNode(StageNode):
     ) -> None:
         super().__init__(node_name, **kwargs)
         self.simulator = Simulator(scene, self.params, start=start)
+        for lidar in self.simulator.lidars:
+            lidar.warm_up()
         self._origin_ns = self.get_clock().now_ns
         self.frames = RobotFrames(self.simulator.compiled.robot, self.params)
         p = self.params

@@ -81,8 +81,8 @@ class SimParams(Params):
         steps = CONTROL_PERIOD_S / self.timestep_s
         if abs(steps - round(steps)) > 1e-6:
             raise ParameterError(
-                f"parameter 'timestep_s': {self.timestep_s!r} is not allowed; wanted a "
-                f"whole part of {CONTROL_PERIOD_S} s, such as 0.001, 0.002, 0.0025, 0.005"
+                f"parameter 'timestep_s': {self.timestep_s!r} is not allowed; "
+                f"wanted {CONTROL_PERIOD_S} s divided by a whole number"
             )
 
 

@@ -161,11 +161,11 @@ def _read_friction(collision: XmlNode) -> float | None:
     return friction
 
 
-def read_inertial(link: XmlNode, graph: PoseGraph, link_name: str) -> Inertial | None:
+def read_inertial(link: XmlNode, graph: PoseGraph, link_name: str) -> Inertial:
     """Mass and inertia; without numbers SDF means 1 kg and 1 kg m²."""
     node = link.find("inertial")
     if node is None:
-        return None
+        return Inertial(1.0, Transform3.identity(), (1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
     link_T_com = graph.resolve_in(link_name, read_pose(node))
     inertia = node.find("inertia")
     xx, yy, zz, xy, xz, yz = (

@@ -4,8 +4,10 @@
 from collections.abc import Iterator
 from typing import TypeVar
 
+from navette.sim.bodies import camera_name
 from navette.sim.build import Compiled
 from navette.sim.camera import Camera
+from navette.sim.camera_gl import GlCamera, wants_gl
 from navette.sim.imu import Imu
 from navette.sim.lidar import Lidar
 from navette.sim.mount import Mount
@@ -33,11 +35,17 @@ def imus_of(compiled: Compiled) -> Iterator[Imu]:
         yield Imu(sensor, _mount(compiled, link, sensor))
 
 
-def cameras_of(compiled: Compiled, params: SimParams) -> Iterator[Camera]:
-    for link, sensor in sensors_of(compiled.robot.model, CameraSensor):
-        yield Camera(
-            sensor, _mount(compiled, link, sensor), compiled.scene, compiled.model
-        )
+def cameras_of(compiled: Compiled, params: SimParams) -> Iterator[Camera | GlCamera]:
+    """Raises ParameterError where OpenGL is demanded and does not work."""
+    robot, model = compiled.robot.model, compiled.model
+    cameras = list(sensors_of(robot, CameraSensor))
+    use_gl = bool(cameras) and wants_gl(params.camera_renderer)
+    for link, sensor in cameras:
+        if use_gl:
+            yield GlCamera(sensor, camera_name(robot, link, sensor), model)
+        else:
+            mount = _mount(compiled, link, sensor)
+            yield Camera(sensor, mount, compiled.scene, model)
 
 
 def _mount(compiled: Compiled, link: str, sensor: Sensor) -> Mount:

@@ -40,7 +40,7 @@ def test_course_frames_are_the_public_ones() -> None:
         (1.3, 0, 0.9)
     )
     assert frames.moving["left_wheel"] == "robot/left_wheel"
-    with pytest.raises(ValueError, match="'no' is not fixed .*robot/chassis"):
+    with pytest.raises(ValueError, match=r"'no' is not fixed .*robot/chassis"):
         frames.fixed_pose("no")
 
 

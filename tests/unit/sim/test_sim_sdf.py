@@ -60,7 +60,8 @@ def test_poses_follow_the_frames_they_are_given_in(tmp_path: Path) -> None:
 def test_degrees_and_quaternions(tmp_path: Path) -> None:
     scene = _read(
         tmp_path,
-        """<model name='m'><link name='a'><pose degrees='true'>0 0 0 0 0 90</pose></link>
+        """<model name='m'>
+        <link name='a'><pose degrees='true'>0 0 0 0 0 90</pose></link>
         <link name='b'><pose rotation_format='quat_xyzw'>0 0 0 0 0 2 2</pose></link>
         </model>""",
     )
@@ -132,7 +133,8 @@ def test_equal_collision_and_visual_become_one_shape(tmp_path: Path) -> None:
         _model(
             f"""<link name='a'><collision name='c'>{BOX}<surface><friction><ode>
             <mu>0.4</mu></ode></friction></surface></collision>
-            <visual name='v'>{BOX}<material><diffuse>1 0 0 1</diffuse></material></visual>
+            <visual name='v'>{BOX}<material><diffuse>1 0 0 1</diffuse></material>
+            </visual>
             <visual name='top'><pose>0 0 2 0 0 0</pose>{BOX}<material><script>
             <name>Gazebo/Blue</name></script></material></visual></link>"""
         ),
@@ -157,11 +159,11 @@ def test_sensors(tmp_path: Path) -> None:
              <max_angle>1</max_angle></horizontal></scan>
              <range><min>0.2</min><max>9</max></range>
              <noise><type>gaussian</type><stddev>0.01</stddev></noise></lidar></sensor>
-            <sensor name='eye' type='camera'><camera><horizontal_fov>1.2</horizontal_fov>
-             <image><width>64</width><height>48</height></image></camera></sensor>
+            <sensor name='eye' type='camera'><camera>
+             <horizontal_fov>1.2</horizontal_fov><image><width>64</width><height>48</height></image></camera></sensor>
             <sensor name='imu' type='imu'><update_rate>200</update_rate></sensor>
-            <sensor name='bump' type='contact'><contact><collision>c</collision></contact>
-            </sensor><sensor name='gps' type='gps'/></link>"""
+            <sensor name='bump' type='contact'><contact>
+             <collision>c</collision></contact></sensor><sensor name='gps' type='gps'/></link>"""
         ),
     )
     lidar, camera, imu, contact = scene.models[0].links[0].sensors
@@ -254,7 +256,8 @@ def test_state_is_ignored(tmp_path: Path) -> None:
         "<model name='m'><static>1</static><pose frame=''>1 2 0 0 0 0</pose>"
         "<link name='a'><collision name='c'><geometry><cylinder><radius>0.1</radius>"
         "<length>1</length></cylinder></geometry></collision></link></model>"
-        "<state world_name='w'><model name='m'><pose>9 9 9 0 0 0</pose></model></state>",
+        "<state world_name='w'><model name='m'><pose>9 9 9 0 0 0</pose></model>"
+        "</state>",
         version="1.6",
     )
     (model,) = scene.models

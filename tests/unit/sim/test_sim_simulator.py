@@ -1,6 +1,8 @@
 """Physics, sensors and records of the simulator."""
 
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -281,3 +283,32 @@ def test_many_static_shapes_do_not_meet_each_other() -> None:
     simulator.step(50)
     assert simulator.compiled.model.nbody < 10
     assert simulator.contacts.count == 0
+
+
+def test_a_robot_fixed_to_the_world_is_refused() -> None:
+    scene = World().scene().with_robot(replace(COURSE, static=True))
+    with pytest.raises(ValueError, match="'robot' is fixed to the world"):
+        Simulator(scene)
+
+
+CRATE = """<sdf version='1.9'><world name='w'><model name='crate'>
+<pose>3 0 0.25 0 0 0</pose><link name='l'><inertial><mass>2</mass><inertia>
+<ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>
+<collision name='c'><geometry><box><size>0.5 0.5 0.5</size></box></geometry></collision>
+<visual name='c'><geometry><box><size>0.5 0.5 0.5</size></box></geometry></visual>
+</link></model></world></sdf>"""
+
+
+def test_what_is_not_static_can_be_pushed_and_is_seen(tmp_path: Path) -> None:
+    path = tmp_path / "crate.sdf"
+    path.write_text(CRATE)
+    scene = load_world(path).with_robot(load_robot("turtlebot3_burger").model)
+    params = SimParams(command_timeout_s=0.0, max_speed_mps=0.5)
+    simulator = Simulator(scene, params, start=Pose2(2.4, 0, 0))
+    before = simulator.scan().ranges[180]
+    assert before == pytest.approx(0.35 + 0.032, abs=0.02)
+    simulator.command(0.5, 0.0)
+    simulator.step(2000)
+    assert simulator.contacts.count >= 1
+    assert simulator.pose().translation[0] > 2.75  # further than the crate allowed
+    assert simulator.scan().ranges[180] < before

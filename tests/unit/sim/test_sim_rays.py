@@ -1,0 +1,140 @@
+"""Compiled ray casting against MuJoCo's own."""
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from navette.geometry import Pose2, Transform3, quaternion_from_rpy
+from navette.sim import Scene, SimParams, Simulator, World, load_robot, load_world
+from navette.sim.camera import pixel_rays
+from navette.sim.camera_gl import GlCamera, probe
+from navette.sim.mount import Mount
+from navette.sim.ray_kernels import cast_fan, cast_image
+from navette.sim.scene import (
+    Box,
+    CameraSensor,
+    Capsule,
+    Cylinder,
+    Ellipsoid,
+    Geometry,
+    Link,
+    Model,
+    Shape,
+    Sphere,
+)
+from navette.sim.shape_table import ShapeTable
+
+
+def _random_shape(rng: np.random.Generator) -> Shape:
+    a, b, c = rng.uniform(0.1, 1.2, 3)
+    shapes: list[Shape] = [
+        Box((a, b, c)), Cylinder(a, b), Capsule(a, b), Sphere(a), Ellipsoid((a, b, c))
+    ]  # fmt: skip
+    return shapes[rng.integers(len(shapes))]
+
+
+def _random_scene(seed: int) -> Scene:
+    """Shapes of all kinds, tilted any way, near and around the origin."""
+    rng = np.random.default_rng(seed)
+    models = []
+    for i in range(40):
+        x, y, z = rng.uniform((-6, -6, 0), (6, 6, 2)).tolist()
+        pose = Transform3((x, y, z), quaternion_from_rpy(*rng.uniform(-3, 3, 3)))
+        shape = Geometry(name="s", shape=_random_shape(rng))
+        link = Link(name="l", geometries=(shape,))
+        models.append(
+            Model(name=f"m{i}", world_T_model=pose, static=True, links=(link,))
+        )
+    base = World().scene()
+    robot = load_robot("turtlebot3_burger").model
+    scene = Scene(name="random", models=(*base.models, *models))
+    return scene.with_robot(robot)
+
+
+def _tilted(rng: np.random.Generator) -> Mount:
+    """A view from somewhere in the middle, tilted a little."""
+    x, y, z = rng.uniform(-1, 1, 3)
+    roll, pitch, yaw = rng.uniform((-0.3, -0.3, -3), (0.3, 0.3, 3)).tolist()
+    pose = Transform3((x, y, z + 1.5), quaternion_from_rpy(roll, pitch, yaw))
+    return Mount(0, pose)  # body 0 is the world
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize(
+    ("first", "last"),
+    [(-np.pi, np.pi), (-2.3, 2.3), (0.5, 2.0), (1.0, 1.0 + 2 * np.pi)],
+)
+def test_fans_equal_mujocos(seed: int, first: float, last: float) -> None:
+    simulator = Simulator(_random_scene(seed))
+    model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
+    mujoco.mj_kinematics(model, data)
+    shapes = ShapeTable(model, (0, 1))
+    shapes.update(data)
+    origin, rotation = _tilted(np.random.default_rng(seed)).world(data)
+    angles = np.linspace(first, last, 181)
+    ours = np.empty(len(angles))
+    cast_fan(
+        shapes.kind, shapes.size, shapes.position, shapes.rotation, origin, rotation,
+        angles, 30.0, ours,
+    )  # fmt: skip
+    beams = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    theirs, _ = shapes.cast_with_mujoco(model, data, origin, beams @ rotation.T, np.inf)
+    np.testing.assert_allclose(ours, theirs, rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_images_equal_mujocos(seed: int) -> None:
+    simulator = Simulator(_random_scene(seed))
+    model, data = simulator.compiled.model, mujoco.MjData(simulator.compiled.model)
+    mujoco.mj_kinematics(model, data)
+    shapes = ShapeTable(model, (0, 1))
+    shapes.update(data)
+    origin, rotation = _tilted(np.random.default_rng(seed + 50)).world(data)
+    sensor = CameraSensor(name="c", width=48, height=36)
+    depth, shape = np.empty((36, 48)), np.empty((36, 48), dtype=np.int32)
+    focal = 24 / np.tan(sensor.horizontal_fov / 2)
+    cast_image(
+        shapes.kind, shapes.size, shapes.position, shapes.rotation, origin, rotation,
+        focal, 0.0, 1e9, depth, shape,
+    )  # fmt: skip
+    theirs, rows = shapes.cast_with_mujoco(
+        model, data, origin, pixel_rays(sensor) @ rotation.T, np.inf
+    )
+    np.testing.assert_allclose(
+        np.where(shape < 0, np.inf, depth).ravel(), theirs, rtol=1e-6
+    )
+    assert np.mean(shape.ravel() == rows) > 0.999
+
+
+MESH_WORLD = """<mujoco><asset><mesh name='tetra'
+ vertex='0 0 0  2 0 0  0 2 0  0 0 2'/></asset><worldbody>
+ <geom type='plane' size='0 0 1'/><geom type='mesh' mesh='tetra' pos='2 -1 0'
+ rgba='0.9 0.1 0.1 1'/></worldbody></mujoco>"""
+
+
+def test_meshes_are_seen_too(tmp_path: Path) -> None:
+    path = tmp_path / "mesh.xml"
+    path.write_text(MESH_WORLD)
+    scene = load_world(path).with_robot(load_robot("turtlebot3_burger").model)
+    simulator = Simulator(scene, start=Pose2(0, 0, 0))
+    assert simulator.scan().ranges[180] == pytest.approx(2.03, abs=0.05)
+    image = simulator.image()
+    assert np.any(image[:, :, 0].astype(int) - image[:, :, 2] > 60)
+
+
+@pytest.mark.slow
+def test_opengl_is_used_where_it_works_and_refused_elsewhere() -> None:
+    scene = World().add_box((3.0, 0.0), (0.5, 1.0)).scene()
+    scene = scene.with_robot(load_robot("turtlebot3_burger").model)
+    if probe() is None:
+        with pytest.raises(ValueError, match="'gl' does not work here"):
+            Simulator(scene, SimParams(camera_renderer="gl"))
+        Simulator(scene, SimParams(camera_renderer="auto")).image()
+        return
+    simulator = Simulator(scene, SimParams(camera_renderer="gl"))
+    assert isinstance(simulator.cameras[0], GlCamera)
+    drawn, cast = simulator.image(), Simulator(scene).image()
+    sky = [(image[:60] > 100).mean() for image in (drawn, cast)]
+    assert sky == pytest.approx([1.0, 1.0], abs=0.1)
