@@ -15,10 +15,11 @@ from navette.sim.scene import Box, LidarSensor
 
 ROBOT = """<robot name='r'>
 <material name='red'><color rgba='1 0 0 1'/></material>
-<link name='base'><visual><geometry><box size='0.4 0.3 0.1'/></geometry>
- <material name='red'/></visual>
- <collision><geometry><box size='0.4 0.3 0.1'/></geometry></collision><inertial><mass value='5'/><inertia ixx='0.1' iyy='0.1' izz='0.1'/>
- </inertial></link>
+<link name='base'>
+ <visual><geometry><box size='0.4 0.3 0.1'/></geometry><material name='red'/></visual>
+ <collision><geometry><box size='0.4 0.3 0.1'/></geometry></collision>
+ <inertial><mass value='5'/><inertia ixx='0.1' iyy='0.1' izz='0.1'/></inertial>
+</link>
 {wheels}
 <link name='ball'><collision><geometry><sphere radius='0.05'/></geometry></collision>
  <inertial><mass value='0.1'/><inertia ixx='1e-3' iyy='1e-3' izz='1e-3'/></inertial>

@@ -163,7 +163,8 @@ def test_sensors(tmp_path: Path) -> None:
              <horizontal_fov>1.2</horizontal_fov><image><width>64</width><height>48</height></image></camera></sensor>
             <sensor name='imu' type='imu'><update_rate>200</update_rate></sensor>
             <sensor name='bump' type='contact'><contact>
-             <collision>c</collision></contact></sensor><sensor name='gps' type='gps'/></link>"""
+             <collision>c</collision></contact></sensor>
+            <sensor name='gps' type='gps'/></link>"""
         ),
     )
     lidar, camera, imu, contact = scene.models[0].links[0].sensors

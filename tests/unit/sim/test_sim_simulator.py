@@ -302,13 +302,13 @@ CRATE = """<sdf version='1.9'><world name='w'><model name='crate'>
 def test_what_is_not_static_can_be_pushed_and_is_seen(tmp_path: Path) -> None:
     path = tmp_path / "crate.sdf"
     path.write_text(CRATE)
-    scene = load_world(path).with_robot(load_robot("turtlebot3_burger").model)
+    scene = load_world(path).with_robot(load_robot("jackal").model)
     params = SimParams(command_timeout_s=0.0, max_speed_mps=0.5)
-    simulator = Simulator(scene, params, start=Pose2(2.4, 0, 0))
-    before = simulator.scan().ranges[180]
-    assert before == pytest.approx(0.35 + 0.032, abs=0.02)
+    simulator = Simulator(scene, params, start=Pose2(2.0, 0, 0))
+    before = simulator.scan().ranges[360]
+    assert before == pytest.approx(0.75 - 0.055, abs=0.02)
     simulator.command(0.5, 0.0)
     simulator.step(2000)
     assert simulator.contacts.count >= 1
-    assert simulator.pose().translation[0] > 2.75  # further than the crate allowed
-    assert simulator.scan().ranges[180] < before
+    assert simulator.pose().translation[0] > 3.0  # where the crate was
+    assert simulator.scan().ranges[360] == pytest.approx(0.2, abs=0.03)
