@@ -17,7 +17,7 @@ from navette.planning.dijkstra import Field, cost_to_go
 from navette.planning.footprint_check import check_path
 from navette.planning.goals import cells_within
 from navette.planning.lattice_motions import Motions
-from navette.planning.lattice_search import GOOD_ENOUGH_M
+from navette.planning.lattice_search import GOOD_ENOUGH_M, GREED
 from navette.planning.params import PlannerParams
 from navette.planning.path_shape import Poses, joined
 from navette.planning.planning_grid import BodyShape, PlanningGrid
@@ -25,7 +25,7 @@ from navette.planning.route import GridRouter
 from navette.planning.traversal import STRAIGHT
 
 # What a metre from the exact goal is worth in metres driven.
-_GOAL_PULL = 3.0
+_GOAL_PULL = 5.0
 _TAILS_TRIED = 8
 
 
@@ -136,7 +136,8 @@ class DetourPlanner:
     def _guide(self, target: Target, begin: Pose2) -> Field:
         cells, away = cells_within(self.grid, (target.x, target.y), target.tolerance_m)
         off = np.maximum(away - GOOD_ENOUGH_M, 0.0)
-        units = off * (_GOAL_PULL * STRAIGHT / self.grid.spec.resolution)
+        # The search multiplies the guide; what the goal asks must not grow with it.
+        units = off * (_GOAL_PULL / GREED * STRAIGHT / self.grid.spec.resolution)
         seeds = [
             ((int(row), int(column)), int(unit))
             for (row, column), unit in zip(cells, units, strict=True)
