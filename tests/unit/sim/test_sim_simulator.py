@@ -128,6 +128,7 @@ def _drive_about(simulator: Simulator, stride: int) -> bytes:
     ).tobytes()
 
 
+@pytest.mark.slow
 def test_the_same_run_twice_is_equal_bit_for_bit() -> None:
     scene = load_world("arena").with_robot(COURSE)
     first = Simulator(scene, FREE)
@@ -138,6 +139,7 @@ def test_the_same_run_twice_is_equal_bit_for_bit() -> None:
     assert _drive_about(first, 100) == end
 
 
+@pytest.mark.slow
 def test_looking_changes_nothing() -> None:
     scene = load_world("arena").with_robot(COURSE)
     plain, watched = Simulator(scene, FREE), Simulator(scene, FREE)
