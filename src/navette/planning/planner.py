@@ -25,6 +25,9 @@ from navette.planning.route import GridRouter
 
 # Share of the goal tolerance by which a route may simply be cut short.
 _CUT_SHARE = 0.5
+# From this many times the straight line (and some) on, a way counts as long, and one
+# with the tight margin is taken if it costs less than this share.
+_LONG_WAY, _LONG_WAY_M, _SQUEEZE_SHARE = 1.5, 4.0, 0.6
 # Margins of clearance at the path's end: robots stop a little short or long.
 _ROOMY_END = 2.0
 
@@ -100,17 +103,22 @@ class Planner:
     def plan(self, start: Pose2, goal: Goal) -> Plan:
         """A path from ``start`` to ``goal``, or the reason why there is none.
 
-        Where the body does not fit with its margin, the tight margin is tried.
+        Where the body does not fit with its margin, or only a long way round, the
+        tight margin is tried.
         """
         refused = self._refusal(start, goal)
         if refused is not None:
             return Plan(refused)
         plan = self._plan_with(self.params.clearance_margin_m, start, goal)
         tight = self.params.tight_margin_m
-        if plan.outcome.has_path or tight >= self.params.clearance_margin_m:
+        direct = math.dist((start.x, start.y), (goal.x, goal.y))
+        if tight >= self.params.clearance_margin_m or (
+            plan.outcome.has_path and plan.cost <= _LONG_WAY * direct + _LONG_WAY_M
+        ):
             return plan
         squeezed = self._plan_with(tight, start, goal)
-        return squeezed if squeezed.outcome.has_path else plan
+        worth = squeezed.cost < _SQUEEZE_SHARE * plan.cost
+        return squeezed if squeezed.outcome.has_path and worth else plan
 
     def plan_on_grid(self, start: Pose2, goal: Goal) -> Plan | None:
         """A path that the grid's search alone finds, with the full margin, or None.

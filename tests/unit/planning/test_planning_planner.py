@@ -165,6 +165,19 @@ def test_a_gap_too_tight_for_the_margin_is_taken_with_the_tight_one() -> None:
     assert plan.outcome is Outcome.NO_PATH
 
 
+def test_a_squeeze_is_weighed_against_a_long_way_round() -> None:
+    occupancy, spec = empty_map(30, 8)
+    fill(occupancy, spec, (0, 26), (4, 4.2))
+    fill(occupancy, spec, (3, 3.7), (4, 4.2), 0)
+    params = PlannerParams(clearance_margin_m=0.25, tight_margin_m=0.05)
+    made = planner(occupancy, spec, params)
+    across = made.plan(Pose2(3.3, 2, math.pi / 2), Goal(3.3, 6))
+    assert across.margin_m == 0.05
+    assert across.poses[:, 0].max() < 5
+    far = made.plan(Pose2(24, 2, math.pi / 2), Goal(24, 6))
+    assert far.margin_m == 0.25
+
+
 def test_the_course_robot_keeps_room_to_turn_where_there_is_room(
     course: Planner,
 ) -> None:
