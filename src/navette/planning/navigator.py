@@ -29,6 +29,8 @@ _STOP = np.empty((0, 3))
 _STANDING_SHARE = 0.5
 # A new way must also be this much shorter: plans differ by centimetres anyway.
 _WORTH_SWITCHING_M = 0.5
+# Metres of progress from which on a path is one that is being driven.
+_SET_OUT_M = 0.1
 # Better ways are looked for this often, if the map became cheaper anywhere.
 _COMPARE_PERIOD_NS = 2_000_000_000
 # Nearer to the path's end than this, arriving is looked for with every odometry.
@@ -148,7 +150,9 @@ class Navigator:
             self._published = None
             self._replan(robot.pose, self._goal)
         elif progress.off_path_m > self.params.deviation_m or (
-            changed and not self._stands(plan, progress)
+            # Until the robot has set out there is nothing to keep to.
+            changed
+            and (progress.covered < _SET_OUT_M or not self._stands(plan, progress))
         ):
             self._replan(robot.pose, self._goal)
         elif now_ns - self._compared_ns >= _COMPARE_PERIOD_NS:
@@ -205,7 +209,9 @@ class Navigator:
         self._say(Phase.PLANNING, plan=plan.outcome.value)
 
     def _adopt(self, plan: Plan) -> None:
-        replans = self.report.replans + 1 if self.report.plan else 0
+        before = None if self._progress is None else self._progress.poses
+        new = before is None or not np.array_equal(plan.poses, before)
+        replans = self.report.replans + int(new) if self.report.plan else 0
         self._plan, self._progress = plan, PathProgress(plan.poses)
         self._patience.new_path()
         self._publish(plan.poses)

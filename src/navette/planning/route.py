@@ -113,8 +113,8 @@ class GridRouter:
         if room >= comfort:
             return short
         long = turn_in_place(at.x, at.y, at.yaw, to_yaw, long_way=True)
-        better = clearances(long, grid, body, enough_m=comfort).min() > room
-        return long if better else short
+        round_room = clearances(long, grid, body, enough_m=comfort).min()
+        return long if round_room > room + grid.spec.resolution / 2 else short
 
     def turns_first(self, start: Pose2, poses: Poses) -> bool:
         """Whether the robot must turn in place before it follows the poses."""

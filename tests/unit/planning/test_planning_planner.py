@@ -228,3 +228,15 @@ def test_the_same_question_has_the_same_answer() -> None:
         return made.plan(Pose2(-3, 6, 3.1), Goal(-5.3, 6)).poses
 
     np.testing.assert_array_equal(asked(), asked())
+
+
+def test_an_about_turn_goes_the_roomier_way_round() -> None:
+    outline = (0.9, 0.2, -0.2, 0.2, -0.2, -0.2, 0.9, -0.2)
+    occupancy, spec = empty_map(10, 8)
+    fill(occupancy, spec, (4.5, 5.5), (5.05, 5.25))  # a shelf on the left
+    params = PlannerParams(footprint=outline, clearance_margin_m=0.05)
+    made = planner(occupancy, spec, params)
+    for goal_y in (3.9, 4.1):
+        plan = made.plan(Pose2(5, 4, 0), Goal(1, goal_y))
+        swept = plan.poses[np.hypot(*(plan.poses[:, :2] - (5, 4)).T) < 0.01, 2]
+        assert np.sin(swept[1:-1]).max() < 0.1, "past the right, away from the shelf"
