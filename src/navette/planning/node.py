@@ -85,6 +85,7 @@ class PlannerNode(StageNode):
         super().__init__("planner", **kwargs)
         self._tracker = self._new_tracker()
         self._navigator = Navigator(self.params)
+        self._navigator.planner.warm_up()
         self._odometry_ns: int | None = None
         self._status = StatusReporter(self, "/planner/status")
         self._said = ""

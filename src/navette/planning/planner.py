@@ -85,6 +85,19 @@ class Planner:
         self._map = occupancy, spec
         self._grids.clear()
 
+    def warm_up(self) -> None:
+        """Compile or load every kernel, so that the first goal need not wait."""
+        reach = self.footprint.circumscribed_radius
+        spec = GridSpec(reach / 4, 40, 40)
+        other = Planner(self.params)
+        other.set_map(np.zeros(spec.shape, np.int8), spec)
+        start, goal = Pose2(4 * reach, 5 * reach, 0.0), Goal(6 * reach, 5.1 * reach)
+        other.plan(start, goal)
+        DetourPlanner(other.grid(), other.body, self.params, other.router).plan(
+            start, Target(goal.x, goal.y, None, reach), None
+        )
+        nearest_reachable(other.grid(), (20, 20), (goal.x, goal.y), reach, other.body)
+
     @property
     def body(self) -> BodyShape:
         """The body, sampled as finely as the map."""
