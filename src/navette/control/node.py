@@ -53,7 +53,7 @@ class ControlNode(StageNode):
             type="nav_msgs/msg/Odometry",
             role="where the robot is and how it moves",
             rate_hz=10.0,
-            timeout_s=0.25,
+            timeout_s=0.14,
             callback="on_odometry",
         ),
         Input(
@@ -61,7 +61,7 @@ class ControlNode(StageNode):
             type="nav_msgs/msg/OccupancyGrid",
             role="obstacles that the body must clear",
             rate_hz=10.0,
-            timeout_s=0.25,
+            timeout_s=0.19,
             callback="on_costmap",
         ),
         Input(

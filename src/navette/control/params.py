@@ -114,10 +114,10 @@ class ControlParams(Params):
     )
 
     odometry_timeout_s: float = param(
-        0.25, "odometry older than this stops the robot", unit="s", above=0.0
+        0.14, "odometry older than this stops the robot", unit="s", above=0.0
     )
     costmap_timeout_s: float = param(
-        0.25, "costmap older than this stops the robot", unit="s", above=0.0
+        0.19, "costmap older than this stops the robot", unit="s", above=0.0
     )
     planner_timeout_s: float = param(
         2.0, "no /path or /planner/status for this long stops the robot; 0: never",

@@ -53,14 +53,22 @@ class SpeedRamp:
         """Speed for the next control period."""
         if self._expires_ns is not None and now_ns >= self._expires_ns:
             self._target, self._expires_ns = _STOP, None
-        dv = self.params.max_accel_mps2 * CONTROL_PERIOD_S
         dw = self.params.max_yaw_accel_radps2 * CONTROL_PERIOD_S
         v, w = self.speed.linear, self.speed.angular
         self.speed = BodySpeed(
-            v + min(max(self._target.linear - v, -dv), dv),
+            self._next_linear(v, self._target.linear),
             w + min(max(self._target.angular - w, -dw), dw),
         )
         return self.speed
+
+    def _next_linear(self, v: float, target: float) -> float:
+        """Brake towards zero, accelerate away from it; turning round stops first."""
+        if v * (target - v) < 0:
+            brake = self.params.max_decel_mps2 * CONTROL_PERIOD_S
+            wanted = target if v * target > 0 else 0.0
+            return v + min(max(wanted - v, -brake), brake)
+        dv = self.params.max_accel_mps2 * CONTROL_PERIOD_S
+        return v + min(max(target - v, -dv), dv)
 
     def constant_until_ns(self) -> float:
         """Time before which :meth:`advance` would change nothing (0 = ramping)."""

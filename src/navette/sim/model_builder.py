@@ -176,6 +176,10 @@ class ModelBuilder:
                 trntype=mujoco.mjtTrn.mjTRN_JOINT,
             )
             servo.set_to_velocity(kv=load / _SERVO_TIME_S)
+            # A geared motor's rotor weighs on the wheel about as much as the load.
+            # Without it the implicit integrator, stiff servo and light wheel make
+            # the wheel slip when it brakes, and the body rocks.
+            self.spec.joint(f"{robot.name}/{wheel.joint}").armature = load
             if drive.max_wheel_torque is not None:
                 servo.forcelimited = True
                 servo.forcerange = [-drive.max_wheel_torque, drive.max_wheel_torque]

@@ -31,7 +31,10 @@ class SimParams(Params):
     max_speed_mps: float = param(1.0, "fastest forward", unit="m/s", above=0.0)
     max_reverse_speed_mps: float = param(0.5, "fastest backward", unit="m/s", above=0.0)
     max_yaw_rate_radps: float = param(1.0, "fastest turn", unit="rad/s", above=0.0)
-    max_accel_mps2: float = param(1.0, "change of speed", unit="m/s²", above=0.0)
+    max_accel_mps2: float = param(1.0, "growth of speed", unit="m/s²", above=0.0)
+    max_decel_mps2: float = param(
+        4.0, "decrease of speed: how hard the brakes are", unit="m/s²", above=0.0
+    )
     max_yaw_accel_radps2: float = param(
         2.0, "change of yaw rate", unit="rad/s²", above=0.0
     )

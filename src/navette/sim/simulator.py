@@ -175,7 +175,8 @@ class Simulator:
         motion = self.motion()
         reach = self._probe.reach
         fastest = math.hypot(*motion.linear) + math.hypot(*motion.angular) * reach
-        growth = self.params.max_accel_mps2 + self.params.max_yaw_accel_radps2 * reach
+        linear_growth = max(self.params.max_accel_mps2, self.params.max_decel_mps2)
+        growth = linear_growth + self.params.max_yaw_accel_radps2 * reach
         period_s = _WATCH_PERIOD_NS * 1e-9
         margin = 1.5 * period_s * (fastest + growth * period_s) + 0.01
         self._near = clearance.distance < margin
