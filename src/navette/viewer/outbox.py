@@ -21,7 +21,7 @@ class Outbox:
         *,
         depth: int = 16,
         stream_bytes: int = 4_000_000,
-        control_bytes: int = 16_000_000,
+        control_bytes: int = 64_000_000,
     ) -> None:
         self._depth = depth
         self._stream_bytes = stream_bytes

@@ -10,7 +10,6 @@ import contextlib
 import errno
 import logging
 import threading
-from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
 from http import HTTPStatus
@@ -25,8 +24,10 @@ from websockets.typing import Subprotocol
 from navette.errors import InvalidValueError, NavetteError
 from navette.viewer.frames import SUBPROTOCOLS
 from navette.viewer.hub import Hub
+from navette.viewer.offers import OfferQueue
 from navette.viewer.outbox import Outbox
-from navette.viewer.session import Session, Watch
+from navette.viewer.peer import Peer
+from navette.viewer.session import Watch
 from navette.viewer.web import Answer, Gate, Site, refuse
 
 # Connections that come, go and fail to open are every day's business: only what is
@@ -36,9 +37,8 @@ _log.setLevel(logging.ERROR)
 _log.addFilter(lambda record: record.msg != "opening handshake failed")
 
 _MAX_FRAME = 16 * 2**20  # bytes of one client frame; a larger one ends the connection
-_MAX_PENDING = 64  # requests of one client that may wait for the program
-_MAX_WAITING = 64 * 2**20  # bytes on their way from the program to this thread
 _SEND_BUFFER = 256 * 1024  # bytes in flight per client before frames queue up
+_OPEN_S = 2.0  # for a request to come; browsers open connections in advance
 _CLOSE_S = 1.0
 
 
@@ -77,9 +77,8 @@ class ViewerServer:
         )
         self._started: Future[None] = Future()
         self._stop = asyncio.Event()
-        self._flush = _Flush(self._loop, self._hub.message, self._wake_clients)
-        self._wakes: dict[int, asyncio.Event] = {}
-        self._drained: dict[int, asyncio.Event] = {}
+        self._offers = OfferQueue(self._loop, self._hub.message, self._wake_clients)
+        self._peers: set[Peer] = set()
 
     # -- any thread ------------------------------------------------------------
 
@@ -108,7 +107,7 @@ class ViewerServer:
 
     def offer(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
         """Send a message to whoever watches; the oldest go when too many wait."""
-        self._flush.add(watch, stamp_ns, payload)
+        self._offers.add(watch, stamp_ns, payload)
 
     # -- socket thread ---------------------------------------------------------
 
@@ -132,7 +131,7 @@ class ViewerServer:
         return InvalidValueError(f"{where}: {error.strerror or error}")
 
     async def _serve(self) -> None:
-        async with serve(
+        server = await serve(
             self._client,
             self._host,
             self.port,
@@ -141,14 +140,25 @@ class ViewerServer:
             compression=None,  # costs more time than loopback gains
             max_size=_MAX_FRAME,
             write_limit=_SEND_BUFFER,
+            open_timeout=_OPEN_S,
             close_timeout=_CLOSE_S,
             server_header=None,
             logger=_log,
-        ) as server:
-            self.port = _port_of(server)
-            self._started.set_result(None)
-            self._tick()
-            await self._stop.wait()
+        )
+        self.port = _port_of(server)
+        self._started.set_result(None)
+        self._tick()
+        await self._stop.wait()
+        await self._end(server)
+
+    async def _end(self, server: Server) -> None:
+        """Say good-bye; cut off who does not answer."""
+        server.close()
+        ended = asyncio.create_task(server.wait_closed())
+        await asyncio.wait([ended], timeout=_CLOSE_S)
+        for peer in self._peers:
+            peer.abort()
+        await ended
 
     def _answer(
         self, connection: ServerConnection, request: Request
@@ -172,102 +182,44 @@ class ViewerServer:
     async def _client(self, connection: ServerConnection) -> None:
         outbox = Outbox()
         session = self._hub.join(outbox)
-        wake = self._wakes[session.id] = asyncio.Event()
-        self._drained[session.id] = asyncio.Event()
-        wake.set()
+        peer = Peer(connection, session, outbox)
+        self._peers.add(peer)
+        peer.wake()
         try:
             async with asyncio.TaskGroup() as group:
-                sender = group.create_task(self._send(connection, outbox, wake))
-                await self._receive(connection, session)
+                sender = group.create_task(peer.send())
+                await self._receive(peer)
                 sender.cancel()
         finally:
+            self._peers.discard(peer)
             self._hub.leave(session)
-            del self._wakes[session.id], self._drained[session.id]
 
-    async def _receive(self, connection: ServerConnection, session: Session) -> None:
-        drained = self._drained[session.id]
-        wake = self._wakes[session.id]
+    async def _receive(self, peer: Peer) -> None:
         with contextlib.suppress(ConnectionClosed):  # how every client ends
-            async for frame in connection:
-                self._hub.receive(session, frame)
-                wake.set()
-                while session.pending >= _MAX_PENDING:
-                    # Not reading further makes the client's own socket push back.
-                    drained.clear()
-                    await drained.wait()
-
-    async def _send(
-        self, connection: ServerConnection, outbox: Outbox, wake: asyncio.Event
-    ) -> None:
-        while True:
-            await wake.wait()
-            wake.clear()
-            while outbox:
-                if outbox.overflowed:
-                    await connection.close(1008, "does not read what it is sent")
+            async for frame in peer.connection:
+                if peer.gone:
                     return
-                try:
-                    await connection.send(outbox.pop())
-                except ConnectionClosed:
-                    return
+                self._hub.receive(peer.session, frame)
+                peer.wake()
+                # Not reading further makes the client's own socket push back.
+                await peer.wait_for_answers()
 
     def _call(self, function: Callable[..., None], *args: Any) -> None:
         function(*args)
         self._wake_clients()
-        for drained in self._drained.values():
-            drained.set()
+        for peer in self._peers:
+            peer.look_at_answers()
 
     def _wake_clients(self) -> None:
-        for wake in self._wakes.values():
-            wake.set()
+        for peer in self._peers:
+            peer.wake()
 
     def _tick(self) -> None:
-        if self._wakes:
+        if self._peers:
             self._hub.set_now(self._now_ns())
             self._wake_clients()
         if not self._stop.is_set():
             self._loop.call_later(self._tick_s, self._tick)
-
-
-class _Flush:
-    """Messages on their way to the socket thread; at most one wake-up is under way.
-
-    Bounded: when more than ``_MAX_WAITING`` bytes wait, the oldest are dropped.
-    """
-
-    def __init__(
-        self,
-        loop: asyncio.AbstractEventLoop,
-        deliver: Callable[[Watch, int, bytes], None],
-        delivered: Callable[[], None],
-    ) -> None:
-        self._loop = loop
-        self._deliver = deliver
-        self._delivered = delivered
-        self._lock = threading.Lock()
-        self._waiting: deque[tuple[Watch, int, bytes]] = deque()
-        self._size = 0
-        self._scheduled = False
-
-    def add(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
-        with self._lock:
-            self._waiting.append((watch, stamp_ns, payload))
-            self._size += len(payload)
-            while self._size > _MAX_WAITING and len(self._waiting) > 1:
-                self._size -= len(self._waiting.popleft()[2])
-            if self._scheduled or self._loop.is_closed():
-                return
-            self._scheduled = True
-        self._loop.call_soon_threadsafe(self._run)
-
-    def _run(self) -> None:
-        with self._lock:
-            batch, self._waiting = self._waiting, deque()
-            self._size = 0
-            self._scheduled = False
-        for offer in batch:
-            self._deliver(*offer)
-        self._delivered()
 
 
 def _offers_subprotocol(headers: Headers) -> bool:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from viewer_harness import PATIENCE_S, Client, Program
+from viewer_harness import PATIENCE_S, Client, DeafClient, Program
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from navette.errors import InvalidValueError
@@ -19,7 +19,7 @@ from navette.msgs.geometry_msgs.msg import Point, PointStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import Image
 from navette.msgs.std_msgs.msg import Header, String
-from navette.runtime import Context, Node, Parameter, VirtualClock
+from navette.runtime import Context, Node, Parameter, Stopwatch, VirtualClock
 from navette.runtime.qos import QoSDurabilityPolicy, QoSProfile
 from navette.viewer.node import ViewerNode
 
@@ -318,6 +318,57 @@ def test_a_client_that_never_reads_loses_frames_not_the_robot(
             got.append(deserialize(slow.message(1)[1], Image).height)
         assert len(got) < frames
         assert got == sorted(got)
+
+
+def test_a_client_that_asks_and_never_reads_is_let_go(tmp_path: Path) -> None:
+    (tmp_path / "large").write_bytes(bytes(20_000_000))
+    with (
+        Program(Talker, asset_folders={"navette": tmp_path}) as program,
+        Client(program.address) as other,
+        DeafClient(program.address) as deaf,
+    ):
+        for request in range(6):
+            deaf.send(op="fetchAsset", uri="package://navette/large", requestId=request)
+        while program.viewer.client_count > 1:
+            other.get_parameters()
+        assert other.get_parameters("/talker.depth") == {"/talker.depth": 3}
+
+
+def test_closing_does_not_wait_for_a_client_that_never_reads(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("navette.viewer.server._CLOSE_S", 0.05)
+    stopwatch = Stopwatch()
+    with Program(Talker) as program, DeafClient(program.address) as deaf:
+        talker = program.nodes[0]
+        assert isinstance(talker, Talker)
+        image = Image(data=np.zeros(3_000_000, np.uint8))
+        with Client(program.address) as client:
+            camera = client.wait_for_topic("/camera")["id"]
+        deaf.send(op="subscribe", subscriptions=[{"id": 1, "channelId": camera}])
+        while not program.do(talker.camera.get_subscription_count):
+            pass
+        program.do(lambda: [talker.camera.publish(image) for _ in range(5)])
+        program.close()
+    assert stopwatch.elapsed_s < 5.0
+
+
+def test_closing_does_not_wait_for_answers_that_never_come(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A client keeps asking when the executor has stopped already."""
+    monkeypatch.setattr("navette.viewer.server._CLOSE_S", 0.05)
+    with Program(Talker) as program, Client(program.address) as client:
+        program.stop()
+        for _ in range(200):
+            client.send(op="getParameters", parameterNames=[])
+        client.send(op="nonsense")
+        for _ in range(2):
+            client.wait_for(lambda f: isinstance(f, tuple) and f[0] == 2)
+        program.close()
+        # Held back behind the requests that nobody answered.
+        client.read_to_the_end()
+        assert client.statuses == []
 
 
 def get(program: Program, path: str, **headers: str) -> tuple[int, str, bytes]:

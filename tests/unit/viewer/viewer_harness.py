@@ -1,10 +1,12 @@
 """A running program with a live view, and a client that knows only the protocol."""
 
 import json
+import socket
 import struct
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack, suppress
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
@@ -21,12 +23,21 @@ PATIENCE_S = 10.0  # only a broken test waits this long
 class Program:
     """Nodes and a viewer on a free port, spun by a thread."""
 
-    def __init__(self, *make_nodes: Callable[[Context], Node], **params: Any) -> None:
+    def __init__(
+        self,
+        *make_nodes: Callable[[Context], Node],
+        asset_folders: Mapping[str, Path] | None = None,
+        **params: Any,
+    ) -> None:
         self.context = Context(clock=SystemClock())
         self.executor = Executor(context=self.context)
         self.nodes = [make(self.context) for make in make_nodes]
         overrides = [Parameter(k, value=v) for k, v in {"port": 0, **params}.items()]
-        self.viewer = ViewerNode(context=self.context, parameter_overrides=overrides)
+        self.viewer = ViewerNode(
+            context=self.context,
+            asset_folders=asset_folders,
+            parameter_overrides=overrides,
+        )
         for node in (*self.nodes, self.viewer):
             self.executor.add_node(node)
         self.failure: BaseException | None = None
@@ -50,11 +61,15 @@ class Program:
         assert done.wait(PATIENCE_S), "the executor does not run"
         return results[0]
 
-    def close(self) -> None:
+    def stop(self) -> None:
+        """No more callbacks; the viewer's own thread goes on."""
         self.executor.stop()
         self._thread.join()
+
+    def close(self) -> None:
+        self.stop()
         self.viewer.close()
-        self.context.shutdown()
+        self.context.try_shutdown()
         if self.failure is not None:
             raise self.failure
 
@@ -173,6 +188,44 @@ class Client:
         self._stack.close()
 
     def __enter__(self) -> "Client":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+class DeafClient:
+    """Opens the socket and speaks, but never reads again."""
+
+    def __init__(self, address: str) -> None:
+        host, _, port = address.partition(":")
+        self._socket = socket.create_connection((host, int(port)))
+        request = [
+            "GET / HTTP/1.1",
+            f"Host: {address}",
+            "Upgrade: websocket",
+            "Connection: Upgrade",
+            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+            "Sec-WebSocket-Version: 13",
+            "Sec-WebSocket-Protocol: foxglove.sdk.v1",
+        ]
+        self._socket.sendall(("\r\n".join(request) + "\r\n\r\n").encode())
+        assert self._socket.recv(12) == b"HTTP/1.1 101"
+
+    def send(self, **document: Any) -> None:
+        text = json.dumps(document).encode()
+        # A masked text frame (RFC 6455, 5.2); a mask of zeros changes nothing.
+        self._socket.sendall(struct.pack(">BBH4x", 0x81, 0x80 | 126, len(text)) + text)
+
+    def close(self) -> None:
+        self._socket.close()
+
+    def __enter__(self) -> "DeafClient":
         return self
 
     def __exit__(
