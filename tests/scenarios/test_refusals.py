@@ -32,8 +32,8 @@ def speed(simulation: Simulation) -> float:
 @pytest.mark.parametrize(
     ("x", "y", "frame", "result"),
     [
-        (-2.6, 0.0, "sim_world", "goal_blocked"),  # just inside a cylinder
-        (-14.8, 0.0, "sim_world", "goal_blocked"),  # in the wall
+        (-14.8, 0.0, "sim_world", "goal_blocked"),  # in a wall
+        (-14.7, 5.0, "sim_world", "goal_blocked"),  # too near to a wall
         (1e4, 0.0, "sim_world", "goal_outside_map"),
         (math.nan, 0.0, "sim_world", "goal_not_finite"),
         (1.0, math.inf, "sim_world", "goal_not_finite"),
@@ -60,8 +60,10 @@ def test_a_goal_that_cannot_be_is_named_and_the_next_one_driven(
 
 @pytest.mark.slow
 def test_a_goal_beyond_closed_walls_has_no_path(simulate: MakeSimulation) -> None:
-    room = World("room").add_walls((8.0, 8.0))
-    simulation = simulate(scene=room.scene(), goals=((6.0, 0.0),), max_time_s=20.0)
+    room = World("room").add_walls((10.0, 10.0)).scene()
+    simulation = simulate(
+        scene=room, robot="course", goals=((8.0, 0.0),), max_time_s=20.0
+    )
     simulation.run()
     (outcome,) = simulation.summary().goals
     assert outcome.result in {"no_path", "goal_blocked", "goal_outside_map"}

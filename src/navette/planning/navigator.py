@@ -58,6 +58,7 @@ class Navigator:
         self._published: Poses | None = None
         self._to_publish: Poses | None = None
         self._stepped_ns = self._compared_ns = 0
+        self._set_out = False
 
     def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
         """Take a map (H, W); the next step looks at what it means for the path."""
@@ -71,6 +72,7 @@ class Navigator:
             self._finish(Outcome.GOAL_NOT_FINITE)
             return
         self._goal = goal
+        self._set_out = False
         self._patience.begin(now_ns)
         self._say(Phase.PLANNING, state=State.WAITING_FOR_ROBOT)
 
@@ -141,6 +143,7 @@ class Navigator:
         assert self._goal is not None, "only goals have paths"
         progress.update(robot.pose)
         self._patience.note(progress.covered, now_ns)
+        self._set_out |= progress.covered >= _SET_OUT_M
         changed, self._map_changed = self._map_changed, False
         if self._patience.no_progress(now_ns):
             if self._patience.exhausted:
@@ -152,7 +155,7 @@ class Navigator:
         elif progress.off_path_m > self.params.deviation_m or (
             # Until the robot has set out there is nothing to keep to.
             changed
-            and (progress.covered < _SET_OUT_M or not self._stands(plan, progress))
+            and (not self._set_out or not self._stands(plan, progress))
         ):
             self._replan(robot.pose, self._goal)
         elif now_ns - self._compared_ns >= _COMPARE_PERIOD_NS:
@@ -201,7 +204,9 @@ class Navigator:
             self._adopt(plan)
             return
         self._patience.spend()
-        if first or self._patience.exhausted:
+        # A robot that has not set out has nothing to lose: one more look is enough.
+        hopeless = first or (not self._set_out and self._patience.spent > 1)
+        if hopeless or self._patience.exhausted:
             self._finish(plan.outcome)
             return
         # The map may mend, or the robot see its way: try again while patience lasts.

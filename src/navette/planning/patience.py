@@ -27,7 +27,8 @@ class Patience:
         self._since_ns = self._goal_since_ns = now_ns
         self._resting_since_ns: int | None = None
         self._mark_m = 0.0
-        self._spent = 0
+        #: Attempts used up since the last progress.
+        self.spent = 0
 
     def new_path(self) -> None:
         """Progress is counted from the new path's start; the clock runs on."""
@@ -36,24 +37,24 @@ class Patience:
     def note(self, covered_m: float, now_ns: int) -> None:
         """Take how much of the path lies behind the robot."""
         if covered_m >= self._mark_m + self._step_m:
-            self._mark_m, self._since_ns, self._spent = covered_m, now_ns, 0
+            self._mark_m, self._since_ns, self.spent = covered_m, now_ns, 0
 
     def no_progress(self, now_ns: int) -> bool:
         """Whether the time for a bit of progress is over; starts it anew if so."""
         if now_ns - self._since_ns < self._timeout_ns:
             return False
         self._since_ns = now_ns
-        self._spent += 1
+        self.spent += 1
         return True
 
     def spend(self) -> None:
         """Count a plan that failed."""
-        self._spent += 1
+        self.spent += 1
 
     @property
     def exhausted(self) -> bool:
         """Whether all attempts without progress are used up."""
-        return self._spent > self._attempts
+        return self.spent > self._attempts
 
     def goal_timed_out(self, now_ns: int) -> bool:
         """Whether the goal has taken too long."""
