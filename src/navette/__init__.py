@@ -25,7 +25,7 @@ _RUNTIME_NAMES = frozenset(
     get_default_context get_global_executor init ok qos_profile_sensor_data
     qos_profile_system_default remove_ros_args shutdown spin spin_once
     spin_until_future_complete try_shutdown
-    """.split()  # noqa: SIM905 - reads better than sixty quoted strings
+    """.split()
 )
 
 __all__ = ["__version__", *sorted(_RUNTIME_NAMES)]

@@ -1,4 +1,4 @@
-"""Goals that cannot be: a named result within a second, robot at rest, program alive."""
+"""Goals that cannot be: named within a second, robot at rest, program alive."""
 
 import math
 

@@ -3,13 +3,16 @@
 import math
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from navette._version import __version__
 from navette.cli.arguments import join_pairs, parse_goal, parse_speed
 from navette.errors import NavetteError
+
+if TYPE_CHECKING:
+    from navette.launch import RunOptions
 
 app = typer.Typer(
     name="navette",
@@ -168,7 +171,7 @@ def sim(
     _run(options, as_json=as_json)
 
 
-def _run(options: object, *, as_json: bool) -> None:
+def _run(options: "RunOptions", *, as_json: bool) -> None:
     from navette.cli.running import run_simulation
 
     raise typer.Exit(run_simulation(options, as_json=as_json))

@@ -29,7 +29,7 @@ from navette.msgs.geometry_msgs.msg import Pose, Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.runtime.odometry import PoseTracker
 from navette.runtime.stage import Input, Output, StageNode
-from navette.runtime.status import StatusReporter
+from navette.runtime.status import StatusReporter, status_output
 from navette.runtime.time import stamp_to_ns
 
 _NEVER = -(1 << 62)
@@ -82,6 +82,7 @@ class ControlNode(StageNode):
             role="velocity command",
             rate_hz=20.0,
         ),
+        status_output("/control/status"),
     )
 
     def __init__(self, **kwargs: Any) -> None:

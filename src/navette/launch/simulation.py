@@ -24,7 +24,6 @@ from navette.sim import Scene
 from navette.sim.node import SimNode
 from navette.viewer.node import ViewerNode
 
-
 HALT_NS = 1_000_000_000
 """Simulated time that a robot is given to brake after a node raised."""
 

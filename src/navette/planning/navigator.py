@@ -154,8 +154,7 @@ class Navigator:
             self._replan(robot.pose, self._goal)
         elif progress.off_path_m > self.params.deviation_m or (
             # Until the robot has set out there is nothing to keep to.
-            changed
-            and (not self._set_out or not self._stands(plan, progress))
+            changed and (not self._set_out or not self._stands(plan, progress))
         ):
             self._replan(robot.pose, self._goal)
         elif now_ns - self._compared_ns >= _COMPARE_PERIOD_NS:

@@ -28,7 +28,7 @@ from navette.planning.planner import Goal
 from navette.planning.reports import Phase, Report, RobotState
 from navette.runtime import Input, Output, StageNode, ns_to_stamp
 from navette.runtime.odometry import PoseTracker
-from navette.runtime.status import StatusReporter
+from navette.runtime.status import StatusReporter, status_output
 from navette.runtime.tf import TransformException
 
 # How often the age of the odometry is looked at.
@@ -77,6 +77,7 @@ class PlannerNode(StageNode):
             type="nav_msgs/msg/Path",
             role="what to follow; empty = stop",
         ),
+        status_output("/planner/status"),
     )
 
     params: PlannerParams

@@ -61,7 +61,7 @@ from navette.runtime.rate import Rate
 from navette.runtime.ros_clock import Clock, JumpThreshold, ROSClock, TimeJump
 from navette.runtime.stage import Input, Output, StageNode
 from navette.runtime.stage_params import declare_params
-from navette.runtime.status import StatusReporter
+from navette.runtime.status import StatusReporter, status_output
 from navette.runtime.subscription import MessageInfo, Subscription
 from navette.runtime.tf import (
     Buffer,
@@ -146,6 +146,7 @@ __all__ = [
     "Output",
     "StageNode",
     "StatusReporter",
+    "status_output",
     # transforms
     "Buffer",
     "StaticTransformBroadcaster",

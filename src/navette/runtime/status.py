@@ -1,13 +1,24 @@
 """The state of a stage on the wire: a named result, at once and then regularly."""
 
+from functools import partial
 from typing import Any
 
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
-from navette.runtime.node import Node
-from navette.runtime.qos import DurabilityPolicy, QoSProfile
+from navette.runtime.stage import Output, StageNode
 
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _PERIOD_S = 0.5
+
+
+def status_output(topic: str) -> Output:
+    """The output that a stage declares for its :class:`StatusReporter`."""
+    return Output(
+        topic=topic,
+        type="diagnostic_msgs/msg/DiagnosticStatus",
+        role="what the stage is doing, or why not: a named state with figures",
+        rate_hz=1 / _PERIOD_S,
+        depth=1,
+        latched=True,
+    )
 
 
 class StatusReporter:
@@ -17,14 +28,14 @@ class StatusReporter:
 
     Args:
         node: publishes and gives its name.
-        topic: such as ``/planner/status``.
+        topic: one of the node's outputs, made by :func:`status_output`.
     """
 
     OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
 
-    def __init__(self, node: Node, topic: str) -> None:
+    def __init__(self, node: StageNode, topic: str) -> None:
         self._status = DiagnosticStatus(name=node.get_name())
-        self._publisher = node.create_publisher(DiagnosticStatus, topic, _LATCHED)
+        self._publish = partial(node.publish, topic)
         self._timer = node.create_timer(_PERIOD_S, self._repeat)
 
     @property
@@ -41,11 +52,11 @@ class StatusReporter:
             KeyValue(key=key, value=_text(value)) for key, value in details.items()
         ]
         if is_new:
-            self._publisher.publish(status)
+            self._publish(status)
 
     def _repeat(self) -> None:
         if self._status.message:
-            self._publisher.publish(self._status)
+            self._publish(self._status)
 
 
 def _text(value: Any) -> str:
