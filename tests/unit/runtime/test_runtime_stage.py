@@ -8,7 +8,15 @@ import pytest
 from navette.errors import CallbackError, ParameterError, UnknownNameError
 from navette.msgs.std_msgs.msg import String
 from navette.params import Params, param
-from navette.runtime import Input, Node, Output, Parameter, StageNode, StatusReporter
+from navette.runtime import (
+    Input,
+    Node,
+    Output,
+    Parameter,
+    StageNode,
+    StatusReporter,
+    status_output,
+)
 from navette.runtime.stage_params import declare_params
 from navette.testing import GraphHarness
 
@@ -54,6 +62,7 @@ class Echo(StageNode):
     )
     OUTPUTS = (
         Output(topic="out", type="std_msgs/msg/String", role="repeated", latched=True),
+        status_output("/echo/status"),
     )
 
     def __init__(self, **kwargs: Any) -> None:
@@ -130,7 +139,7 @@ def test_liveliness_by_arrival() -> None:
 
 def test_unknown_output_is_named() -> None:
     graph, node = harness()
-    with pytest.raises(UnknownNameError, match="output 'outt'; known: out"):
+    with pytest.raises(UnknownNameError, match="output 'outt'; known: /echo/status, out"):
         node.publish("outt", String())
     assert not node.has_listeners("out")
     graph.collect("out", String)
