@@ -8,4 +8,4 @@ __all__ = ["RunOptions", "RunSummary", "demo_goals"]
 
 def demo_goals() -> tuple[tuple[float, float], ...]:
     """Where ``navette demo`` drives at once: a tour of the built-in arena."""
-    return ((6.5, -7.5), (8.2, 7.8), (-5.0, 8.3), (-7.5, -2.0))
+    return ((6.2, -3.4), (8.2, 7.8), (-5.0, 8.3), (-7.5, -2.0))
