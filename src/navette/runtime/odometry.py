@@ -9,6 +9,8 @@ from navette.runtime.node import Node
 from navette.runtime.tf import Buffer, TransformException, TransformListener
 from navette.runtime.time import stamp_to_ns
 
+_HERE = Pose2(0.0, 0.0, 0.0)
+
 
 class PoseTracker:
     """Turns odometry into poses of the base on the map, and keeps a short history.
@@ -67,7 +69,9 @@ class PoseTracker:
             return False
         position, q = odometry.pose.pose.position, odometry.pose.pose.orientation
         odom_T_child = Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
-        map_T_base = map_T_odom @ odom_T_child @ child_T_base
+        map_T_base = odom_T_child @ child_T_base
+        if map_T_odom is not _HERE:
+            map_T_base = map_T_odom @ map_T_base
         total = sum(map_T_base)
         if total - total != 0.0:  # inf or nan
             self._complain("odometry is not finite")
@@ -126,7 +130,7 @@ class PoseTracker:
     def _odom_in_map(self, frame: str) -> Pose2 | None:
         """map_T_odom, the newest."""
         if frame == self.map_frame:
-            return Pose2(0.0, 0.0, 0.0)
+            return _HERE
         try:
             return self.buffer.lookup(self.map_frame, frame, 0).to_pose2()
         except TransformException as error:

@@ -68,7 +68,7 @@ def _run(
 
 
 def test_rates_and_stamps() -> None:
-    run = _run()
+    run = _run(odometry_rate_hz=50.0, tf_rate_hz=50.0)
     run.listen("/lidar", "/odom/filtered", "/clock", "/tf", "/imu", "/ground_truth")
     run.spin(1.0)
     counts = {topic: len(messages) for topic, messages in run.heard.items()}
