@@ -85,6 +85,8 @@ class ControlNode(StageNode):
         status_output("/control/status"),
     )
 
+    _zeros_left = 0  # also while half made
+
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("control", **kwargs)
         params: ControlParams = self.params
@@ -97,7 +99,6 @@ class ControlNode(StageNode):
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrival of it, of the one used
         self._planner_ns = _NEVER
-        self._zeros_left = 0
         self._ticks_to_report = 0
         self._status = StatusReporter(self, "/control/status")
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)

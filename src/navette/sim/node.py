@@ -109,6 +109,8 @@ class SimNode(StageNode):
         ),
     )
 
+    _forget_graph: Callable[[], None] | None = None  # also while half made
+
     def __init__(
         self,
         scene: Scene,
@@ -135,7 +137,8 @@ class SimNode(StageNode):
         self._wake_and_rest()
 
     def destroy_node(self) -> None:
-        self._forget_graph()
+        if self._forget_graph is not None:
+            self._forget_graph()
         super().destroy_node()
 
     def reset(self) -> None:

@@ -1,0 +1,149 @@
+"""The command as a person types it: real processes, real sockets."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from navette import __version__
+
+NAVETTE = [sys.executable, "-c", "from navette.cli import main; main()"]
+SUMMARY_KEYS = {
+    "goals",
+    "contacts",
+    "min_clearance_m",
+    "sim_time_s",
+    "wall_time_s",
+    "real_time_factor",
+    "seed",
+}
+
+
+def navette(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*NAVETTE, *arguments], capture_output=True, text=True, check=False, timeout=120
+    )
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        return int(probe.getsockname()[1])
+
+
+@pytest.mark.slow
+def test_version_and_help() -> None:
+    assert navette("--version").stdout == f"navette {__version__}\n"
+    shown = navette("sim", "--help")
+    assert shown.returncode == 0
+    for option in ("--robot", "--start", "--goal", "--headless", "--speed", "--seed",
+                   "--record", "--params", "--max-time", "--json"):  # fmt: skip
+        assert option in shown.stdout
+
+
+@pytest.mark.slow
+def test_a_drive_prints_one_json_object_and_exits_with_zero() -> None:
+    done = navette(
+        "sim", "course", "--start", "-6", "0", "-90", "--goal", "-6", "-3.5",
+        "--goal", "-10", "-2", "--headless", "--json",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    summary = json.loads(done.stdout)
+    assert set(summary) == SUMMARY_KEYS
+    assert [goal["goal"] for goal in summary["goals"]] == [[-6.0, -3.5], [-10.0, -2.0]]
+    assert [goal["result"] for goal in summary["goals"]] == ["reached", "reached"]
+    assert summary["contacts"] == 0
+    assert summary["min_clearance_m"] > 0.1
+
+
+@pytest.mark.slow
+def test_a_goal_that_is_not_reached_gives_another_exit_code() -> None:
+    done = navette("sim", "course", "--goal", "100", "0", "--headless", "--json")
+    assert done.returncode == 1
+    (goal,) = json.loads(done.stdout)["goals"]
+    assert goal["result"] == "goal_outside_map"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["sim", "nowhere"], ["nowhere", "arena", "course"]),
+        (["sim", "--robot", "r2d2"], ["r2d2", "husky", "jackal"]),
+        (["sim", "--goal", "here", "there"], ["here"]),
+        (["sim", "--speed", "fast"], ["--speed", "max"]),
+        (["sim", "--params", "missing.yaml", "--headless"], ["missing.yaml"]),
+        (["sim", "course", "--start", "0", "0", "0", "--headless"], ["inside"]),
+        (["sim", "--record", "no/such/folder/x.mcap", "--headless"], ["x.mcap"]),
+    ],
+)
+def test_a_wrong_argument_is_named_with_what_is_allowed(
+    arguments: list[str], words: list[str]
+) -> None:
+    done = navette(*arguments)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    for word in words:
+        assert word in done.stderr
+
+
+@pytest.mark.slow
+def test_a_broken_world_is_named_with_its_line(tmp_path: Path) -> None:
+    world = tmp_path / "broken.sdf"
+    world.write_text("<sdf version='1.8'>\n  <world name='x'>\n  <model>\n", "utf-8")
+    done = navette("sim", str(world), "--headless")
+    assert done.returncode == 2
+    assert "broken.sdf:" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@contextmanager
+def running_demo(port: int) -> Iterator[subprocess.Popen[str]]:
+    process = subprocess.Popen(
+        [*NAVETTE, "demo", "--port", str(port)], stderr=subprocess.PIPE, text=True
+    )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+        assert process.stderr is not None
+        process.stderr.close()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="signals are not delivered on Windows")
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
+def test_the_demo_drives_shows_its_address_and_ends_cleanly(end: int) -> None:
+    port = free_port()
+    with running_demo(port) as process:
+        assert process.stderr is not None
+        address = f"http://127.0.0.1:{port}"
+        lines = iter(process.stderr.readline, "")
+        assert any(address in line for line in lines)
+        assert any("→ goal" in line for line in lines)
+        with urllib.request.urlopen(f"{address}/health", timeout=10) as answer:
+            assert json.load(answer)["status"] == "ok"
+        process.send_signal(end)
+        rest = list(lines)
+        assert process.wait(timeout=10) == 0
+        assert "Traceback" not in "".join(rest)
+        assert any("goals reached" in line for line in rest)
+    with socket.create_server(("127.0.0.1", port)):
+        pass  # the port is free again
+
+
+@pytest.mark.slow
+def test_a_port_that_is_taken_is_named() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        done = navette("demo", "--port", port, "--max-time", "1")
+    assert done.returncode == 2
+    assert port in done.stderr
