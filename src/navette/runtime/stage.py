@@ -88,8 +88,12 @@ class StageNode(Node):
             raise
 
     def _set_up(self) -> None:
-        self.params = declare_params(self, self.PARAMS)
-        self._check_unknown_overrides()
+        try:
+            self.params = declare_params(self, self.PARAMS)
+            self._check_unknown_overrides()
+        except ParameterError:
+            Node.destroy_node(self)  # not the subclass's: it is not made yet
+            raise
         self.add_on_set_parameters_callback(self._check_params)
         self.add_post_set_parameters_callback(self._take_params)
         self._arrivals_ns: dict[str, int] = {}

@@ -80,8 +80,8 @@ class ViewerNode(StageNode):
             session_id=f"navette-{id(self):x}",
             assets=AssetFolders(asset_folders or {}),
         )
-        self._server = self._make_server()
         try:
+            self._server = self._make_server()
             self._server.start()
         except NavetteError:
             super().destroy_node()

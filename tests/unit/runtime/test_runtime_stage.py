@@ -271,3 +271,11 @@ def test_status_on_change_and_then_twice_a_second() -> None:
     )
     graph.run_for(0.0)
     assert late.last.message == "no_path"
+
+
+def test_a_node_whose_parameter_is_refused_is_not_left_behind() -> None:
+    graph = GraphHarness()
+    graph.context.overrides.add("echo", {"gain": 9.0}, "test")
+    with pytest.raises(ParameterError, match="gain"):
+        Echo("echo", context=graph.context)
+    assert [node.get_name() for node in graph.context.nodes] == ["harness"]
