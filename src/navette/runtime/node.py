@@ -91,7 +91,7 @@ class Node(NodeTopics, NodeParameters, NodeGraph):
                     self.declare_parameter(name, override.value)
             self._time_source = TimeSource(self)
         except NavetteError:
-            self.destroy_node()  # leave no half-made node in the graph
+            Node.destroy_node(self)  # leave no half-made node in the graph
             raise
 
     # -- who it is -------------------------------------------------------------

@@ -84,16 +84,14 @@ class StageNode(Node):
         try:
             self._set_up()
         except NavetteError:
-            self.destroy_node()  # leave no half-made node in the graph
+            # Leave no half-made node in the graph; the subclass's own way of ending
+            # may need what it has not made yet.
+            Node.destroy_node(self)
             raise
 
     def _set_up(self) -> None:
-        try:
-            self.params = declare_params(self, self.PARAMS)
-            self._check_unknown_overrides()
-        except ParameterError:
-            Node.destroy_node(self)  # not the subclass's: it is not made yet
-            raise
+        self.params = declare_params(self, self.PARAMS)
+        self._check_unknown_overrides()
         self.add_on_set_parameters_callback(self._check_params)
         self.add_post_set_parameters_callback(self._take_params)
         self._arrivals_ns: dict[str, int] = {}

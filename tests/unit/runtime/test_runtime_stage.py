@@ -277,5 +277,5 @@ def test_a_node_whose_parameter_is_refused_is_not_left_behind() -> None:
     graph = GraphHarness()
     graph.context.overrides.add("echo", {"gain": 9.0}, "test")
     with pytest.raises(ParameterError, match="gain"):
-        Echo("echo", context=graph.context)
+        Echo(context=graph.context)
     assert [node.get_name() for node in graph.context.nodes] == ["harness"]
