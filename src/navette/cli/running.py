@@ -53,7 +53,10 @@ def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> 
     if as_json:
         sys.stdout.write(summary.to_json() + "\n")
     if failure is not None:
-        screen.report_failure(failure)
+        screen.report_failure(f"stopped: {failure}")
+        return FAILED
+    if simulation.recorder is not None and simulation.recorder.error is not None:
+        screen.report_failure(f"recording ended early: {simulation.recorder.error}")
         return FAILED
     if not simulation.options.ends_with_goals:
         return SUCCEEDED

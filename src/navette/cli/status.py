@@ -9,7 +9,6 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from navette.errors import CallbackError
 from navette.launch.options import RunOptions
 from navette.launch.summary import RunSummary
 
@@ -83,9 +82,9 @@ class StatusScreen:
             soft_wrap=True,
         )
 
-    def report_failure(self, error: CallbackError) -> None:
-        """Which node raised, on which topic, when; the robot stands."""
-        self._console.print(Text(f"stopped: {error}", style="bold red"), soft_wrap=True)
+    def report_failure(self, text: str) -> None:
+        """What went wrong, in one line."""
+        self._console.print(Text(text, style="bold red"), soft_wrap=True)
 
     def _show_head(self, simulation: "Simulation") -> None:
         options = self._options
