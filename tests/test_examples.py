@@ -1,6 +1,10 @@
-"""Every example runs, with warnings as errors, and prints what it says."""
+"""Examples and how-to pages run, and print what they say."""
 
 import ast
+import contextlib
+import io
+import math
+import re
 import subprocess
 import sys
 import textwrap
@@ -8,7 +12,13 @@ from pathlib import Path
 
 import pytest
 
-EXAMPLES = sorted((Path(__file__).parent.parent / "examples").glob("*.py"))
+from navette.launch import RunOptions
+from navette.launch.simulation import Simulation
+
+ROOT = Path(__file__).parent.parent
+EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+HOW_TO = ROOT / "docs" / "howto"
+BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
 
 
 @pytest.mark.slow
@@ -34,3 +44,45 @@ def test_there_are_examples() -> None:
         len(example.read_text(encoding="utf-8").splitlines()) <= 60
         for example in EXAMPLES
     )
+
+
+def blocks(page: str, language: str) -> list[str]:
+    text = (HOW_TO / page).read_text(encoding="utf-8")
+    return [block for kind, block in BLOCK.findall(text) if kind == language]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", ["parameters.md", "own-robot.md"])
+def test_a_how_to_page_prints_what_it_says(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for model in blocks(page, "xml"):
+        Path("cart.sdf").write_text(model)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        for program in blocks(page, "python"):
+            exec(compile(program, page, "exec"), {})
+    assert printed.getvalue() == "".join(blocks(page, "text"))
+
+
+@pytest.mark.slow
+def test_the_how_to_robot_drives(tmp_path: Path) -> None:
+    (model,), (parameters,) = (
+        blocks("own-robot.md", "xml"),
+        blocks("own-robot.md", "yaml"),
+    )
+    (tmp_path / "cart.sdf").write_text(model)
+    (tmp_path / "cart.yaml").write_text(parameters)
+    options = RunOptions(
+        robot=str(tmp_path / "cart.sdf"),
+        params_files=(tmp_path / "cart.yaml",),
+        goals=((-4.0, -7.5),),
+        headless=True,
+        speed=math.inf,
+    )
+    simulation = Simulation(options)
+    simulation.run()
+    simulation.close()
+    assert simulation.summary().succeeded
+    assert simulation.stack.control.params.cruise_speed_mps == 0.5
