@@ -19,7 +19,7 @@ DEFAULT_ROBOT = "jackal"
 
 @dataclass(frozen=True)
 class ResolvedScene:
-    """A world with its robot; parameters from a file or derived from the model."""
+    """A world with its robot; its parameters derived, and from a file that wins."""
 
     scene: Scene
     robot_name: str
@@ -32,8 +32,8 @@ def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedSc
 
     The robot is, in this order: the one asked for, the world's own, the built-in one
     of the same name as the built-in world, the default.
-    A world's own robot that is a copy of a built-in one gets its parameters; an
-    unknown one gets parameters derived from its shape and drive.
+    A world's own robot that is a copy of a built-in one gets its parameters. What no
+    file says is derived from the robot's shape and drive.
 
     Raises:
         UnknownNameError: no such world or robot; the text lists those there are.
@@ -44,7 +44,7 @@ def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedSc
     robot = _choose_robot(options, scene)
     if scene.robot is not robot.model:
         scene = scene.with_robot(robot.model)
-    derived = {} if robot.params_file else derive_parameters(robot.model)
+    derived = derive_parameters(robot.model)
     return ResolvedScene(scene, robot.name, robot.params_file, derived)
 
 

@@ -27,7 +27,10 @@ _WORLD_READERS = {
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot and, when it is built in, the file of its parameters for all nodes."""
+    """A robot and the file of its parameters for all nodes, where there is one.
+
+    A built-in robot has one; a model file has one if ``params.yaml`` lies beside it.
+    """
 
     name: str
     model: Model
@@ -75,12 +78,14 @@ def load_robot(name_or_path: str | Path) -> Robot:
         model = _driven(read_sdf(folder / "model.sdf"), folder / "model.sdf")
         return Robot(str(name_or_path), model, folder / "params.yaml")
     path = _existing(name_or_path, "robot", robot_names())
+    beside = path.parent / "params.yaml"
+    params_file = beside if beside.is_file() else None
     if path.suffix.lower() == ".urdf":
         model = read_urdf_robot(path)
-        return Robot(model.name, model)
+        return Robot(model.name, model, params_file)
     if path.suffix.lower() in (".sdf", ".world"):
         model = _driven(read_sdf(path), path)
-        return Robot(model.name, model)
+        return Robot(model.name, model, params_file)
     raise FileFormatError(path, "not a kind of robot that is read: .sdf, .urdf")
 
 
