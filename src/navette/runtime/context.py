@@ -5,6 +5,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from contextvars import ContextVar
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -31,12 +32,18 @@ class Context:
 
     As in rclpy it becomes valid with :meth:`init`; a context that was made by hand
     initialises itself, without arguments, when its first node is made.
+
+    Args:
+        graph: one that several contexts share, each with a loop of its own, so that
+            programs in one process meet; its maker closes its transports.
     """
 
-    def __init__(self, *, clock: TimeSource | None = None) -> None:
+    def __init__(
+        self, *, clock: TimeSource | None = None, graph: Graph | None = None
+    ) -> None:
         self.loop = EventLoop(clock or SystemClock())
-        self.graph = Graph()
-        self.graph.add_transport(InProcessTransport())
+        self._owns_graph = graph is None
+        self.graph = new_graph() if graph is None else graph
         self.overrides = ParameterOverrides()
         self.log = LogHub(lambda: self.loop.clock.now_ns)
         self.arguments = RosArguments()
@@ -123,8 +130,8 @@ class Context:
             callback()
         for node in tuple(self.nodes):
             node.destroy_node()
-        for transport in self.graph.transports:
-            transport.close()
+        if self._owns_graph:
+            self.graph.close()
         self._stop_logging()
 
     def try_shutdown(self) -> None:
@@ -194,21 +201,47 @@ def _domain_id(given: int | None) -> int:
     return int(text)
 
 
-_default: Context | None = None
-_default_lock = threading.Lock()
+def new_graph() -> Graph:
+    """A graph of this process alone."""
+    graph = Graph()
+    graph.add_transport(InProcessTransport())
+    return graph
+
+
+class DefaultContext:
+    """Holds the context used where none is given; ``make`` makes it on first use.
+
+    One a process; one a program where several programs share a process.
+    """
+
+    def __init__(self, make: Callable[[], Context]) -> None:
+        self._make = make
+        self._context: Context | None = None
+        self._lock = threading.Lock()
+
+    def get(self) -> Context:
+        with self._lock:
+            if self._context is None:
+                self._context = self._make()
+            return self._context
+
+    def reset(self) -> None:
+        with self._lock:
+            self._context = None
+
+
+#: Which holder counts for the running thread or task.
+default_context: ContextVar[DefaultContext] = ContextVar(
+    "navette_default_context",
+    default=DefaultContext(Context),  # noqa: B039 - meant to be the process's one
+)
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
     """The context used where none is given; a new one after a shutdown."""
-    global _default
-    with _default_lock:
-        if _default is None:
-            _default = Context()
-        return _default
+    return default_context.get().get()
 
 
 def reset_default_context() -> None:
     """Forget the default context, so that the next use makes a fresh one."""
-    global _default
-    with _default_lock:
-        _default = None
+    default_context.get().reset()

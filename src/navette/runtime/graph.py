@@ -1,5 +1,6 @@
 """Who is there: nodes, topics, endpoints; with a hook for viewers and recorders."""
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -36,7 +37,7 @@ class Graph(TransportObserver):
         self._on_change: list[Callable[[], None]] = []
         self._on_incompatible: list[IncompatibleHook] = []
         self._on_match: list[Callable[[Endpoint, Endpoint, bool], None]] = []
-        self._next_gid = 0
+        self._gids = itertools.count(1)
 
     # -- hooks -----------------------------------------------------------------
 
@@ -66,6 +67,11 @@ class Graph(TransportObserver):
         self.transports.append(transport)
         transport.observe(self)
 
+    def close(self) -> None:
+        """Close the transports."""
+        for transport in self.transports:
+            transport.close()
+
     def add_node(self, info: NodeInfo) -> None:
         self._nodes.append(info)
         self.graph_changed()
@@ -77,8 +83,8 @@ class Graph(TransportObserver):
 
     def new_gid(self) -> bytes:
         """A 16-byte id, the same ones in the same order in every run."""
-        self._next_gid += 1
-        return self._next_gid.to_bytes(16, "big")
+        # next() is one step, also where several threads share the graph.
+        return next(self._gids).to_bytes(16, "big")
 
     def graph_changed(self) -> None:
         for callback in tuple(self._on_change):
