@@ -58,9 +58,12 @@ class RobotState:
         """Velocity of the body's point at ``p_world`` and angular velocity, world."""
         v_world, omega_root = self._root_velocity()
         pose = self._root_pose()
-        omega = np.array(rotate(pose.rotation, omega_root))
-        lever = p_world - np.array(pose.translation)
-        return np.array(v_world) + np.cross(omega, lever), omega
+        omega = rotate(pose.rotation, omega_root)
+        px, py, pz = p_world.tolist()
+        x, y, z = pose.translation
+        # Not np.cross: three numbers at 100 Hz, and it takes twenty times as long.
+        around = cross(omega, (px - x, py - y, pz - z))
+        return np.array(v_world) + np.array(around), np.array(omega)
 
     def wheel_travel(self) -> tuple[float, float]:
         """How far the left and the right wheels have turned forward, rad (means)."""
