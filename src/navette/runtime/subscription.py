@@ -37,6 +37,7 @@ class Subscription(Entity, Generic[MsgT]):
     __slots__ = (
         "_callback",
         "_depth",
+        "_informed",
         "_loop",
         "_on_destroy",
         "_plain",
@@ -86,7 +87,8 @@ class Subscription(Entity, Generic[MsgT]):
     @callback.setter
     def callback(self, callback: Callable[..., Any]) -> None:
         self._callback = callback
-        self._plain = not self.raw and not takes_arguments(callback, 2)
+        self._informed = takes_arguments(callback, 2)
+        self._plain = not self.raw and not self._informed
 
     @property
     def topic_name(self) -> str:
@@ -150,7 +152,7 @@ class Subscription(Entity, Generic[MsgT]):
         self._received += 1
         if self.raw:
             message = serialize(message)
-        if not takes_arguments(self._callback, 2):
+        if not self._informed:
             return self._callback(message)
         info: MessageInfo = {
             "source_timestamp": source_ns,
