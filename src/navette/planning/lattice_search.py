@@ -137,7 +137,8 @@ def _plant(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     tree.links[0, ESCAPING] = escaping
     u, v = _to_cells(scene.frame, start[0], start[1])
     ahead = scene.guide[int(v), int(u)]
-    return _promise(0, ahead) >> SHIFT
+    nothing: Any = np.int64(0)  # a literal would compile the callee a second time
+    return _promise(nothing, ahead) >> SHIFT
 
 
 @njit(cache=True)

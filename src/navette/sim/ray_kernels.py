@@ -156,6 +156,8 @@ def cast_fan(  # type: ignore[no-untyped-def]
         distance: (N,) m, written; inf where nothing is hit.
     """
     n = len(angles)
+    # int64: a literal 0 would compile the callee a second time.
+    begin = np.int64(0)
     distance[:] = np.inf
     step = angles[1] - angles[0] if n > 1 else 1.0
     turn = 2.0 * math.pi / step
@@ -166,7 +168,7 @@ def cast_fan(  # type: ignore[no-untyped-def]
         if half < 0.0:
             continue
         if half >= math.pi:
-            _cast_beams(kind[g], size[g], m, c, angles, 0, n - 1, distance)
+            _cast_beams(kind[g], size[g], m, c, angles, begin, n - 1, distance)
             continue
         # As beam numbers, brought into one turn from the first beam on.
         low, width = (middle - half - angles[0]) / step, 2.0 * half / step
@@ -175,7 +177,7 @@ def cast_fan(  # type: ignore[no-untyped-def]
         _cast_beams(kind[g], size[g], m, c, angles, math.ceil(low), last, distance)
         if low + width >= turn:  # comes round to the first beams again
             last = min(n - 1, math.floor(low + width - turn))
-            _cast_beams(kind[g], size[g], m, c, angles, 0, last, distance)
+            _cast_beams(kind[g], size[g], m, c, angles, begin, last, distance)
 
 
 @njit(cache=True, inline="never")
