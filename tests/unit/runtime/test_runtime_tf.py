@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+import yaml
 
 from navette.errors import InvalidValueError, TransformError
 from navette.geometry import Pose2, Transform3, yaw_of
@@ -220,10 +221,26 @@ def test_full_lookup_through_a_fixed_frame() -> None:
 
 def test_yaml_and_clear() -> None:
     buffer = Buffer()
-    buffer.set_transform_static(transform_stamped("map", "base", 0, at(1)))
-    assert "base:\n  parent: 'map'\n  is_static: true" in buffer.all_frames_as_yaml()
+    assert yaml.safe_load(buffer.all_frames_as_yaml()) == []
+    buffer.set_transform_static(transform_stamped("base", "lidar", 0, at(1)))
+    for second in (1, 2, 3):
+        message = transform_stamped("map", "base", second * S, at(second))
+        buffer.set_transform(message, "the robot")
+    frames = yaml.safe_load(buffer.all_frames_as_yaml())
+    assert frames["lidar"]["parent"] == "base"
+    assert frames["lidar"]["broadcaster"] == "no recorded authority"
+    assert frames["base"] == {
+        "parent": "map",
+        "broadcaster": "the robot",
+        "rate": 1.5,
+        "most_recent_transform": 3.0,
+        "oldest_transform": 1.0,
+        "buffer_length": 2.0,
+    }
+    assert "Frame base exists with parent map.\n" in buffer.all_frames_as_string()
     buffer.clear()
     assert not buffer.can_transform("map", "base", 0)
+    assert buffer.can_transform("base", "lidar", 0)  # static: true at all times
 
 
 def test_broadcast_and_listen(graph: GraphHarness) -> None:

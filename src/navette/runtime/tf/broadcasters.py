@@ -1,6 +1,6 @@
 """Send transforms on ``/tf`` and ``/tf_static``."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Any
 
 from navette.msgs.geometry_msgs.msg import TransformStamped
@@ -17,7 +17,7 @@ class TransformBroadcaster:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", qos or 100)
 
     def sendTransform(  # noqa: N802 - tf2's name
-        self, transform: TransformStamped | Sequence[TransformStamped]
+        self, transform: TransformStamped | Iterable[TransformStamped]
     ) -> None:
         self.pub_tf.publish(TFMessage(transforms=_as_list(transform)))
 
@@ -27,12 +27,12 @@ class TransformBroadcaster:
 class StaticTransformBroadcaster:
     """Sends static transforms, latched: all of them in every message."""
 
-    def __init__(self, node: Any, qos: QoSProfile | None = None) -> None:
+    def __init__(self, node: Any, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf_static", qos or _STATIC)
         self._sent: dict[str, TransformStamped] = {}
 
     def sendTransform(  # noqa: N802 - tf2's name
-        self, transform: TransformStamped | Sequence[TransformStamped]
+        self, transform: TransformStamped | Iterable[TransformStamped]
     ) -> None:
         for one in _as_list(transform):
             self._sent[one.child_frame_id] = one
@@ -42,6 +42,6 @@ class StaticTransformBroadcaster:
 
 
 def _as_list(
-    transform: TransformStamped | Sequence[TransformStamped],
+    transform: TransformStamped | Iterable[TransformStamped],
 ) -> list[TransformStamped]:
-    return list(transform) if isinstance(transform, Sequence) else [transform]
+    return [transform] if isinstance(transform, TransformStamped) else list(transform)

@@ -1,22 +1,37 @@
-"""Move stamped messages to another frame (tf2_geometry_msgs' functions)."""
+"""Move stamped messages to another frame (tf2_geometry_msgs' functions).
+
+With ``a_T_b`` as the transform, each takes something given in b and returns it in a.
+The arguments are left as they are.
+"""
 
 from collections.abc import Callable
 from typing import Any
 
-from navette.errors import InvalidValueError
+import numpy as np
+from numpy.typing import NDArray
+
 from navette.geometry import Transform3
+from navette.geometry.se3 import Vector3 as Triple
 from navette.geometry.se3 import rotate
 from navette.msgs.geometry_msgs.msg import (
     Point,
+    Point32,
     PointStamped,
+    Polygon,
+    PolygonStamped,
     Pose,
     PoseStamped,
+    PoseWithCovariance,
+    PoseWithCovarianceStamped,
     Quaternion,
     TransformStamped,
     Vector3,
     Vector3Stamped,
+    Wrench,
+    WrenchStamped,
 )
 from navette.runtime.tf.conversions import transform_from_msg
+from navette.runtime.tf.registration import ConvertRegistration, TransformRegistration
 
 
 def do_transform_point(
@@ -58,23 +73,103 @@ def do_transform_pose_stamped(
     )
 
 
-_KNOWN: dict[type, Callable[[Any, TransformStamped], Any]] = {
-    PointStamped: do_transform_point,
-    PoseStamped: do_transform_pose_stamped,
-    Vector3Stamped: do_transform_vector3,
-}
+def do_transform_pose_with_covariance_stamped(
+    pose: PoseWithCovarianceStamped, transform: TransformStamped
+) -> PoseWithCovarianceStamped:
+    """The same pose and the covariance turned with it."""
+    return PoseWithCovarianceStamped(
+        header=transform.header,
+        pose=PoseWithCovariance(
+            pose=do_transform_pose(pose.pose.pose, transform),
+            covariance=transform_covariance(pose.pose.covariance, transform),
+        ),
+    )
 
 
-def do_transform(stamped: Any, transform: TransformStamped) -> Any:
-    """A PointStamped, PoseStamped or Vector3Stamped in the transform's frame.
+def do_transform_polygon_stamped(
+    polygon: PolygonStamped, transform: TransformStamped
+) -> PolygonStamped:
+    """The same corners, in the transform's frame."""
+    a_T_b = transform_from_msg(transform.transform)
+    corners = (a_T_b.apply((p.x, p.y, p.z)) for p in polygon.polygon.points)
+    points = [Point32(x=x, y=y, z=z) for x, y, z in corners]
+    return PolygonStamped(header=transform.header, polygon=Polygon(points=points))
 
-    Raises:
-        InvalidValueError: of another type.
+
+def do_transform_wrench_stamped(
+    wrench: WrenchStamped, transform: TransformStamped
+) -> WrenchStamped:
+    """The same force and torque about the origin of the transform's frame.
+
+    torque_a = R·torque_b + t × (R·force_b): the force acts at b's origin.
     """
-    function = _KNOWN.get(type(stamped))
-    if function is None:
-        known = ", ".join(kind.__name__ for kind in _KNOWN)
-        raise InvalidValueError(
-            f"cannot transform a {type(stamped).__name__}; known: {known}"
-        )
-    return function(stamped, transform)
+    a_T_b = transform_from_msg(transform.transform)
+    force, torque = wrench.wrench.force, wrench.wrench.torque
+    force_a = rotate(a_T_b.rotation, (force.x, force.y, force.z))
+    turned = rotate(a_T_b.rotation, (torque.x, torque.y, torque.z))
+    lever = _cross(a_T_b.translation, force_a)
+    return WrenchStamped(
+        header=transform.header,
+        wrench=Wrench(
+            force=_vector(force_a),
+            torque=_vector(
+                (turned[0] + lever[0], turned[1] + lever[1], turned[2] + lever[2])
+            ),
+        ),
+    )
+
+
+def transform_covariance(
+    cov_in: NDArray[np.float64], transform: TransformStamped
+) -> NDArray[np.float64]:
+    """A pose's covariance turned to the transform's frame.
+
+    Σ_a = diag(R, R) · Σ_b · diag(R, R)ᵀ, for (x, y, z, rotation about x, y, z).
+
+    Args:
+        cov_in: 36 values, row by row.
+
+    Returns:
+        36 values, row by row.
+    """
+    rotation = transform_from_msg(transform.transform).rotation
+    axes: tuple[Triple, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    R = np.array([rotate(rotation, axis) for axis in axes]).T
+    blocks = np.zeros((6, 6))
+    blocks[:3, :3] = blocks[3:, 3:] = R
+    covariance = np.asarray(cov_in, dtype=np.float64).reshape(6, 6)
+    turned: NDArray[np.float64] = (blocks @ covariance @ blocks.T).ravel()
+    return turned
+
+
+def _cross(a: Triple, b: Triple) -> Triple:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def _vector(v: Triple) -> Vector3:
+    return Vector3(x=v[0], y=v[1], z=v[2])
+
+
+def from_msg_msg(msg: Any) -> Any:
+    """A message as the message it is already."""
+    return msg
+
+
+to_msg_msg = from_msg_msg
+
+_FUNCTIONS: dict[type, Callable[[Any, TransformStamped], Any]] = {
+    PointStamped: do_transform_point,
+    PolygonStamped: do_transform_polygon_stamped,
+    PoseStamped: do_transform_pose_stamped,
+    PoseWithCovarianceStamped: do_transform_pose_with_covariance_stamped,
+    Vector3Stamped: do_transform_vector3,
+    WrenchStamped: do_transform_wrench_stamped,
+}
+for _type, _function in _FUNCTIONS.items():
+    TransformRegistration().add(_type, _function)
+    ConvertRegistration().add_to_msg(_type, to_msg_msg)
+    ConvertRegistration().add_from_msg(_type, from_msg_msg)

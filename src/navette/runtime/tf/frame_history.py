@@ -65,6 +65,11 @@ class FrameHistory:
         return self._stamps[self._start]
 
     @property
+    def count(self) -> int:
+        """How many samples are held."""
+        return len(self._stamps) - self._start
+
+    @property
     def parent(self) -> str:
         """The newest sample's parent."""
         return self._parents[-1]

@@ -1,65 +1,66 @@
 """Fills a buffer from ``/tf`` and ``/tf_static``."""
 
+import threading
+from collections.abc import Callable
 from typing import Any
 
+from navette.msgs.geometry_msgs.msg import TransformStamped
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.runtime.callback_groups import ReentrantCallbackGroup
+from navette.runtime.executor import SingleThreadedExecutor
 from navette.runtime.qos import DurabilityPolicy, QoSProfile
 from navette.runtime.tf.buffer import Buffer
 from navette.runtime.tf.exceptions import TransformException
 
 _DYNAMIC = QoSProfile(depth=100)
 _STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_AUTHORITY = "default_authority"  # what tf2 records: a topic does not tell its sender
 
 
 class TransformListener:
     """Listens on behalf of ``node`` for as long as it (or the node) lives.
 
     Its callbacks also run while another callback of the node waits for a transform.
+
+    Args:
+        buffer: anything with tf2's ``set_transform`` and ``set_transform_static``.
+        spin_thread: let a thread spin the node, for programs that do not. Under a
+            virtual clock there is none: time would run away from the program.
+        static_only: leave the moving transforms out.
     """
 
     def __init__(
         self,
-        buffer: Buffer,
+        buffer: Any,
         node: Any,
         *,
         spin_thread: bool = False,
-        qos: QoSProfile | None = None,
-        static_qos: QoSProfile | None = None,
+        qos: QoSProfile | int | None = None,
+        static_qos: QoSProfile | int | None = None,
         tf_topic: str = "/tf",
         tf_static_topic: str = "/tf_static",
         static_only: bool = False,
     ) -> None:
         self.buffer = buffer
-        self._node = node
-        group = ReentrantCallbackGroup()
-        self._subscriptions = [
-            node.create_subscription(
-                TFMessage,
-                tf_static_topic,
-                self.static_callback,
-                static_qos or _STATIC,
-                callback_group=group,
-                shared=True,
-            )
-        ]
+        self.node = node
+        self.group = ReentrantCallbackGroup()
+        if isinstance(buffer, Buffer):
+            buffer.attach(node)
+        self.tf_static_sub = self._subscribe(
+            tf_static_topic, self.static_callback, static_qos or _STATIC
+        )
+        self.tf_sub = None
         if not static_only:
-            self._subscriptions.append(
-                node.create_subscription(
-                    TFMessage,
-                    tf_topic,
-                    self.callback,
-                    qos or _DYNAMIC,
-                    callback_group=group,
-                    shared=True,
-                )
-            )
+            self.tf_sub = self._subscribe(tf_topic, self.callback, qos or _DYNAMIC)
+        if spin_thread and not node.context.clock.is_virtual:
+            self._spin_in_thread()
 
     def unregister(self) -> None:
         """Stop listening."""
-        for subscription in self._subscriptions:
-            self._node.destroy_subscription(subscription)
-        self._subscriptions.clear()
+        for subscription in (self.tf_static_sub, self.tf_sub):
+            if subscription is not None:
+                self.node.destroy_subscription(subscription)
+        self.tf_static_sub = self.tf_sub = None
 
     def callback(self, data: TFMessage) -> None:
         """A message of moving transforms."""
@@ -69,12 +70,29 @@ class TransformListener:
         """A message of static transforms."""
         self._take(data, self.buffer.set_transform_static)
 
-    def _take(self, data: TFMessage, store: Any) -> None:
+    def _subscribe(
+        self, topic: str, callback: Callable[[TFMessage], None], qos: QoSProfile | int
+    ) -> Any:
+        return self.node.create_subscription(
+            TFMessage, topic, callback, qos, callback_group=self.group, shared=True
+        )
+
+    def _take(
+        self, data: TFMessage, store: Callable[[TransformStamped, str], None]
+    ) -> None:
         for transform in data.transforms:
             try:
-                store(transform)
+                store(transform, _AUTHORITY)
             except TransformException as error:
                 # One sender's bad transform must not stop those who read the rest.
-                self._node.get_logger().error(
+                self.node.get_logger().error(
                     f"ignored a transform: {error}", throttle_duration_sec=1.0
                 )
+
+    def _spin_in_thread(self) -> None:
+        self.executor = SingleThreadedExecutor(context=self.node.context)
+        self.executor.add_node(self.node)
+        self.dedicated_listener_thread = threading.Thread(
+            target=self.executor.spin, name="tf_listener", daemon=True
+        )
+        self.dedicated_listener_thread.start()

@@ -1,0 +1,1 @@
+"""The small packages that ROS 2 programs use beside rclpy, under their own names."""
