@@ -114,7 +114,9 @@ def check_exact(cost: np.ndarray, table: EdgeTable, query: Query) -> None:
         assert found[1] == expected == steps_cost(found[0], cost, table)
 
 
-def add_searches(bench: Benchmark, name: str, cost: np.ndarray, weight: float) -> None:
+def add_searches(
+    bench: Benchmark, name: str, cost: np.ndarray, weight: float, target_ms: float
+) -> None:
     table, astar = EdgeTable(weight=weight), AStar()
     queries = far_queries(cost)
     check_exact(cost, table, queries[0])
@@ -136,7 +138,7 @@ def add_searches(bench: Benchmark, name: str, cost: np.ndarray, weight: float) -
             queries, lambda s, g: dijkstra.search(cost, s, g, table=table)
         ),
     }
-    bench.case(name, contenders, "costs equal SciPy's Dijkstra")
+    bench.case(name, contenders, "costs equal SciPy's Dijkstra", target_ms=target_ms)
 
 
 def add_string_pulling(bench: Benchmark, cost: np.ndarray) -> None:
@@ -146,6 +148,7 @@ def add_string_pulling(bench: Benchmark, cost: np.ndarray) -> None:
     bench.case(
         f"string pulling {len(cost)}²",
         {"navette": lambda: pull(cost, next(turn), table=table)},
+        target_ms=0.1,
     )
 
 
@@ -211,11 +214,11 @@ def main() -> None:
     if known.movingai is not None:
         check_movingai(known.movingai)
     bench = Benchmark("planner", __doc__)
-    for size in (512, 1024):
-        add_searches(bench, f"uniform {size}²", obstacle_map(size), 0.0)
-    for size in (1024, 2048):
+    for size, target_ms in ((512, 0.9), (1024, 3.4)):
+        add_searches(bench, f"uniform {size}²", obstacle_map(size), 0.0, target_ms)
+    for size, target_ms in ((1024, 12.0), (2048, 38.0)):
         field = cost_field(obstacle_map(size))
-        add_searches(bench, f"cost field {size}²", field, 3.0)
+        add_searches(bench, f"cost field {size}²", field, 3.0, target_ms)
     add_string_pulling(bench, obstacle_map(1024))
     add_whole_plans(bench)
     bench.main(rest)

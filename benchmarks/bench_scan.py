@@ -94,7 +94,11 @@ def bresenham(start: tuple[int, int], end: tuple[int, int]):
 
 def main() -> None:
     bench = Benchmark(f"scan insertion, {BEAMS} beams", __doc__)
-    for size_m, resolution in ((30.0, 0.1), (20.0, 0.05), (30.0, 0.05)):
+    for size_m, resolution, target_ms in (
+        (30.0, 0.1, 0.13),
+        (20.0, 0.05, 0.13),
+        (30.0, 0.05, None),
+    ):
         scene = Scene(size_m, resolution)
         ours = scene.with_navette()
         np.testing.assert_array_equal(ours, scene.in_python())
@@ -112,6 +116,7 @@ def main() -> None:
                 "python": scene.in_python,
             },
             f"same cells as the plain definition; {agreement}",
+            target_ms=target_ms,
         )
     bench.main()
 
