@@ -1,0 +1,5 @@
+"""The kinds of clock."""
+
+from navette.runtime.time import ClockType
+
+__all__ = ["ClockType"]

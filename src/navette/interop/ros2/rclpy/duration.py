@@ -1,0 +1,5 @@
+"""Durations."""
+
+from navette.runtime.time import Duration, Infinite
+
+__all__ = ["Duration", "Infinite"]

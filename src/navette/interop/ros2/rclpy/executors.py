@@ -1,0 +1,21 @@
+"""Executors: rclpy's names for the one deterministic loop."""
+
+from navette.runtime.exceptions import (
+    ExternalShutdownException,
+    ShutdownException,
+    TimeoutException,
+)
+from navette.runtime.executor import (
+    Executor,
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+)
+
+__all__ = [
+    "Executor",
+    "ExternalShutdownException",
+    "MultiThreadedExecutor",
+    "ShutdownException",
+    "SingleThreadedExecutor",
+    "TimeoutException",
+]

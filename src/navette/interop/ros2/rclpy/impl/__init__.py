@@ -1,0 +1,1 @@
+"""The one part of rclpy's inside that programs use."""

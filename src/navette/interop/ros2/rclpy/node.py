@@ -1,0 +1,5 @@
+"""Nodes."""
+
+from navette.runtime import Node, Parameter
+
+__all__ = ["Node", "Parameter"]

@@ -1,0 +1,5 @@
+"""Publishers."""
+
+from navette.runtime.publisher import Publisher
+
+__all__ = ["Publisher"]

@@ -1,0 +1,5 @@
+"""Signals."""
+
+from navette.runtime import SignalHandlerOptions
+
+__all__ = ["SignalHandlerOptions"]

@@ -1,0 +1,5 @@
+"""Subscriptions."""
+
+from navette.runtime.subscription import MessageInfo, Subscription
+
+__all__ = ["MessageInfo", "Subscription"]
