@@ -19,6 +19,7 @@ from navette.runtime.callback_groups import (
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
+from navette.runtime.client import Client
 from navette.runtime.clock import (
     PacedClock,
     Stopwatch,
@@ -59,6 +60,7 @@ from navette.runtime.qos import (
 )
 from navette.runtime.rate import Rate
 from navette.runtime.ros_clock import Clock, JumpThreshold, ROSClock, TimeJump
+from navette.runtime.service import Service
 from navette.runtime.stage import Input, Output, StageNode
 from navette.runtime.stage_params import declare_params
 from navette.runtime.status import StatusReporter, status_output
@@ -94,12 +96,14 @@ __all__ = [
     "spin_once",
     "spin_until_future_complete",
     "try_shutdown",
-    # nodes and topics
+    # nodes, topics and services
+    "Client",
     "Graph",
     "MessageInfo",
     "Node",
     "NodeInfo",
     "Publisher",
+    "Service",
     "Subscription",
     "DurabilityPolicy",
     "HistoryPolicy",

@@ -15,10 +15,11 @@ class CallbackGroup:
     #: Whether a waiting callback keeps the others of the group from starting.
     exclusive = True
 
-    __slots__ = ("__weakref__", "_entities", "held", "parked", "ready")
+    __slots__ = ("__weakref__", "_entities", "calling", "held", "parked", "ready")
 
     def __init__(self) -> None:
         self.held = 0
+        self.calling = 0  # how many of the holds are callbacks that wait for a service
         self.parked: deque[Any] = deque()
         self.ready: deque[Any] | None = None  # the loop's queue, once known
         self._entities: list[Any] = []

@@ -30,6 +30,10 @@ class InvalidHandle(NavetteError):
     """A publisher or subscription was used after it was destroyed."""
 
 
+class ServiceFailedError(NavetteError, RuntimeError):
+    """A service's callback raised: there will be no response to the request."""
+
+
 class ShutdownException(NavetteError):
     """The executor was shut down."""
 

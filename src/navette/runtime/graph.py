@@ -1,7 +1,7 @@
 """Who is there: nodes, topics, endpoints; with a hook for viewers and recorders."""
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from navette.transports import (
@@ -121,19 +121,43 @@ class Graph(TransportObserver):
         node: str | None = None,
     ) -> list[Endpoint]:
         """Endpoints by full topic name, kind, full node name; by topic, then age."""
-        found = [
-            endpoint
-            for transport in self.transports
-            for endpoint in transport.endpoints()
-            if (topic is None or endpoint.topic == topic)
-            and (kind is None or endpoint.kind == kind)
-            and (node is None or endpoint.node_full_name == node)
-        ]
-        return sorted(found, key=lambda endpoint: (endpoint.topic, endpoint.gid))
+        every = (e for t in self.transports for e in t.endpoints())
+        return _selected(every, topic, kind, node)
+
+    def service_endpoints(
+        self,
+        service: str | None = None,
+        *,
+        kind: EndpointKind | None = None,
+        node: str | None = None,
+    ) -> list[Endpoint]:
+        """Servers and clients, chosen and sorted as :meth:`endpoints`."""
+        every = (e for t in self.transports for e in t.service_endpoints())
+        return _selected(every, service, kind, node)
 
     def topics(self) -> dict[str, list[str]]:
         """Full topic name → type names, sorted by name."""
         return names_and_types(self.endpoints())
+
+    def services(self) -> dict[str, list[str]]:
+        """Full name of each served service → type names, sorted by name."""
+        return names_and_types(self.service_endpoints(kind=EndpointKind.SERVICE))
+
+
+def _selected(
+    endpoints: Iterable[Endpoint],
+    name: str | None,
+    kind: EndpointKind | None,
+    node: str | None,
+) -> list[Endpoint]:
+    found = [
+        endpoint
+        for endpoint in endpoints
+        if (name is None or endpoint.topic == name)
+        and (kind is None or endpoint.kind == kind)
+        and (node is None or endpoint.node_full_name == node)
+    ]
+    return sorted(found, key=lambda endpoint: (endpoint.topic, endpoint.gid))
 
 
 def names_and_types(endpoints: list[Endpoint]) -> dict[str, list[str]]:

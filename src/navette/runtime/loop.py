@@ -25,6 +25,10 @@ class Entity:
 
     __slots__ = ("group",)
 
+    #: Whether it runs while its group is held by a callback that waits for a service:
+    #: the one it waits for may be in that very group.
+    answers_calls = False
+
     group: CallbackGroup
 
     def run(self) -> Any:
@@ -138,6 +142,10 @@ class EventLoop:
         self._attention = True
         if self.waiting:
             self._wakeup.set()
+        self.notify_threads()
+
+    def notify_threads(self) -> None:
+        """Make the threads that wait while another one drives look at what is done."""
         if self._others:
             with self._turn:
                 self._turn.notify_all()
@@ -208,6 +216,7 @@ class EventLoop:
         done: Callable[[], bool] | None = None,
         limit: int | None = None,
         stop: Callable[[], bool] | None = None,
+        calling: bool = False,
     ) -> None:
         """Run events until one of the conditions holds.
 
@@ -216,6 +225,7 @@ class EventLoop:
             done: asked before every event.
             limit: at most this many events.
             stop: asked only after :meth:`wake`: a request from elsewhere.
+            calling: a callback waits for a service: those of its own group answer.
 
         Under a virtual clock it also ends when nothing is left to happen.
 
@@ -223,7 +233,7 @@ class EventLoop:
             CallbackError: a callback raised; names node, source and stamp.
         """
         if self.in_driver_thread:
-            self._run_nested(until_ns, done, limit, stop)
+            self._run_nested(until_ns, done, limit, stop, calling=calling)
             return
         while not self._closed and not (done is not None and done()):
             if self._take_turn():
@@ -260,15 +270,19 @@ class EventLoop:
         done: Callable[[], bool] | None,
         limit: int | None,
         stop: Callable[[], bool] | None,
+        *,
+        calling: bool,
     ) -> None:
         outer = self._running
         held = outer.group if outer is not None and outer.group.exclusive else None
         if held is not None:
             held.hold()
+            held.calling += calling
         try:
             self._run(until_ns, done, limit, stop)
         finally:
             if held is not None:
+                held.calling -= calling
                 held.release()
             self._running = outer
             self._attention = True  # what woke this run may concern the outer one
@@ -322,7 +336,7 @@ class EventLoop:
                 break
             entity = ready.popleft()
             group = entity.group
-            if group.held:
+            if group.held and not (entity.answers_calls and group.calling):
                 group.parked.append(entity)
                 continue
             self._running = entity

@@ -23,6 +23,7 @@ from navette.runtime.names import (
 )
 from navette.runtime.node_graph import NodeGraph
 from navette.runtime.node_parameters import NodeParameters
+from navette.runtime.node_services import NodeServices
 from navette.runtime.node_topics import NodeTopics
 from navette.runtime.overrides import Override, ParameterOverrides
 from navette.runtime.parameter import Parameter
@@ -41,7 +42,7 @@ from navette.runtime.timer import Timer
 MsgT = TypeVar("MsgT")
 
 
-class Node(NodeTopics, NodeParameters, NodeGraph):
+class Node(NodeTopics, NodeServices, NodeParameters, NodeGraph):
     """Owns publishers, subscriptions, timers and parameters under one name.
 
     Args as in rclpy; ``parameter_overrides`` win over everything else.
@@ -239,6 +240,12 @@ class Node(NodeTopics, NodeParameters, NodeGraph):
         self._parameter_events = self.create_publisher(
             ParameterEvent, "/parameter_events", qos_profile_parameter_events
         )
+
+    def _check_alive(self) -> None:
+        if self._destroyed:
+            raise InvalidValueError(
+                f"node {self.get_fully_qualified_name()} was destroyed"
+            )
 
     def _own_group(self, group: CallbackGroup | None) -> CallbackGroup:
         if group is None:

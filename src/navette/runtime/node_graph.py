@@ -66,6 +66,25 @@ class NodeGraph:
     ) -> NamesAndTypes:
         return self._by_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace)
 
+    def get_service_names_and_types(self) -> NamesAndTypes:
+        return list(self._context.graph.services().items())
+
+    def get_service_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        return self._by_node(EndpointKind.SERVICE, node_name, node_namespace)
+
+    def get_client_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        return self._by_node(EndpointKind.CLIENT, node_name, node_namespace)
+
+    def count_services(self, service_name: str) -> int:
+        return len(self._on_service(EndpointKind.SERVICE, service_name))
+
+    def count_clients(self, service_name: str) -> int:
+        return len(self._on_service(EndpointKind.CLIENT, service_name))
+
     def count_publishers(self, topic_name: str) -> int:
         return len(self._on_topic(EndpointKind.PUBLISHER, topic_name))
 
@@ -106,6 +125,10 @@ class NodeGraph:
         topic = self.resolve_topic_name(topic_name)
         return self._context.graph.endpoints(topic, kind=kind)
 
+    def _on_service(self, kind: EndpointKind, service_name: str) -> list[Endpoint]:
+        service = self.resolve_service_name(service_name)
+        return self._context.graph.service_endpoints(service, kind=kind)
+
     def _by_node(
         self, kind: EndpointKind, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
@@ -113,5 +136,9 @@ class NodeGraph:
         known = self.get_fully_qualified_node_names()
         if full_name not in known:
             raise NodeNameNonExistentError.of("node", full_name, known)
-        endpoints = self._context.graph.endpoints(kind=kind, node=full_name)
+        graph = self._context.graph
+        if kind in (EndpointKind.SERVICE, EndpointKind.CLIENT):
+            endpoints = graph.service_endpoints(kind=kind, node=full_name)
+        else:
+            endpoints = graph.endpoints(kind=kind, node=full_name)
         return list(names_and_types(endpoints).items())

@@ -3,8 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
-from navette.errors import InvalidValueError, NavetteError
-from navette.msgs import type_name
+from navette.errors import NavetteError
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context
 from navette.runtime.log import Logger
@@ -17,6 +16,7 @@ from navette.runtime.qos_events import (
     watch_endpoint,
 )
 from navette.runtime.subscription import Subscription
+from navette.runtime.type_support import interface_name
 from navette.transports import Endpoint, EndpointKind
 
 MsgT = TypeVar("MsgT")
@@ -29,9 +29,8 @@ class NodeTopics:
     _remapper: NodeRemapper
     _logger: Logger
     _entities: list[Any]
-    _destroyed: bool
 
-    def get_fully_qualified_name(self) -> str:
+    def _check_alive(self) -> None:
         raise NotImplementedError
 
     def call_soon(self, function: Callable[[], Any], source: str) -> None:
@@ -153,14 +152,11 @@ class NodeTopics:
     def _endpoint(
         self, kind: EndpointKind, msg_type: type, topic: str, qos: QoSProfile
     ) -> Endpoint:
-        if self._destroyed:
-            raise InvalidValueError(
-                f"node {self.get_fully_qualified_name()} was destroyed"
-            )
+        self._check_alive()
         return Endpoint(
             kind=kind,
             topic=self._remapper.resolve(topic),
-            type_name=type_name(msg_type),
+            type_name=interface_name(msg_type, "msg"),
             qos=qos.to_endpoint_qos(),
             node_name=self._remapper.node_name,
             node_namespace=self._remapper.namespace,

@@ -21,8 +21,18 @@ from navette.transports.qos import (
     ReliabilityPolicy,
     incompatible_policies,
 )
+from navette.transports.service_ports import (
+    ClientPort,
+    Reply,
+    ReplySink,
+    Request,
+    RequestId,
+    RequestSink,
+    ServicePort,
+)
 
 __all__ = [
+    "ClientPort",
     "DurabilityPolicy",
     "Endpoint",
     "EndpointKind",
@@ -35,6 +45,12 @@ __all__ = [
     "PublisherPort",
     "QoSPolicyKind",
     "ReliabilityPolicy",
+    "Reply",
+    "ReplySink",
+    "Request",
+    "RequestId",
+    "RequestSink",
+    "ServicePort",
     "Sink",
     "SubscriptionPort",
     "Transport",

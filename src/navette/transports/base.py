@@ -1,9 +1,9 @@
 """The seam: a transport moves (topic, message) between endpoints; it knows no node.
 
 The runtime opens a port per publisher and per subscription on every transport of
-its context. A transport that serialises does so inside its own ports, and only
-while someone remote listens. Services and actions will add endpoint kinds and
-ports beside these.
+its context, and one per server and client of a service. A transport that serialises
+does so inside its own ports, and only while someone remote listens. Actions are
+services and topics put together: the seam does not know them.
 """
 
 from abc import ABC, abstractmethod
@@ -13,6 +13,12 @@ from enum import Enum
 from typing import Any
 
 from navette.transports.qos import EndpointQos, QoSPolicyKind
+from navette.transports.service_ports import (
+    ClientPort,
+    ReplySink,
+    RequestSink,
+    ServicePort,
+)
 
 Item = tuple[Any, int, int, int]
 """One delivered sample: message, source stamp (ns), received stamp (ns), sequence."""
@@ -22,15 +28,20 @@ Sink = Callable[[Item], None]
 
 
 class EndpointKind(Enum):
-    """What an endpoint does on its topic."""
+    """What an endpoint does on its topic or service."""
 
     PUBLISHER = 1
     SUBSCRIPTION = 2
+    SERVICE = 3
+    CLIENT = 4
 
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
-    """One end of a topic, as the graph lists it (labels only, no node object)."""
+    """One end of a topic or service, as the graph lists it (labels, no node object).
+
+    ``topic`` is the name of the service for servers and clients.
+    """
 
     kind: EndpointKind
     topic: str
@@ -124,8 +135,28 @@ class Transport(ABC):
         """
 
     @abstractmethod
+    def serve(self, endpoint: Endpoint, sink: RequestSink) -> ServicePort:
+        """Open a server's port.
+
+        Raises:
+            InvalidValueError: the service is of another type; both are named.
+        """
+
+    @abstractmethod
+    def connect(self, endpoint: Endpoint, sink: ReplySink) -> ClientPort:
+        """Open the port of a service's client.
+
+        Raises:
+            InvalidValueError: the service is of another type; both are named.
+        """
+
+    @abstractmethod
     def endpoints(self) -> list[Endpoint]:
-        """All endpoints that can be seen, in order of appearance."""
+        """All endpoints of topics that can be seen, in order of appearance."""
+
+    @abstractmethod
+    def service_endpoints(self) -> list[Endpoint]:
+        """All servers and clients that can be seen, in order of appearance."""
 
     @abstractmethod
     def observe(self, observer: TransportObserver) -> None:

@@ -16,7 +16,13 @@ from navette.transports.base import (
     Transport,
     TransportObserver,
 )
+from navette.transports.inprocess_services import (
+    InProcessClient,
+    InProcessService,
+    ServiceTable,
+)
 from navette.transports.qos import incompatible_policies
+from navette.transports.service_ports import ReplySink, RequestSink
 
 
 class InProcessPublisher(PublisherPort):
@@ -124,6 +130,7 @@ class InProcessTransport(Transport):
         self._topics: dict[str, _Topic] = {}
         self._observers: list[TransportObserver] = []
         self._lock = threading.RLock()
+        self._services = ServiceTable(self._lock, self._changed)
 
     def observe(self, observer: TransportObserver) -> None:
         self._observers.append(observer)
@@ -154,6 +161,12 @@ class InProcessTransport(Transport):
                 [(publisher, subscription) for publisher in topic.publishers]
             )
         return subscription
+
+    def serve(self, endpoint: Endpoint, sink: RequestSink) -> InProcessService:
+        return self._services.serve(endpoint, sink)
+
+    def connect(self, endpoint: Endpoint, sink: ReplySink) -> InProcessClient:
+        return self._services.connect(endpoint, sink)
 
     def remove_publisher(self, publisher: InProcessPublisher) -> None:
         """Take the port off its topic."""
@@ -200,12 +213,17 @@ class InProcessTransport(Transport):
                 for port in topic.ports()
             ]
 
+    def service_endpoints(self) -> list[Endpoint]:
+        return [port.endpoint for port in self._services.ports()]
+
     def close(self) -> None:
         with self._lock:
             topics = list(self._topics.values())
         for topic in topics:
             for port in topic.ports():
                 port.close()
+        for service_port in self._services.ports():
+            service_port.close()
 
     def _topic_for(self, endpoint: Endpoint) -> _Topic:
         topic = self._topics.setdefault(endpoint.topic, _Topic(endpoint.type_name))

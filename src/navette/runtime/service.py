@@ -1,0 +1,160 @@
+"""Servers of services: a queue of requests and a callback that answers."""
+
+from collections import deque
+from collections.abc import Callable, Coroutine
+from types import TracebackType
+from typing import Any
+
+from navette.errors import MessageError
+from navette.msgs import get_interface, type_name
+from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.loop import Entity, EventLoop
+from navette.runtime.qos import QoSProfile
+from navette.transports import Endpoint, Request, RequestId, ServicePort
+
+
+class Service(Entity):
+    """Answers requests. Made by :meth:`Node.create_service`.
+
+    Args:
+        callback: ``callback(request, response)`` fills the response in and returns
+            it; a coroutine may do so later.
+        deferred: the callback is ``callback(request, request_id)`` instead and answers
+            with :meth:`send_response` when it likes.
+    """
+
+    #: Also while a callback of its group waits in a blocking call (see the loop).
+    answers_calls = True
+
+    __slots__ = (
+        "_deferred",
+        "_loop",
+        "_on_destroy",
+        "_queue",
+        "callback",
+        "endpoint",
+        "ports",
+        "qos_profile",
+    )
+
+    def __init__(
+        self,
+        endpoint: Endpoint,
+        callback: Callable[[Any, Any], Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        loop: EventLoop,
+        on_destroy: Callable[["Service"], None],
+        *,
+        deferred: bool = False,
+    ) -> None:
+        self.endpoint = endpoint
+        self.callback = callback
+        self.group = callback_group
+        self.qos_profile = qos_profile
+        self.ports: list[ServicePort] = []
+        self._deferred = deferred
+        self._loop = loop
+        # Without a bound: a request that is dropped is a client that waits for ever.
+        self._queue: deque[Request] = deque()
+        self._on_destroy = on_destroy
+
+    @property
+    def srv_type(self) -> Any:
+        # Looked up when needed: making the classes of a node's parameter services
+        # would be most of the cost of the first node.
+        return get_interface(self.endpoint.type_name)
+
+    @property
+    def srv_name(self) -> str:
+        return self.endpoint.topic
+
+    @property
+    def service_name(self) -> str:
+        return self.endpoint.topic
+
+    @property
+    def callback_group(self) -> CallbackGroup:
+        return self.group
+
+    def receive(self, request: Request) -> None:
+        """Queue a request (the transport's sink)."""
+        self._queue.append(request)
+        self._loop.ready.append(self)
+        if self._loop.waiting:
+            self._loop.wake()
+
+    def run(self) -> Any:
+        """Answer the oldest request of the queue."""
+        if not self._queue:  # destroyed while the event waited
+            return None
+        request = self._queue.popleft()
+        try:
+            result = self._call(request)
+            if not isinstance(result, Coroutine):
+                self._answer(request.id, result)
+                return None
+        except Exception as error:
+            self._fail(request.id, error)
+            raise
+        return self._answer_later(request.id, result)
+
+    def send_response(self, response: Any, header: RequestId) -> None:
+        """Answer the request with that id.
+
+        Raises:
+            MessageError: not of the service's response type (also a TypeError).
+        """
+        wanted = self.srv_type.Response
+        if not isinstance(response, wanted):
+            raise MessageError(
+                f"service {self.srv_name}: the callback must return its "
+                f"{type_name(wanted)}, got {response!r}"
+            )
+        for port in self.ports:
+            port.reply(header, response)
+
+    def origin(self) -> tuple[str, str]:
+        return self.endpoint.node_full_name, f"service {self.endpoint.topic}"
+
+    def destroy(self) -> None:
+        """Leave the service; what is queued is not answered any more."""
+        for port in self.ports:
+            port.close()
+        self._queue.clear()
+        self._on_destroy(self)
+
+    def __enter__(self) -> "Service":
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.destroy()
+
+    def _call(self, request: Request) -> Any:
+        if self._deferred:
+            return self.callback(request.message, request.id)
+        return self.callback(request.message, self.srv_type.Response())
+
+    def _answer(self, request_id: RequestId, response: Any) -> None:
+        if not self._deferred:
+            self.send_response(response, request_id)
+
+    async def _answer_later(
+        self, request_id: RequestId, result: Coroutine[Any, Any, Any]
+    ) -> None:
+        try:
+            self._answer(request_id, await result)
+        except Exception as error:
+            self._fail(request_id, error)
+            raise
+
+    def _fail(self, request_id: RequestId, error: Exception) -> None:
+        """The exception goes its way here; the client must not wait for ever."""
+        reason = f"{type(error).__name__}: {error}"
+        for port in self.ports:
+            port.fail(request_id, reason)

@@ -1,0 +1,155 @@
+"""What every transport must do for services; each implementation runs the suite."""
+
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from navette.errors import InvalidValueError
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.transports import (
+    ClientPort,
+    Endpoint,
+    EndpointKind,
+    EndpointQos,
+    InProcessTransport,
+    ReliabilityPolicy,
+    Reply,
+    Request,
+    ServicePort,
+    Transport,
+    TransportObserver,
+)
+
+TRANSPORTS: dict[str, Callable[[], Transport]] = {"in-process": InProcessTransport}
+TYPE = "example_interfaces/srv/AddTwoInts"
+
+
+class Bench:
+    """Opens ports on a transport and notes what arrives."""
+
+    def __init__(self, transport: Transport) -> None:
+        self.transport = transport
+        self._count = 0
+
+    def _endpoint(
+        self, kind: EndpointKind, name: str, type_name: str, qos: EndpointQos | None
+    ) -> Endpoint:
+        self._count += 1
+        gid = self._count.to_bytes(16, "big")
+        node = f"n{self._count}"
+        return Endpoint(kind, name, type_name, qos or EndpointQos(), node, "/", gid)
+
+    def server(
+        self, name: str = "/s", type_name: str = TYPE, qos: EndpointQos | None = None
+    ) -> tuple[list[Request], ServicePort]:
+        requests: list[Request] = []
+        endpoint = self._endpoint(EndpointKind.SERVICE, name, type_name, qos)
+        return requests, self.transport.serve(endpoint, requests.append)
+
+    def client(
+        self, name: str = "/s", type_name: str = TYPE, qos: EndpointQos | None = None
+    ) -> tuple[list[Reply], ClientPort]:
+        replies: list[Reply] = []
+        endpoint = self._endpoint(EndpointKind.CLIENT, name, type_name, qos)
+        return replies, self.transport.connect(endpoint, replies.append)
+
+
+@pytest.fixture(params=list(TRANSPORTS))
+def bench(request: pytest.FixtureRequest) -> Iterator[Bench]:
+    transport = TRANSPORTS[request.param]()
+    yield Bench(transport)
+    transport.close()
+
+
+def test_a_reply_goes_back_to_the_client_that_asked(bench: Bench) -> None:
+    requests, server = bench.server()
+    first, port_1 = bench.client()
+    second, port_2 = bench.client()
+    port_1.request(AddTwoInts.Request(a=1), 100, 7)
+    port_2.request(AddTwoInts.Request(a=2), 200, 7)
+    assert [(r.message.a, r.source_ns) for r in requests] == [(1, 100), (2, 200)]
+    for request in reversed(requests):
+        server.reply(request.id, AddTwoInts.Response(sum=request.message.a))
+    assert [(r.message.sum, r.sequence) for r in first] == [(1, 7)]
+    assert [(r.message.sum, r.sequence) for r in second] == [(2, 7)]
+
+
+def test_what_is_edited_later_is_not_seen(bench: Bench) -> None:
+    requests, server = bench.server()
+    replies, client = bench.client()
+    asked = AddTwoInts.Request(a=1)
+    client.request(asked, 0, 1)
+    asked.a = 99
+    answer = AddTwoInts.Response(sum=requests[0].message.a)
+    server.reply(requests[0].id, answer)
+    answer.sum = 99
+    assert replies[0].message.sum == 1
+
+
+def test_a_failure_is_told(bench: Bench) -> None:
+    requests, server = bench.server()
+    replies, client = bench.client()
+    client.request(AddTwoInts.Request(), 0, 3)
+    server.fail(requests[0].id, "ValueError: no")
+    assert replies == [Reply(None, 3, "ValueError: no")]
+
+
+def test_servers_are_counted_as_they_come_and_go(bench: Bench) -> None:
+    _, client = bench.client()
+    assert client.server_count == 0
+    client.request(AddTwoInts.Request(), 0, 1)  # heard by nobody
+    requests, server = bench.server()
+    bench.server("/other")
+    assert client.server_count == 1
+    server.close()
+    server.close()
+    assert (client.server_count, requests) == (0, [])
+
+
+def test_a_client_that_left_is_no_error(bench: Bench) -> None:
+    requests, server = bench.server()
+    replies, client = bench.client()
+    client.request(AddTwoInts.Request(), 0, 1)
+    client.close()
+    server.reply(requests[0].id, AddTwoInts.Response())
+    server.fail(requests[0].id, "too late")
+    assert replies == []
+
+
+def test_another_type_is_refused_and_leaves_nothing(bench: Bench) -> None:
+    bench.server()
+    with pytest.raises(InvalidValueError, match=r"AddTwoInts \(/n1\); node /n2 .*Se"):
+        bench.client(type_name="std_srvs/srv/SetBool")
+    with pytest.raises(InvalidValueError, match=r"/n3 wants to serve it as std_srvs"):
+        bench.server(type_name="std_srvs/srv/SetBool")
+    assert [e.node_name for e in bench.transport.service_endpoints()] == ["n1"]
+
+
+def test_a_service_may_have_the_name_of_a_topic(bench: Bench) -> None:
+    bench.server("/same")
+    assert bench.transport.endpoints() == []
+    assert [e.kind for e in bench.transport.service_endpoints()] == [
+        EndpointKind.SERVICE
+    ]
+
+
+def test_qos_that_falls_short_keeps_them_apart(bench: Bench) -> None:
+    best_effort = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
+    requests, _ = bench.server()
+    _, client = bench.client(qos=best_effort)
+    client.request(AddTwoInts.Request(), 0, 1)
+    assert (client.server_count, requests) == (0, [])
+
+
+def test_changes_are_reported(bench: Bench) -> None:
+    changes: list[int] = []
+
+    class Observer(TransportObserver):
+        def graph_changed(self) -> None:
+            changes.append(len(bench.transport.service_endpoints()))
+
+    bench.transport.observe(Observer())
+    _, server = bench.server()
+    bench.client()
+    server.close()
+    assert changes == [1, 2, 1]
