@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from contextvars import ContextVar
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
 
 from navette.errors import InvalidValueError
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
@@ -42,8 +43,11 @@ class Context:
         self, *, clock: TimeSource | None = None, graph: Graph | None = None
     ) -> None:
         self.loop = EventLoop(clock or SystemClock())
+        scope = current_scope.get()
+        graph = graph or scope.graph
         self._owns_graph = graph is None
         self.graph = new_graph() if graph is None else graph
+        scope.contexts.add(self)
         self.overrides = ParameterOverrides()
         self.log = LogHub(lambda: self.loop.clock.now_ns)
         self.arguments = RosArguments()
@@ -208,40 +212,45 @@ def new_graph() -> Graph:
     return graph
 
 
-class DefaultContext:
-    """Holds the context used where none is given; ``make`` makes it on first use.
+class Scope:
+    """What one program's contexts have in common; by default all of the process.
 
-    One a process; one a program where several programs share a process.
+    Args:
+        graph: where the contexts meet those of other programs in the process; None:
+            each has a graph of its own.
     """
 
-    def __init__(self, make: Callable[[], Context]) -> None:
-        self._make = make
-        self._context: Context | None = None
+    def __init__(self, graph: Graph | None = None) -> None:
+        self.graph = graph
+        #: Those still in use, in no particular order.
+        self.contexts: WeakSet[Context] = WeakSet()
+        self._default: Context | None = None
         self._lock = threading.Lock()
 
-    def get(self) -> Context:
+    def default_context(self) -> Context:
+        """The context used where none is given; made on first use."""
         with self._lock:
-            if self._context is None:
-                self._context = self._make()
-            return self._context
+            if self._default is None:
+                self._default = Context()
+            return self._default
 
-    def reset(self) -> None:
+    def reset_default_context(self) -> None:
         with self._lock:
-            self._context = None
+            self._default = None
 
 
-#: Which holder counts for the running thread or task.
-default_context: ContextVar[DefaultContext] = ContextVar(
-    "navette_default_context",
-    default=DefaultContext(Context),  # noqa: B039 - meant to be the process's one
+#: The scope of the running thread or task.
+current_scope: ContextVar[Scope] = ContextVar(
+    "navette_scope",
+    default=Scope(),  # noqa: B039 - one for the process is meant
 )
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
     """The context used where none is given; a new one after a shutdown."""
-    return default_context.get().get()
+    return current_scope.get().default_context()
 
 
 def reset_default_context() -> None:
     """Forget the default context, so that the next use makes a fresh one."""
-    default_context.get().reset()
+    current_scope.get().reset_default_context()
