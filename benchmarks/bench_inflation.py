@@ -46,14 +46,14 @@ def with_scipy(cost: np.ndarray) -> np.ndarray:
 
 def main() -> None:
     cv2.setNumThreads(1)
-    bench = Benchmark("inflation, 20 cells, one thread", __doc__)
+    bench = Benchmark("inflation", __doc__)
     for size, target_ms in ((200, 0.18), (400, 0.6), (1000, 6.4)):
         cost = some_map(size)
         ours = inflate(cost, TABLE)
         for peer in (with_opencv, with_scipy):
             np.testing.assert_array_equal(ours, peer(cost))
         bench.case(
-            f"{size} x {size}",
+            f"{size}², 20 cells",
             {
                 "navette": lambda cost=cost: inflate(cost, TABLE),
                 "opencv": lambda cost=cost: with_opencv(cost),

@@ -86,19 +86,19 @@ def agreement(case: Merge) -> dict[str, float]:
     covered = blank()
     merge(covered, MAP, np.zeros(GRID.shape, np.int8), case.spec)
     same = {}
-    for name in ("opencv_region", "opencv_whole", "scipy_region"):
+    for name in ("opencv region", "opencv whole", "scipy region"):
         theirs = blank()
-        getattr(case, f"with_{name}")(theirs)
+        getattr(case, f"with_{name.replace(' ', '_')}")(theirs)
         same[name] = float((ours == theirs)[covered == 0].mean())
     return same
 
 
 def main() -> None:
     cv2.setNumThreads(1)
-    bench = Benchmark("merge 400² into 2000²", __doc__)
+    bench = Benchmark("merge", __doc__)
     for name, pose, target_ms in (
-        ("rotated", Pose2(3.217, 4.231, 0.6), 0.22),
-        ("straight", Pose2(3.217, 4.231, 0.0), None),
+        ("400² into 2000², rotated", Pose2(3.217, 4.231, 0.6), 0.22),
+        ("400² into 2000², straight", Pose2(3.217, 4.231, 0.0), None),
     ):
         # Lethal cells are pushed (none lost), which peers do not do: the comparison of
         # the cells is without them, the time with as many as a scan has.
@@ -113,7 +113,7 @@ def main() -> None:
                 "scipy region": lambda case=case, t=target: case.with_scipy_region(t),
                 "opencv whole": lambda case=case, t=target: case.with_opencv_whole(t),
             },
-            "same cells: " + ", ".join(f"{k} {100 * v:.2f} %" for k, v in same.items()),
+            ", ".join(f"{100 * v:.2f} % as {k}" for k, v in same.items()),
             target_ms=target_ms,
         )
     bench.main()

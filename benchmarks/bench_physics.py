@@ -120,13 +120,13 @@ def pybullet_robot() -> int:
 
 
 def main() -> None:
-    bench = Benchmark("physics, steps of 2 ms", __doc__, budget_s=2.0)
+    bench = Benchmark("physics", __doc__, budget_s=2.0)
     ours, bare = navette_steps()
     contenders = {"navette": ours, "mj_step alone": bare}
     if pybullet is not None:
         contenders["pybullet"] = pybullet_steps()
     bench.case(
-        "one step",
+        "a step of 2 ms",
         contenders,
         "all drive as far as commanded; the target is 90 000 steps a second",
         target_ms=TARGET_MS,

@@ -93,7 +93,7 @@ def bresenham(start: tuple[int, int], end: tuple[int, int]):
 
 
 def main() -> None:
-    bench = Benchmark(f"scan insertion, {BEAMS} beams", __doc__)
+    bench = Benchmark("scan insertion", __doc__)
     for size_m, resolution, target_ms in (
         (30.0, 0.1, 0.13),
         (20.0, 0.05, 0.13),
@@ -108,7 +108,7 @@ def main() -> None:
         assert min(same.values()) > 0.97, same
         agreement = ", ".join(f"{who} {100 * s:.1f} %" for who, s in same.items())
         bench.case(
-            f"{size_m:g} m at {resolution:g} m",
+            f"{BEAMS} beams, {size_m:g} m at {resolution:g} m",
             {
                 "navette": scene.with_navette,
                 "opencv": scene.with_opencv,

@@ -90,7 +90,7 @@ def main() -> None:
     drives = [d for d in (*HARD_RUNS, SEVEN_GOALS) if options.only in d.name]
     measure(options.world, HARD_RUNS[3])  # the first run in a process loads kernels
     rows = [measure(options.world, drive) for drive in drives]
-    bench = Benchmark("whole stack, reference world", __doc__)
+    bench = Benchmark("whole stack", __doc__)
     for found in figures(rows):
         bench.figure(lambda found=found: found)
     bench.run()

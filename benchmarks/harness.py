@@ -52,6 +52,7 @@ class Case:
     target_ms: float | None = None
     per_run: int = 1
     budget_s: float | None = None
+    least_rounds: int = 5
 
 
 @dataclass(frozen=True)
@@ -96,10 +97,11 @@ class Benchmark:
         target_ms: float | None = None,
         per_run: int = 1,
         budget_s: float | None = None,
+        least_rounds: int = 5,
     ) -> None:
         """Add a case; check correctness before (an assert), say so in ``note``."""
         self._cases[name] = Case(
-            name, dict(contenders), note, target_ms, per_run, budget_s
+            name, dict(contenders), note, target_ms, per_run, budget_s, least_rounds
         )
 
     def figure(self, measure: Callable[[], Figure]) -> None:
@@ -110,7 +112,9 @@ class Benchmark:
         """Measure every case, then every figure."""
         for case in self._cases.values():
             budget_s = self.budget_s if case.budget_s is None else case.budget_s
-            self.results[case.name] = measure(case.contenders, budget_s, case.per_run)
+            self.results[case.name] = measure(
+                case.contenders, budget_s, case.per_run, case.least_rounds
+            )
         self._figures_found = [measure() for measure in self._figures]
 
     def main(self, argv: list[str] | None = None) -> None:
@@ -200,7 +204,7 @@ def measure(
     contenders: Mapping[str, Run],
     budget_s: float = 1.0,
     per_run: int = 1,
-    least_runs: int = 5,
+    least_rounds: int = 5,
 ) -> dict[str, Timing]:
     """Time each contender in turn until ``budget_s`` is used up.
 
@@ -210,7 +214,7 @@ def measure(
     times: dict[str, list[float]] = {who: [] for who in contenders}
     end = time.perf_counter() + budget_s
     rounds = 0
-    while rounds < least_runs or time.perf_counter() < end:
+    while rounds < least_rounds or time.perf_counter() < end:
         for who, run in contenders.items():
             times[who] += [ms / per_run for ms in _turn(run)]
         rounds += 1
