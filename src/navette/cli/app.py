@@ -9,6 +9,7 @@ import typer
 
 from navette._version import __version__
 from navette.cli.arguments import join_pairs, parse_goal, parse_speed
+from navette.cli.run import run
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
@@ -177,10 +178,15 @@ def _run(options: "RunOptions", *, as_json: bool) -> None:
     raise typer.Exit(run_simulation(options, as_json=as_json))
 
 
+# What stands behind the program's name is the program's.
+app.command(context_settings={"allow_interspersed_args": False})(run)
+
+
 def main() -> None:
     """Entry point of the ``navette`` command."""
+    arguments = sys.argv[1:]
     try:
-        app(args=join_pairs(sys.argv[1:]))
+        app(args=arguments if arguments[:1] == ["run"] else join_pairs(arguments))
     except NavetteError as error:
         typer.secho(f"navette: {error}", fg="red", err=True)
         raise SystemExit(USAGE_ERROR) from None

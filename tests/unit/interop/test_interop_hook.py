@@ -3,7 +3,6 @@
 import subprocess
 import sys
 import textwrap
-from collections.abc import Iterator
 from importlib import import_module  # noqa: TID251 - the names are the subject
 from pathlib import Path
 from types import ModuleType
@@ -14,13 +13,6 @@ from navette import interop, runtime
 from navette.interop.hook import PROVIDED, RealRosError
 from navette.msgs import add_interface_path
 from navette.msgs.std_msgs.msg import String
-
-
-@pytest.fixture(autouse=True)
-def hook() -> Iterator[None]:
-    interop.install()
-    yield
-    interop.uninstall()
 
 
 def test_importing_navette_installs_nothing() -> None:
@@ -184,6 +176,7 @@ class TestRealRos:
             interop.install(instead_of_ros=True)
 
 
+@pytest.mark.slow
 def test_the_pytest_plugin_installs_it(tmp_path: Path) -> None:
     (tmp_path / "test_talker.py").write_text(
         textwrap.dedent("""

@@ -1,0 +1,43 @@
+"""``navette run``: unmodified ROS 2 programs on Navette."""
+
+from typing import Annotated
+
+import typer
+
+Words = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="PROGRAM [ARGS]...",
+        help="FILE.py, PACKAGE EXECUTABLE, or MODULE:Class of a node, and what the"
+        " program is to find in sys.argv, --ros-args included. [bold]--with[/bold]"
+        " PROGRAM [ARGS] adds another one in the same process.",
+    ),
+]
+OnNavette = Annotated[
+    bool,
+    typer.Option("--navette", help="On Navette even where ROS 2 is installed."),
+]
+
+
+def run(words: Words, on_navette: OnNavette = False) -> None:
+    """Run ROS 2 programs as they are, without ROS 2.
+
+    import rclpy, std_msgs.msg, tf2_ros, … mean Navette's modules. Where ROS 2 is
+    installed, the program runs on ROS 2, unless --navette is given.
+    """
+    from navette.interop import install, installed_rclpy
+    from navette.interop.process import run_alone, run_together
+    from navette.interop.targets import read_programs
+
+    real = installed_rclpy()
+    if real is None or on_navette:
+        install(instead_of_ros=on_navette)
+    else:
+        typer.echo(
+            f"navette: ROS 2's rclpy is installed at {real}, the program runs on it; "
+            "navette run --navette … takes Navette's",
+            err=True,
+        )
+    programs = read_programs(words)
+    code = run_alone(programs[0]) if len(programs) == 1 else run_together(programs)
+    raise typer.Exit(code)

@@ -1,0 +1,242 @@
+"""Programs in this process: one in the main thread, or several that meet.
+
+Several run in a thread each, with a context and a loop of their own, on one graph. What
+Python has once a process they get once a program: ``sys.argv``, the default context.
+"""
+
+import contextvars
+import ctypes
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, MutableSequence, Sequence
+from contextlib import ExitStack, contextmanager
+from typing import Any, overload
+
+from navette.interop.program import FAILED, INTERRUPTED, Program, run
+from navette.runtime.clock import Stopwatch
+from navette.runtime.context import Scope, current_scope, new_graph
+from navette.runtime.graph import Graph
+
+# A program that was interrupted has this long before its context is shut down, and
+# this long in all before it is left behind.
+_GRACE_S = 0.5
+_LONGEST_END_S = 5.0
+_LOOK_S = 0.1
+
+_argv: contextvars.ContextVar[list[str]] = contextvars.ContextVar("navette_argv")
+
+
+def run_alone(program: Program) -> int:
+    """Run in the main thread; Ctrl-C raises in it as Python does."""
+    argv, sys.argv = sys.argv, program.argv
+    try:
+        with _on_path(program), _sigterm(_shut_down_everything):
+            return run(program)
+    finally:
+        sys.argv = argv
+
+
+def run_together(programs: Sequence[Program]) -> int:
+    """Run until all have ended; Ctrl-C and SIGTERM end all, and so does one that fails.
+
+    Returns:
+        The exit code of the first that failed, or 0.
+    """
+    graph = new_graph()
+    running = [RunningProgram(program, graph) for program in programs]
+    stop = threading.Event()
+    with ExitStack() as stack:
+        stack.enter_context(program_threads())
+        for program in programs:
+            stack.enter_context(_on_path(program))
+        stack.enter_context(_sigterm(stop.set))
+        for each in running:
+            each.start()
+        _wait_for_end(running, stop)
+    graph.close()
+    codes = [each.exit_code for each in running]
+    return next((code for code in codes if code), 0)
+
+
+class RunningProgram:
+    """A program in a thread of its own.
+
+    Args:
+        graph: where it meets the others.
+        on_end: called in its thread, with its exit code.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        graph: Graph,
+        on_end: Callable[[int], object] | None = None,
+    ) -> None:
+        self.program = program
+        self.exit_code: int | None = None
+        self._scope = Scope(graph)
+        self._on_end = on_end
+        # A daemon: one that never ends must not keep the process.
+        self._thread = threading.Thread(
+            target=self._run, name=program.name, daemon=True
+        )
+
+    def start(self) -> None:
+        self._thread.start()
+
+    @property
+    def is_alive(self) -> bool:
+        return self._thread.is_alive()
+
+    def join(self, timeout_s: float | None = None) -> bool:
+        """Wait for its end; tells whether it has come."""
+        self._thread.join(timeout_s)
+        return not self._thread.is_alive()
+
+    def interrupt(self) -> None:
+        """Raise KeyboardInterrupt in its main thread, as Ctrl-C does for a process."""
+        ident = self._thread.ident
+        if ident is None or not self.is_alive:
+            return
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(
+            ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt)
+        )
+        for context in tuple(self._scope.contexts):
+            context.loop.wake()
+
+    def shut_down(self) -> None:
+        """Shut its contexts down, as SIGTERM does: its spins end, ``ok()`` is False."""
+        for context in tuple(self._scope.contexts):
+            context.try_shutdown()
+
+    def _run(self) -> None:
+        current_scope.set(self._scope)
+        _argv.set(self.program.argv)
+        try:
+            self.exit_code = run(self.program)
+        finally:
+            self.exit_code = FAILED if self.exit_code is None else self.exit_code
+            self.shut_down()
+            if self._on_end is not None:
+                self._on_end(self.exit_code)
+
+
+def _wait_for_end(running: Sequence[RunningProgram], stop: threading.Event) -> None:
+    try:
+        while not stop.is_set() and any(each.is_alive for each in running):
+            if any(each.exit_code for each in running):
+                break
+            next(each for each in running if each.is_alive).join(_LOOK_S)
+    except KeyboardInterrupt:
+        _end_all(running, RunningProgram.interrupt)
+    else:
+        _end_all(running, RunningProgram.shut_down)
+
+
+def _end_all(
+    running: Sequence[RunningProgram], how: Callable[[RunningProgram], None]
+) -> None:
+    watch = Stopwatch()
+    for each in running:
+        how(each)
+    for each in running:
+        each.join(max(0.0, _GRACE_S - watch.elapsed_s))
+    for each in running:
+        each.shut_down()
+    for each in running:
+        if not each.join(max(0.0, _LONGEST_END_S - watch.elapsed_s)):
+            sys.stderr.write(
+                f"navette: {each.program.name} does not end; left behind\n"
+            )
+            each.exit_code = INTERRUPTED
+
+
+@contextmanager
+def program_threads() -> Iterator[None]:
+    """Give threads that a program starts its context and its ``sys.argv``.
+
+    From 3.14 on Python can do this by itself (``thread_inherit_context``).
+    """
+    argv, plain_start = sys.argv, threading.Thread.start
+
+    def start(thread: threading.Thread) -> None:
+        thread.run = _inheriting(thread.run)  # type: ignore[method-assign]
+        plain_start(thread)
+
+    sys.argv = _ProgramArguments(argv)  # type: ignore[assignment]
+    threading.Thread.start = start  # type: ignore[method-assign, assignment]
+    try:
+        yield
+    finally:
+        threading.Thread.start = plain_start  # type: ignore[method-assign]
+        sys.argv = argv
+
+
+def _inheriting(function: Callable[[], None]) -> Callable[[], None]:
+    context = contextvars.copy_context()
+    return lambda: context.run(function)
+
+
+class _ProgramArguments(MutableSequence[str]):
+    """``sys.argv`` of the program that asks."""
+
+    def __init__(self, outside: list[str]) -> None:
+        self._outside = outside
+
+    def _list(self) -> list[str]:
+        return _argv.get(self._outside)
+
+    def __len__(self) -> int:
+        return len(self._list())
+
+    @overload
+    def __getitem__(self, index: int) -> str: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[str]: ...
+    def __getitem__(self, index: Any) -> Any:
+        return self._list()[index]
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        self._list()[index] = value
+
+    def __delitem__(self, index: int | slice) -> None:
+        del self._list()[index]
+
+    def insert(self, index: int, value: str) -> None:
+        self._list().insert(index, value)
+
+    def __eq__(self, other: object) -> bool:
+        return self._list() == (list(other) if isinstance(other, Sequence) else other)
+
+    def __repr__(self) -> str:
+        return repr(self._list())
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@contextmanager
+def _on_path(program: Program) -> Iterator[None]:
+    folders = [str(path) for path in program.path]
+    sys.path[:0] = folders
+    try:
+        yield
+    finally:
+        for folder in folders:
+            if folder in sys.path:
+                sys.path.remove(folder)
+
+
+@contextmanager
+def _sigterm(react: Callable[[], object]) -> Iterator[None]:
+    """SIGTERM ends programs as ROS 2's does: their contexts are shut down."""
+    before = signal.signal(signal.SIGTERM, lambda signum, frame: react() and None)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _shut_down_everything() -> None:
+    for context in tuple(current_scope.get().contexts):
+        context.try_shutdown()

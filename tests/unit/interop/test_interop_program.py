@@ -1,0 +1,187 @@
+"""Programs run as Python and ROS 2 run them: name, arguments, exit code."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from navette.interop.process import run_alone, run_together
+from navette.interop.targets import read_programs
+
+Write = Callable[..., Path]
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    def write(text: str, name: str = "program.py") -> Path:
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def run(*words: object) -> int:
+    programs = read_programs([str(word) for word in words])
+    return run_alone(programs[0]) if len(programs) == 1 else run_together(programs)
+
+
+def test_a_script_is_main_and_has_its_arguments_and_folder(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write("ANSWER = 42\n", "beside_me.py")
+    path = write("import sys, beside_me\nprint(__name__, sys.argv, beside_me.ANSWER)")
+    before = list(sys.path), sys.argv
+
+    assert run(path, "-a", "b") == 0
+
+    assert capsys.readouterr().out == f"__main__ ['{path}', '-a', 'b'] 42\n"
+    assert (sys.path, sys.argv) == before
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "said"),
+    [
+        ("pass", 0, ""),
+        ("raise SystemExit(3)", 3, ""),
+        ("raise SystemExit('no robot')", 1, "no robot\n"),
+        ("raise KeyboardInterrupt", 130, ""),
+    ],
+)
+def test_exit_codes(
+    write: Write,
+    capsys: pytest.CaptureFixture[str],
+    line: str,
+    code: int,
+    said: str,
+) -> None:
+    assert run(write(line)) == code
+    assert capsys.readouterr().err == said
+
+
+def test_a_traceback_starts_in_the_program(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write("def fly():\n    raise ValueError('no wings')\nfly()\n")
+    assert run(path) == 1
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[1] == f'  File "{path}", line 3, in <module>'
+    assert lines[-1] == "ValueError: no wings"
+
+
+def test_what_the_program_left_open_is_shut_down(write: Write) -> None:
+    from navette.runtime import ok
+
+    assert run(write("import rclpy\nrclpy.init()\nassert rclpy.ok()")) == 0
+    assert not ok()
+
+
+NODES = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+        self.count = self.declare_parameter("count", 3).value
+        self.pub = self.create_publisher(String, "chatter", 10)
+        self.create_timer(0.01, self.talk)
+
+    def talk(self):
+        self.pub.publish(String(data=f"hello {self.pub.get_subscription_count()}"))
+
+class Listener(Node):
+    def __init__(self):
+        super().__init__("listener")
+        self.create_subscription(String, "chatter", self.hear, 10)
+
+    def hear(self, msg):
+        print("heard", msg.data)
+        raise SystemExit(self.context.arguments.other[1:] and 7)
+
+def stop():
+    return 5
+"""
+
+
+def test_a_node_class_is_made_and_spun(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(NODES)
+    assert run(f"{path}:Talker", "--with", f"{path}:Listener", "loud") == 7
+    assert capsys.readouterr().out == "heard hello 1\n"
+
+
+def test_each_program_has_its_own_remaps_and_parameters(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(NODES)
+    remap = ["--ros-args", "-r", "chatter:=/radio"]
+    assert (
+        run(
+            f"{path}:Talker", *remap, "-p", "count:=9",
+            "--with", f"{path}:Talker", "--ros-args", "-r", "__ns:=/other",
+            "--with", f"{path}:Listener", "x", *remap,
+        )
+        == 7
+    )  # fmt: skip
+    assert capsys.readouterr().out == "heard hello 1\n"
+
+
+def test_a_function_is_called_and_its_value_is_the_exit_code(write: Write) -> None:
+    assert run(f"{write(NODES)}:stop") == 5
+
+
+def test_another_attribute_is_refused_and_the_fitting_ones_named(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(f"{write(NODES)}:Robot") == 1
+    assert "the module has Listener, Talker, stop" in capsys.readouterr().err
+
+
+def test_a_program_that_fails_ends_the_others(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spins = write("import rclpy; rclpy.init(); rclpy.spin(rclpy.create_node('n'))")
+    fails = write("raise RuntimeError('broken')", "fails.py")
+    assert run(spins, "--with", fails) == 1
+    assert "RuntimeError: broken" in capsys.readouterr().err
+
+
+def test_threads_of_a_program_belong_to_it(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = """
+import sys, threading, rclpy
+rclpy.init()
+node = rclpy.create_node(sys.argv[1])
+def look():
+    context = rclpy.get_default_context()
+    print(sys.argv[1:], context is node.context)
+thread = threading.Thread(target=look)
+thread.start()
+thread.join()
+"""
+    path = write(text)
+    assert run(path, "a", "--with", path, "b") == 0
+    lines = sorted(capsys.readouterr().out.splitlines())
+    assert lines == ["['a'] True", "['b'] True"]
+
+
+def test_arguments_are_a_list_like_any_other(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = """
+import argparse, sys
+parser = argparse.ArgumentParser()
+parser.add_argument("--speed", type=float)
+sys.argv.append("--speed=2")
+sys.argv[1] = "--speed=1.5"
+assert len(sys.argv) == 3 and sys.argv == [*sys.argv]
+del sys.argv[2]
+print(parser.parse_args())
+"""
+    assert run(write(text), "x", "--with", write("", "empty.py")) == 0
+    assert capsys.readouterr().out == "Namespace(speed=1.5)\n"

@@ -1,0 +1,57 @@
+"""What may stand behind ``navette run``."""
+
+from pathlib import Path
+
+import pytest
+
+from navette.errors import InvalidValueError
+from navette.interop.targets import read_programs
+
+
+@pytest.fixture
+def talker(tmp_path: Path) -> Path:
+    path = tmp_path / "talker.py"
+    path.write_text("")
+    return path
+
+
+def test_a_file_with_arguments(talker: Path) -> None:
+    (program,) = read_programs([str(talker), "--ros-args", "-r", "a:=b"])
+    assert program.argv == [str(talker), "--ros-args", "-r", "a:=b"]
+    assert program.path == (talker.parent,)
+
+
+def test_a_file_inside_a_package_finds_its_siblings_by_full_name(
+    tmp_path: Path,
+) -> None:
+    package = tmp_path / "robot"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "node.py").write_text("")
+    (program,) = read_programs([str(package / "node.py")])
+    assert program.path == (package, tmp_path)
+
+
+def test_several_programs_each_with_its_arguments(talker: Path) -> None:
+    programs = read_programs(
+        [str(talker), "-x", "--", "y", "--with", "robots:Listener", "-z"]
+    )
+    assert [program.argv for program in programs] == [
+        [str(talker), "-x", "--", "y"],
+        ["robots:Listener", "-z"],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], "a program is missing; wanted FILE"),
+        (["a:B", "--with"], "a program is missing"),
+        (["missing.py"], r"missing\.py: no such file"),
+        (["missing.py:Node"], r"missing\.py: no such file"),
+        (["talker"], "'talker' is no program; wanted FILE"),
+    ],
+)
+def test_anything_else_is_refused(words: list[str], said: str) -> None:
+    with pytest.raises(InvalidValueError, match=said):
+        read_programs(words)
