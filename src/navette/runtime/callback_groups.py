@@ -44,6 +44,18 @@ class CallbackGroup:
         """Keep the group's events back until the matching :meth:`release`."""
         self.held += 1
 
+    def begin_call(self) -> None:
+        """Let servers run in spite of the hold until :meth:`end_call`."""
+        self.calling += 1
+        servers = [entity for entity in self.parked if entity.answers_calls]
+        if servers and self.ready is not None:
+            self.ready.extendleft(reversed(servers))
+            self.parked = deque(e for e in self.parked if not e.answers_calls)
+
+    def end_call(self) -> None:
+        """Undo one :meth:`begin_call`."""
+        self.calling -= 1
+
     def release(self) -> None:
         """Undo one :meth:`hold`; parked events go first, in their old order."""
         self.held -= 1

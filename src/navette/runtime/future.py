@@ -5,6 +5,7 @@ from collections.abc import Callable, Coroutine, Generator
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
+    from navette.runtime.callback_groups import CallbackGroup
     from navette.runtime.loop import EventLoop
 
 T = TypeVar("T")
@@ -126,6 +127,8 @@ class Task(Future[T]):
         self._executing = False
         self.source = source
         self.node = node
+        #: The callback group that is held until it ends; set by the loop.
+        self.group: CallbackGroup | None = None
         #: Called with an exception nobody else would see; set by the loop.
         self.on_error: Callable[[Exception], None] | None = None
         if isinstance(handler, Coroutine):

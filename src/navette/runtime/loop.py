@@ -35,6 +35,10 @@ class Entity:
         """Do one event's work; a returned coroutine is run as a task."""
         raise NotImplementedError
 
+    def waiting_group(self) -> CallbackGroup | None:
+        """The group that is held while this waits in a blocking call."""
+        return self.group
+
     def origin(self) -> tuple[str, str]:
         """Full name of the node and the topic or timer, for error messages."""
         return "", type(self).__name__
@@ -63,6 +67,9 @@ class Call(Entity):
 
     def origin(self) -> tuple[str, str]:
         return self._node, self._source
+
+    def waiting_group(self) -> CallbackGroup | None:
+        return self._function.group if isinstance(self._function, Task) else self.group
 
     def cancel(self) -> None:
         self.token = -1
@@ -275,14 +282,18 @@ class EventLoop:
     ) -> None:
         outer = self._running
         held = outer.group if outer is not None and outer.group.exclusive else None
+        # A coroutine's later step holds the group of the callback that began it.
+        waiting = outer.waiting_group() if outer is not None and calling else None
         if held is not None:
             held.hold()
-            held.calling += calling
+        if waiting is not None:
+            waiting.begin_call()
         try:
             self._run(until_ns, done, limit, stop)
         finally:
+            if waiting is not None:
+                waiting.end_call()
             if held is not None:
-                held.calling -= calling
                 held.release()
             self._running = outer
             self._attention = True  # what woke this run may concern the outer one
@@ -378,6 +389,7 @@ class EventLoop:
         """Run a coroutine callback; its exclusive group is held until it ends."""
         node, source = entity.origin()
         task: Task[Any] = Task(coroutine, loop=self, source=source, node=node)
+        task.group = entity.group
 
         def fail(error: Exception) -> None:
             raise self._error((node, source), error) from error

@@ -15,6 +15,7 @@ from navette.runtime.context import Context, get_default_context
 from navette.runtime.exceptions import NotInitializedException
 from navette.runtime.graph import NodeInfo
 from navette.runtime.log import Logger, LogRecord
+from navette.runtime.logging_service import LoggingService
 from navette.runtime.names import (
     NodeRemapper,
     full_node_name,
@@ -27,6 +28,7 @@ from navette.runtime.node_services import NodeServices
 from navette.runtime.node_topics import NodeTopics
 from navette.runtime.overrides import Override, ParameterOverrides
 from navette.runtime.parameter import Parameter
+from navette.runtime.parameter_service import ParameterService
 from navette.runtime.parameter_store import Changes, ParameterStore
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (
@@ -91,6 +93,10 @@ class Node(NodeTopics, NodeServices, NodeParameters, NodeGraph):
                 for name, override in self._overrides.items():
                     self.declare_parameter(name, override.value)
             self._time_source = TimeSource(self)
+            if start_parameter_services:
+                self._parameter_service = ParameterService(self)
+            if enable_logger_service:
+                self._logging_service = LoggingService(self)
         except NavetteError:
             Node.destroy_node(self)  # leave no half-made node in the graph
             raise

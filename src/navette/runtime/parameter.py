@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from enum import IntEnum
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from navette.errors import ParameterError
 from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
 from navette.msgs.rcl_interfaces.msg import ParameterValue
+from navette.runtime.parameter_files import parse_value, read_parameter_file
 
 T = TypeVar("T")
 
@@ -160,8 +162,15 @@ class Parameter(Generic[T]):
 
     @classmethod
     def from_parameter_msg(cls, param_msg: ParameterMsg) -> "Parameter[Any]":
+        """Raises ParameterError where the message's type is none of the known."""
+        kind = param_msg.value.type
+        if kind not in set(ParameterType):
+            raise ParameterError(
+                f"parameter {param_msg.name!r}: type {kind}; known: "
+                f"0 … {max(ParameterType):d}"
+            )
         value = parameter_value_to_python(param_msg.value)
-        return cls(param_msg.name, ParameterType(param_msg.value.type), value)
+        return cls(param_msg.name, ParameterType(kind), value)
 
 
 def _plain(value: Any) -> Any:
@@ -180,6 +189,47 @@ def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
     if kind is ParameterType.BYTE_ARRAY:
         return [bytes([item]) for item in bytes(value)]
     return _plain(value) if kind >= ParameterType.BYTE_ARRAY else value
+
+
+def get_parameter_value(string_value: str) -> ParameterValue:
+    """The value that a text means, read as YAML; a string if nothing else fits."""
+    return Parameter("text", value=parse_value(string_value)).get_parameter_value()
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: Path | str,
+    use_wildcard: bool = False,
+    target_nodes: list[str] | None = None,
+    namespace: str = "",
+) -> dict[str, ParameterMsg]:
+    """Name → parameter message of a ROS 2 parameter file.
+
+    Args:
+        use_wildcard: take what stands under ``/**``, too (others win over it).
+        target_nodes: only these nodes of the file; all if None or empty.
+        namespace: put before every name.
+
+    Raises:
+        FileFormatError: not a parameter file.
+        ParameterError: a target node is not in it, or nothing is selected.
+    """
+    entries = read_parameter_file(parameter_file)
+    wanted = [f"/{name.strip('/')}" for name in target_nodes or ()]
+    missing = set(wanted) - {pattern for pattern, _ in entries}
+    if missing:
+        raise ParameterError(
+            f"{parameter_file}: nothing for {', '.join(sorted(missing))}; nodes: "
+            f"{', '.join(pattern for pattern, _ in entries)}"
+        )
+    every = [each for each in entries if each[0] == "/**"] if use_wildcard else []
+    named = [p for p in entries if p[0] != "/**" and (not wanted or p[0] in wanted)]
+    if not every and not named:
+        raise ParameterError(f"{parameter_file}: no selected parameters")
+    return {
+        namespace + name: Parameter(namespace + name, value=value).to_parameter_msg()
+        for _, values in (*every, *named)
+        for name, value in values.items()
+    }
 
 
 def coerced(name: str, value: Any, wanted: ParameterType) -> Any:

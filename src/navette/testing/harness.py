@@ -75,7 +75,10 @@ class GraphHarness:
         self.context.init(list(args))
         self.executor = Executor(context=self.context)
         self.node = Node(
-            "harness", context=self.context, enable_rosout=False
+            "harness",
+            context=self.context,
+            enable_rosout=False,
+            start_parameter_services=False,
         )  # publishes and collects for the test
         self.executor.add_node(self.node)
         self._publishers: dict[str, Publisher[Any]] = {}

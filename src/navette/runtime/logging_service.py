@@ -1,0 +1,40 @@
+"""The services by which others read and set the levels of loggers."""
+
+from typing import TYPE_CHECKING, Any
+
+from navette.msgs.rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
+from navette.runtime.log_levels import LoggingSeverity
+
+if TYPE_CHECKING:
+    from navette.runtime.node import Node
+
+
+class LoggingService:
+    """Serves ``~/get_logger_levels`` and ``~/set_logger_levels`` for a node."""
+
+    def __init__(self, node: "Node") -> None:
+        self._hub = node.context.log
+        package = "rcl_interfaces/srv"
+        node.serve(f"{package}/GetLoggerLevels", "~/get_logger_levels", self._get)
+        node.serve(f"{package}/SetLoggerLevels", "~/set_logger_levels", self._set)
+
+    def _get(self, request: Any, response: Any) -> Any:
+        response.levels = [
+            LoggerLevel(name=name, level=int(self._hub.get_level(name)))
+            for name in request.names
+        ]
+        return response
+
+    def _set(self, request: Any, response: Any) -> Any:
+        response.results = [self._try_set(each) for each in request.levels]
+        return response
+
+    def _try_set(self, wanted: LoggerLevel) -> SetLoggerLevelsResult:
+        known = [int(level) for level in LoggingSeverity]
+        if wanted.level not in known:
+            return SetLoggerLevelsResult(
+                successful=False,
+                reason=f"logger {wanted.name!r}: level {wanted.level}; known: {known}",
+            )
+        self._hub.set_level(wanted.name, wanted.level)
+        return SetLoggerLevelsResult(successful=True)

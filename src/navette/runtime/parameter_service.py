@@ -1,0 +1,81 @@
+"""The services by which others read and set a node's parameters."""
+
+from typing import TYPE_CHECKING, Any
+
+from navette.errors import ParameterError
+from navette.msgs.rcl_interfaces.msg import SetParametersResult
+from navette.runtime.exceptions import (
+    ParameterNotDeclaredException,
+    ParameterUninitializedException,
+)
+from navette.runtime.parameter import Parameter
+from navette.runtime.qos import qos_profile_parameters
+
+if TYPE_CHECKING:
+    from navette.runtime.node import Node
+
+
+class ParameterService:
+    """Serves ``~/get_parameters``, ``~/set_parameters`` and company for a node."""
+
+    def __init__(self, node: "Node") -> None:
+        self._node = node
+        for type_name, name, callback in (
+            ("DescribeParameters", "describe_parameters", self._describe),
+            ("GetParameters", "get_parameters", self._get),
+            ("GetParameterTypes", "get_parameter_types", self._get_types),
+            ("ListParameters", "list_parameters", self._list),
+            ("SetParameters", "set_parameters", self._set),
+            ("SetParametersAtomically", "set_parameters_atomically", self._set_all),
+        ):
+            node.serve(
+                f"rcl_interfaces/srv/{type_name}",
+                f"~/{name}",
+                callback,
+                qos_profile=qos_profile_parameters,
+            )
+
+    # As in ROS 2, one name that is not there makes the whole answer empty.
+
+    def _describe(self, request: Any, response: Any) -> Any:
+        try:
+            response.descriptors = self._node.describe_parameters(request.names)
+        except ParameterNotDeclaredException:
+            response.descriptors = []
+        return response
+
+    def _get(self, request: Any, response: Any) -> Any:
+        try:
+            found = self._node.get_parameters(request.names)
+        except (ParameterNotDeclaredException, ParameterUninitializedException):
+            found = []
+        response.values = [parameter.get_parameter_value() for parameter in found]
+        return response
+
+    def _get_types(self, request: Any, response: Any) -> Any:
+        try:
+            kinds = self._node.get_parameter_types(request.names)
+        except ParameterNotDeclaredException:
+            kinds = []
+        response.types = [int(kind) for kind in kinds]
+        return response
+
+    def _list(self, request: Any, response: Any) -> Any:
+        response.result = self._node.list_parameters(request.prefixes, request.depth)
+        return response
+
+    def _set(self, request: Any, response: Any) -> Any:
+        response.results = [self._try_set([each]) for each in request.parameters]
+        return response
+
+    def _set_all(self, request: Any, response: Any) -> Any:
+        response.result = self._try_set(request.parameters)
+        return response
+
+    def _try_set(self, messages: list[Any]) -> SetParametersResult:
+        """What a remote asks for wrongly is its own error, not this node's."""
+        try:
+            parameters = [Parameter.from_parameter_msg(each) for each in messages]
+            return self._node.set_parameters_atomically(parameters)
+        except ParameterError as error:
+            return SetParametersResult(successful=False, reason=str(error))
