@@ -49,6 +49,19 @@ def test_version_and_help() -> None:
 
 
 @pytest.mark.slow
+def test_time_that_is_up_before_the_goals_is_no_success() -> None:
+    done = navette(
+        "sim", "course", "--goal", "6", "-12", "--goal", "12", "0", "--max-time", "2",
+        "--headless", "--json",
+    )  # fmt: skip
+    assert done.returncode == 1
+    goals = json.loads(done.stdout)["goals"]
+    assert [goal["result"] for goal in goals] == ["unfinished", "unfinished"]
+    assert goals[0]["time_s"] == pytest.approx(1.9, abs=0.2)
+    assert all(goal["distance_left_m"] > 10 for goal in goals)
+
+
+@pytest.mark.slow
 def test_a_drive_prints_one_json_object_and_exits_with_zero() -> None:
     done = navette(
         "sim", "course", "--start", "-6", "0", "-90", "--goal", "-6", "-3.5",

@@ -147,7 +147,7 @@ class Simulation:
         """What came of the run so far; goals not ended count as ``unfinished``."""
         clearance = self.sim.simulator.min_clearance.distance
         return RunSummary(
-            goals=tuple(self.stack.missions.outcomes),
+            goals=tuple(self.stack.missions.standing),
             contacts=self.sim.simulator.contacts.count,
             min_clearance_m=clearance if math.isfinite(clearance) else None,
             sim_time_s=self.context.clock.now_ns / 1e9,

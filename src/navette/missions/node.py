@@ -85,6 +85,12 @@ class MissionNode(StageNode):
         """What became of the goals that have ended, in order."""
         return list(self._sequence.outcomes)
 
+    @property
+    def standing(self) -> list[GoalOutcome]:
+        """Every goal in order; what has not ended yet is ``unfinished``."""
+        self._count_way()
+        return self.outcomes + self._sequence.unfinished(self._now_ns)
+
     def add_goal(self, x: float, y: float) -> None:
         """One more goal (m, map) after the others.
 

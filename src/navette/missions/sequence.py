@@ -10,6 +10,7 @@ from navette.errors import InvalidValueError
 REACHED = "reached"
 TIMED_OUT = "timed_out"
 SKIPPED = "skipped"  # a goal before this one failed and the mission stops there
+UNFINISHED = "unfinished"  # the run ended before the goal did
 
 FAILURES = frozenset(
     {
@@ -155,6 +156,16 @@ class GoalSequence:
         if now_ns - self._began_ns >= self.timeout_ns:
             self._end(TIMED_OUT, now_ns)
 
+    def unfinished(self, now_ns: int) -> list[GoalOutcome]:
+        """How the goals stand that have not ended: the one under way, then the rest."""
+        standing = [
+            GoalOutcome(goal, UNFINISHED, 0.0, 0.0, self._distance_to(goal))
+            for goal in self._pending
+        ]
+        if self._active is not None:
+            standing.insert(0, self._outcome(self._active, UNFINISHED, now_ns))
+        return standing
+
     def _is_old(self, report: PlannerReport) -> bool:
         before = self._before_goal
         if before.goal_id:
@@ -164,13 +175,17 @@ class GoalSequence:
     def _end(self, result: str, now_ns: int) -> None:
         goal = self._active
         assert goal is not None, "only an active goal ends"
-        left = math.dist(self._place, goal) if self._place else math.inf
-        seconds = (now_ns - self._began_ns) / 1e9
-        self.outcomes.append(
-            GoalOutcome(goal, result, seconds, self._path_length, left)
-        )
+        self.outcomes.append(self._outcome(goal, result, now_ns))
         self._active = None
         if result != REACHED and self.stop_on_failure:
             while self._pending:
                 skipped = self._pending.popleft()
                 self.outcomes.append(GoalOutcome(skipped, SKIPPED, 0.0, 0.0, math.inf))
+
+    def _outcome(self, goal: Point, result: str, now_ns: int) -> GoalOutcome:
+        seconds = (now_ns - self._began_ns) / 1e9
+        left = self._distance_to(goal)
+        return GoalOutcome(goal, result, seconds, self._path_length, left)
+
+    def _distance_to(self, goal: Point) -> float:
+        return math.dist(self._place, goal) if self._place else math.inf

@@ -121,3 +121,17 @@ def test_goals_may_be_added_on_the_way_and_after() -> None:
 def test_a_goal_that_is_not_finite_is_refused(x: float) -> None:
     with pytest.raises(InvalidValueError, match="finite"):
         GoalSequence().add(x, 0.0)
+
+
+def test_what_has_not_ended_is_unfinished() -> None:
+    sequence = GoalSequence([(3.0, 0.0), (3.0, 4.0)])
+    sequence.move(0.0, 0.0)
+    sequence.start_next(1 * S)
+    sequence.move(1.0, 0.0)
+    under_way, pending = sequence.unfinished(4 * S)
+    assert (under_way.goal, under_way.result) == ((3.0, 0.0), "unfinished")
+    assert (under_way.time_s, under_way.path_length_m) == (3.0, 1.0)
+    assert under_way.distance_left_m == 2.0
+    assert (pending.result, pending.time_s) == ("unfinished", 0.0)
+    assert pending.distance_left_m == pytest.approx(math.hypot(2, 4))
+    assert not sequence.outcomes
