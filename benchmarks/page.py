@@ -23,7 +23,7 @@ REPEAT = """## Repeat it
 
 ```sh
 pip install '.[bench]'
-python benchmarks/run_all.py              # all of it: about five minutes
+python benchmarks/run_all.py              # all of it: two to three minutes
 python benchmarks/bench_inflation.py      # one of them; --json, --budget S
 python benchmarks/bench_planner.py --movingai DIR   # lengths of MovingAI's scenarios
 ```
@@ -85,20 +85,20 @@ def _targets(benchmarks: list[dict[str, Any]]) -> str:
         for case in benchmark["cases"]:
             if case["target_ms"] is None:
                 continue
+            name = f"{benchmark['name']}: {case['case']}"
             ms = _ours(case)["median_ms"]
             ratio = ms / case["target_ms"]
             lines.append(
-                f"| {benchmark['name']}: {case['case']} | {shown(case['target_ms'])} "
+                f"| {name} | ≤ {shown(case['target_ms'])} "
                 f"| **{shown(ms)}** | {_verdict(ratio)} | {_fastest_other(case)} |"
             )
-            name = f"{benchmark['name']}: {case['case']}"
             if ratio > 1.0 and name in WHY:
                 missed.append(f"- *{name}*: {WHY[name]}")
         for figure in benchmark["figures"]:
             if figure["target"] is not None:
                 lines.append(_figure_row(benchmark["name"], figure))
     if missed:
-        lines += ["", "Where the time goes that was not meant to:", "", *missed]
+        lines += ["", "Why the others are not met:", "", *missed]
     return "\n".join([*lines, ""])
 
 
