@@ -66,9 +66,11 @@ def grow_to_hold(
 def _sides(at: NDArray[np.float64], size: int, step: int, most: int) -> tuple[int, int]:
     """Cells to add before and after an axis of ``size`` cells."""
     # A point on the border (to rounding) does not ask for more.
-    before = step * max(0, math.ceil(-(at.min() + 1e-6) / step))
-    after = step * max(0, math.ceil((at.max() - size - 1e-6) / step))
     room = most - size
+    # More chunks than the room holds never stay; a far point may ask for billions.
+    chunks = max(0, math.ceil(room / step))
+    before = step * min(chunks, max(0, math.ceil(-(at.min() + 1e-6) / step)))
+    after = step * min(chunks, max(0, math.ceil((at.max() - size - 1e-6) / step)))
     while before + after > room and (before or after):
         if before >= after:
             before -= step

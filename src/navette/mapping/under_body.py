@@ -25,12 +25,17 @@ def cells_under(
     row, column = spec.cell_of(pose.x, pose.y)
     reach = math.ceil(footprint.circumscribed_radius / spec.resolution) + 1
     rows, columns = np.mgrid[
-        max(row - reach, 0) : min(row + reach + 1, spec.height),
-        max(column - reach, 0) : min(column + reach + 1, spec.width),
+        _span(row, reach, spec.height), _span(column, reach, spec.width)
     ].reshape(2, -1)
     centers = pose.inverse().apply(spec.centers_of(np.column_stack([rows, columns])))
     inside = _deep_inside(footprint, centers, spec.resolution * math.sqrt(0.5))
     return rows[inside], columns[inside]
+
+
+def _span(middle: int, reach: int, size: int) -> slice:
+    """Indices up to ``reach`` away that an axis of ``size`` has; perhaps none."""
+    first = min(max(middle - reach, 0), size)
+    return slice(first, max(first, min(middle + reach + 1, size)))
 
 
 def _deep_inside(

@@ -151,6 +151,17 @@ def test_growth_is_bounded(fusion) -> None:
     assert at(mem, 9.0, -9.0) == 0
 
 
+@pytest.mark.parametrize("fusion", ["overwrite", "max", "log_odds"])
+@pytest.mark.parametrize("far", [30.0, 1e6, 1e15, -1e15])
+def test_a_robot_far_outside_the_largest_map_leaves_it_unknown(
+    fusion: str, far: float
+) -> None:
+    mem = memory(fusion=fusion, footprint=(0.5, 0.5, -0.5, 0.5, -0.5, -0.5, 0.5, -0.5))
+    assert mem.fuse(costmap(free(), Pose2(far, far, 0.3)))
+    assert mem.spec.shape == (200, 200)
+    assert (mem.occupancy() == -1).all()
+
+
 def test_cells_under_the_body_are_free() -> None:
     body = (-0.5, -0.7, 1.5, -0.7, 1.5, 0.7, -0.5, 0.7)
     for fusion in ("overwrite", "log_odds"):
