@@ -196,11 +196,11 @@ def _notes(cases: list[dict[str, Any]]) -> list[str]:
             names.setdefault(case["note"], []).append(case["case"])
     if not names:
         return []
-    if len(names) == 1:
-        (note,) = names
-        return ["", f"{note[0].upper()}{note[1:]}."]
-    lines = [f"- {', '.join(of)}: {note}." for note, of in names.items()]
-    return ["", *lines]
+    lines = [
+        f"{of[0]}: {note}." if len(of) == 1 else f"{note[0].upper()}{note[1:]}."
+        for note, of in names.items()
+    ]
+    return ["", *(lines if len(lines) == 1 else [f"- {line}" for line in lines])]
 
 
 def _drives(rows: list[dict[str, Any]]) -> list[str]:
