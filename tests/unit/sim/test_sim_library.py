@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
@@ -99,3 +100,18 @@ def test_start_inside_an_obstacle_is_refused() -> None:
     scene = load_world("course").with_robot(load_robot("jackal").model)
     with pytest.raises(ValueError, match="inside 'cylinder_1/link'"):
         Simulator(scene, start=Pose2(0, 0, 0))
+
+
+@pytest.mark.parametrize("robot", ["course", "husky", "jackal", "turtlebot3_burger"])
+@pytest.mark.parametrize("world", ["arena", "course", "pillar"])
+def test_every_robots_lidar_meets_every_obstacle(robot: str, world: str) -> None:
+    """A beam that passes above an obstacle lets the robot drive into it."""
+    scene = load_world(world).with_robot(load_robot(robot).model)
+    simulator = Simulator(scene)
+    simulator.step(400)  # the course robot falls to the floor first
+    model, data = simulator.compiled.model, simulator._data
+    [lidar] = simulator.lidars
+    beam_m = lidar.mount.world(data)[0][2]
+    for geom in np.flatnonzero(simulator.compiled.is_obstacle):
+        top_m = data.geom_xpos[geom][2] + model.geom_aabb[geom][5]
+        assert top_m > beam_m + 0.05, simulator.compiled.geom_owner[geom]
