@@ -13,18 +13,19 @@ if TYPE_CHECKING:
 
 _RUNTIME_NAMES = frozenset(
     """
-    Buffer CallbackGroup Client Clock ClockType Context DurabilityPolicy Duration
-    Executor ExternalShutdownException Future HistoryPolicy Input LivelinessPolicy
-    LoggingSeverity MultiThreadedExecutor MutuallyExclusiveCallbackGroup Node
-    NotInitializedException Output PacedClock Parameter
-    ParameterAlreadyDeclaredException ParameterNotDeclaredException Publisher
-    QoSPresetProfiles QoSProfile ROSClock ROSInterruptException Rate
-    ReentrantCallbackGroup ReliabilityPolicy Service SingleThreadedExecutor
-    StageNode StaticTransformBroadcaster Subscription SystemClock Task Time Timer
-    TransformBroadcaster TransformListener VirtualClock create_node
-    get_default_context get_global_executor init ok qos_profile_sensor_data
-    qos_profile_system_default remove_ros_args shutdown spin spin_once
-    spin_until_future_complete try_shutdown
+    ActionClient ActionServer AsyncParameterClient Buffer CallbackGroup
+    CancelResponse Client Clock ClockType Context DurabilityPolicy Duration Executor
+    ExternalShutdownException Future GoalResponse HistoryPolicy Input
+    LivelinessPolicy LoggingSeverity MultiThreadedExecutor
+    MutuallyExclusiveCallbackGroup Node NotInitializedException Output PacedClock
+    Parameter ParameterAlreadyDeclaredException ParameterEventHandler
+    ParameterNotDeclaredException Publisher QoSPresetProfiles QoSProfile ROSClock
+    ROSInterruptException Rate ReentrantCallbackGroup ReliabilityPolicy Service
+    SingleThreadedExecutor StageNode StaticTransformBroadcaster Subscription
+    SystemClock Task Time Timer TransformBroadcaster TransformListener VirtualClock
+    create_node get_default_context get_global_executor init ok
+    qos_profile_sensor_data qos_profile_system_default remove_ros_args shutdown spin
+    spin_once spin_until_future_complete try_shutdown
     """.split()
 )
 

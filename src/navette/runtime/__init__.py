@@ -1,4 +1,9 @@
-"""The node runtime: rclpy's API on one deterministic executor."""
+"""The node runtime: rclpy's API on one deterministic executor.
+
+What few programs need (actions, lifecycle nodes, …) is loaded when first used.
+"""
+
+from typing import TYPE_CHECKING, Any
 
 from navette.runtime.api import (
     InitContextManager,
@@ -80,6 +85,16 @@ from navette.runtime.time import (
 )
 from navette.runtime.timer import Timer
 
+if TYPE_CHECKING:
+    from navette.runtime.action import (
+        ActionClient,
+        ActionServer,
+        CancelResponse,
+        GoalResponse,
+    )
+    from navette.runtime.parameter_client import AsyncParameterClient
+    from navette.runtime.parameter_event_handler import ParameterEventHandler
+
 __all__ = [
     # life cycle
     "Context",
@@ -113,6 +128,11 @@ __all__ = [
     "ReliabilityPolicy",
     "qos_profile_sensor_data",
     "qos_profile_system_default",
+    # actions
+    "ActionClient",
+    "ActionServer",
+    "CancelResponse",
+    "GoalResponse",
     # execution
     "CallbackGroup",
     "Executor",
@@ -140,9 +160,11 @@ __all__ = [
     "ns_to_stamp",
     "stamp_to_ns",
     # parameters and logging
+    "AsyncParameterClient",
     "Logger",
     "LoggingSeverity",
     "Parameter",
+    "ParameterEventHandler",
     "declare_params",
     "read_parameter_file",
     # stages
@@ -163,3 +185,11 @@ __all__ = [
     "ParameterNotDeclaredException",
     "ROSInterruptException",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Load what is not needed by most."""
+    from navette.runtime.later import find
+
+    value = globals()[name] = find(name)
+    return value

@@ -30,6 +30,10 @@ class InvalidHandle(NavetteError):
     """A publisher or subscription was used after it was destroyed."""
 
 
+class RCLError(NavetteError, RuntimeError):
+    """What ROS 2's client library refuses, such as an impossible goal state."""
+
+
 class ServiceFailedError(NavetteError, RuntimeError):
     """A service's callback raised: there will be no response to the request."""
 

@@ -19,6 +19,14 @@ if TYPE_CHECKING:
     from navette.runtime.node import Node
 
 
+async def await_or_execute(
+    callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any
+) -> Any:
+    """What the function gives, or what the coroutine gives in the end."""
+    result = callback(*args) if callable(callback) else callback
+    return await result if isinstance(result, Coroutine) else result
+
+
 class Executor:
     """Runs the callbacks of its nodes.
 

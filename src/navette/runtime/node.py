@@ -40,6 +40,7 @@ from navette.runtime.ros_clock import Clock, ROSClock
 from navette.runtime.time import ns_to_stamp, seconds_to_ns
 from navette.runtime.time_source import TimeSource
 from navette.runtime.timer import Timer
+from navette.runtime.waitable import Waitable
 
 MsgT = TypeVar("MsgT")
 
@@ -142,6 +143,10 @@ class Node(NodeTopics, NodeServices, NodeParameters, NodeGraph):
     def timers(self) -> Iterator[Timer]:
         return (e for e in self._entities if isinstance(e, Timer))
 
+    @property
+    def waitables(self) -> Iterator[Waitable]:
+        return (e for e in self._entities if isinstance(e, Waitable))
+
     # -- time ------------------------------------------------------------------
 
     def create_timer(
@@ -179,6 +184,13 @@ class Node(NodeTopics, NodeServices, NodeParameters, NodeGraph):
     def call_soon(self, function: Callable[[], Any], source: str) -> None:
         """Run ``function`` as an event of this node."""
         self._context.loop.call_soon(function, source, self.get_fully_qualified_name())
+
+    def add_waitable(self, waitable: Waitable) -> None:
+        """Keep it, and destroy it with the node."""
+        self._entities.append(waitable)
+
+    def remove_waitable(self, waitable: Waitable) -> None:
+        self._forget(waitable)
 
     # -- taking down -----------------------------------------------------------
 
@@ -266,7 +278,9 @@ class Node(NodeTopics, NodeServices, NodeParameters, NodeGraph):
     def _forget(self, entity: Any) -> None:
         if entity in self._entities:
             self._entities.remove(entity)
-        group = getattr(entity, "group", None)
+        group = getattr(entity, "group", None) or getattr(
+            entity, "callback_group", None
+        )
         if group is not None:
             group.remove_entity(entity)
 

@@ -5,7 +5,7 @@ from typing import Any
 from navette.errors import MessageError, UnknownNameError
 from navette.msgs import type_name
 
-_KINDS = {"msg": "message", "srv": "service", "action": "action"}
+_KINDS = {"msg": "a message", "srv": "a service", "action": "an action"}
 
 
 class NoTypeSupportImportedException(MessageError, RuntimeError):  # noqa: N818 - rclpy's
@@ -21,21 +21,27 @@ def interface_name(cls: Any, kind: str) -> str:
     wanted = _KINDS[kind]
     if not isinstance(cls, type):
         raise NoTypeSupportImportedException(
-            f"wanted a {wanted} class, got {cls!r}, which is no class"
+            f"wanted {wanted} class, got {cls!r}, which is no class"
         )
     try:
         name = type_name(cls)
     except UnknownNameError:
         raise NoTypeSupportImportedException(
-            f"wanted a {wanted} class, got {cls!r}: it is no ROS 2 interface"
+            f"wanted {wanted} class, got {cls!r}: it is no ROS 2 interface"
         ) from None
-    found = "msg" if hasattr(cls, "_spec_") else name.split("/")[1]
+    found = _kind(cls)
     if found != kind:
         raise NoTypeSupportImportedException(
-            f"wanted a {wanted} class, got {name}: that is "
-            f"{'an' if found == 'action' else 'a'} {_KINDS[found]}"
+            f"wanted {wanted} class, got {name}, which is {_KINDS[found]}"
         )
     return name
+
+
+def _kind(cls: type) -> str:
+    # Not by the name: an action's services are called pkg/action/Name_SendGoal.
+    if hasattr(cls, "_spec_"):
+        return "msg"
+    return "srv" if hasattr(cls, "Request") else "action"
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:

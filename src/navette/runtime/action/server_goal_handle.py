@@ -1,0 +1,122 @@
+"""A goal as its server sees it."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from navette.errors import MessageError
+from navette.msgs import type_name
+from navette.msgs.action_msgs.msg import GoalInfo, GoalStatus
+from navette.msgs.unique_identifier_msgs.msg import UUID
+from navette.runtime.action.goal_states import GoalEvent, is_active, next_status
+from navette.runtime.future import Future
+
+if TYPE_CHECKING:
+    from navette.runtime.action.server import ActionServer
+
+
+class ServerGoalHandle:
+    """An accepted goal: its request, its state, its feedback."""
+
+    def __init__(
+        self, action_server: "ActionServer", goal_info: GoalInfo, goal_request: Any
+    ) -> None:
+        self._action_server = action_server
+        self._goal_info = goal_info
+        self._goal_request = goal_request
+        self._status = GoalStatus.STATUS_ACCEPTED
+        self._destroyed = False
+        #: The response to get_result, once there is one.
+        self.result: Future[Any] = Future()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ServerGoalHandle):
+            return NotImplemented
+        return bool(self.goal_id == other.goal_id)
+
+    def __hash__(self) -> int:
+        return hash(bytes(self.goal_id.uuid))
+
+    @property
+    def request(self) -> Any:
+        """The goal message."""
+        return self._goal_request
+
+    @property
+    def goal_id(self) -> UUID:
+        return self._goal_info.goal_id
+
+    @property
+    def goal_info(self) -> GoalInfo:
+        """Id and time of acceptance."""
+        return self._goal_info
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it has not ended."""
+        return not self._destroyed and is_active(self._status)
+
+    @property
+    def is_cancel_requested(self) -> bool:
+        return self.status == GoalStatus.STATUS_CANCELING
+
+    @property
+    def status(self) -> int:
+        return GoalStatus.STATUS_UNKNOWN if self._destroyed else self._status
+
+    def execute(self, execute_callback: Callable[..., Any] | None = None) -> None:
+        """Run the execute callback (the server's if not given) as a task."""
+        # A goal may be asked to cancel before it starts: the callback sees to that.
+        if not self.is_cancel_requested:
+            self.update_state(GoalEvent.EXECUTE)
+        self._action_server.notify_execute(self, execute_callback)
+
+    def publish_feedback(self, feedback: Any) -> None:
+        """Send feedback to the client.
+
+        Raises:
+            MessageError: not of the action's feedback type (also a TypeError).
+        """
+        wanted = self._action_server.action_type.Feedback
+        if not isinstance(feedback, wanted):
+            raise MessageError(
+                f"action {self._action_server.action_name}: expected "
+                f"{type_name(wanted)}, got {type(feedback).__name__}"
+            )
+        if not self._destroyed:
+            self._action_server.publish_feedback(self.goal_id, feedback)
+
+    def succeed(self, response: Any = None) -> None:
+        """It is reached; the result comes from here or from the execute callback."""
+        self.update_state(GoalEvent.SUCCEED)
+        self._respond(response)
+
+    def abort(self, response: Any = None) -> None:
+        """It cannot be reached."""
+        self.update_state(GoalEvent.ABORT)
+        self._respond(response)
+
+    def canceled(self, response: Any = None) -> None:
+        """It was given up because the client asked for it."""
+        self.update_state(GoalEvent.CANCELED)
+        self._respond(response)
+
+    def update_state(self, event: GoalEvent) -> None:
+        """Take an event and publish the new state.
+
+        Raises:
+            RCLError: the event is not possible in the goal's state.
+        """
+        if self._destroyed:
+            return
+        self._status = next_status(self._status, event)
+        self._action_server.publish_status()
+        if not self.is_active:
+            self._action_server.notify_goal_done(self)
+
+    def destroy(self) -> None:
+        """Forget the goal; what is done to it from now on has no effect."""
+        self._destroyed = True
+
+    def _respond(self, response: Any) -> None:
+        if response is not None:
+            self._action_server.set_result(self, response)

@@ -1,0 +1,23 @@
+"""The public names of the runtime that are loaded when first used, by module."""
+
+from typing import Any
+
+_ACTION = frozenset({"ActionClient", "ActionServer", "CancelResponse", "GoalResponse"})
+
+
+def find(name: str) -> Any:
+    """The thing of that name.
+
+    Raises:
+        AttributeError: there is none.
+    """
+    module: Any
+    if name in _ACTION:
+        from navette.runtime import action as module
+    elif name == "AsyncParameterClient":
+        from navette.runtime import parameter_client as module
+    elif name == "ParameterEventHandler":
+        from navette.runtime import parameter_event_handler as module
+    else:
+        raise AttributeError(f"module 'navette.runtime' has no attribute {name!r}")
+    return getattr(module, name)
