@@ -23,7 +23,7 @@ from navette.control.records import (
 from navette.control.states import ControlState
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, yaw_of
-from navette.grids import GridSpec
+from navette.grids import grid_from_message
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Pose, Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
@@ -219,10 +219,17 @@ class ControlNode(StageNode):
         around = self._pose_now()
         if map_T_frame is None or around is None:
             return
-        info = msg.info
-        spec = GridSpec(info.resolution, info.width, info.height, _pose(info.origin))
+        self._costmap = None
+        try:
+            cells, spec = grid_from_message(msg)
+        except InvalidValueError as error:
+            # Nothing is placed: the last good one ages, and then the robot stops.
+            self.get_logger().error(
+                f"costmap not used: {error}", throttle_duration_sec=1.0
+            )
+            return
         points = obstacle_points(
-            np.asarray(msg.data, np.int8),
+            cells,
             spec,
             map_T_frame,
             lethal=params.lethal_cost,
@@ -230,7 +237,7 @@ class ControlNode(StageNode):
             reach=self._follower.obstacle_reach_m,
         )
         self._follower.set_obstacles(points, spec.resolution / 2)
-        self._costmap, self._placed_ns = None, self._costmap_ns
+        self._placed_ns = self._costmap_ns
 
     def _placement(self, msg: OccupancyGrid) -> Pose2 | None:
         """Pose of the costmap's frame on the map at the costmap's stamp."""

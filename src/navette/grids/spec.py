@@ -11,6 +11,11 @@ from navette.geometry import Pose2
 
 _ORIGIN = Pose2(0.0, 0.0, 0.0)
 
+# Kernels count cells in fixed point, and what overflows there reads foreign memory:
+# grids outside these bounds (metres) are refused before any kernel sees them.
+_RESOLUTIONS = (1e-3, 100.0)
+_FARTHEST = 1e9
+
 
 @dataclass(frozen=True)
 class GridSpec:
@@ -26,9 +31,11 @@ class GridSpec:
     origin: Pose2 = _ORIGIN
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.resolution) and self.resolution > 0):
+        finest, coarsest = _RESOLUTIONS
+        if not finest <= self.resolution <= coarsest:
             raise InvalidValueError(
-                f"grid resolution {self.resolution!r}: wanted a finite value > 0 m"
+                f"grid resolution {self.resolution!r}: wanted {finest:g} to "
+                f"{coarsest:g} m"
             )
         if self.width < 1 or self.height < 1:
             raise InvalidValueError(
@@ -36,6 +43,10 @@ class GridSpec:
             )
         if not all(map(math.isfinite, self.origin)):
             raise InvalidValueError(f"grid origin {self.origin}: wanted finite values")
+        if max(abs(self.origin.x), abs(self.origin.y)) > _FARTHEST:
+            raise InvalidValueError(
+                f"grid origin {self.origin}: wanted x and y within {_FARTHEST:g} m"
+            )
 
     @property
     def shape(self) -> tuple[int, int]:

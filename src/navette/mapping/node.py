@@ -139,15 +139,16 @@ class MapMemoryNode(StageNode):
         if base_T_sensor is None:
             self._complain(f"no transform from its frame {frame_id!r} to the base")
             return None
+        map_T_sensor = ready.map_T_base @ base_T_sensor
         try:
             cells, spec = grid_from_message(ready.item)
+            there = placed(spec, map_T_sensor)
         except InvalidValueError as error:
             self._complain(str(error))
             return None
-        map_T_sensor = ready.map_T_base @ base_T_sensor
         return PlacedCostmap(
             cells,
-            placed(spec, map_T_sensor),
+            there,
             (map_T_sensor.x, map_T_sensor.y),
             ready.map_T_base,
             ready.stamp_ns,

@@ -27,6 +27,7 @@ class World:
         self.plant = Plant(Pose2(0.0, 0.0, 0.0))
         self.odometry = self.lidar = self.planner = True
         self.wall_x: float | None = None  # across the x axis of the map
+        self.resolution = 0.1  # of the costmap, as it is told
         self.node = graph.add(
             ControlNode(
                 context=graph.context,
@@ -95,7 +96,7 @@ class World:
         msg = OccupancyGrid()
         msg.header.frame_id = "base_link"
         msg.header.stamp = ns_to_stamp(self.graph.now_ns)
-        msg.info.resolution = 0.1
+        msg.info.resolution = self.resolution
         msg.info.width = msg.info.height = 80
         msg.info.origin.position.x = msg.info.origin.position.y = -4.0
         msg.data = cost.ravel()
@@ -201,6 +202,19 @@ def test_a_costmap_in_the_robots_frame_blocks_where_it_belongs(world: World) -> 
     assert 2.0 < world.plant.pose.x < 2.22
     assert world.status.last.level == b"\x01"
     world.wall_x = None
+    assert world.graph.run_until(lambda: world.state == "reached", 15.0)
+
+
+@pytest.mark.parametrize("resolution", [0.0, math.nan, -0.1, 1e30])
+def test_costmaps_that_are_no_grids_stop_the_robot_like_none(
+    world: World, resolution: float
+) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(3.0)
+    world.resolution = resolution
+    world.graph.run_for(0.36)
+    assert (world.commands.last.linear.x, world.state) == (0.0, "stale_costmap")
+    world.resolution = 0.1
     assert world.graph.run_until(lambda: world.state == "reached", 15.0)
 
 

@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 
@@ -36,3 +38,17 @@ def test_what_is_no_grid_is_named() -> None:
         grid_from_message(OccupancyGrid())
     with pytest.raises(InvalidValueError, match="cells: shape"):
         grid_to_message(CELLS[:2], SPEC, "map", 0)
+
+
+@pytest.mark.parametrize("resolution", [0.0, -0.1, math.nan, math.inf, 1e-30, 1e30])
+def test_resolutions_that_kernels_cannot_count_in_are_refused(
+    resolution: float,
+) -> None:
+    with pytest.raises(InvalidValueError, match="wanted 0.001 to 100 m"):
+        GridSpec(resolution, 4, 3)
+
+
+@pytest.mark.parametrize("x", [math.nan, 1e10, -1e300])
+def test_origins_that_kernels_cannot_count_to_are_refused(x: float) -> None:
+    with pytest.raises(InvalidValueError, match="grid origin"):
+        GridSpec(0.1, 4, 3, Pose2(x, 0.0, 0.0))

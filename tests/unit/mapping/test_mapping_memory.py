@@ -152,7 +152,7 @@ def test_growth_is_bounded(fusion) -> None:
 
 
 @pytest.mark.parametrize("fusion", ["overwrite", "max", "log_odds"])
-@pytest.mark.parametrize("far", [30.0, 1e6, 1e15, -1e15])
+@pytest.mark.parametrize("far", [30.0, 1e6, 9e8, -9e8])
 def test_a_robot_far_outside_the_largest_map_leaves_it_unknown(
     fusion: str, far: float
 ) -> None:

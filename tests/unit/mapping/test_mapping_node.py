@@ -177,6 +177,15 @@ def test_an_unknown_frame_places_nothing() -> None:
         assert rig.maps.count == 1
 
 
+def test_odometry_from_beyond_the_earth_places_nothing() -> None:
+    with GraphHarness() as graph:
+        rig = Rig(graph)
+        rig.odometry(1e300, 0.0, 0)
+        rig.costmap(with_post(1.0, 0.0), 0)
+        rig.run_ms(20)
+        assert rig.maps.count == 1
+
+
 def test_standing_still_nothing_is_published_again() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
