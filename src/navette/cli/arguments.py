@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from navette.errors import InvalidValueError
 
 PAIR_OPTIONS = ("--goal",)
+LIST_OPTIONS = ("--dependencies",)
 
 
 def join_pairs(arguments: Sequence[str]) -> list[str]:
-    """Make ``--goal X Y`` one value, ``--goal "X Y"``, for each repetition.
+    """Make ``--goal X Y`` (or ``--goal=X Y``) one value, ``--goal "X Y"``, each time.
 
     Why: Typer takes options that repeat, and options with two values, but not an
     option that does both.
@@ -18,10 +19,29 @@ def join_pairs(arguments: Sequence[str]) -> list[str]:
     rest = list(arguments)
     while rest:
         word = rest.pop(0)
+        option, equals, value = word.partition("=")
+        if equals and option in PAIR_OPTIONS:
+            word, rest = option, [value, *rest]
         joined.append(word)
-        if word in PAIR_OPTIONS and len(rest) >= 2 and _is_number(rest[1]):
+        if word in PAIR_OPTIONS and len(rest) >= 2 and all(map(_is_number, rest[:2])):
             joined.append(f"{rest.pop(0)} {rest.pop(0)}")
     return joined
+
+
+def spread_lists(arguments: Sequence[str]) -> list[str]:
+    """Make ``--dependencies a b`` two options, ``--dependencies a --dependencies b``.
+
+    Why: ROS 2's command takes them so, and Typer takes options of one value.
+    """
+    spread: list[str] = []
+    option = ""
+    for word in arguments:
+        if word.startswith("-"):
+            option = word if word in LIST_OPTIONS else ""
+            spread += [] if option else [word]
+        else:
+            spread += [option, word] if option else [word]
+    return spread
 
 
 def _is_number(text: str) -> bool:
@@ -33,13 +53,14 @@ def _is_number(text: str) -> bool:
 
 
 def parse_goal(text: str) -> tuple[float, float]:
-    """``"X Y"`` (or ``"X,Y"``) in metres; NaN passes, the planner names it."""
+    """``"X Y"`` (or ``"X,Y"``) in metres."""
     words = text.replace(",", " ").split()
-    if len(words) != 2 or not all(_is_number(word) for word in words):
+    numbers = [float(word) for word in words if _is_number(word)]
+    if len(words) != 2 or len(numbers) != 2 or not all(map(math.isfinite, numbers)):
         raise InvalidValueError(
-            f"--goal {text!r}: wanted two numbers in metres, as in --goal 6 -12"
+            f"--goal {text!r}: wanted two finite numbers in metres, as in --goal 6 -12"
         )
-    return float(words[0]), float(words[1])
+    return numbers[0], numbers[1]
 
 
 def parse_speed(text: str) -> float:

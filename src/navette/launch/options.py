@@ -34,9 +34,9 @@ class RunOptions:
             raise InvalidValueError(f"speed {self.speed!r}: wanted above 0, or max")
         if self.seed < 0:
             raise InvalidValueError(f"seed {self.seed!r}: wanted 0 or more")
-        if self.max_time_s is not None and not self.max_time_s > 0:
+        if self.max_time_s is not None and not 0 < self.max_time_s < math.inf:
             raise InvalidValueError(
-                f"max time {self.max_time_s!r}: wanted more than 0 seconds"
+                f"max time {self.max_time_s!r}: wanted more than 0 seconds, finite"
             )
         if self.start is not None and not all(map(math.isfinite, self.start)):
             raise InvalidValueError(f"start {tuple(self.start)}: wanted finite numbers")

@@ -35,11 +35,14 @@ def test_goals_in_either_spelling(text: str) -> None:
     assert parse_goal(text) == (-13.2, 4.0)
 
 
-def test_a_goal_that_is_not_a_number_is_left_to_the_planner_to_name() -> None:
-    assert math.isnan(parse_goal("nan 2")[0])
+def test_a_goal_behind_an_equals_sign() -> None:
+    for typed in (["--goal=3", "-2", "--json"], ["--goal=3 -2", "--json"]):
+        assert join_pairs(typed) == ["--goal", "3 -2", "--json"]
 
 
-@pytest.mark.parametrize("text", ["1", "1 2 3", "here there", ""])
+@pytest.mark.parametrize(
+    "text", ["1", "1 2 3", "here there", "", "nan 2", "1 inf", "1 -inf"]
+)
 def test_a_malformed_goal_shows_how_to_write_one(text: str) -> None:
     with pytest.raises(InvalidValueError, match="--goal 6 -12"):
         parse_goal(text)

@@ -20,6 +20,7 @@ def test_a_headless_run_ends_with_its_goals() -> None:
         ({"speed": math.nan}, "speed"),
         ({"seed": -1}, "seed"),
         ({"max_time_s": 0.0}, "max time"),
+        ({"max_time_s": math.inf}, "max time"),
         ({"start": Pose2(math.nan, 0, 0)}, "start"),
     ],
 )
