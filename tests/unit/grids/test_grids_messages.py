@@ -44,7 +44,7 @@ def test_what_is_no_grid_is_named() -> None:
 def test_resolutions_that_kernels_cannot_count_in_are_refused(
     resolution: float,
 ) -> None:
-    with pytest.raises(InvalidValueError, match="wanted 0.001 to 100 m"):
+    with pytest.raises(InvalidValueError, match=r"wanted 0\.001 to 100 m"):
         GridSpec(resolution, 4, 3)
 
 
