@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from navette._version import __version__
-from navette.cli.arguments import join_pairs, parse_goal, parse_speed
+from navette.cli.arguments import join_pairs, parse_goal, parse_speed, spread_lists
+from navette.cli.pkg import pkg
 from navette.cli.run import run
 from navette.errors import NavetteError
 
@@ -180,13 +181,16 @@ def _run(options: "RunOptions", *, as_json: bool) -> None:
 
 # What stands behind the program's name is the program's.
 app.command(context_settings={"allow_interspersed_args": False})(run)
+app.add_typer(pkg)
 
 
 def main() -> None:
     """Entry point of the ``navette`` command."""
     arguments = sys.argv[1:]
+    if arguments[:1] != ["run"]:
+        arguments = spread_lists(join_pairs(arguments))
     try:
-        app(args=arguments if arguments[:1] == ["run"] else join_pairs(arguments))
+        app(args=arguments)
     except NavetteError as error:
         typer.secho(f"navette: {error}", fg="red", err=True)
         raise SystemExit(USAGE_ERROR) from None

@@ -28,6 +28,7 @@ def run(words: Words, on_navette: OnNavette = False) -> None:
     from navette.interop import install, installed_rclpy
     from navette.interop.process import run_alone, run_together
     from navette.interop.targets import read_programs
+    from navette.packages import activate
 
     real = installed_rclpy()
     if real is None or on_navette:
@@ -38,6 +39,7 @@ def run(words: Words, on_navette: OnNavette = False) -> None:
             "navette run --navette … takes Navette's",
             err=True,
         )
+    activate()
     programs = read_programs(words)
     code = run_alone(programs[0]) if len(programs) == 1 else run_together(programs)
     raise typer.Exit(code)

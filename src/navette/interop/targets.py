@@ -1,10 +1,12 @@
 """What a person typed after ``navette run`` → programs."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from navette.errors import InvalidValueError
 from navette.interop.program import Program, entry_point, file_entry_point, script
+from navette.packages import find_package
 
 WITH = "--with"
 _FORMS = (
@@ -40,7 +42,25 @@ def _read_program(words: Sequence[str]) -> Program:
         return entry_point(place, attribute, arguments)
     if target.endswith(".py") or Path(target).is_file():
         return script(_existing(Path(target)), arguments)
+    if arguments:
+        return _executable(target, arguments[0], arguments[1:])
     raise InvalidValueError(f"{target!r} is no program; wanted {_FORMS}")
+
+
+def _executable(package: str, name: str, arguments: tuple[str, ...]) -> Program:
+    """A program of a package, as its setup.py, pyproject.toml or CMake names it."""
+    found = find_package(package)
+    executable = found.executable(name)
+    if executable.path is None:
+        program = entry_point(
+            executable.module, executable.attribute, arguments, name=name
+        )
+        return replace(program, path=(found.share,))
+    with executable.path.open("rb") as file:
+        first = file.readline()
+    if executable.path.suffix != ".py" and b"python" not in first:
+        raise InvalidValueError(f"{executable.path} is not a Python program")
+    return script(executable.path, arguments)
 
 
 def _existing(path: Path) -> Path:

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from navette.errors import InvalidValueError
+from navette.errors import InvalidValueError, UnknownNameError
 from navette.interop.targets import read_programs
+from navette.packages import create_package
 
 
 @pytest.fixture
@@ -55,3 +56,17 @@ def test_several_programs_each_with_its_arguments(talker: Path) -> None:
 def test_anything_else_is_refused(words: list[str], said: str) -> None:
     with pytest.raises(InvalidValueError, match=said):
         read_programs(words)
+
+
+def test_an_executable_of_a_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (made,) = create_package("my_robot", tmp_path, node="drive")
+    monkeypatch.chdir(made / "launch")
+    (program,) = read_programs(["my_robot", "drive", "-x"])
+    assert program.argv == ["drive", "-x"]
+    assert program.path == (made,)
+    with pytest.raises(UnknownNameError, match="executable of my_robot 'd'"):
+        read_programs(["my_robot", "d"])
+    with pytest.raises(UnknownNameError, match="'yours' not found"):
+        read_programs(["yours", "drive"])

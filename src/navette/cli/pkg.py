@@ -1,0 +1,115 @@
+"""``navette pkg``: make and find packages."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from navette.packages import Package
+
+pkg = typer.Typer(
+    name="pkg",
+    help="Make packages and find them: in the workspace by folder, without building.",
+    no_args_is_help=True,
+)
+
+Name = Annotated[str, typer.Argument(metavar="NAME", help="The package's name.")]
+
+
+@pkg.command()
+def create(
+    name: Name,
+    msgs: Annotated[
+        bool,
+        typer.Option(
+            "--msgs", help="Also make NAME_msgs: own messages, services and actions."
+        ),
+    ] = False,
+    node: Annotated[
+        str | None,
+        typer.Option(metavar="NODE", help="The node's name; by default the package's."),
+    ] = None,
+    dependencies: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PACKAGE...", help="Further packages it needs."),
+    ] = None,
+    destination_directory: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER", help="Where to; by default src/ if that is here, or here."
+        ),
+    ] = None,
+) -> None:
+    """Make a package: a node, its method apart, parameters, launch file and tests.
+
+    Its tests pass at once (pytest), colcon builds it on ROS 2, and Navette runs it
+    from its folder. A name that ends in _msgs makes a package of interfaces.
+    """
+    from navette.packages import create_package
+
+    here = Path.cwd()
+    folder = destination_directory or (
+        here / "src" if (here / "src").is_dir() else here
+    )
+    made = create_package(
+        name, folder, node=node, messages=msgs, dependencies=dependencies or ()
+    )
+    for package in made:
+        typer.echo(f"made {package}")
+        for file in sorted(path for path in package.rglob("*") if path.is_file()):
+            typer.echo(f"  {file.relative_to(package)}")
+
+
+@pkg.command("list")
+def list_(
+    paths: Annotated[
+        bool, typer.Option("--paths", help="With origin and folder.")
+    ] = False,
+) -> None:
+    """List all packages: the workspace's, installed ones and Navette's own."""
+    from navette.packages import find_packages
+
+    for package in find_packages().values():
+        place = f"\t{package.origin.value}\t{package.share}" if paths else ""
+        typer.echo(f"{package.name}{place}")
+
+
+@pkg.command()
+def prefix(
+    name: Name,
+    share: Annotated[
+        bool, typer.Option("--share", help="The folder of its files instead.")
+    ] = False,
+) -> None:
+    """Print where a package is."""
+    from navette.packages import find_package
+
+    package = find_package(name)
+    typer.echo(package.share if share else package.prefix)
+
+
+@pkg.command()
+def executables(
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="Only of this package.")
+    ] = None,
+    full_path: Annotated[
+        bool, typer.Option("--full-path", help="Say what each of them runs.")
+    ] = False,
+) -> None:
+    """List the programs that navette run PACKAGE EXECUTABLE can run."""
+    from navette.packages import find_package, find_packages
+
+    packages = [find_package(name)] if name else list(find_packages().values())
+    for package in packages:
+        for line in _lines(package, full_path=full_path):
+            typer.echo(line)
+
+
+def _lines(package: "Package", *, full_path: bool) -> list[str]:
+    lines = []
+    for each in package.executables():
+        runs = each.path or f"{each.module}:{each.attribute}"
+        lines.append(f"{package.name} {each.name}" + (f"\t{runs}" if full_path else ""))
+    return lines

@@ -1,0 +1,166 @@
+"""The programs of a package, as its build files name them.
+
+Nothing is run to find them: setup.py is read as text, and what it computes by more
+than constants, names, f-strings and sums stays unknown.
+"""
+
+import ast
+import configparser
+import os
+import re
+import tomllib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from navette.errors import FileFormatError, UnknownNameError
+
+_ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
+_CMAKE_PROGRAMS = re.compile(
+    r"\binstall\s*\(\s*PROGRAMS\s+(.*?)\s+DESTINATION", re.DOTALL | re.IGNORECASE
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Executable:
+    """A function of a module (``module`` and ``attribute``), or a file (``path``)."""
+
+    package: str
+    name: str
+    module: str = ""
+    attribute: str = ""
+    path: Path | None = None
+
+    @staticmethod
+    def named(name: str, package: str, among: Iterable["Executable"]) -> "Executable":
+        """The one of that name.
+
+        Raises:
+            UnknownNameError: none; lists those known.
+        """
+        known = {each.name: each for each in among}
+        if name not in known:
+            raise UnknownNameError.of(f"executable of {package}", name, list(known))
+        return known[name]
+
+
+def source_executables(package: str, folder: Path) -> tuple[Executable, ...]:
+    """Those of a package's folder: entry points, and programs that CMake installs."""
+    texts = [
+        *_from_setup_py(folder / "setup.py"),
+        *_from_setup_cfg(folder / "setup.cfg"),
+        *_from_pyproject(folder / "pyproject.toml"),
+    ]
+    found = {}
+    for text in texts:
+        match = _ENTRY_POINT.fullmatch(text)
+        if match:
+            name, module, attribute = match.groups()
+            found[name] = Executable(package, name, module, attribute)
+    for path in _from_cmake(folder / "CMakeLists.txt"):
+        found[path.name] = Executable(package, path.name, path=path)
+    return tuple(found[name] for name in sorted(found))
+
+
+def installed_executables(package: str, folder: Path) -> tuple[Executable, ...]:
+    """The files of ``lib/<package>`` below a prefix that may be executed."""
+    if not folder.is_dir():
+        return ()
+    return tuple(
+        Executable(package, path.name, path=path)
+        for path in sorted(folder.iterdir())
+        if path.is_file() and os.access(path, os.X_OK)
+    )
+
+
+def _from_pyproject(path: Path) -> Iterator[str]:
+    if not path.is_file():
+        return
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise FileFormatError(path, str(error)) from None
+    for name, target in content.get("project", {}).get("scripts", {}).items():
+        yield f"{name} = {target}"
+
+
+def _from_setup_cfg(path: Path) -> Iterator[str]:
+    if not path.is_file():
+        return
+    parser = configparser.ConfigParser(interpolation=None)
+    try:
+        parser.read_string(path.read_text(encoding="utf-8"))
+    except configparser.Error as error:
+        raise FileFormatError(path, str(error)) from None
+    lines = parser.get("options.entry_points", "console_scripts", fallback="")
+    yield from lines.splitlines()
+
+
+def _from_cmake(path: Path) -> Iterator[Path]:
+    if not path.is_file():
+        return
+    text = re.sub(r"#.*", "", path.read_text(encoding="utf-8"))
+    for listed in _CMAKE_PROGRAMS.findall(text):
+        files = (path.parent / name.strip('"') for name in listed.split())
+        yield from (file for file in files if file.is_file())
+
+
+def _from_setup_py(path: Path) -> Iterator[str]:
+    if not path.is_file():
+        return
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except SyntaxError as error:
+        raise FileFormatError(path, error.msg, error.lineno) from None
+    names = _constants(tree)
+    for call in ast.walk(tree):
+        if isinstance(call, ast.Call) and _called_name(call) == "setup":
+            for keyword in call.keywords:
+                if keyword.arg == "entry_points":
+                    yield from _console_scripts(keyword.value, names)
+
+
+def _called_name(call: ast.Call) -> str:
+    function = call.func
+    return getattr(function, "id", "") or getattr(function, "attr", "")
+
+
+def _console_scripts(entry_points: ast.expr, names: dict[str, str]) -> Iterator[str]:
+    if not isinstance(entry_points, ast.Dict):
+        return
+    for key, value in zip(entry_points.keys, entry_points.values, strict=True):
+        if key is None or _text(key, names) != "console_scripts":
+            continue
+        if isinstance(value, (ast.List, ast.Tuple)):
+            for item in value.elts:
+                yield _text(item, names) or ""
+
+
+def _constants(tree: ast.Module) -> dict[str, str]:
+    """Names that the module sets to a text."""
+    found: dict[str, str] = {}
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and len(node.targets) == 1:
+            target, text = node.targets[0], _text(node.value, found)
+            if isinstance(target, ast.Name) and text is not None:
+                found[target.id] = text
+    return found
+
+
+def _text(node: ast.expr, names: dict[str, str]) -> str | None:
+    """The text an expression gives; None where that takes more than is read here."""
+    if isinstance(node, ast.Constant):
+        return node.value if isinstance(node.value, str) else None
+    if isinstance(node, ast.Name):
+        return names.get(node.id)
+    if isinstance(node, ast.FormattedValue):
+        return _text(node.value, names)
+    parts: list[ast.expr] = []
+    if isinstance(node, ast.JoinedStr):
+        parts = node.values
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        parts = [node.left, node.right]
+    texts = [_text(part, names) for part in parts]
+    if not texts or None in texts:
+        return None
+    return "".join(text or "" for text in texts)
