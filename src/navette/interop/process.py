@@ -11,6 +11,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, MutableSequence, Sequence
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from typing import Any, overload
 
 from navette.interop.program import FAILED, INTERRUPTED, Program, run
@@ -31,7 +32,8 @@ def run_alone(program: Program) -> int:
     """Run in the main thread; Ctrl-C raises in it as Python does."""
     argv, sys.argv = sys.argv, program.argv
     try:
-        with _on_path(program), _sigterm(_shut_down_everything):
+        # SIGTERM ends a program as ROS 2's does: its contexts are shut down.
+        with _on_path(program), _on_signal(signal.SIGTERM, _shut_down_everything):
             return run(program)
     finally:
         sys.argv = argv
@@ -45,15 +47,16 @@ def run_together(programs: Sequence[Program]) -> int:
     """
     graph = new_graph()
     running = [RunningProgram(program, graph) for program in programs]
-    stop = threading.Event()
+    wishes: list[_End] = []
     with ExitStack() as stack:
         stack.enter_context(program_threads())
         for program in programs:
             stack.enter_context(_on_path(program))
-        stack.enter_context(_sigterm(stop.set))
+        for signum, how in _ENDS.items():
+            stack.enter_context(_on_signal(signum, partial(wishes.append, how)))
         for each in running:
             each.start()
-        _wait_for_end(running, stop)
+        _wait_for_end(running, wishes)
     graph.close()
     codes = [each.exit_code for each in running]
     return next((code for code in codes if code), 0)
@@ -122,21 +125,23 @@ class RunningProgram:
                 self._on_end(self.exit_code)
 
 
-def _wait_for_end(running: Sequence[RunningProgram], stop: threading.Event) -> None:
-    try:
-        while not stop.is_set() and any(each.is_alive for each in running):
-            if any(each.exit_code for each in running):
-                break
-            next(each for each in running if each.is_alive).join(_LOOK_S)
-    except KeyboardInterrupt:
-        _end_all(running, RunningProgram.interrupt)
-    else:
-        _end_all(running, RunningProgram.shut_down)
+_End = Callable[[RunningProgram], None]
+_ENDS: dict[signal.Signals, _End] = {
+    signal.SIGINT: RunningProgram.interrupt,
+    signal.SIGTERM: RunningProgram.shut_down,
+}
 
 
-def _end_all(
-    running: Sequence[RunningProgram], how: Callable[[RunningProgram], None]
-) -> None:
+def _wait_for_end(running: Sequence[RunningProgram], wishes: Sequence[_End]) -> None:
+    while not wishes and any(each.is_alive for each in running):
+        if any(each.exit_code for each in running):
+            break
+        next((each for each in running if each.is_alive), running[0]).join(_LOOK_S)
+    # A second signal changes nothing: ``timeout`` and shells send several.
+    _end_all(running, wishes[0] if wishes else RunningProgram.shut_down)
+
+
+def _end_all(running: Sequence[RunningProgram], how: _End) -> None:
     watch = Stopwatch()
     for each in running:
         how(each)
@@ -228,13 +233,12 @@ def _on_path(program: Program) -> Iterator[None]:
 
 
 @contextmanager
-def _sigterm(react: Callable[[], object]) -> Iterator[None]:
-    """SIGTERM ends programs as ROS 2's does: their contexts are shut down."""
-    before = signal.signal(signal.SIGTERM, lambda signum, frame: react() and None)
+def _on_signal(signum: signal.Signals, react: Callable[[], object]) -> Iterator[None]:
+    before = signal.signal(signum, lambda *_: react() and None)
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        signal.signal(signum, before)
 
 
 def _shut_down_everything() -> None:

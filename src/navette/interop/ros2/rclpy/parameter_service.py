@@ -1,0 +1,5 @@
+"""Parameters by service."""
+
+from navette.runtime.parameter_service import ParameterService
+
+__all__ = ["ParameterService"]

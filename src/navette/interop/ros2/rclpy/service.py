@@ -1,0 +1,5 @@
+"""Services."""
+
+from navette.runtime.service import Service
+
+__all__ = ["Service"]

@@ -1,0 +1,13 @@
+"""Is it a message, a service?"""
+
+from navette.runtime.type_support import (
+    check_for_type_support,
+    check_is_valid_msg_type,
+    check_is_valid_srv_type,
+)
+
+__all__ = [
+    "check_for_type_support",
+    "check_is_valid_msg_type",
+    "check_is_valid_srv_type",
+]

@@ -1,0 +1,88 @@
+"""Programs written for rclpy run as they are: ``navette run`` in a real process."""
+
+from pathlib import Path
+
+import pytest
+from program_run import ProgramRun, run_until_printed
+
+PROGRAMS = Path(__file__).parent / "programs"
+TALKER = str(PROGRAMS / "talker.py")
+LISTENER = str(PROGRAMS / "listener.py")
+LISTENER_NODE = f"{PROGRAMS / 'listener_node.py'}:Listener"
+ADDER = str(PROGRAMS / "adder.py")
+
+pytestmark = pytest.mark.slow
+
+
+def printed(words: list[str], *expected: str) -> ProgramRun:
+    run = run_until_printed(words, expected, timeout_s=20.0)
+    assert run.is_good, f"{run.faults()}\n{run.output}"
+    return run
+
+
+def test_a_program_alone_ends_on_ctrl_c() -> None:
+    run = printed([TALKER], r"\[INFO\] \[\d+\.\d{9}\] \[talker\]: Publishing: .* 3")
+    assert run.interrupted
+    assert run.exit_code == 0  # it caught KeyboardInterrupt itself
+
+
+def test_two_programs_meet_and_end_on_ctrl_c() -> None:
+    run = printed([TALKER, "--with", LISTENER_NODE], r"I heard: \[message \d+\]")
+    assert run.interrupted
+    assert run.exit_code == 0
+
+
+def test_programs_that_end_by_themselves() -> None:
+    run = printed(
+        [TALKER, "--ros-args", "-p", "count:=50", "--with", LISTENER, "2"],
+        "I heard: message 0",
+        "I heard: message 1",
+        "Publishing: .message 49",
+    )
+    assert not run.interrupted
+
+
+def test_remapping_and_parameters_from_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "params.yaml"
+    file.write_text("/far/quick:\n  ros__parameters:\n    count: 3\n")
+    printed(
+        [
+            TALKER, "--ros-args", "--params-file", str(file), "-r", "chatter:=/radio",
+            "-r", "__ns:=/far", "-r", "__node:=quick", "--log-level", "info",
+            "--with", LISTENER, "1", "--ros-args", "-r", "chatter:=/radio",
+        ],
+        r'\[far\.quick\]: Publishing: "message 0"',
+        "I heard: message 0",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("way", "answer"),
+    [
+        ("future", "future: 3"),
+        ("coroutine", "coroutine: 7"),
+        ("callback", "blocking: 11"),
+        ("thread", "thread: 15"),
+    ],
+)
+def test_services(way: str, answer: str) -> None:
+    run = printed([ADDER, "serve", "--with", ADDER, way], r"adding \d and \d", answer)
+    assert "the adder ends" in run.output
+
+
+def test_nodes_of_other_files_in_one_executor() -> None:
+    run = printed([str(PROGRAMS / "composed.py")], r"I heard: \[message 2\]")
+    assert "interrupted, heard True" in run.output
+
+
+def test_events_of_quality_of_service() -> None:
+    run = printed([str(PROGRAMS / "events.py")], r"\+1, now 1", "-1, now 0")
+    assert not run.interrupted
+
+
+def test_what_navette_has_not_got_is_named(tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text("from rclpy.qos import QoSWormhole\n")
+    run = run_until_printed([str(program)], ["has no rclpy.qos.QoSWormhole"], 10.0)
+    assert run.exit_code == 1
+    assert not run.missing
