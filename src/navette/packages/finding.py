@@ -66,7 +66,9 @@ def find_package(name: str, start: Path | None = None) -> Package:
     for package in _all(start):
         if package.name == name:
             return package
-    places = ", ".join(str(root) for root in (*search_roots(start), *_prefixes()))
+    places = ", ".join(
+        str(root) for root in (*search_roots(start), *installed_prefixes())
+    )
     raise PackageNotFoundError(
         f"package {name!r} not found, searching: {places} "
         f"({PATH_VARIABLE} names further folders)"
@@ -118,7 +120,7 @@ def _all(start: Path | None) -> Iterator[Package]:
     here, depth = _workspace_root((start or Path.cwd()).resolve())
     for root in search_roots(start):
         yield from _crawl(root, depth if root == here else _DEPTH)
-    for prefix in _prefixes():
+    for prefix in installed_prefixes():
         yield from _installed(prefix)
     yield from _built_in()
 
@@ -178,7 +180,8 @@ def _subfolders(folder: Path) -> list[str]:
         return []  # not ours to read: no package of this user's
 
 
-def _prefixes() -> tuple[Path, ...]:
+def installed_prefixes() -> tuple[Path, ...]:
+    """The prefixes that packages may be installed in, the first ones first."""
     named = [Path(each) for each in _variable(AMENT_VARIABLE)]
     return tuple(prefix for prefix in (*named, Path(sys.prefix)) if prefix.is_dir())
 

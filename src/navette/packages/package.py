@@ -11,7 +11,7 @@ from navette.packages.executables import (
 )
 from navette.packages.manifest import FILE_NAME, Manifest, read_manifest
 
-_INTERFACE_KINDS = ("msg", "srv", "action")
+INTERFACE_KINDS = ("msg", "srv", "action")
 
 
 class Origin(Enum):
@@ -46,7 +46,7 @@ class Package:
         """Whether it defines messages, services or actions."""
         return any(
             next((self.share / kind).glob(f"*.{kind}"), None)
-            for kind in _INTERFACE_KINDS
+            for kind in INTERFACE_KINDS
         )
 
     @property

@@ -1,0 +1,173 @@
+"""rosidl_runtime_py.convert: messages as text, in the form ``ros2 topic echo`` prints.
+
+``truncate_length`` shortens arrays and texts to so many items and ends them in
+``...``; ``no_arr`` and ``no_str`` put the type and length in their place.
+"""
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import yaml
+
+from navette.msgs import Message
+from navette.msgs.interface import FieldType
+
+# One line per value, however long; libyaml's width is a C int.
+_WIDTH = 2**31 - 1
+_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
+_IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8"}
+_IDL_NAMES |= {"float32": "float", "float64": "double"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Shortening:
+    """What is left out of a text."""
+
+    length: int | None
+    no_arr: bool
+    no_str: bool
+
+
+def message_to_yaml(
+    msg: Message,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+    flow_style: bool = False,
+) -> str:
+    """The message as YAML; ``flow_style`` puts it on one line."""
+    fields = _fields(msg, _Shortening(truncate_length, no_arr, no_str))
+    text = _dumped(fields, _Dumper, flow_style=flow_style)
+    if "\\U" in text:  # libyaml escapes an emoji, PyYAML writes it
+        text = _dumped(fields, yaml.SafeDumper, flow_style=flow_style)
+    return text
+
+
+def message_to_csv(
+    msg: Message,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+) -> str:
+    """The message's values, in the order of the definition, with commas between."""
+    shortening = _Shortening(truncate_length, no_arr, no_str)
+    return ",".join(
+        _csv(getattr(msg, name), shortening, field_type)
+        for name, field_type in get_message_slot_types(msg).items()
+    )
+
+
+def message_to_ordereddict(
+    msg: Message,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+) -> "OrderedDict[str, Any]":
+    """The message's fields by name, all the way down; arrays as lists."""
+    shortening = _Shortening(truncate_length, no_arr, no_str)
+    ordered: OrderedDict[str, Any] = _ordered(_fields(msg, shortening))
+    return ordered
+
+
+def get_message_slot_types(msg: Message) -> "OrderedDict[str, FieldType]":
+    """The fields' types by name."""
+    return OrderedDict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
+
+
+def _dumped(fields: dict[str, Any], dumper: Any, *, flow_style: bool) -> str:
+    text: str = yaml.dump(
+        fields,
+        Dumper=dumper,
+        allow_unicode=True,
+        width=_WIDTH,
+        default_flow_style=flow_style,
+        sort_keys=False,
+    )
+    return text
+
+
+def _ordered(value: Any) -> Any:
+    if isinstance(value, dict):
+        return OrderedDict((name, _ordered(each)) for name, each in value.items())
+    if isinstance(value, list):
+        return [_ordered(each) for each in value]
+    return value
+
+
+def _fields(msg: Message, shortening: _Shortening) -> dict[str, Any]:
+    types = zip(msg._field_types_, msg.SLOT_TYPES, strict=True)
+    return {name: _plain(getattr(msg, name), shortening, t) for name, t in types}
+
+
+def _plain(
+    value: Any, shortening: _Shortening, field_type: FieldType | None = None
+) -> Any:
+    if isinstance(value, Message):
+        return _fields(value, shortening)
+    if isinstance(value, bytes):
+        return _short(value.decode("latin-1"), shortening.length, "...")
+    if isinstance(value, str):
+        if shortening.no_str:
+            return _hidden_text(value)
+        return _short(value, shortening.length, "...")
+    if isinstance(value, (list, np.ndarray)):
+        if shortening.no_arr and field_type is not None:
+            return _hidden_array(field_type, len(value))
+        items = _short(value, shortening.length, None)
+        plain = _plain_items(items, shortening)
+        return plain if items is value else [*plain, "..."]
+    return value
+
+
+def _plain_items(items: Any, shortening: _Shortening) -> list[Any]:
+    if isinstance(items, np.ndarray):
+        return items.tolist()  # type: ignore[no-any-return]
+    return [_plain(item, shortening) for item in items]
+
+
+def _csv(
+    value: Any, shortening: _Shortening, field_type: FieldType | None = None
+) -> str:
+    if isinstance(value, Message):
+        types = get_message_slot_types(value)
+        return ",".join(
+            _csv(getattr(value, name), shortening, t) for name, t in types.items()
+        )
+    if isinstance(value, (list, np.ndarray)):
+        if shortening.no_arr and field_type is not None:
+            return _hidden_array(field_type, len(value))
+        items = _short(value, shortening.length, None)
+        plain = items.tolist() if isinstance(items, np.ndarray) else items
+        texts = [_csv(item, shortening) for item in plain]
+        return ",".join(texts if items is value else [*texts, "..."])
+    if isinstance(value, str):
+        if shortening.no_str:
+            return _hidden_text(value)
+        return str(_short(value, shortening.length, "..."))
+    return str(value)
+
+
+def _short(value: Any, length: int | None, end: str | None) -> Any:
+    """``value`` itself if it is short enough, else its start (and ``end``)."""
+    if length is None or len(value) <= length:
+        return value
+    start = value[:length]
+    return start if end is None else start + end
+
+
+def _hidden_text(value: str) -> str:
+    return f"<string length: <{len(value)}>>"
+
+
+def _hidden_array(field_type: FieldType, length: int) -> str:
+    base = _IDL_NAMES.get(field_type.base, field_type.base)
+    if field_type.container == "array":
+        return f"<array type: {base}[{field_type.size}]>"
+    bound = "" if field_type.size is None else f"[{field_type.size}]"
+    return f"<sequence type: {base}{bound}, length: {length}>"

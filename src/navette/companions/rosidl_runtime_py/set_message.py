@@ -1,0 +1,110 @@
+"""rosidl_runtime_py.set_message: fill a message from a dict, as YAML gives it."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from navette.errors import MessageError
+from navette.msgs import Message, get_interface
+from navette.msgs.builtin_interfaces.msg import Time
+from navette.msgs.interface import FieldType
+from navette.msgs.std_msgs.msg import Header
+
+Setter = Callable[[Any], None]
+
+
+class UnknownFieldError(MessageError, AttributeError):
+    """A message has no field of that name.
+
+    Also an ``AttributeError``, because that is what ROS 2's function raises.
+    """
+
+
+def set_message_fields(
+    msg: Message,
+    values: Mapping[str, Any],
+    expand_header_auto: bool = False,
+    expand_time_now: bool = False,
+) -> list[Setter]:
+    """Set the fields that ``values`` names, all the way down.
+
+    A nested message starts from its defaults. Text is read as a number where a number
+    is wanted, and a number is written where a text is.
+
+    Args:
+        expand_header_auto: let ``auto`` for a header mean: stamp it when sent.
+        expand_time_now: let ``now`` for a time mean: the time when sent.
+
+    Returns:
+        Functions that set those stamps; call each with a time message before sending.
+
+    Raises:
+        UnknownFieldError: there is no such field; lists those known.
+        MessageError: a value does not fit.
+    """
+    setters: list[Setter] = []
+    filling = _Filling(expand_header_auto, expand_time_now, setters)
+    filling.fill(msg, values)
+    return setters
+
+
+class _Filling:
+    def __init__(self, header_auto: bool, time_now: bool, setters: list[Setter]):
+        self._header_auto = header_auto
+        self._time_now = time_now
+        self._setters = setters
+
+    def fill(self, msg: Message, values: Mapping[str, Any]) -> None:
+        if not isinstance(values, Mapping):
+            raise MessageError(
+                f"value {values!r} for {msg._type_name_} is expected to be a "
+                f"dictionary but is a {type(values).__name__}"
+            )
+        types = dict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
+        for name, value in values.items():
+            if name not in types:
+                raise UnknownFieldError(
+                    f"{msg._type_name_} has no field {name!r}; its fields: "
+                    f"{', '.join(types) or 'none'}"
+                )
+            if not self._is_stamped_later(msg, name, value):
+                setattr(msg, name, self._converted(types[name], value))
+
+    def _is_stamped_later(self, msg: Message, name: str, value: Any) -> bool:
+        field = getattr(msg, name)
+        if self._header_auto and value == "auto" and isinstance(field, Header):
+            self._setters.append(partial(setattr, field, "stamp"))
+            return True
+        if self._time_now and value == "now" and isinstance(field, Time):
+            self._setters.append(partial(setattr, msg, name))
+            return True
+        return False
+
+    def _converted(self, field_type: FieldType, value: Any) -> Any:
+        if field_type.is_message:
+            if field_type.is_scalar:
+                return self._message(field_type.base, value)
+            if isinstance(value, (list, tuple)):
+                return [self._message(field_type.base, item) for item in value]
+            return value
+        if field_type.is_scalar:
+            return _scalar(field_type.base, value)
+        return value
+
+    def _message(self, name: str, value: Any) -> Any:
+        if isinstance(value, Message):
+            return value
+        message: Message = get_interface(name)()
+        self.fill(message, value)
+        return message
+
+
+def _scalar(base: str, value: Any) -> Any:
+    if base in ("string", "wstring"):
+        return value if isinstance(value, str) else str(value)
+    if not isinstance(value, str) or base in ("bool", "byte"):
+        return value
+    try:
+        return float(value) if base.startswith("float") else int(value)
+    except ValueError:
+        return value  # the field itself says what it wants
