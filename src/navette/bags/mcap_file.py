@@ -25,7 +25,7 @@ from mcap.records import (
     SummaryOffset,
 )
 
-_MAGIC = b"\x89MCAP0\r\n"
+MAGIC = b"\x89MCAP0\r\n"
 # Opcode, content length; channel, sequence, log time, publish time (ns).
 _MESSAGE = struct.Struct("<BQHIQQ")
 _MESSAGE_HEAD = _MESSAGE.size - 9
@@ -52,7 +52,7 @@ class McapFile:
         self._index: dict[int, list[int]] = {}
         #: Bytes of the chunk so far.
         self.chunk_size = 0
-        self._write(_MAGIC + _record(Header(profile=profile, library=library)))
+        self._write(MAGIC + _record(Header(profile=profile, library=library)))
 
     @property
     def message_count(self) -> int:
@@ -143,7 +143,7 @@ class McapFile:
             summary_offset_start=offset_start,
             summary_crc=zlib.crc32(start, zlib.crc32(summary)),
         )
-        self._write(summary + _record(footer) + _MAGIC)
+        self._write(summary + _record(footer) + MAGIC)
 
     def _message_indexes(self, position: int) -> tuple[bytes, dict[int, int]]:
         """Records that say where each channel's messages are in the chunk."""

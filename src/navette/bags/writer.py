@@ -13,7 +13,7 @@ lost with the process, so flush often.
 from contextlib import suppress
 from pathlib import Path
 
-from navette.bags.mcap_file import McapFile
+from navette.bags.mcap_file import MAGIC, McapFile
 from navette.errors import FileFormatError
 
 _CHUNK_BYTES = 256 * 1024
@@ -23,10 +23,11 @@ _LIBRARY = "navette"
 
 
 class BagWriter:
-    """Writes one ``.mcap`` file; an existing file is replaced.
+    """Writes one ``.mcap`` file; an existing bag is replaced.
 
     Raises:
-        FileFormatError: the file cannot be made; names path and reason.
+        FileFormatError: the file cannot be made, or is there and is something else
+            than a bag; names path and reason.
 
     Later a full or vanished disk shows as ``OSError`` from any method but
     :meth:`abandon`.
@@ -35,6 +36,8 @@ class BagWriter:
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
+            if _is_something_else(path):
+                raise FileFormatError(path, "exists and is no bag; it is not replaced")
             self._file = path.open("wb", buffering=_BUFFER_BYTES)
         except OSError as error:
             reason = error.strerror or str(error)
@@ -91,3 +94,11 @@ class BagWriter:
         """Close after an ``OSError``; what was flushed stays readable."""
         with suppress(OSError):  # the same error again; it is known already
             self._file.close()
+
+
+def _is_something_else(path: Path) -> bool:
+    """Whether a mistyped path would cost a file that no recording made."""
+    if not path.is_file() or path.stat().st_size == 0:
+        return False
+    with path.open("rb") as file:
+        return file.read(len(MAGIC)) != MAGIC

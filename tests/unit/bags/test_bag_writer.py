@@ -133,6 +133,19 @@ def test_a_file_that_cannot_be_made_is_named(tmp_path: Path) -> None:
         BagWriter(tmp_path)
 
 
+def test_a_bag_is_replaced_but_nothing_else_is(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    path.touch()
+    for count in (10, 20):
+        write_greetings(path, count)
+    assert path.read_bytes() == (write_greetings(tmp_path / "b", 20).path.read_bytes())
+    notes = tmp_path / "notes.txt"
+    notes.write_text("precious")
+    with pytest.raises(FileFormatError, match=r"notes.txt: exists and is no bag"):
+        BagWriter(notes)
+    assert notes.read_text() == "precious"
+
+
 def test_closing_twice_is_harmless(tmp_path: Path) -> None:
     writer = write_greetings(tmp_path / "a.mcap", 5)
     writer.close()
