@@ -68,6 +68,7 @@ def test_a_drive_prints_one_json_object_and_exits_with_zero() -> None:
         "--goal", "-10", "-2", "--headless", "--json",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
+    assert done.stderr.count("reached") == 3  # each goal when it is, and the total
     summary = json.loads(done.stdout)
     assert set(summary) == SUMMARY_KEYS
     assert [goal["goal"] for goal in summary["goals"]] == [[-6.0, -3.5], [-10.0, -2.0]]

@@ -87,8 +87,9 @@ class Simulation:
             else RecorderNode(options.record, context=context)
         )
         self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
-        self.stack = NavigationStack.create(context)
+        # Before the missions: it has told of the last goal when they end the run.
         self.monitor = MonitorNode(context=context, on_change=on_change)
+        self.stack = NavigationStack.create(context)
         self.viewer = None if options.headless else ViewerNode(context=context)
         context.check_overrides()
         self.executor = Executor(context=context)
