@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 _REFRESH_HZ = 8
 _WIDTH = 24
+_BESIDE_BAR = 60  # columns that the figures beside the bar may take
 
 
 class StatusScreen:
@@ -116,6 +117,8 @@ class StatusScreen:
     def _line(self, simulation: "Simulation") -> RenderableType:
         progress = simulation.progress()
         line = Table.grid(padding=(0, 2))
+        for _ in range(5):
+            line.add_column(no_wrap=True)  # a narrow terminal shortens, one line stays
         line.add_row(
             Text(f"{progress.sim_time_s:8.1f} s", style="dim"),
             self._bar(progress),
@@ -127,14 +130,13 @@ class StatusScreen:
 
     def _bar(self, progress: "Progress") -> Text:
         left = progress.distance_left_m
+        width = max(0, min(_WIDTH, self._console.width - _BESIDE_BAR))
         if progress.goal is None or left is None:
-            return Text("─" * _WIDTH, style="dim")
+            return Text("─" * width, style="dim")
         longest = max(self._longest_m.get(progress.goal_id, 0.0), left, 1e-6)
         self._longest_m[progress.goal_id] = longest
-        done = round(_WIDTH * (1 - left / longest))
-        return Text("━" * done, style="green") + Text(
-            "─" * (_WIDTH - done), style="dim"
-        )
+        done = round(width * (1 - left / longest))
+        return Text("━" * done, style="green") + Text("─" * (width - done), style="dim")
 
 
 def _left(progress: "Progress") -> str:

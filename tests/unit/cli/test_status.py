@@ -1,0 +1,35 @@
+"""The live line on terminals of several widths."""
+
+import io
+from types import SimpleNamespace
+
+import pytest
+from rich.console import Console
+
+from navette.cli.status import StatusScreen
+from navette.launch import RunOptions
+from navette.launch.monitor import Progress
+
+
+@pytest.mark.parametrize("columns", [30, 60, 80, 200])
+def test_the_live_line_stays_one_line(columns: int) -> None:
+    screen = StatusScreen(RunOptions(goals=((-12.5, 3.0),)))
+    shown = io.StringIO()
+    screen._console = Console(file=shown, width=columns, force_terminal=False)
+    progress = Progress(
+        goal=(-12.5, 3.0),
+        goal_id="1",
+        state="following",
+        control="following",
+        distance_left_m=12.9,
+        sim_time_s=1234.5,
+    )
+    run = SimpleNamespace(progress=lambda: progress, real_time_factor=lambda: 61.25)
+    screen._console.print(screen._line(run))
+    lines = shown.getvalue().splitlines()
+    assert len(lines) == 1
+    assert len(lines[0]) <= columns
+    if columns >= 80:
+        assert "1234.5 s" in lines[0]
+        assert "12.9 m to (-12.5, 3.0)" in lines[0]
+        assert "following" in lines[0]
