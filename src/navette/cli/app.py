@@ -9,6 +9,7 @@ import typer
 
 from navette._version import __version__
 from navette.cli.arguments import join_pairs, parse_goal, parse_speed, spread_lists
+from navette.cli.launch import launch
 from navette.cli.pkg import pkg
 from navette.cli.run import run
 from navette.errors import NavetteError
@@ -182,6 +183,7 @@ def _run(options: "RunOptions", *, as_json: bool) -> None:
 # What stands behind the program's name is the program's.
 app.command(context_settings={"allow_interspersed_args": False})(run)
 app.add_typer(pkg)
+app.command()(launch)
 
 
 def main() -> None:

@@ -1,0 +1,55 @@
+"""``navette launch``: ROS 2 launch files on Navette."""
+
+from typing import Annotated
+
+import typer
+
+Words = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="FILE|PACKAGE FILE [NAME:=VALUE]...",
+        help="A launch file in Python, XML or YAML, and its arguments.",
+    ),
+]
+ShowArgs = Annotated[
+    bool,
+    typer.Option("--show-args", "-s", help="List the file's arguments and end."),
+]
+Processes = Annotated[
+    bool,
+    typer.Option("--processes", help="A process for each node."),
+]
+Debug = Annotated[bool, typer.Option("--debug", "-d", help="Log what happens inside.")]
+OnNavette = Annotated[
+    bool,
+    typer.Option("--navette", help="On Navette even where ROS 2 is installed."),
+]
+
+
+def launch(
+    words: Words,
+    show_args: ShowArgs = False,
+    processes: Processes = False,
+    debug: Debug = False,
+    on_navette: OnNavette = False,
+) -> None:
+    """Run a launch file: all its nodes in this process, or one process each.
+
+    Ctrl-C ends everything it started. Exit code 1: the launch failed or a process
+    died.
+    """
+    from navette.bringup import launch as run_launch
+    from navette.bringup import parse_launch_arguments, show_arguments
+    from navette.bringup.session import find_launch_file
+    from navette.interop import install
+    from navette.packages import activate
+
+    install(instead_of_ros=on_navette)
+    activate()
+    path, rest = find_launch_file(words)
+    if show_args:
+        typer.echo(show_arguments(path))
+        return
+    arguments = parse_launch_arguments(rest)
+    code = run_launch(path, arguments, processes=processes, debug=debug)
+    raise typer.Exit(code)

@@ -1,0 +1,7 @@
+"""Navette's ``launch.condition``."""
+
+from navette.launch_files.launch.condition import (
+    Condition,
+)
+
+__all__ = ["Condition"]

@@ -1,0 +1,7 @@
+"""Navette's ``launch.event``."""
+
+from navette.launch_files.launch.event import (
+    Event,
+)
+
+__all__ = ["Event"]

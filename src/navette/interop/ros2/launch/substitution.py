@@ -1,0 +1,7 @@
+"""Navette's ``launch.substitution``."""
+
+from navette.launch_files.launch.substitution import (
+    Substitution,
+)
+
+__all__ = ["Substitution"]

@@ -1,0 +1,3 @@
+"""Navette's ``launch_ros``."""
+
+__all__ = []

@@ -1,0 +1,1 @@
+"""Navette's ``launch_xml``."""

@@ -1,0 +1,71 @@
+"""ROS 2's ``launch.actions``."""
+
+from navette.launch_files.launch.actions.arguments import (
+    DeclareLaunchArgument,
+    PopLaunchConfigurations,
+    PushLaunchConfigurations,
+    ResetLaunchConfigurations,
+    SetLaunchConfiguration,
+    UnsetLaunchConfiguration,
+)
+from navette.launch_files.launch.actions.environment import (
+    AppendEnvironmentVariable,
+    PopEnvironment,
+    PushEnvironment,
+    ResetEnvironment,
+    SetEnvironmentVariable,
+    UnsetEnvironmentVariable,
+)
+from navette.launch_files.launch.actions.events import (
+    EmitEvent,
+    RegisterEventHandler,
+    Shutdown,
+    UnregisterEventHandler,
+)
+from navette.launch_files.launch.actions.execute_process import (
+    ExecuteLocal,
+    ExecuteProcess,
+)
+from navette.launch_files.launch.actions.group_action import GroupAction
+from navette.launch_files.launch.actions.include_launch_description import (
+    IncludeLaunchDescription,
+)
+from navette.launch_files.launch.actions.log_info import (
+    Log,
+    LogDebug,
+    LogError,
+    LogInfo,
+    LogWarning,
+)
+from navette.launch_files.launch.actions.opaque_function import OpaqueFunction
+from navette.launch_files.launch.actions.timer_action import TimerAction
+
+__all__ = [
+    "AppendEnvironmentVariable",
+    "DeclareLaunchArgument",
+    "EmitEvent",
+    "ExecuteLocal",
+    "ExecuteProcess",
+    "GroupAction",
+    "IncludeLaunchDescription",
+    "Log",
+    "LogDebug",
+    "LogError",
+    "LogInfo",
+    "LogWarning",
+    "OpaqueFunction",
+    "PopEnvironment",
+    "PopLaunchConfigurations",
+    "PushEnvironment",
+    "PushLaunchConfigurations",
+    "RegisterEventHandler",
+    "ResetEnvironment",
+    "ResetLaunchConfigurations",
+    "SetEnvironmentVariable",
+    "SetLaunchConfiguration",
+    "Shutdown",
+    "TimerAction",
+    "UnregisterEventHandler",
+    "UnsetEnvironmentVariable",
+    "UnsetLaunchConfiguration",
+]

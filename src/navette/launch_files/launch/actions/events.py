@@ -1,0 +1,82 @@
+"""Actions with events and their handlers; the end of the launch."""
+
+from typing import TYPE_CHECKING, Any
+
+from navette.launch_files.launch.action import Action
+from navette.launch_files.launch.event import Event
+from navette.launch_files.launch.event_handler import EventHandler
+from navette.launch_files.launch.events import Shutdown as ShutdownEvent
+from navette.launch_files.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+)
+from navette.launch_files.launch.logging import get_logger
+from navette.launch_files.launch.substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from navette.launch_files.launch.launch_context import LaunchContext
+
+_log = get_logger("launch")
+
+
+class RegisterEventHandler(Action):
+    """From here on, events go to the handler."""
+
+    def __init__(self, event_handler: EventHandler, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.event_handler = event_handler
+
+    def describe(self) -> str:
+        return f"RegisterEventHandler({self.event_handler.describe()})"
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        return list(self.event_handler.entities)
+
+    def execute(self, context: "LaunchContext") -> None:
+        context.register_event_handler(self.event_handler)
+
+
+class UnregisterEventHandler(Action):
+    """From here on, the handler gets no events."""
+
+    def __init__(self, event_handler: EventHandler, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.event_handler = event_handler
+
+    def execute(self, context: "LaunchContext") -> None:
+        context.unregister_event_handler(self.event_handler)
+
+
+class EmitEvent(Action):
+    """Hands an event to the handlers."""
+
+    def __init__(self, *, event: Event, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.event = event
+
+    def describe(self) -> str:
+        return f"EmitEvent({self.event.name})"
+
+    def execute(self, context: "LaunchContext") -> None:
+        context.emit_event(self.event)
+
+
+class Shutdown(Action):
+    """Ends the launch: everything that it started is ended."""
+
+    def __init__(
+        self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+        self.reason = normalize_to_list_of_substitutions(reason)
+
+    def execute(self, context: "LaunchContext") -> None:
+        reason = perform_substitutions(context, self.reason)
+        process = getattr(context.locals, "event", None)
+        name = getattr(process, "process_name", None)
+        if name is not None and not context.is_shutdown:
+            _log.info("process[%s] was required: shutting down launched system", name)
+        context.emit_event(ShutdownEvent(reason=reason))

@@ -1,0 +1,7 @@
+"""Events: what happened, or what is to happen, in a launch."""
+
+
+class Event:
+    """Base of all events."""
+
+    name = "launch.Event"

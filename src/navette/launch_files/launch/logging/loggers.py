@@ -1,0 +1,66 @@
+"""Loggers of a launch: the standard library's, printed as ROS 2 prints them."""
+
+import logging
+import os
+import sys
+from pathlib import Path
+from typing import TextIO
+
+ROOT = "navette.launch"
+DATE_AND_NAME = "[%(levelname)s] [%(launch_name)s]: %(message)s"
+
+
+def get_logger(name: str | None = None) -> logging.Logger:
+    """The logger of a launch file or action; printed while a launch runs."""
+    return logging.getLogger(f"{ROOT}.{name}" if name else ROOT)
+
+
+class ConsoleHandler(logging.Handler):
+    """``[INFO] [launch]: …`` on standard output (warnings and worse: error)."""
+
+    def __init__(
+        self, stdout: TextIO | None = None, stderr: TextIO | None = None
+    ) -> None:
+        super().__init__()
+        self._stdout = stdout
+        self._stderr = stderr
+        self.setFormatter(logging.Formatter(DATE_AND_NAME))
+
+    def emit(self, record: logging.LogRecord) -> None:
+        record.launch_name = record.name.removeprefix(f"{ROOT}.")
+        if record.levelno >= logging.WARNING:
+            stream = self._stderr or sys.stderr
+        else:
+            stream = self._stdout or sys.stdout
+        stream.write(self.format(record) + "\n")
+        stream.flush()
+
+
+class LaunchConfig:
+    """Where logs go and from which level on; ``launch.logging.launch_config``."""
+
+    @property
+    def level(self) -> int:
+        return logging.getLogger(ROOT).level
+
+    @level.setter
+    def level(self, level: int | str) -> None:
+        logging.getLogger(ROOT).setLevel(
+            level.upper() if isinstance(level, str) else level
+        )
+
+    @property
+    def log_dir(self) -> str:
+        """``ROS_LOG_DIR``, ``ROS_HOME/log`` or ``~/.ros/log``."""
+        given = os.environ.get("ROS_LOG_DIR")
+        if given:
+            return str(Path(given).expanduser())
+        home = os.environ.get("ROS_HOME") or "~/.ros"
+        return str(Path(home).expanduser() / "log")
+
+    @log_dir.setter
+    def log_dir(self, folder: str) -> None:
+        os.environ["ROS_LOG_DIR"] = folder
+
+
+launch_config = LaunchConfig()

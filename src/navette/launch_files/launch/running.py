@@ -1,0 +1,86 @@
+"""The seam between actions and whatever runs their commands."""
+
+import signal
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+INTERRUPT = int(signal.SIGINT)
+TERMINATE = int(signal.SIGTERM)
+KILL = int(getattr(signal, "SIGKILL", 9))
+
+
+@dataclass(frozen=True)
+class PythonProgram:
+    """Python code that can run in this process as well as in one of its own.
+
+    Either ``module`` and ``function``, or ``file`` to be run as ``__main__``.
+    """
+
+    module: str = ""
+    function: str = ""
+    file: Path | None = None
+    #: Folders to look for modules in, before all others.
+    search: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command line with everything worked out.
+
+    ``env`` None means the launch's own environment. With ``program``, ``argv`` is what
+    that finds in ``sys.argv``; it may run in this process unless ``own_process``.
+    """
+
+    label: str
+    argv: tuple[str, ...]
+    prefix: tuple[str, ...] = ()
+    cwd: str | None = None
+    env: Mapping[str, str] | None = None
+    shell: bool = False
+    tty: bool = False
+    program: PythonProgram | None = None
+    own_process: bool = False
+
+    @property
+    def words(self) -> list[str]:
+        """The command line, as a person would type it."""
+        return [*self.prefix, *self.argv]
+
+
+class Listener(Protocol):
+    """Is told what becomes of a command; from any thread."""
+
+    def output(self, stream: str, data: bytes) -> None:
+        """It wrote ``data``; ``stream`` is ``stdout`` or ``stderr``."""
+
+    def exited(self, code: int) -> None:
+        """It ended; nothing comes after this. Negative: ended by that signal."""
+
+
+class Running(Protocol):
+    """A command under way."""
+
+    @property
+    def pid(self) -> int: ...
+
+    def signal(self, number: int) -> None:
+        """Send a signal to it and all that it started; after its end: nothing."""
+
+    def write(self, data: bytes) -> None:
+        """To its standard input."""
+
+
+class Runner(Protocol):
+    """Starts commands."""
+
+    def start(self, command: Command, listener: Listener) -> Running:
+        """Start one.
+
+        Raises:
+            LaunchError: it cannot be started; says why.
+        """
+
+    def close(self) -> None:
+        """After everything ended."""

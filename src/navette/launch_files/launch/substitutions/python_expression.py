@@ -1,0 +1,56 @@
+"""The value of a Python expression."""
+
+from typing import TYPE_CHECKING
+
+from navette.launch_files.launch.errors import SubstitutionFailure
+from navette.launch_files.launch.expressions import ExpressionError, evaluate
+from navette.launch_files.launch.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe_parts,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from navette.launch_files.launch.launch_context import LaunchContext
+
+_MODULES = ("math",)
+
+
+class PythonExpression(Substitution):
+    """The text of a Python expression's value (``$(eval '1 + 1')``).
+
+    Expressions are bounded: see :mod:`navette.launch_files.launch.expressions`.
+
+    Args:
+        expression: joined to one expression.
+        python_modules: modules it uses; ``math`` is the one there is.
+    """
+
+    def __init__(
+        self,
+        expression: SomeSubstitutionsType,
+        python_modules: SomeSubstitutionsType = ("math",),
+    ) -> None:
+        self.expression = normalize_to_list_of_substitutions(expression)
+        modules = (
+            [python_modules] if isinstance(python_modules, str) else python_modules
+        )
+        self.python_modules = normalize_to_list_of_substitutions(modules)
+
+    def perform(self, context: "LaunchContext") -> str:
+        for part in self.python_modules:
+            module = part.perform(context)
+            if module not in _MODULES:
+                raise SubstitutionFailure(
+                    f"PythonExpression: module {module!r} is not available in "
+                    f"expressions; available: {', '.join(_MODULES)}"
+                )
+        try:
+            return str(evaluate(perform_substitutions(context, self.expression)))
+        except ExpressionError as error:
+            raise SubstitutionFailure(str(error)) from None
+
+    def describe(self) -> str:
+        return f"PythonExpression({describe_parts(self.expression)})"
