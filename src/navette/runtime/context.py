@@ -47,6 +47,7 @@ class Context:
         graph = graph or scope.graph
         self._owns_graph = graph is None
         self.graph = new_graph() if graph is None else graph
+        self._leave_graph = self.graph.on_change(self._look_around)
         scope.contexts.add(self)
         self.overrides = ParameterOverrides()
         self.log = LogHub(lambda: self.loop.clock.now_ns)
@@ -134,6 +135,7 @@ class Context:
             callback()
         for node in tuple(self.nodes):
             node.destroy_node()
+        self._leave_graph()
         if self._owns_graph:
             self.graph.close()
         self._stop_logging()
@@ -171,6 +173,11 @@ class Context:
         exc_tb: TracebackType | None,
     ) -> None:
         self.try_shutdown()
+
+    def _look_around(self) -> None:
+        """Something came or went by another thread: a wait may be for just that."""
+        if not self.loop.in_driver_thread:
+            self.loop.wake()
 
     def _start_logging(
         self, arguments: RosArguments, console_level: LoggingSeverity
