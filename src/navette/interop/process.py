@@ -40,7 +40,9 @@ def run_alone(program: Program) -> int:
 
 
 def run_together(programs: Sequence[Program]) -> int:
-    """Run until all have ended; Ctrl-C and SIGTERM end all, and so does one that fails.
+    """Run until all have ended; Ctrl-C and SIGTERM end all.
+
+    One that fails ends the others as Ctrl-C does.
 
     Returns:
         The exit code of the first that failed, or 0.
@@ -138,7 +140,7 @@ def _wait_for_end(running: Sequence[RunningProgram], wishes: Sequence[_End]) -> 
             break
         next((each for each in running if each.is_alive), running[0]).join(_LOOK_S)
     # A second signal changes nothing: ``timeout`` and shells send several.
-    _end_all(running, wishes[0] if wishes else RunningProgram.shut_down)
+    _end_all(running, wishes[0] if wishes else RunningProgram.interrupt)
 
 
 def _end_all(running: Sequence[RunningProgram], how: _End) -> None:
