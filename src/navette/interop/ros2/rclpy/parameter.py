@@ -3,7 +3,15 @@
 from navette.runtime.parameter import (
     PARAMETER_SEPARATOR_STRING,
     Parameter,
+    get_parameter_value,
+    parameter_dict_from_yaml_file,
     parameter_value_to_python,
 )
 
-__all__ = ["PARAMETER_SEPARATOR_STRING", "Parameter", "parameter_value_to_python"]
+__all__ = [
+    "PARAMETER_SEPARATOR_STRING",
+    "Parameter",
+    "get_parameter_value",
+    "parameter_dict_from_yaml_file",
+    "parameter_value_to_python",
+]
