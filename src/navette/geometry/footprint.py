@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 
+_FARTHEST_M = 100.0  # tables and grids around a body grow with its size
+
 
 @dataclass(frozen=True)
 class Footprint:
@@ -19,7 +21,8 @@ class Footprint:
             (the point that navigation steers) lies inside.
 
     Raises:
-        InvalidValueError: fewer than three corners, not finite, or origin outside.
+        InvalidValueError: fewer than three corners, not finite, farther than 100 m,
+            or origin outside.
     """
 
     vertices: tuple[tuple[float, float], ...]
@@ -29,6 +32,10 @@ class Footprint:
         if len(corners) < 3 or not np.all(np.isfinite(corners)):
             raise InvalidValueError(
                 f"footprint {corners}: wanted at least 3 finite corners (x, y)"
+            )
+        if np.abs(corners).max() > _FARTHEST_M:
+            raise InvalidValueError(
+                f"footprint {corners}: wanted corners within {_FARTHEST_M:g} m"
             )
         if not self._contains_origin():
             raise InvalidValueError(

@@ -43,6 +43,7 @@ def test_flat_numbers_of_a_parameter_file() -> None:
         ((1.0, 0.0, -1.0), "pairs"),
         ((1.0, 0.0, -1.0, 1.0), "at least 3"),
         ((1.0, 0.0, math.nan, 1.0, -1.0, -1.0), "finite"),
+        ((1e300, 0.0, -1.0, 1.0, -1.0, -1.0), "within 100 m"),
         ((1.0, 1.0, 2.0, 1.0, 2.0, 2.0), "origin"),
     ],
 )
