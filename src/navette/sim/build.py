@@ -7,6 +7,7 @@ tyres, as such robots have, slide smoothly. A drive's effective wheel separation
 then is 1.6 (Jackal) to 2 (Husky) times the track, as the makers' settings too say.
 """
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +21,9 @@ from navette.sim.drive_geometry import DriveWheel, base_of, drive_wheels
 from navette.sim.masks import ROBOT_GROUP
 from navette.sim.model_builder import ModelBuilder, carrier_of
 from navette.sim.scene import DiffDrive, Model, Scene
+
+# MuJoCo's own way is a file MUJOCO_LOG.TXT in whatever folder one works in.
+mujoco.set_mju_user_warning(logging.getLogger(__name__).warning)
 
 _STIFF_IMPRATIO = 10.0  # friction stiffer than contact: little creep
 _STIFF_SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default

@@ -59,6 +59,8 @@ class Plane:
 
 Shape = Box | Cylinder | Capsule | Sphere | Ellipsoid | Plane
 
+_LARGEST_M = 1e5  # beyond it physics loses the millimetres that contacts need
+
 
 @dataclass(frozen=True, kw_only=True)
 class Geometry:
@@ -71,6 +73,22 @@ class Geometry:
     collides: bool = True
     visible: bool = True
     friction: float | None = None
+
+    def __post_init__(self) -> None:
+        if _largest_measure(self.shape) > _LARGEST_M:
+            raise InvalidValueError(
+                f"geometry {self.name!r}: {self.shape}: wanted at most {_LARGEST_M:g} m"
+            )
+
+
+def _largest_measure(shape: Shape) -> float:
+    if isinstance(shape, Box):
+        return max(shape.size)
+    if isinstance(shape, Ellipsoid):
+        return max(shape.radii)
+    if isinstance(shape, Sphere):
+        return shape.radius
+    return 0.0 if isinstance(shape, Plane) else max(shape.radius, shape.length)
 
 
 @dataclass(frozen=True)

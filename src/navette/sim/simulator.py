@@ -28,6 +28,13 @@ from navette.sim.sensors import cameras_of, imus_of, lidars_of
 from navette.sim.wheel_odometry import WheelOdometry
 
 _WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz
+_TOUCHES_M = 0.01  # a world's own robot may lean on things, not stand in them
+
+_BLOWN_UP = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
 
 
 class Simulator:
@@ -40,7 +47,7 @@ class Simulator:
             robot starts where the scene puts it (and may have to fall).
 
     Raises:
-        InvalidValueError: the scene has no robot, or ``start`` is in an obstacle.
+        InvalidValueError: the scene has no robot, or it starts in an obstacle.
     """
 
     def __init__(
@@ -83,12 +90,18 @@ class Simulator:
         for imu in self.imus:
             imu.reset()
         self._wheel_odometry.reset(self.pose().to_pose2(), self.state.wheel_travel())
+        self._check_start()
+
+    def _check_start(self) -> None:
         first = self.clearance()
-        if self._start is not None and first.distance < 0:
-            raise InvalidValueError(
-                f"start {tuple(self._start)}: the robot would stand "
-                f"{-first.distance:.2f} m inside {first.obstacle!r}"
-            )
+        if first.distance >= (0.0 if self._start is not None else -_TOUCHES_M):
+            return
+        start = self._start or self.pose().to_pose2()
+        whose = "" if self._start is not None else " (the world's; give another)"
+        raise InvalidValueError(
+            f"start ({start.x:g}, {start.y:g}, {math.degrees(start.yaw):g}°){whose}: "
+            f"the robot would stand {-first.distance:.2f} m inside {first.obstacle!r}"
+        )
 
     def _seed_noise(self) -> None:
         """A stream for each sensor: reading one does not change another's noise."""
@@ -168,6 +181,7 @@ class Simulator:
 
     def _watch(self) -> None:
         """Measure clearance; decide whether contacts are possible until next time."""
+        self._check_physics()
         clearance = self.clearance()
         if clearance.distance < self.min_clearance.distance:
             self.min_clearance = clearance
@@ -180,6 +194,15 @@ class Simulator:
         period_s = _WATCH_PERIOD_NS * 1e-9
         margin = 1.5 * period_s * (fastest + growth * period_s) + 0.01
         self._near = clearance.distance < margin
+
+    def _check_physics(self) -> None:
+        """MuJoCo answers a state that blew up by starting anew, where we must not."""
+        for warning in _BLOWN_UP:
+            if self._data.warning[warning].number:
+                raise InvalidValueError(
+                    "physics became unstable: look for extreme masses, sizes or "
+                    f"speeds in the robot's model ({self.now_ns / 1e9:.3f} s)"
+                )
 
     def _refresh(self) -> None:
         """Bring body and geom poses up to the present state."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from navette.errors import FileFormatError
+from navette.errors import FileFormatError, InvalidValueError
 from navette.sim.scene import (
     Box,
     CameraSensor,
@@ -323,3 +323,14 @@ def test_not_an_sdf_file(tmp_path: Path) -> None:
     path.write_text("<robot name='r'/>")
     with pytest.raises(FileFormatError, match="starts with <sdf>"):
         read_sdf(path)
+
+
+def test_sizes_beyond_what_physics_can_hold_are_refused(tmp_path: Path) -> None:
+    for shape in (
+        "<box><size>1e30 1 1</size></box>",
+        "<cylinder><radius>1</radius><length>1e6</length></cylinder>",
+        "<sphere><radius>1e6</radius></sphere>",
+    ):
+        solid = f"<collision name='c'><geometry>{shape}</geometry></collision>"
+        with pytest.raises(InvalidValueError, match=r"'c'.*at most 100000 m"):
+            _read(tmp_path, _model(f"<link name='l'>{solid}</link>"))

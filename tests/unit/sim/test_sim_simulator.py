@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navette.errors import ParameterError
+from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Pose2
 from navette.sim import (
     Scene,
@@ -17,6 +17,7 @@ from navette.sim import (
     load_robot,
     load_world,
 )
+from navette.sim.scene import LidarSensor, Model, Sensor
 
 COURSE = load_robot("course").model
 FREE = SimParams(
@@ -37,6 +38,17 @@ def _fast(robot: str) -> SimParams:
         max_accel_mps2=speed * 4, max_yaw_accel_radps2=yaw_rate * 4,
         command_timeout_s=0.0,
     )  # fmt: skip
+
+
+def _with_blind_zone(robot: Model, metres: float) -> Model:
+    def changed(sensor: Sensor) -> Sensor:
+        is_lidar = isinstance(sensor, LidarSensor)
+        return replace(sensor, range_min=metres) if is_lidar else sensor
+
+    links = tuple(
+        replace(link, sensors=tuple(map(changed, link.sensors))) for link in robot.links
+    )
+    return replace(robot, links=links)
 
 
 def _settled(
@@ -183,9 +195,8 @@ def test_dropped_beams_are_nan_and_near_ones_minus_infinity() -> None:
     params = SimParams(lidar_dropout=1.0)
     simulator = Simulator(_scene(World()), params, start=Pose2(0, 0, 0))
     assert np.all(np.isnan(simulator.scan().ranges))
-    world = World().add_box((1.86, 0.0), (1.0, 8.0), height=3.0)
-    robot = COURSE.at(COURSE.world_T_model)
-    near = Simulator(world.scene().with_robot(robot))
+    world = World().add_box((2.2, 0.0), (1.0, 8.0), height=3.0)
+    near = Simulator(world.scene().with_robot(_with_blind_zone(COURSE, 0.5)))
     assert np.isneginf(near.scan().ranges[128])
 
 
@@ -314,3 +325,23 @@ def test_what_is_not_static_can_be_pushed_and_is_seen(tmp_path: Path) -> None:
     assert simulator.contacts.count >= 1
     assert simulator.pose().translation[0] > 3.0  # where the crate was
     assert simulator.scan().ranges[360] == pytest.approx(0.2, abs=0.03)
+
+
+def test_a_start_in_an_obstacle_is_refused_the_worlds_own_too() -> None:
+    world = World().add_cylinder((0.0, 0.0), 1.5)
+    with pytest.raises(InvalidValueError, match=r"start \(0.1, 0, 90°\): .*cylinder"):
+        Simulator(_scene(world), start=Pose2(0.1, 0, math.pi / 2))
+    with pytest.raises(InvalidValueError, match=r"the world's; give another.*cylinder"):
+        Simulator(_scene(world))
+
+
+def test_physics_that_blows_up_ends_with_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    simulator = Simulator(_scene(World()), start=Pose2(0, 0, 0))
+    simulator.step(100)
+    simulator._data.qvel[0] = math.inf
+    with pytest.raises(InvalidValueError, match="physics became unstable"):
+        simulator.step(100)
+    assert not list(tmp_path.iterdir())  # MuJoCo would leave a log here
