@@ -259,6 +259,12 @@ def test_pose_as_its_parts() -> None:
         Pose(), transform("map", "base", 1.0, quarter_turn=True)
     )
     assert (pose.orientation.z, pose.orientation.w) == pytest.approx((HALF, HALF))
+    half_turn = transform("map", "base", 0.0)
+    half_turn.transform.rotation = Quaternion(x=1.0, w=0.0)
+    flipped = tf2_geometry_msgs.do_transform_pose(
+        Pose(orientation=Quaternion(x=1.0, w=0.0)), half_turn
+    )
+    assert flipped.orientation.w == 1.0  # not −1, the same rotation
     assert tf2_geometry_msgs.from_msg_msg(pose) is pose
     with pytest.raises(tf2_ros.TypeException):
         Buffer().transform(Odometry(), "map")

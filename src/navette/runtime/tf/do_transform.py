@@ -54,10 +54,12 @@ def do_transform_vector3(
 
 
 def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
-    """The same pose, in the transform's frame."""
+    """The same pose, in the transform's frame; of q and −q the one with w ≥ 0."""
     p, q = pose.position, pose.orientation
     inner = Transform3((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
     (x, y, z), (qx, qy, qz, qw) = transform_from_msg(transform.transform) @ inner
+    if qw < 0:
+        qx, qy, qz, qw = -qx, -qy, -qz, -qw
     return Pose(
         position=Point(x=x, y=y, z=z),
         orientation=Quaternion(x=qx, y=qy, z=qz, w=qw),

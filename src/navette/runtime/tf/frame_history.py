@@ -108,8 +108,9 @@ class FrameHistory:
 
     def _extrapolation(self, stamp_ns: int) -> ExtrapolationException:
         where = "future" if stamp_ns > self._stamps[-1] else "past"
+        oldest_s, newest_s = self.oldest_ns / 1e9, self.newest_ns / 1e9
         return ExtrapolationException(
-            f"transform of {self.child!r} in {self.parent!r} asked for at "
-            f"{stamp_ns / 1e9:.6f} s, which lies in the {where}: the buffer holds "
-            f"{self.oldest_ns / 1e9:.6f} … {self.newest_ns / 1e9:.6f} s"
+            f"Lookup would require extrapolation into the {where}: transform of "
+            f"{self.child!r} in {self.parent!r} asked for at {stamp_ns / 1e9:.6f} s, "
+            f"the buffer holds {oldest_s:.6f} … {newest_s:.6f} s"
         )
