@@ -4,6 +4,7 @@ Several run in a thread each, with a context and a loop of their own, on one gra
 Python has once a process they get once a program: ``sys.argv``, the default context.
 """
 
+import asyncio
 import contextvars
 import ctypes
 import signal
@@ -14,7 +15,13 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any, overload
 
-from navette.interop.program import FAILED, INTERRUPTED, Program, run
+from navette.interop.program import (
+    FAILED,
+    INTERRUPTED,
+    SUCCEEDED,
+    Program,
+    run,
+)
 from navette.runtime.clock import Stopwatch
 from navette.runtime.context import Scope, current_scope, new_graph
 from navette.runtime.graph import Graph
@@ -58,10 +65,11 @@ def run_together(programs: Sequence[Program]) -> int:
             stack.enter_context(_on_signal(signum, partial(wishes.append, how)))
         for each in running:
             each.start()
-        _wait_for_end(running, wishes)
+        failed = _wait_for_end(running, wishes)
+        # A second signal changes nothing: ``timeout`` and shells send several.
+        _end_all(running, wishes[0] if wishes else RunningProgram.interrupt)
     graph.close()
-    codes = [each.exit_code for each in running]
-    return next((code for code in codes if code), 0)
+    return failed or _first_failure(running)
 
 
 class RunningProgram:
@@ -119,12 +127,25 @@ class RunningProgram:
         current_scope.set(self._scope)
         _argv.set(self.program.argv)
         try:
-            self.exit_code = run(self.program)
+            with _main_thread_event_loop():
+                self.exit_code = run(self.program)
         finally:
             self.exit_code = FAILED if self.exit_code is None else self.exit_code
             self.shut_down()
             if self._on_end is not None:
                 self._on_end(self.exit_code)
+
+
+@contextmanager
+def _main_thread_event_loop() -> Iterator[None]:
+    """asyncio's default loop, which it gives to the main thread alone."""
+    loop = asyncio.new_event_loop()
+    asyncio.set_event_loop(loop)
+    try:
+        yield
+    finally:
+        asyncio.set_event_loop(None)
+        loop.close()
 
 
 _End = Callable[[RunningProgram], None]
@@ -134,13 +155,18 @@ _ENDS: dict[signal.Signals, _End] = {
 }
 
 
-def _wait_for_end(running: Sequence[RunningProgram], wishes: Sequence[_End]) -> None:
-    while not wishes and any(each.is_alive for each in running):
-        if any(each.exit_code for each in running):
+def _wait_for_end(running: Sequence[RunningProgram], wishes: Sequence[_End]) -> int:
+    """Until all have ended, one failed (returns its exit code), or there is a wish."""
+    while not wishes and not _first_failure(running):
+        alive = [each for each in running if each.is_alive]
+        if not alive:
             break
-        next((each for each in running if each.is_alive), running[0]).join(_LOOK_S)
-    # A second signal changes nothing: ``timeout`` and shells send several.
-    _end_all(running, wishes[0] if wishes else RunningProgram.interrupt)
+        alive[0].join(_LOOK_S)
+    return _first_failure(running)
+
+
+def _first_failure(running: Sequence[RunningProgram]) -> int:
+    return next((each.exit_code for each in running if each.exit_code), SUCCEEDED)
 
 
 def _end_all(running: Sequence[RunningProgram], how: _End) -> None:
