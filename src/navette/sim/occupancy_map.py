@@ -115,6 +115,13 @@ def _read_yaml(path: Path) -> _MapFile:
     if resolution <= 0:
         raise FileFormatError(path, f"'resolution' is {resolution:g}; wanted > 0 m")
     threshold = _number(path, "occupied_thresh", values.get("occupied_thresh", 0.65))
+    free = _number(path, "free_thresh", values.get("free_thresh", 0.0))
+    if not 0 <= free < threshold <= 1:
+        raise FileFormatError(
+            path,
+            f"'free_thresh' is {free:g} and 'occupied_thresh' {threshold:g}; "
+            "wanted 0 <= free_thresh < occupied_thresh <= 1",
+        )
     return _MapFile(
         image=path.parent / image,
         resolution=resolution,

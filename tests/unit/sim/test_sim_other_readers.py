@@ -154,6 +154,8 @@ def test_map_becomes_wall_boxes(tmp_path: Path) -> None:
         ("mode: funny", "mode 'funny'"),
         ("resolution: .nan", "finite"),
         ("resolution: [", "not YAML"),
+        ("occupied_thresh: 0.1", "free_thresh < occupied_thresh"),
+        ("occupied_thresh: 65", "occupied_thresh <= 1"),
     ],
 )
 def test_broken_maps(tmp_path: Path, line: str, reason: str) -> None:
