@@ -227,7 +227,7 @@ class PlannerNode(StageNode):
 
     def _log(self, report: Report) -> None:
         logger = self.get_logger()
-        goal = f"goal {report.goal_id} ({report.goal_x:.2f}, {report.goal_y:.2f})"
+        goal = f"goal {report.goal_id} ({report.goal_x:.6g}, {report.goal_y:.6g})"
         if report.failed:
             logger.warning(f"{goal}: {report.message}")
         elif report.message == Phase.FOLLOWING:

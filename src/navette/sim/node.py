@@ -123,6 +123,11 @@ class SimNode(StageNode):
         self.simulator = Simulator(scene, self.params, start=start)
         for lidar in self.simulator.lidars:
             lidar.warm_up()
+        if not self.simulator.lidars:
+            self.get_logger().warning(
+                "the robot has no laser scanner: without /lidar it sees no obstacles "
+                "and navigation will not drive it"
+            )
         self._origin_ns = self.get_clock().now_ns
         self.frames = RobotFrames(self.simulator.compiled.robot, self.params)
         p = self.params

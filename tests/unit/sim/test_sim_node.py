@@ -2,7 +2,7 @@
 
 import math
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import pytest
@@ -175,6 +175,17 @@ def test_descriptions_are_there_for_late_listeners() -> None:
     assert '<link name="robot/chassis">' in run.heard["/robot_description"][0].data
     assert '<link name="sim_world">' in run.heard["/world_description"][0].data
     assert run.heard["/tf_static"]
+
+
+def test_a_robot_that_sees_nothing_is_said_so(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    model = load_robot("jackal").model
+    blind = tuple(replace(link, sensors=()) for link in model.links)
+    context = Context(clock=VirtualClock())
+    context.init(args=[])
+    SimNode(World().scene().with_robot(replace(model, links=blind)), context=context)
+    assert "no laser scanner" in capfd.readouterr().err
 
 
 def test_commands_drive_and_time_out() -> None:
