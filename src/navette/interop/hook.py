@@ -20,8 +20,12 @@ from navette.msgs.lazy import module_contents
 from navette.msgs.registry import KINDS, interface_names
 
 #: Packages of Navette whose modules bear ROS 2's names: thin lists of names (rclpy),
-#: and the packages that come with rclpy.
-ROOTS = ("interop/ros2", "companions")
+#: the packages that come with rclpy, and of those for launch files what is ROS 2's.
+ROOTS = {
+    "interop/ros2": None,
+    "companions": None,
+    "launch_files": {"launch", "launch_ros"},
+}
 
 
 def _modules_in(folder: Path) -> set[str]:
@@ -37,8 +41,9 @@ def _modules_in(folder: Path) -> set[str]:
 #: ROS 2's name of a package → Navette's.
 PROVIDED = {
     name: f"navette.{root.replace('/', '.')}.{name}"
-    for root in ROOTS
+    for root, wanted in ROOTS.items()
     for name in _modules_in(Path(__file__).parent.parent / root)
+    if wanted is None or name in wanted
 }
 
 
