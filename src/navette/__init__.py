@@ -15,16 +15,17 @@ _RUNTIME_NAMES = frozenset(
     """
     ActionClient ActionServer AsyncParameterClient Buffer CallbackGroup
     CancelResponse Client Clock ClockType Context DurabilityPolicy Duration Executor
-    ExternalShutdownException Future GoalResponse HistoryPolicy Input
-    LivelinessPolicy LoggingSeverity MultiThreadedExecutor
+    ExternalShutdownException Future GoalResponse HistoryPolicy Input LifecycleNode
+    LifecyclePublisher LivelinessPolicy LoggingSeverity MultiThreadedExecutor
     MutuallyExclusiveCallbackGroup Node NotInitializedException Output PacedClock
     Parameter ParameterAlreadyDeclaredException ParameterEventHandler
     ParameterNotDeclaredException Publisher QoSPresetProfiles QoSProfile ROSClock
     ROSInterruptException Rate ReentrantCallbackGroup ReliabilityPolicy Service
     SingleThreadedExecutor StageNode StaticTransformBroadcaster Subscription
-    SystemClock Task Time Timer TransformBroadcaster TransformListener VirtualClock
-    create_node get_default_context get_global_executor init ok
-    qos_profile_sensor_data qos_profile_system_default remove_ros_args shutdown spin
+    SystemClock Task Time Timer TransformBroadcaster TransformListener
+    TransitionCallbackReturn VirtualClock create_node deserialize_message
+    get_default_context get_global_executor init ok qos_profile_sensor_data
+    qos_profile_system_default remove_ros_args serialize_message shutdown spin
     spin_once spin_until_future_complete try_shutdown
     """.split()
 )

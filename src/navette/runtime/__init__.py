@@ -92,8 +92,14 @@ if TYPE_CHECKING:
         CancelResponse,
         GoalResponse,
     )
+    from navette.runtime.lifecycle import (
+        LifecycleNode,
+        LifecyclePublisher,
+        TransitionCallbackReturn,
+    )
     from navette.runtime.parameter_client import AsyncParameterClient
     from navette.runtime.parameter_event_handler import ParameterEventHandler
+    from navette.runtime.serialization import deserialize_message, serialize_message
 
 __all__ = [
     # life cycle
@@ -112,6 +118,8 @@ __all__ = [
     "spin_until_future_complete",
     "try_shutdown",
     # nodes, topics and services
+    "deserialize_message",
+    "serialize_message",
     "Client",
     "Graph",
     "MessageInfo",
@@ -133,6 +141,10 @@ __all__ = [
     "ActionServer",
     "CancelResponse",
     "GoalResponse",
+    # managed nodes
+    "LifecycleNode",
+    "LifecyclePublisher",
+    "TransitionCallbackReturn",
     # execution
     "CallbackGroup",
     "Executor",

@@ -3,6 +3,10 @@
 from typing import Any
 
 _ACTION = frozenset({"ActionClient", "ActionServer", "CancelResponse", "GoalResponse"})
+_LIFECYCLE = frozenset(
+    {"LifecycleNode", "LifecyclePublisher", "TransitionCallbackReturn"}
+)
+_SERIALIZATION = frozenset({"deserialize_message", "serialize_message"})
 
 
 def find(name: str) -> Any:
@@ -14,6 +18,10 @@ def find(name: str) -> Any:
     module: Any
     if name in _ACTION:
         from navette.runtime import action as module
+    elif name in _LIFECYCLE:
+        from navette.runtime import lifecycle as module
+    elif name in _SERIALIZATION:
+        from navette.runtime import serialization as module
     elif name == "AsyncParameterClient":
         from navette.runtime import parameter_client as module
     elif name == "ParameterEventHandler":

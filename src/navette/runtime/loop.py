@@ -306,6 +306,7 @@ class EventLoop:
         stop: Callable[[], bool] | None,
     ) -> None:
         count = 0
+        is_late = False
         while not self._closed:
             self._attention = False
             if stop is not None and stop():
@@ -317,6 +318,12 @@ class EventLoop:
                 return
             if limit is not None and count >= limit:
                 return
+            if until_ns is not None and self.clock.now_ns > until_ns:
+                # A callback that waited took it past that time. What was held back
+                # meanwhile goes once; it may wait as long again, and so for ever.
+                if is_late:
+                    return
+                is_late = True
             if self.ready or self._inbox or self._attention:
                 continue
             if not self._go_on(until_ns):

@@ -83,6 +83,11 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
     return True
 
 
+def topic_or_service_is_hidden(name: str) -> bool:
+    """Whether any part of the name starts with an underscore."""
+    return any(token.startswith("_") for token in name.split("/"))
+
+
 def _check_tokens(name: str, kind: type[NameValidationException]) -> None:
     position = 1
     for token in name[1:].split("/"):

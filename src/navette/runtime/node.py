@@ -26,6 +26,7 @@ from navette.runtime.node_graph import NodeGraph
 from navette.runtime.node_parameters import NodeParameters
 from navette.runtime.node_services import NodeServices
 from navette.runtime.node_topics import NodeTopics
+from navette.runtime.node_waitables import NodeWaitables
 from navette.runtime.overrides import Override, ParameterOverrides
 from navette.runtime.parameter import Parameter
 from navette.runtime.parameter_service import ParameterService
@@ -40,12 +41,11 @@ from navette.runtime.ros_clock import Clock, ROSClock
 from navette.runtime.time import ns_to_stamp, seconds_to_ns
 from navette.runtime.time_source import TimeSource
 from navette.runtime.timer import Timer
-from navette.runtime.waitable import Waitable
 
 MsgT = TypeVar("MsgT")
 
 
-class Node(NodeTopics, NodeServices, NodeParameters, NodeGraph):
+class Node(NodeTopics, NodeServices, NodeWaitables, NodeParameters, NodeGraph):
     """Owns publishers, subscriptions, timers and parameters under one name.
 
     Args as in rclpy; ``parameter_overrides`` win over everything else.
@@ -143,10 +143,6 @@ class Node(NodeTopics, NodeServices, NodeParameters, NodeGraph):
     def timers(self) -> Iterator[Timer]:
         return (e for e in self._entities if isinstance(e, Timer))
 
-    @property
-    def waitables(self) -> Iterator[Waitable]:
-        return (e for e in self._entities if isinstance(e, Waitable))
-
     # -- time ------------------------------------------------------------------
 
     def create_timer(
@@ -184,13 +180,6 @@ class Node(NodeTopics, NodeServices, NodeParameters, NodeGraph):
     def call_soon(self, function: Callable[[], Any], source: str) -> None:
         """Run ``function`` as an event of this node."""
         self._context.loop.call_soon(function, source, self.get_fully_qualified_name())
-
-    def add_waitable(self, waitable: Waitable) -> None:
-        """Keep it, and destroy it with the node."""
-        self._entities.append(waitable)
-
-    def remove_waitable(self, waitable: Waitable) -> None:
-        self._forget(waitable)
 
     # -- taking down -----------------------------------------------------------
 

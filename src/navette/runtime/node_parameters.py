@@ -12,7 +12,6 @@ from navette.msgs.rcl_interfaces.msg import (
     SetParametersResult,
 )
 from navette.runtime.exceptions import (
-    InvalidParameterException,
     ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
@@ -24,6 +23,7 @@ from navette.runtime.parameter import (
     ParameterType,
     coerced,
     parameter_value_to_python,
+    validate_parameter_name,
 )
 from navette.runtime.parameter_store import (
     OnCallback,
@@ -89,8 +89,7 @@ class NodeParameters:
     def _declare(
         self, name: str, value: Any, descriptor: Any, ignore_override: bool
     ) -> Parameter[Any]:
-        if not isinstance(name, str) or not name:
-            raise InvalidParameterException(str(name))
+        validate_parameter_name(name)
         if not isinstance(descriptor, ParameterDescriptor):
             raise TypeError(f"parameter {name!r}: {descriptor!r} is no descriptor")
         # The node keeps its own: one descriptor object may serve many parameters.

@@ -11,11 +11,19 @@ import numpy as np
 from navette.errors import ParameterError
 from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
 from navette.msgs.rcl_interfaces.msg import ParameterValue
+from navette.runtime.exceptions import InvalidParameterException
 from navette.runtime.parameter_files import parse_value, read_parameter_file
 
 T = TypeVar("T")
 
 PARAMETER_SEPARATOR_STRING = "."
+
+
+def validate_parameter_name(name: str) -> bool:
+    """True, or raise; the name must not be empty."""
+    if not isinstance(name, str) or not name:
+        raise InvalidParameterException(str(name))
+    return True
 
 
 class ParameterType(IntEnum):

@@ -126,6 +126,10 @@ class Subscription(Entity, Generic[MsgT]):
             return self._callback(queue.popleft()[0])
         return self._run_with_info(queue.popleft())
 
+    def take(self) -> MsgT | None:
+        """The oldest sample of the queue, without a callback; None if it is empty."""
+        return self._queue.popleft()[0] if self._queue else None
+
     def origin(self) -> tuple[str, str]:
         return self.endpoint.node_full_name, f"topic {self.endpoint.topic}"
 

@@ -1,0 +1,279 @@
+"""Managed nodes: a state machine, its services and the callbacks in between."""
+
+import traceback
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+from navette.msgs.lifecycle_msgs.msg import State as StateMsg
+from navette.msgs.lifecycle_msgs.msg import (
+    Transition,
+    TransitionDescription,
+    TransitionEvent,
+)
+from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.exceptions import RCLError
+from navette.runtime.lifecycle.managed_entity import ManagedEntity
+from navette.runtime.lifecycle.publisher import LifecyclePublisher
+from navette.runtime.lifecycle.state_machine import (
+    STATES,
+    TRANSITIONS,
+    LifecycleState,
+    LifecycleStateMachine,
+    LifecycleTransition,
+    TransitionCallbackReturn,
+)
+from navette.runtime.node import Node
+from navette.runtime.publisher import Publisher
+from navette.runtime.qos import QoSProfile
+
+MsgT = TypeVar("MsgT")
+
+_CALLBACKS = {
+    "configuring": "on_configure",
+    "cleaningup": "on_cleanup",
+    "shuttingdown": "on_shutdown",
+    "activating": "on_activate",
+    "deactivating": "on_deactivate",
+    "errorprocessing": "on_error",
+}
+
+
+class LifecycleNodeMixin(ManagedEntity):
+    """What a :class:`LifecycleNode` has beyond a node; call its init after Node's.
+
+    The default callbacks ask the managed entities, in the order of their adding, and
+    stop at the first that does not succeed.
+    """
+
+    def __init__(
+        self,
+        *,
+        enable_communication_interface: bool = True,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
+        if not isinstance(self, Node):
+            raise RuntimeError("LifecycleNodeMixin needs Node in the inheritance tree")
+        self._node = cast(Node, self)
+        self._state_machine = LifecycleStateMachine()
+        self._managed_entities: list[ManagedEntity] = []
+        self._transition_events: Publisher[TransitionEvent] | None = None
+        if enable_communication_interface:
+            self._open_interface(callback_group)
+
+    # -- what a program does ---------------------------------------------------
+
+    def trigger_configure(self) -> TransitionCallbackReturn:
+        return self._change_state(Transition.TRANSITION_CONFIGURE)
+
+    def trigger_cleanup(self) -> TransitionCallbackReturn:
+        return self._change_state(Transition.TRANSITION_CLEANUP)
+
+    def trigger_activate(self) -> TransitionCallbackReturn:
+        return self._change_state(Transition.TRANSITION_ACTIVATE)
+
+    def trigger_deactivate(self) -> TransitionCallbackReturn:
+        return self._change_state(Transition.TRANSITION_DEACTIVATE)
+
+    def trigger_shutdown(self) -> TransitionCallbackReturn:
+        """Shut down, from whatever primary state.
+
+        Raises:
+            RCLError: it is shut down already.
+        """
+        return self._change_state(self._state_machine.by_label("shutdown").id)
+
+    def add_managed_entity(self, entity: ManagedEntity) -> None:
+        """Let ``entity`` take part in the transitions."""
+        if not isinstance(entity, ManagedEntity):
+            raise TypeError(f"wanted a ManagedEntity, got {entity!r}")
+        self._managed_entities.append(entity)
+
+    def create_lifecycle_publisher(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        publisher_class: None = None,
+        **kwargs: Any,
+    ) -> LifecyclePublisher[MsgT]:
+        """A publisher that is silent while the node is not active."""
+        if publisher_class is not None:
+            raise TypeError("publisher_class cannot be chosen for lifecycle publishers")
+        publisher = self._node.create_publisher(
+            msg_type, topic, qos_profile, publisher_class=LifecyclePublisher, **kwargs
+        )
+        assert isinstance(publisher, LifecyclePublisher), "as asked for"
+        self._managed_entities.append(publisher)
+        return publisher
+
+    def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
+        if publisher not in self._managed_entities:
+            return False
+        self._managed_entities.remove(publisher)
+        return self._node.destroy_publisher(publisher)
+
+    # -- what a subclass may override ------------------------------------------
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self._ask_entities("on_configure", state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self._ask_entities("on_cleanup", state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self._ask_entities("on_shutdown", state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self._ask_entities("on_activate", state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self._ask_entities("on_deactivate", state)
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return self._ask_entities("on_error", state)
+
+    # -- transitions -----------------------------------------------------------
+
+    def _ask_entities(
+        self, name: str, state: LifecycleState
+    ) -> TransitionCallbackReturn:
+        for entity in tuple(self._managed_entities):
+            answer = _checked(getattr(entity, name)(state), name, entity)
+            if answer is not TransitionCallbackReturn.SUCCESS:
+                return answer
+        return TransitionCallbackReturn.SUCCESS
+
+    def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
+        """Go through a transition and its callbacks; ERROR if there is none such."""
+        before = self._state_machine.state
+        try:
+            transition = self._state_machine.by_id(transition_id)
+        except RCLError as error:
+            self._node.get_logger().error(str(error))
+            return TransitionCallbackReturn.ERROR
+        self._go(transition)
+        answer = self._call_back(before)
+        self._go(self._state_machine.by_label(answer.to_label()))
+        if answer is TransitionCallbackReturn.ERROR:
+            mended = self._call_back(before)
+            self._go(self._state_machine.by_label(mended.to_label()))
+        return answer
+
+    def _go(self, transition: LifecycleTransition) -> None:
+        self._state_machine.state = transition.goal
+        if self._transition_events is not None:
+            described = _description(transition)
+            self._transition_events.publish(
+                TransitionEvent(
+                    timestamp=self._node.get_clock().now().nanoseconds,
+                    transition=described.transition,
+                    start_state=described.start_state,
+                    goal_state=described.goal_state,
+                )
+            )
+
+    def _call_back(self, before: LifecycleState) -> TransitionCallbackReturn:
+        """The present transition state's callback.
+
+        An exception is what the lifecycle calls an error: it is logged with its
+        traceback, and ``on_error`` decides how the node goes on.
+        """
+        name = _CALLBACKS[self._state_machine.state.label]
+        callback: Callable[[LifecycleState], Any] = getattr(self, name)
+        try:
+            return _checked(callback(before), name, self)
+        except Exception:
+            self._node.get_logger().error(f"{name} raised:\n{traceback.format_exc()}")
+            return TransitionCallbackReturn.ERROR
+
+    # -- services --------------------------------------------------------------
+
+    def _open_interface(self, group: CallbackGroup | None) -> None:
+        for type_name, name, callback in (
+            ("ChangeState", "change_state", self._on_change_state),
+            ("GetState", "get_state", self._on_get_state),
+            ("GetAvailableStates", "get_available_states", self._on_get_states),
+            (
+                "GetAvailableTransitions",
+                "get_available_transitions",
+                self._on_get_transitions,
+            ),
+            ("GetAvailableTransitions", "get_transition_graph", self._on_get_graph),
+        ):
+            self._node.serve(
+                f"lifecycle_msgs/srv/{type_name}",
+                f"~/{name}",
+                callback,
+                callback_group=group,
+            )
+        self._transition_events = self._node.create_publisher(
+            TransitionEvent, "~/transition_event", 10
+        )
+
+    def _on_change_state(self, request: Any, response: Any) -> Any:
+        transition_id = request.transition.id
+        if request.transition.label:
+            try:
+                found = self._state_machine.by_label(request.transition.label)
+            except RCLError as error:
+                self._node.get_logger().error(str(error))
+                return response
+            transition_id = found.id
+        answer = self._change_state(transition_id)
+        response.success = answer is TransitionCallbackReturn.SUCCESS
+        return response
+
+    def _on_get_state(self, request: Any, response: Any) -> Any:
+        response.current_state = _state(self._state_machine.state)
+        return response
+
+    def _on_get_states(self, request: Any, response: Any) -> Any:
+        response.available_states = [_state(each) for each in STATES.values()]
+        return response
+
+    def _on_get_transitions(self, request: Any, response: Any) -> Any:
+        available = self._state_machine.available_transitions
+        response.available_transitions = [_description(each) for each in available]
+        return response
+
+    def _on_get_graph(self, request: Any, response: Any) -> Any:
+        response.available_transitions = [_description(each) for each in TRANSITIONS]
+        return response
+
+
+class LifecycleNode(LifecycleNodeMixin, Node):
+    """A managed node; arguments as :class:`Node`, and whether to open the services."""
+
+    def __init__(
+        self,
+        node_name: str,
+        *,
+        enable_communication_interface: bool = True,
+        **kwargs: Any,
+    ) -> None:
+        Node.__init__(self, node_name, **kwargs)
+        LifecycleNodeMixin.__init__(
+            self, enable_communication_interface=enable_communication_interface
+        )
+
+
+def _checked(answer: Any, name: str, entity: object) -> TransitionCallbackReturn:
+    if not isinstance(answer, TransitionCallbackReturn):
+        raise TypeError(
+            f"{name}() of {type(entity).__name__} returned {answer!r}, wanted a "
+            "TransitionCallbackReturn"
+        )
+    return answer
+
+
+def _state(state: LifecycleState) -> StateMsg:
+    return StateMsg(id=state.state_id, label=state.label)
+
+
+def _description(transition: LifecycleTransition) -> TransitionDescription:
+    return TransitionDescription(
+        transition=Transition(id=transition.id, label=transition.label),
+        start_state=_state(transition.start),
+        goal_state=_state(transition.goal),
+    )

@@ -1,0 +1,49 @@
+"""Wait for one message of a topic."""
+
+from typing import Any, TypeVar
+
+from navette.runtime.callback_groups import ReentrantCallbackGroup
+from navette.runtime.node import Node
+from navette.runtime.qos import QoSProfile
+from navette.runtime.time import seconds_to_ns
+
+MsgT = TypeVar("MsgT")
+
+
+def wait_for_message(
+    msg_type: type[MsgT],
+    node: Node,
+    topic: str,
+    *,
+    qos_profile: QoSProfile | int = 1,
+    time_to_wait: float = -1,
+) -> tuple[bool, MsgT | None]:
+    """(True, the next message), or (False, None) after ``time_to_wait`` seconds.
+
+    Events run meanwhile, also if the node was added to no executor. A negative time
+    waits for ever (under a virtual clock: until nothing is left to happen).
+    """
+    received: list[MsgT] = []
+    subscription: Any = node.create_subscription(
+        msg_type,
+        topic,
+        received.append,
+        qos_profile,
+        callback_group=ReentrantCallbackGroup(),
+    )
+
+    def done() -> bool:
+        # The node may be in no executor: then its callbacks do not run.
+        while (message := subscription.take()) is not None:
+            received.append(message)
+        return bool(received)
+
+    loop = node.context.loop
+    until_ns = None
+    if time_to_wait >= 0:
+        until_ns = loop.clock.now_ns + seconds_to_ns(float(time_to_wait))
+    try:
+        loop.run(until_ns=until_ns, done=done)
+    finally:
+        node.destroy_subscription(subscription)
+    return (True, received[0]) if received else (False, None)
