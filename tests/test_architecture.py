@@ -58,8 +58,8 @@ def test_every_folder_is_a_package_that_imports_no_node() -> None:
         init = folder / "__init__.py"
         assert init.is_file(), f"{folder} has no __init__.py"
         for module in imported_modules(init):
-            is_stage_node = module.endswith(".node") and ".runtime" not in module
-            assert not is_stage_node, f"{init} imports {module}"
+            stage_node = re.fullmatch(r"navette\.(?!runtime)\w+\.node", module)
+            assert not stage_node, f"{init} imports {module}"
 
 
 def imported_modules(path: Path) -> list[str]:
