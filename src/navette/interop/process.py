@@ -22,6 +22,7 @@ from navette.interop.program import (
     Program,
     run,
 )
+from navette.interop.sleeping import sleeping_lets_others_run
 from navette.runtime.clock import Stopwatch
 from navette.runtime.context import Scope, current_scope, new_graph
 from navette.runtime.graph import Graph
@@ -40,7 +41,11 @@ def run_alone(program: Program) -> int:
     argv, sys.argv = sys.argv, program.argv
     try:
         # SIGTERM ends a program as ROS 2's does: its contexts are shut down.
-        with _on_path(program), _on_signal(signal.SIGTERM, _shut_down_everything):
+        with (
+            _on_path(program),
+            _on_signal(signal.SIGTERM, _shut_down_everything),
+            sleeping_lets_others_run(),
+        ):
             return run(program)
     finally:
         sys.argv = argv
@@ -59,6 +64,7 @@ def run_together(programs: Sequence[Program]) -> int:
     wishes: list[_End] = []
     with ExitStack() as stack:
         stack.enter_context(program_threads())
+        stack.enter_context(sleeping_lets_others_run())
         for program in programs:
             stack.enter_context(_on_path(program))
         for signum, how in _ENDS.items():

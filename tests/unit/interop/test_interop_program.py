@@ -185,3 +185,37 @@ print(parser.parse_args())
 """
     assert run(write(text), "x", "--with", write("", "empty.py")) == 0
     assert capsys.readouterr().out == "Namespace(speed=1.5)\n"
+
+
+SLEEPER = """
+import sys, time
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+
+rclpy.init()
+node = rclpy.create_node("sleeper")
+said = []
+
+def sleep():
+    time.sleep(0.05)
+    print("other" in said)
+    raise SystemExit
+
+node.create_timer(0.01, sleep)
+node.create_timer(0.02, lambda: said.append("other"), ReentrantCallbackGroup())
+executor = globals()[sys.argv[1] + "ThreadedExecutor"]()
+executor.add_node(node)
+executor.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("executor", "other_ran"),
+    [("Multi", "True\n"), ("Single", "False\n")],
+)
+def test_sleeping_in_a_callback_lets_others_run_where_ros_has_threads(
+    write: Write, capsys: pytest.CaptureFixture[str], executor: str, other_ran: str
+) -> None:
+    assert run(write(SLEEPER), executor) == 0
+    assert capsys.readouterr().out == other_ran

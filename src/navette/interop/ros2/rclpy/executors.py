@@ -9,6 +9,7 @@ from navette.runtime.executor import (
     Executor,
     MultiThreadedExecutor,
     SingleThreadedExecutor,
+    await_or_execute,
 )
 
 __all__ = [
@@ -18,4 +19,5 @@ __all__ = [
     "ShutdownException",
     "SingleThreadedExecutor",
     "TimeoutException",
+    "await_or_execute",
 ]
