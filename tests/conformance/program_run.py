@@ -61,15 +61,18 @@ def run_until_printed(
     expected: Sequence[str],
     timeout_s: float,
     forbidden: str = "Traceback",
+    packages: str = "",
 ) -> ProgramRun:
     """Run ``navette run WORDS`` until ``expected`` (regexes) was printed in that order.
 
+    ``packages``: folders of packages that the program may look for.
     A program that goes on for longer gets SIGINT, as from Ctrl-C.
     """
     run = ProgramRun(expected, forbidden)
     run.look()
     process = subprocess.Popen(
         [*NAVETTE, "run", *words],
+        env={**os.environ, "NAVETTE_PATH": packages},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
     )

@@ -257,7 +257,11 @@ def main() -> int:
     good = 0
     for case in chosen:
         run = run_until_printed(
-            _words(folder, case), case.expected, case.timeout_s, case.forbidden
+            _words(folder, case),
+            case.expected,
+            case.timeout_s,
+            case.forbidden,
+            packages=str(folder.resolve()),
         )
         good += run.is_good
         _report(case, run)

@@ -10,6 +10,8 @@ TALKER = str(PROGRAMS / "talker.py")
 LISTENER = str(PROGRAMS / "listener.py")
 LISTENER_NODE = f"{PROGRAMS / 'listener_node.py'}:Listener"
 ADDER = str(PROGRAMS / "adder.py")
+COUNTING = str(PROGRAMS / "counting.py")
+MANAGED = str(PROGRAMS / "managed.py")
 
 pytestmark = pytest.mark.slow
 
@@ -68,6 +70,38 @@ def test_remapping_and_parameters_from_a_file(tmp_path: Path) -> None:
 def test_services(way: str, answer: str) -> None:
     run = printed([ADDER, "serve", "--with", ADDER, way], r"adding \d and \d", answer)
     assert "the adder ends" in run.output
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (
+            ["5", "0"],
+            [
+                "accepted True",
+                r"feedback \[0, 1, 1\]",
+                r"feedback \[0, 1, 1, 2, 3, 5\]",
+                r"succeeded \[0, 1, 1, 2, 3, 5\]",
+            ],
+        ),
+        (["40", "3"], ["accepted True", r"canceled \[0, 1, 1, 2, 3[ ,\d]*\]"]),
+        (["50", "0"], ["accepted False"]),
+    ],
+)
+def test_actions(words: list[str], expected: list[str]) -> None:
+    printed([COUNTING, "serve", "--with", COUNTING, *words], *expected)
+
+
+def test_a_managed_node() -> None:
+    run = printed(
+        [MANAGED, "talk", "--with", MANAGED, "drive"],
+        "True inactive",
+        "True active",
+        "active True",
+        "True inactive",
+        "True unconfigured",
+    )
+    assert "configured, was unconfigured" in run.output
 
 
 def test_nodes_of_other_files_in_one_executor() -> None:
