@@ -198,7 +198,7 @@ node = rclpy.create_node("sleeper")
 said = []
 
 def sleep():
-    time.sleep(0.05)
+    time.sleep(0.05)  # as ROS 2 programs do
     print("other" in said)
     raise SystemExit
 
