@@ -173,10 +173,15 @@ class AliasLoader(_NavetteLoader, Loader):
     def __init__(self, name: str, alias_of: str) -> None:
         super().__init__(name)
         self._alias_of = alias_of
-        self._real: ModuleType | None = None
+        self._real = ModuleType(alias_of)
+
+    def create_module(self, spec: ModuleSpec) -> None:
+        # Before Python lists the new module: from then on another thread may ask for
+        # its submodules.
+        self._real = importlib.import_module(self._alias_of)
 
     def exec_module(self, module: ModuleType) -> None:
-        real = self._real = importlib.import_module(self._alias_of)
+        real = self._real
         names = sorted(set(_public_names(real)) - self._submodules())
         module.__doc__, module.__file__ = real.__doc__, real.__file__
         vars(module).update({name: getattr(real, name) for name in names})
@@ -231,7 +236,7 @@ class InterfaceLoader(_NavetteLoader, Loader):
         return interface_names(package, kind)
 
 
-def _public_names(module: ModuleType | None) -> list[str]:
+def _public_names(module: ModuleType) -> list[str]:
     listed = getattr(module, "__all__", None)
     if listed is not None:
         return list(listed)

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import textwrap
+import threading
 from importlib import import_module  # noqa: TID251 - the names are the subject
 from pathlib import Path
 from types import ModuleType
@@ -10,7 +11,7 @@ from types import ModuleType
 import pytest
 
 from navette import interop, runtime
-from navette.interop.hook import PROVIDED, RealRosError
+from navette.interop.hook import PROVIDED, AliasLoader, RealRosError
 from navette.msgs import add_interface_path
 from navette.msgs.std_msgs.msg import String
 
@@ -78,6 +79,26 @@ def test_a_missing_attribute_says_what_exists() -> None:
     with pytest.raises(AttributeError, match=r"it has .*String"):
         _ = std_msgs.msg.Str
     assert not hasattr(rclpy.qos, "QoS")
+
+
+def test_threads_that_import_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain, loading = AliasLoader.exec_module, threading.Event()
+
+    def slow(self: AliasLoader, module: ModuleType) -> None:
+        if self.name == "rclpy":  # it is listed now, and empty
+            loading.set()
+            other.join(0.05)
+        plain(self, module)
+
+    found: list[object] = []
+    monkeypatch.setattr(AliasLoader, "exec_module", slow)
+    other = threading.Thread(
+        target=lambda: loading.wait() and found.append(import_module("rclpy.node"))
+    )
+    other.start()
+    import_module("rclpy")
+    other.join()
+    assert found[0].Node is runtime.Node
 
 
 def test_services_and_actions() -> None:
