@@ -8,6 +8,7 @@ from typing import Any
 
 from navette.errors import MessageError
 from navette.msgs import get_interface, type_name
+from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context
 from navette.runtime.exceptions import (
@@ -18,8 +19,13 @@ from navette.runtime.exceptions import (
 from navette.runtime.future import Future
 from navette.runtime.loop import Entity
 from navette.runtime.qos import QoSProfile
+from navette.runtime.ros_clock import Clock
+from navette.runtime.service_introspection import (
+    ServiceEvents,
+    ServiceIntrospectionState,
+)
 from navette.runtime.time import seconds_to_ns
-from navette.transports import ClientPort, Endpoint, Reply
+from navette.transports import ClientPort, Endpoint, Reply, RequestId
 
 
 class _Replies(Entity):
@@ -54,6 +60,7 @@ class Client:
         endpoint: Endpoint,
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
+        events: ServiceEvents,
         on_destroy: Callable[["Client"], None],
     ) -> None:
         self.context = context
@@ -61,6 +68,7 @@ class Client:
         self.group = callback_group
         self.qos_profile = qos_profile
         self.ports: list[ClientPort] = []
+        self._events = events
         self._loop = context.loop
         self._replies = _Replies(self, context.loop.free_group)
         self._pending: dict[int, Future[Any]] = {}
@@ -106,6 +114,11 @@ class Client:
             self._sequence = sequence = self._sequence + 1
             self._pending[sequence] = future
         future.add_done_callback(self.remove_pending_request)
+        self._events.report(
+            ServiceEventInfo.REQUEST_SENT,
+            RequestId(self.endpoint.gid, sequence),
+            request=request,
+        )
         for port in self.ports:
             port.request(request, self._loop.clock.now_ns, sequence)
         return future
@@ -150,6 +163,15 @@ class Client:
                     del self._pending[sequence]
                     return
 
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publish requests and responses on ``<service>/_service_event``, or stop."""
+        self._events.configure(clock, service_event_qos_profile, introspection_state)
+
     # -- the server ------------------------------------------------------------
 
     def service_is_ready(self) -> bool:
@@ -184,6 +206,11 @@ class Client:
                 ServiceFailedError(f"service {self.srv_name} failed: {reply.failure}")
             )
         else:
+            self._events.report(
+                ServiceEventInfo.RESPONSE_RECEIVED,
+                RequestId(self.endpoint.gid, reply.sequence),
+                response=reply.message,
+            )
             future.set_result(reply.message)
         self._loop.notify_threads()
 

@@ -37,6 +37,9 @@ class Graph(TransportObserver):
         self._on_change: list[Callable[[], None]] = []
         self._on_incompatible: list[IncompatibleHook] = []
         self._on_match: list[Callable[[Endpoint, Endpoint, bool], None]] = []
+        self._on_liveliness: list[Callable[[Endpoint, bool], None]] = []
+        #: Gids of the publishers that assert themselves and whose lease holds.
+        self.manually_alive: set[bytes] = set()
         self._gids = itertools.count(1)
 
     # -- hooks -----------------------------------------------------------------
@@ -60,6 +63,13 @@ class Graph(TransportObserver):
         """Call back with publisher, subscription and whether they matched or left."""
         self._on_match.append(callback)
         return lambda: self._on_match.remove(callback)
+
+    def on_liveliness(
+        self, callback: Callable[[Endpoint, bool], None]
+    ) -> Callable[[], None]:
+        """Call back with a publisher and whether its lease holds or has lapsed."""
+        self._on_liveliness.append(callback)
+        return lambda: self._on_liveliness.remove(callback)
 
     # -- what transports and nodes report --------------------------------------
 
@@ -97,6 +107,15 @@ class Graph(TransportObserver):
     def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
         for callback in tuple(self._on_match):
             callback(publisher, subscription, False)
+
+    def report_liveliness(self, publisher: Endpoint, *, alive: bool) -> None:
+        """A publisher's lease holds from now on, or has lapsed."""
+        if alive:
+            self.manually_alive.add(publisher.gid)
+        else:
+            self.manually_alive.discard(publisher.gid)
+        for callback in tuple(self._on_liveliness):
+            callback(publisher, alive)
 
     def incompatible_qos(
         self,

@@ -45,7 +45,7 @@ from navette.runtime.timer import Timer
 MsgT = TypeVar("MsgT")
 
 
-class Node(NodeTopics, NodeServices, NodeWaitables, NodeParameters, NodeGraph):
+class Node(NodeParameters, NodeTopics, NodeServices, NodeWaitables, NodeGraph):
     """Owns publishers, subscriptions, timers and parameters under one name.
 
     Args as in rclpy; ``parameter_overrides`` win over everything else.

@@ -4,28 +4,10 @@ from navette.errors import UnknownNameError
 from navette.runtime.context import Context
 from navette.runtime.graph import names_and_types
 from navette.runtime.names import NodeRemapper, full_node_name, normalize_namespace
-from navette.runtime.qos import QoSProfile
+from navette.runtime.topic_endpoint_info import TopicEndpointInfo
 from navette.transports import Endpoint, EndpointKind
 
 NamesAndTypes = list[tuple[str, list[str]]]
-
-
-class TopicEndpointInfo:
-    """A publisher or subscription as the graph lists it."""
-
-    def __init__(self, endpoint: Endpoint) -> None:
-        self.node_name = endpoint.node_name
-        self.node_namespace = endpoint.node_namespace
-        self.topic_type = endpoint.type_name
-        self.endpoint_type = endpoint.kind
-        self.endpoint_gid = list(endpoint.gid)
-        self.qos_profile = QoSProfile.from_endpoint_qos(endpoint.qos)
-
-    def __repr__(self) -> str:
-        return (
-            f"TopicEndpointInfo(node={self.node_namespace.rstrip('/')}/"
-            f"{self.node_name}, {self.endpoint_type.name}, {self.topic_type})"
-        )
 
 
 class NodeNameNonExistentError(UnknownNameError):

@@ -8,8 +8,10 @@ from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.client import Client
 from navette.runtime.context import Context
 from navette.runtime.names import NodeRemapper
+from navette.runtime.publisher import Publisher
 from navette.runtime.qos import QoSProfile, qos_profile_services_default
 from navette.runtime.service import Service
+from navette.runtime.service_introspection import ServiceEvents
 from navette.runtime.type_support import interface_name
 from navette.transports import Endpoint, EndpointKind
 
@@ -22,6 +24,11 @@ class NodeServices:
     _entities: list[Any]
 
     def _check_alive(self) -> None:
+        raise NotImplementedError
+
+    def create_publisher(
+        self, msg_type: Any, topic: str, qos_profile: QoSProfile | int
+    ) -> Publisher[Any]:
         raise NotImplementedError
 
     def _own_group(self, group: CallbackGroup | None) -> CallbackGroup:
@@ -81,12 +88,14 @@ class NodeServices:
         if not callable(callback):
             raise TypeError(f"service {srv_name}: callback {callback!r} not callable")
         kind = EndpointKind.SERVICE
+        endpoint = self._service_endpoint(kind, type_name, srv_name, qos_profile)
         service = Service(
-            self._service_endpoint(kind, type_name, srv_name, qos_profile),
+            endpoint,
             callback,
             self._own_group(callback_group),
             qos_profile,
             self._context.loop,
+            ServiceEvents(endpoint, self.create_publisher),
             self._forget,
             deferred=deferred,
         )
@@ -113,11 +122,13 @@ class NodeServices:
         """A client of the service ``srv_name``."""
         kind = EndpointKind.CLIENT
         name = interface_name(srv_type, "srv")
+        endpoint = self._service_endpoint(kind, name, srv_name, qos_profile)
         client = Client(
             self._context,
-            self._service_endpoint(kind, name, srv_name, qos_profile),
+            endpoint,
             self._own_group(callback_group),
             qos_profile,
+            ServiceEvents(endpoint, self.create_publisher),
             self._forget,
         )
         self._entities.append(client)

@@ -8,13 +8,16 @@ from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context
 from navette.runtime.log import Logger
 from navette.runtime.names import NodeRemapper
+from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import QoSProfile, as_profile
 from navette.runtime.qos_events import (
+    EventCallbacks,
     PublisherEventCallbacks,
     SubscriptionEventCallbacks,
-    watch_endpoint,
 )
+from navette.runtime.qos_overriding_options import QoSOverridingOptions, overridden
+from navette.runtime.qos_watch import EndpointWatch
 from navette.runtime.subscription import Subscription
 from navette.runtime.type_support import interface_name
 from navette.transports import Endpoint, EndpointKind
@@ -31,6 +34,17 @@ class NodeTopics:
     _entities: list[Any]
 
     def _check_alive(self) -> None:
+        raise NotImplementedError
+
+    def has_parameter(self, name: str) -> bool:
+        raise NotImplementedError
+
+    def get_parameter(self, name: str) -> Parameter[Any]:
+        raise NotImplementedError
+
+    def declare_parameter(
+        self, name: str, value: Any = None, descriptor: Any = None
+    ) -> Parameter[Any]:
         raise NotImplementedError
 
     def call_soon(self, function: Callable[[], Any], source: str) -> None:
@@ -61,30 +75,32 @@ class NodeTopics:
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[Any]] = Publisher,
     ) -> Publisher[MsgT]:
         """A publisher on ``topic`` (relative, private or global; remapped)."""
-        qos = as_profile(qos_profile)
-        endpoint = self._endpoint(EndpointKind.PUBLISHER, msg_type, topic, qos)
-        undo = watch_endpoint(
-            self._context, endpoint, event_callbacks, self._logger, self.call_soon
-        )
+        kind = EndpointKind.PUBLISHER
+        qos = self._profile(kind, topic, qos_profile, qos_overriding_options)
+        endpoint = self._endpoint(kind, msg_type, topic, qos)
+        watch = self._watch(endpoint, event_callbacks)
         try:
             ports = [
                 transport.advertise(endpoint, msg_type)
                 for transport in self._context.graph.transports
             ]
         except NavetteError:
-            undo()
+            watch.stop()
             raise
 
         def forget(publisher: Publisher[Any]) -> None:
-            undo()
+            watch.stop()
             self._forget(publisher)
 
         publisher = publisher_class(
             msg_type, endpoint, qos, ports, self._context.loop, forget
         )
+        if watch.on_sample is not None:
+            publisher.watch(watch.on_sample, watch.on_assertion)
         self._entities.append(publisher)
         return publisher
 
@@ -97,6 +113,7 @@ class NodeTopics:
         *,
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
         shared: bool = False,
     ) -> Subscription[MsgT]:
@@ -109,14 +126,13 @@ class NodeTopics:
         """
         if not callable(callback):
             raise TypeError(f"topic {topic}: callback {callback!r} is not callable")
-        qos = as_profile(qos_profile)
-        endpoint = self._endpoint(EndpointKind.SUBSCRIPTION, msg_type, topic, qos)
-        undo = watch_endpoint(
-            self._context, endpoint, event_callbacks, self._logger, self.call_soon
-        )
+        kind = EndpointKind.SUBSCRIPTION
+        qos = self._profile(kind, topic, qos_profile, qos_overriding_options)
+        endpoint = self._endpoint(kind, msg_type, topic, qos)
+        watch = self._watch(endpoint, event_callbacks)
 
         def forget(subscription: Subscription[Any]) -> None:
-            undo()
+            watch.stop()
             self._forget(subscription)
 
         subscription: Subscription[MsgT] = Subscription(
@@ -132,10 +148,11 @@ class NodeTopics:
         )
         subscription.group.add_entity(subscription)
         self._entities.append(subscription)
+        sink = watch.watched(subscription.receive)
         try:
             for transport in self._context.graph.transports:
                 port = transport.subscribe(
-                    endpoint, msg_type, subscription.receive, shared=shared or raw
+                    endpoint, msg_type, sink, shared=shared or raw
                 )
                 subscription.ports.append(port)
         except NavetteError:
@@ -148,6 +165,26 @@ class NodeTopics:
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
         return self._destroy(subscription)
+
+    def _profile(
+        self,
+        kind: EndpointKind,
+        topic: str,
+        qos_profile: QoSProfile | int,
+        options: QoSOverridingOptions | None,
+    ) -> QoSProfile:
+        qos = as_profile(qos_profile)
+        if options is None:
+            return qos
+        full_name = self._remapper.resolve(topic)
+        return overridden(self, kind.name.lower(), full_name, qos, options)
+
+    def _watch(
+        self, endpoint: Endpoint, callbacks: EventCallbacks | None
+    ) -> EndpointWatch:
+        return EndpointWatch(
+            self._context, endpoint, callbacks, self._logger, self.call_soon
+        )
 
     def _endpoint(
         self, kind: EndpointKind, msg_type: type, topic: str, qos: QoSProfile

@@ -20,6 +20,7 @@ class Publisher(Generic[MsgT]):
 
     __slots__ = (
         "_loop",
+        "_on_assertion",
         "_on_destroy",
         "_send",
         "_sequence",
@@ -45,6 +46,7 @@ class Publisher(Generic[MsgT]):
         self._send = ports[0].send if len(ports) == 1 else self._send_to_all
         self._loop = loop
         self._sequence = 0
+        self._on_assertion: Callable[[], None] | None = None
         self._on_destroy = on_destroy
 
     def publish(self, msg: MsgT | bytes) -> None:
@@ -70,8 +72,25 @@ class Publisher(Generic[MsgT]):
         """How many subscriptions get the messages."""
         return sum(port.matched_count for port in self.ports)
 
+    def watch(
+        self,
+        on_sample: Callable[[], None],
+        on_assertion: Callable[[], None] | None,
+    ) -> None:
+        """Call back with every message, and with every assertion of liveliness."""
+        send = self._send
+
+        def watched(message: Any, source_ns: int, sequence: int) -> None:
+            on_sample()
+            send(message, source_ns, sequence)
+
+        self._send = watched
+        self._on_assertion = on_assertion
+
     def assert_liveliness(self) -> None:
-        """In process a publisher lives as long as its node: nothing to assert."""
+        """Keep the lease of a publisher with manual liveliness."""
+        if self._on_assertion is not None:
+            self._on_assertion()
 
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
         """In process a message is in the queues when ``publish`` returns."""

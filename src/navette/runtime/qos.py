@@ -1,5 +1,6 @@
 """QoS profiles with rclpy's names."""
 
+from enum import Enum, IntEnum
 from typing import Any
 
 from navette.errors import InvalidValueError
@@ -10,8 +11,10 @@ from navette.transports.qos import (
     EndpointQos,
     HistoryPolicy,
     LivelinessPolicy,
+    QoSPolicyEnum,
     QoSPolicyKind,
     ReliabilityPolicy,
+    incompatible_policies,
 )
 
 __all__ = [
@@ -22,12 +25,15 @@ __all__ = [
     "QoSDurabilityPolicy",
     "QoSHistoryPolicy",
     "QoSLivelinessPolicy",
+    "QoSCompatibility",
+    "QoSPolicyEnum",
     "QoSPolicyKind",
     "QoSPresetProfiles",
     "QoSProfile",
     "QoSReliabilityPolicy",
     "ReliabilityPolicy",
     "as_profile",
+    "qos_check_compatible",
     "qos_policy_name_from_kind",
     "qos_profile_action_status_default",
     "qos_profile_best_available",
@@ -204,8 +210,8 @@ qos_profile_best_available = QoSProfile(
 )
 
 
-class QoSPresetProfiles:
-    """The presets by name."""
+class QoSPresetProfiles(Enum):
+    """The presets by name; ``.value`` is the profile."""
 
     UNKNOWN = qos_profile_unknown
     DEFAULT = qos_profile_default
@@ -219,13 +225,42 @@ class QoSPresetProfiles:
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        return [name.lower() for name in vars(cls) if name.isupper()]
+        return [name.lower() for name in cls.__members__]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> QoSProfile:
-        profile: QoSProfile = getattr(cls, name.upper())
+        profile: QoSProfile = cls[name.upper()].value
         return profile
 
 
 def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
     return QoSPolicyKind(policy_kind).name
+
+
+class QoSCompatibility(IntEnum):
+    """Whether a publisher and a subscription would meet; values as in rmw."""
+
+    OK = 0
+    WARNING = 1
+    ERROR = 2
+
+
+def qos_check_compatible(
+    publisher_qos: QoSProfile, subscription_qos: QoSProfile
+) -> tuple[QoSCompatibility, str]:
+    """Whether messages would get through, and why not."""
+    offered = publisher_qos.to_endpoint_qos()
+    wanted = subscription_qos.to_endpoint_qos()
+    short = incompatible_policies(offered, wanted)
+    if short:
+        names = ", ".join(kind.name.lower() for kind in short)
+        return QoSCompatibility.ERROR, f"ERROR: incompatible: {names}"
+    left_open = [
+        f"{side} {name}"
+        for side, qos in (("publisher", offered), ("subscription", wanted))
+        for name in ("reliability", "durability")
+        if getattr(qos, name).name in ("SYSTEM_DEFAULT", "UNKNOWN")
+    ]
+    if left_open:
+        return QoSCompatibility.WARNING, f"WARNING: not set: {', '.join(left_open)}"
+    return QoSCompatibility.OK, ""

@@ -1,12 +1,40 @@
-"""QoS events of endpoints: incompatible QoS is warned about unless told otherwise."""
+"""What QoS events tell, and the callbacks for them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from navette.runtime.context import Context
-from navette.runtime.log import Logger
-from navette.transports import Endpoint, EndpointKind, QoSPolicyKind
+from navette.errors import NavetteError
+from navette.transports import QoSPolicyKind
+
+
+class UnsupportedEventTypeError(NavetteError):
+    """An event that the transport cannot tell of; none here."""
+
+
+@dataclass
+class QoSCountInfo:
+    """How often something has happened."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+QoSRequestedDeadlineMissedInfo = QoSCountInfo
+QoSOfferedDeadlineMissedInfo = QoSCountInfo
+QoSLivelinessLostInfo = QoSCountInfo
+QoSMessageLostInfo = QoSCountInfo
+IncompatibleTypeInfo = QoSCountInfo
+
+
+@dataclass
+class QoSLivelinessChangedInfo:
+    """How many of the matched publishers are alive and how many are not."""
+
+    alive_count: int = 0
+    not_alive_count: int = 0
+    alive_count_change: int = 0
+    not_alive_count_change: int = 0
 
 
 @dataclass
@@ -35,127 +63,51 @@ class QoSMatchedInfo:
 QoSSubscriptionMatchedInfo = QoSMatchedInfo
 QoSPublisherMatchedInfo = QoSMatchedInfo
 
+Callback = Callable[[Any], Any] | None
+
 
 class EventCallbacks:
     """What to call on events of one endpoint.
 
     Args:
+        deadline: no sample within the deadline; :class:`QoSCountInfo`.
+        liveliness: see the subclasses.
         incompatible_qos: called with :class:`QoSIncompatibleInfo`; without it (and
             with ``use_default_callbacks``) a warning is logged.
+        incompatible_type: never called: a topic of another type is an exception here.
         matched: called with :class:`QoSMatchedInfo`.
     """
 
     def __init__(
         self,
         *,
-        incompatible_qos: Callable[[QoSIncompatibleInfo], None] | None = None,
-        matched: Callable[[QoSMatchedInfo], None] | None = None,
+        deadline: Callback = None,
+        liveliness: Callback = None,
+        incompatible_qos: Callback = None,
+        incompatible_type: Callback = None,
+        matched: Callback = None,
         use_default_callbacks: bool = True,
     ) -> None:
+        self.deadline = deadline
+        self.liveliness = liveliness
         self.incompatible_qos = incompatible_qos
+        self.incompatible_type = incompatible_type
         self.matched = matched
         self.use_default_callbacks = use_default_callbacks
 
 
 class PublisherEventCallbacks(EventCallbacks):
-    """Events of a publisher."""
+    """Events of a publisher; ``liveliness`` (:class:`QoSCountInfo`): lease not kept."""
 
 
 class SubscriptionEventCallbacks(EventCallbacks):
-    """Events of a subscription."""
+    """Events of a subscription.
 
+    Args:
+        liveliness: called with :class:`QoSLivelinessChangedInfo`.
+        message_lost: never called in process, where nothing is lost on the way.
+    """
 
-class _Watch:
-    """Follows one endpoint's events."""
-
-    def __init__(
-        self,
-        endpoint: Endpoint,
-        callbacks: EventCallbacks,
-        logger: Logger,
-        call_soon: Callable[[Callable[[], Any], str], None],
-    ) -> None:
-        self._endpoint = endpoint
-        self._callbacks = callbacks
-        self._logger = logger
-        self._call_soon = call_soon
-        self._incompatible = 0
-        self._match = QoSMatchedInfo()
-
-    def on_incompatible(
-        self,
-        publisher: Endpoint,
-        subscription: Endpoint,
-        policies: tuple[QoSPolicyKind, ...],
-    ) -> None:
-        if self._endpoint not in (publisher, subscription):
-            return
-        self._incompatible += 1
-        info = QoSIncompatibleInfo(self._incompatible, 1, policies[0])
-        callback = self._callbacks.incompatible_qos
-        if callback is not None:
-            self._call_soon(lambda: callback(info), "incompatible_qos event")
-        elif self._callbacks.use_default_callbacks:
-            self._logger.warning(self._warning(publisher, subscription, policies))
-
-    def on_match(self, publisher: Endpoint, subscription: Endpoint, up: bool) -> None:
-        callback = self._callbacks.matched
-        if callback is None or self._endpoint not in (publisher, subscription):
-            return
-        step = 1 if up else -1
-        total, current = self._match.total_count, self._match.current_count
-        info = QoSMatchedInfo(total + up, int(up), current + step, step)
-        self._match = info
-        self._call_soon(lambda: callback(info), "matched event")
-
-    def _warning(
-        self,
-        publisher: Endpoint,
-        subscription: Endpoint,
-        policies: tuple[QoSPolicyKind, ...],
-    ) -> str:
-        names = ", ".join(
-            f"{kind.name} (offered {_shown(publisher, kind)}, "
-            f"requested {_shown(subscription, kind)})"
-            for kind in policies
-        )
-        if self._endpoint.kind is EndpointKind.PUBLISHER:
-            other, effect = subscription, "no messages will be sent to it"
-        else:
-            other, effect = publisher, "no messages will be received from it"
-        return (
-            f"topic {self._endpoint.topic}: QoS incompatible with the "
-            f"{other.kind.name.lower()} of {other.node_full_name}; {effect}. "
-            f"Policies: {names}"
-        )
-
-
-def _shown(endpoint: Endpoint, kind: QoSPolicyKind) -> str:
-    qos = endpoint.qos
-    values: dict[QoSPolicyKind, Any] = {
-        QoSPolicyKind.RELIABILITY: qos.reliability.name,
-        QoSPolicyKind.DURABILITY: qos.durability.name,
-        QoSPolicyKind.DEADLINE: f"{qos.deadline_ns / 1e9:g} s",
-        QoSPolicyKind.LIVELINESS: qos.liveliness.name,
-        QoSPolicyKind.LIVELINESS_LEASE_DURATION: f"{qos.lease_ns / 1e9:g} s",
-    }
-    return str(values[kind])
-
-
-def watch_endpoint(
-    context: Context,
-    endpoint: Endpoint,
-    callbacks: EventCallbacks | None,
-    logger: Logger,
-    call_soon: Callable[[Callable[[], Any], str], None],
-) -> Callable[[], None]:
-    """Follow the endpoint's events until the returned function is called."""
-    watch = _Watch(endpoint, callbacks or EventCallbacks(), logger, call_soon)
-    undo_incompatible = context.graph.on_incompatible(watch.on_incompatible)
-    undo_match = context.graph.on_match(watch.on_match)
-
-    def undo() -> None:
-        undo_incompatible()
-        undo_match()
-
-    return undo
+    def __init__(self, *, message_lost: Callback = None, **others: Any) -> None:
+        super().__init__(**others)
+        self.message_lost = message_lost

@@ -7,9 +7,15 @@ from typing import Any
 
 from navette.errors import MessageError
 from navette.msgs import get_interface, type_name
+from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.loop import Entity, EventLoop
 from navette.runtime.qos import QoSProfile
+from navette.runtime.ros_clock import Clock
+from navette.runtime.service_introspection import (
+    ServiceEvents,
+    ServiceIntrospectionState,
+)
 from navette.transports import Endpoint, Request, RequestId, ServicePort
 
 
@@ -28,6 +34,7 @@ class Service(Entity):
 
     __slots__ = (
         "_deferred",
+        "_events",
         "_loop",
         "_on_destroy",
         "_queue",
@@ -44,6 +51,7 @@ class Service(Entity):
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         loop: EventLoop,
+        events: ServiceEvents,
         on_destroy: Callable[["Service"], None],
         *,
         deferred: bool = False,
@@ -55,6 +63,7 @@ class Service(Entity):
         self.ports: list[ServicePort] = []
         self._deferred = deferred
         self._loop = loop
+        self._events = events
         # Without a bound: a request that is dropped is a client that waits for ever.
         self._queue: deque[Request] = deque()
         self._on_destroy = on_destroy
@@ -89,6 +98,9 @@ class Service(Entity):
         if not self._queue:  # destroyed while the event waited
             return None
         request = self._queue.popleft()
+        self._events.report(
+            ServiceEventInfo.REQUEST_RECEIVED, request.id, request=request.message
+        )
         try:
             result = self._call(request)
             if not isinstance(result, Coroutine):
@@ -113,6 +125,16 @@ class Service(Entity):
             )
         for port in self.ports:
             port.reply(header, response)
+        self._events.report(ServiceEventInfo.RESPONSE_SENT, header, response=response)
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publish requests and responses on ``<service>/_service_event``, or stop."""
+        self._events.configure(clock, service_event_qos_profile, introspection_state)
 
     def origin(self) -> tuple[str, str]:
         return self.endpoint.node_full_name, f"service {self.endpoint.topic}"

@@ -20,7 +20,7 @@ class QoSPolicyEnum(IntEnum):
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        return [name.lower() for name in cls.__members__]
+        return [each.name.lower() for each in cls]  # without the RMW_… aliases
 
     @classmethod
     def get_from_short_key(cls, name: str) -> int:
@@ -39,6 +39,12 @@ class HistoryPolicy(QoSPolicyEnum):
     KEEP_ALL = 2
     UNKNOWN = 3
 
+    # The names of older programs.
+    RMW_QOS_POLICY_HISTORY_SYSTEM_DEFAULT = SYSTEM_DEFAULT
+    RMW_QOS_POLICY_HISTORY_KEEP_LAST = KEEP_LAST
+    RMW_QOS_POLICY_HISTORY_KEEP_ALL = KEEP_ALL
+    RMW_QOS_POLICY_HISTORY_UNKNOWN = UNKNOWN
+
 
 class ReliabilityPolicy(QoSPolicyEnum):
     """Whether every sample must arrive."""
@@ -48,6 +54,12 @@ class ReliabilityPolicy(QoSPolicyEnum):
     BEST_EFFORT = 2
     UNKNOWN = 3
     BEST_AVAILABLE = 4
+
+    # The names of older programs.
+    RMW_QOS_POLICY_RELIABILITY_SYSTEM_DEFAULT = SYSTEM_DEFAULT
+    RMW_QOS_POLICY_RELIABILITY_RELIABLE = RELIABLE
+    RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT = BEST_EFFORT
+    RMW_QOS_POLICY_RELIABILITY_UNKNOWN = UNKNOWN
 
 
 class DurabilityPolicy(QoSPolicyEnum):
@@ -59,6 +71,12 @@ class DurabilityPolicy(QoSPolicyEnum):
     UNKNOWN = 3
     BEST_AVAILABLE = 4
 
+    # The names of older programs.
+    RMW_QOS_POLICY_DURABILITY_SYSTEM_DEFAULT = SYSTEM_DEFAULT
+    RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL = TRANSIENT_LOCAL
+    RMW_QOS_POLICY_DURABILITY_VOLATILE = VOLATILE
+    RMW_QOS_POLICY_DURABILITY_UNKNOWN = UNKNOWN
+
 
 class LivelinessPolicy(QoSPolicyEnum):
     """Who asserts that a publisher is alive."""
@@ -68,6 +86,12 @@ class LivelinessPolicy(QoSPolicyEnum):
     MANUAL_BY_TOPIC = 3
     UNKNOWN = 4
     BEST_AVAILABLE = 5
+
+    # The names of older programs.
+    RMW_QOS_POLICY_LIVELINESS_SYSTEM_DEFAULT = SYSTEM_DEFAULT
+    RMW_QOS_POLICY_LIVELINESS_AUTOMATIC = AUTOMATIC
+    RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC = MANUAL_BY_TOPIC
+    RMW_QOS_POLICY_LIVELINESS_UNKNOWN = UNKNOWN
 
 
 class QoSPolicyKind(IntEnum):

@@ -5,6 +5,7 @@ import pytest
 from navette.errors import UnknownNameError
 from navette.msgs.std_msgs.msg import Float64, String
 from navette.runtime import Context, Node, QoSProfile, ReliabilityPolicy, VirtualClock
+from navette.runtime.topic_endpoint_info import TopicEndpointTypeEnum
 from navette.transports import EndpointKind
 
 
@@ -58,11 +59,17 @@ def test_endpoint_infos(context: Context) -> None:
     assert (info.node_name, info.node_namespace) == ("a", "/ns")
     assert (info.topic_type, info.endpoint_type) == (
         "std_msgs/msg/String",
-        EndpointKind.PUBLISHER,
+        TopicEndpointTypeEnum.PUBLISHER,
     )
     assert info.qos_profile.depth == 7
     assert info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT
     assert "/ns/a" in repr(info)
+    assert str(info.topic_type_hash).startswith("RIHS01_")
+    assert info.topic_type_hash.version == 1
+    assert len(info.topic_type_hash.value) == 32
+    assert "Topic type hash: RIHS01_" in str(info)
+    assert "History (Depth): KEEP_LAST (7)" in str(info)
+    assert [info] == a.get_publishers_info_by_topic("/t")
     (info,) = a.get_subscriptions_info_by_topic("/t")
     assert info.qos_profile.depth == 3
     assert len(info.endpoint_gid) == 16

@@ -45,7 +45,7 @@ def test_plain_numbers_become_policies() -> None:
 
 
 def test_presets() -> None:
-    assert qos_profile_sensor_data == QoSPresetProfiles.SENSOR_DATA
+    assert qos_profile_sensor_data == QoSPresetProfiles.SENSOR_DATA.value
     assert QoSPresetProfiles.get_from_short_key("system_default") == (
         qos_profile_system_default
     )

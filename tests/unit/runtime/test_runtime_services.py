@@ -9,6 +9,7 @@ import navette
 from navette.errors import CallbackError, InvalidValueError, MessageError
 from navette.msgs.example_interfaces.action import Fibonacci
 from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.std_srvs.srv import SetBool, Trigger
 from navette.runtime import (
@@ -27,6 +28,7 @@ from navette.runtime.exceptions import (
     ROSInterruptException,
     ServiceFailedError,
 )
+from navette.runtime.service_introspection import ServiceIntrospectionState
 from navette.runtime.type_support import (
     NoTypeSupportImportedException,
     check_for_type_support,
@@ -385,3 +387,36 @@ def test_graph_queries(graph: GraphHarness) -> None:
     assert (node.count_services("go"), node.count_clients("go")) == (1, 0)
     assert (node.count_services("/enable"), node.count_clients("/enable")) == (0, 1)
     assert all(name != "/ns/go" for name, _ in node.get_topic_names_and_types())
+
+
+def test_introspection(graph: GraphHarness) -> None:
+    service, client = pair(graph)
+    node = graph.node
+    state = ServiceIntrospectionState
+    assert node.count_publishers("/add/_service_event") == 0
+    for end in (service, client):
+        end.configure_introspection(
+            node.get_clock(), QoSProfile(depth=9), state.CONTENTS
+        )
+    events = graph.collect("/add/_service_event", AddTwoInts.Event)
+    client.call(AddTwoInts.Request(a=1, b=2))
+    graph.run_for(0.1)
+    kinds = ServiceEventInfo
+    assert [
+        (e.info.event_type, [r.a for r in e.request], [r.sum for r in e.response])
+        for e in events.messages
+    ] == [
+        (kinds.REQUEST_SENT, [1], []),
+        (kinds.REQUEST_RECEIVED, [1], []),
+        (kinds.RESPONSE_SENT, [], [3]),
+        (kinds.RESPONSE_RECEIVED, [], [3]),
+    ]
+    assert {e.info.sequence_number for e in events.messages} == {1}
+    events.clear()
+    service.configure_introspection(
+        node.get_clock(), QoSProfile(depth=9), state.METADATA
+    )
+    client.configure_introspection(node.get_clock(), QoSProfile(depth=9), state.OFF)
+    client.call(AddTwoInts.Request())
+    graph.run_for(0.1)
+    assert [(e.request, e.response) for e in events.messages] == [([], [])] * 2

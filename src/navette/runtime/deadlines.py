@@ -1,0 +1,52 @@
+"""Deadlines and leases: what to do when nothing has happened for a while."""
+
+from collections.abc import Callable
+
+from navette.runtime.loop import Call, EventLoop
+
+
+class Watchdog:
+    """Calls back when :meth:`restart` has not been called for ``period_ns``.
+
+    It starts with the first restart, and goes on calling back every period.
+    """
+
+    __slots__ = ("_call", "_due_ns", "_expired", "_loop", "_node", "_period_ns")
+
+    def __init__(
+        self,
+        period_ns: int,
+        expired: Callable[[], None],
+        loop: EventLoop,
+        node: str,
+    ) -> None:
+        self._period_ns = period_ns
+        self._expired = expired
+        self._loop = loop
+        self._node = node
+        self._due_ns = 0
+        self._call: Call | None = None
+
+    def restart(self) -> None:
+        """Count from now; cheap: the alarm under way moves on when it comes."""
+        self._due_ns = self._loop.clock.now_ns + self._period_ns
+        if self._call is None:
+            self._arm()
+
+    def stop(self) -> None:
+        """Call back no more; :meth:`restart` starts it again."""
+        if self._call is not None:
+            self._call.cancel()
+            self._call = None
+
+    def _arm(self) -> None:
+        self._call = self._loop.call_at(
+            self._due_ns, self._look, "deadline", self._node
+        )
+
+    def _look(self) -> None:
+        if self._loop.clock.now_ns >= self._due_ns:
+            self._due_ns += self._period_ns
+            self._expired()
+        if self._call is not None:  # not stopped by the callback
+            self._arm()

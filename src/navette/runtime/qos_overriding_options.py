@@ -1,0 +1,118 @@
+"""QoS of a topic from outside: parameters ``qos_overrides.<topic>.<kind>.<policy>``."""
+
+import copy
+from collections.abc import Callable, Iterable
+from typing import Any, Protocol, Self
+
+from navette.errors import InvalidValueError
+from navette.msgs.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
+from navette.runtime.parameter import Parameter
+from navette.runtime.qos import QoSPolicyEnum, QoSPolicyKind, QoSProfile
+from navette.runtime.time import Duration
+
+QosCallbackResult = SetParametersResult
+QosCallbackType = Callable[[QoSProfile], SetParametersResult]
+
+
+class InvalidQosOverridesError(InvalidValueError):
+    """The callback refused the profile that the overrides make."""
+
+
+class QoSOverridingOptions:
+    """Which policies may be given from outside.
+
+    Args:
+        policy_kinds: each becomes a read-only parameter.
+        callback: may refuse the whole profile.
+        entity_id: tells several endpoints of one topic apart.
+    """
+
+    def __init__(
+        self,
+        policy_kinds: Iterable[QoSPolicyKind],
+        *,
+        callback: QosCallbackType | None = None,
+        entity_id: str | None = None,
+    ) -> None:
+        self.policy_kinds = tuple(policy_kinds)
+        self.callback = callback
+        self.entity_id = entity_id
+
+    @classmethod
+    def with_default_policies(
+        cls,
+        *,
+        callback: QosCallbackType | None = None,
+        entity_id: str | None = None,
+    ) -> Self:
+        """History, depth and reliability."""
+        kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
+        return cls(kinds, callback=callback, entity_id=entity_id)
+
+
+class NodeWithParameters(Protocol):
+    """What is needed of the node."""
+
+    def has_parameter(self, name: str) -> bool: ...
+    def get_parameter(self, name: str) -> Parameter[Any]: ...
+    def declare_parameter(
+        self, name: str, value: Any, descriptor: ParameterDescriptor
+    ) -> Parameter[Any]: ...
+
+
+def overridden(
+    node: NodeWithParameters,
+    kind: str,
+    topic: str,
+    qos: QoSProfile,
+    options: QoSOverridingOptions,
+) -> QoSProfile:
+    """The profile with the node's parameters taken over.
+
+    Args:
+        kind: ``publisher`` or ``subscription``.
+        topic: full name.
+
+    Raises:
+        InvalidQosOverridesError: a value is none of the policy's, or the callback
+            refuses the result.
+    """
+    qos = copy.copy(qos)
+    suffix = "" if options.entity_id is None else f"_{options.entity_id}"
+    for policy in options.policy_kinds:
+        if policy is QoSPolicyKind.LIFESPAN and kind == "subscription":
+            continue
+        field = policy.name.lower()
+        name = f"qos_overrides.{topic}.{kind}{suffix}.{field}"
+        default = getattr(qos, field)
+        if not node.has_parameter(name):
+            descriptor = ParameterDescriptor(
+                description=f"{field} of the {kind} of {topic}", read_only=True
+            )
+            node.declare_parameter(name, _to_parameter(default), descriptor)
+        value = node.get_parameter(name).value
+        setattr(qos, field, _from_parameter(name, value, default))
+    if options.callback is not None:
+        result = options.callback(qos)
+        if not result.successful:
+            raise InvalidQosOverridesError(
+                f"QoS overrides of the {kind} of {topic} are not valid: {result.reason}"
+            )
+    return qos
+
+
+def _to_parameter(value: Any) -> Any:
+    if isinstance(value, QoSPolicyEnum):
+        return value.short_key
+    return value.nanoseconds if isinstance(value, Duration) else value
+
+
+def _from_parameter(name: str, value: Any, default: Any) -> Any:
+    if isinstance(default, Duration):
+        return Duration(nanoseconds=value)
+    if not isinstance(default, QoSPolicyEnum):
+        return value
+    known = type(default).short_keys()
+    if value not in known:
+        raise InvalidQosOverridesError(f"{name}: {value!r}; known: {', '.join(known)}")
+    return type(default)(type(default).get_from_short_key(value))

@@ -1,0 +1,226 @@
+"""Deadlines, liveliness, QoS from outside, compatibility."""
+
+from typing import Any
+
+import pytest
+
+from navette.msgs.std_msgs.msg import String
+from navette.runtime import (
+    DurabilityPolicy,
+    Duration,
+    LivelinessPolicy,
+    Node,
+    Parameter,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_sensor_data,
+    qos_profile_system_default,
+)
+from navette.runtime.qos import (
+    QoSCompatibility,
+    QoSPolicyKind,
+    QoSReliabilityPolicy,
+    qos_check_compatible,
+)
+from navette.runtime.qos_events import (
+    PublisherEventCallbacks,
+    QoSCountInfo,
+    QoSLivelinessChangedInfo,
+    SubscriptionEventCallbacks,
+)
+from navette.runtime.qos_overriding_options import (
+    InvalidQosOverridesError,
+    QosCallbackResult,
+    QoSOverridingOptions,
+)
+from navette.testing import GraphHarness
+
+Changed = QoSLivelinessChangedInfo
+
+
+def test_deadlines_of_both_ends(graph: GraphHarness) -> None:
+    qos = QoSProfile(depth=10, deadline=Duration(seconds=0.6))
+    offered: list[Any] = []
+    requested: list[Any] = []
+    heard: list[float] = []
+    publisher = graph.node.create_publisher(
+        String,
+        "t",
+        qos,
+        event_callbacks=PublisherEventCallbacks(deadline=offered.append),
+    )
+    graph.node.create_subscription(
+        String,
+        "t",
+        lambda m: heard.append(graph.now_ns / 1e9),
+        qos,
+        event_callbacks=SubscriptionEventCallbacks(deadline=requested.append),
+    )
+    graph.run_for(5.0)
+    assert offered == []  # counts from the first message on
+    timer = graph.node.create_timer(0.5, lambda: publisher.publish(String()))
+    graph.run_for(2.0)
+    assert (offered, requested, len(heard)) == ([], [], 4)
+    timer.cancel()
+    graph.run_for(1.3)
+    assert offered == requested == [QoSCountInfo(1, 1), QoSCountInfo(2, 1)]
+    timer.reset()
+    graph.run_for(1.0)
+    assert len(offered) == 3
+    timer.cancel()
+    publisher.destroy()
+    graph.run_for(10.0)
+    assert len(offered) == 3
+    assert len(requested) > 10
+
+
+def test_liveliness_of_automatic_publishers(graph: GraphHarness) -> None:
+    changes: list[Any] = []
+    graph.node.create_subscription(
+        String,
+        "t",
+        lambda m: None,
+        10,
+        event_callbacks=SubscriptionEventCallbacks(liveliness=changes.append),
+    )
+    publisher = graph.node.create_publisher(String, "t", 10)
+    graph.run_for(1.0)
+    publisher.destroy()
+    graph.run_for(1.0)
+    assert changes == [Changed(1, 0, 1, 0), Changed(0, 0, -1, 0)]
+
+
+def test_liveliness_of_a_publisher_that_asserts_itself(graph: GraphHarness) -> None:
+    qos = QoSProfile(
+        depth=10,
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+        liveliness_lease_duration=Duration(seconds=1),
+    )
+    lost: list[Any] = []
+    changes: list[Any] = []
+    callbacks = SubscriptionEventCallbacks(liveliness=changes.append)
+    publisher = graph.node.create_publisher(
+        String,
+        "t",
+        qos,
+        event_callbacks=PublisherEventCallbacks(liveliness=lost.append),
+    )
+    graph.node.create_subscription(
+        String, "t", lambda m: None, qos, event_callbacks=callbacks
+    )
+    graph.run_for(5.0)
+    assert changes == []
+    publisher.assert_liveliness()
+    graph.run_for(0.9)
+    publisher.publish(String())
+    graph.run_for(0.9)
+    late: list[Any] = []
+    graph.node.create_subscription(
+        String,
+        "t",
+        lambda m: None,
+        qos,
+        event_callbacks=SubscriptionEventCallbacks(liveliness=late.append),
+    )
+    assert lost == []
+    graph.run_for(3.0)
+    assert lost == [QoSCountInfo(1, 1)]
+    assert changes == late == [Changed(1, 0, 1, 0), Changed(0, 1, -1, 1)]
+    publisher.assert_liveliness()
+    graph.run_for(0.1)
+    assert changes[-1] == Changed(1, 0, 1, -1)
+    publisher.destroy()
+    graph.run_for(3.0)
+    assert (changes[-1], len(lost)) == (Changed(0, 0, -1, 0), 1)
+
+
+def test_an_assertion_without_a_lease_is_nothing(graph: GraphHarness) -> None:
+    graph.node.create_publisher(String, "t", 10).assert_liveliness()
+
+
+def overriding(graph: GraphHarness, **overrides: Any) -> Node:
+    return Node(
+        "n",
+        context=graph.context,
+        parameter_overrides=[
+            Parameter(f"qos_overrides./t.{name}", value=value)
+            for name, value in overrides.items()
+        ],
+    )
+
+
+def test_qos_from_outside(graph: GraphHarness) -> None:
+    node = overriding(
+        graph,
+        **{
+            "publisher.depth": 7,
+            "publisher.reliability": "best_effort",
+            "subscription_b.durability": "transient_local",
+            "subscription_b.deadline": 5,
+        },
+    )
+    given = QoSProfile(depth=1)
+    publisher = node.create_publisher(
+        String,
+        "t",
+        given,
+        qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+    )
+    assert publisher.qos_profile.depth == 7
+    assert publisher.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert given == QoSProfile(depth=1)
+    assert node.describe_parameter("qos_overrides./t.publisher.history").read_only
+    options = QoSOverridingOptions(
+        [QoSPolicyKind.DURABILITY, QoSPolicyKind.DEADLINE, QoSPolicyKind.LIFESPAN],
+        entity_id="b",
+    )
+    for _ in range(2):  # the parameters are declared once
+        subscription = node.create_subscription(
+            String, "t", lambda m: None, 3, qos_overriding_options=options
+        )
+        assert subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        assert subscription.qos_profile.deadline == Duration(nanoseconds=5)
+    assert not node.has_parameter("qos_overrides./t.subscription_b.lifespan")
+
+
+def test_qos_from_outside_may_be_refused(graph: GraphHarness) -> None:
+    node = overriding(graph, **{"publisher.depth": 70})
+
+    def check(qos: QoSProfile) -> Any:
+        return QosCallbackResult(successful=qos.depth <= 10, reason="too deep")
+
+    options = QoSOverridingOptions.with_default_policies(callback=check)
+    with pytest.raises(
+        InvalidQosOverridesError, match=r"publisher of /t are .* too deep"
+    ):
+        node.create_publisher(String, "t", 1, qos_overriding_options=options)
+    other = overriding(graph, **{"publisher.reliability": "good"})
+    with pytest.raises(InvalidQosOverridesError, match=r"'good'; known: .*reliable"):
+        other.create_publisher(
+            String,
+            "t",
+            1,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+
+
+def test_compatibility() -> None:
+    reliable = QoSProfile(depth=1)
+    assert qos_check_compatible(reliable, reliable) == (QoSCompatibility.OK, "")
+    state, reason = qos_check_compatible(qos_profile_sensor_data, reliable)
+    assert (state, reason) == (
+        QoSCompatibility.ERROR,
+        "ERROR: incompatible: reliability",
+    )
+    state, reason = qos_check_compatible(reliable, qos_profile_system_default)
+    assert state is QoSCompatibility.WARNING
+    assert "subscription reliability" in reason
+
+
+def test_names_of_older_programs() -> None:
+    assert (
+        QoSReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT
+        is ReliabilityPolicy.BEST_EFFORT
+    )
+    assert "best_effort" in ReliabilityPolicy.short_keys()
+    assert not any("rmw" in key for key in LivelinessPolicy.short_keys())
