@@ -39,7 +39,7 @@ class Server(Node):
                 return Fibonacci.Result(sequence=numbers)
             numbers.append(numbers[-1] + numbers[-2])
             goal_handle.publish_feedback(Fibonacci.Feedback(sequence=numbers))
-            time.sleep(0.02)  # noqa: TID251 - as ROS 2 examples do
+            time.sleep(0.02)  # noqa: TID251  # as ROS 2 programs do
         goal_handle.succeed()
         return Fibonacci.Result(sequence=numbers)
 
