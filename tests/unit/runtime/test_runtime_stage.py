@@ -139,7 +139,9 @@ def test_liveliness_by_arrival() -> None:
 
 def test_unknown_output_is_named() -> None:
     graph, node = harness()
-    with pytest.raises(UnknownNameError, match="output 'outt'; known: /echo/status, out"):
+    with pytest.raises(
+        UnknownNameError, match="output 'outt'; known: /echo/status, out"
+    ):
         node.publish("outt", String())
     assert not node.has_listeners("out")
     graph.collect("out", String)
