@@ -18,6 +18,7 @@ from navette.runtime.exceptions import (
     ParameterUninitializedException,
     ROSInterruptException,
 )
+from navette.runtime.type_support import NoTypeSupportImportedException
 
 __all__ = [
     "InvalidHandle",
@@ -29,6 +30,7 @@ __all__ = [
     "InvalidServiceNameException",
     "InvalidTopicNameException",
     "NameValidationException",
+    "NoTypeSupportImportedException",
     "NotInitializedException",
     "ParameterAlreadyDeclaredException",
     "ParameterException",

@@ -1,5 +1,6 @@
 """Nodes."""
 
 from navette.runtime import Node, Parameter
+from navette.runtime.node_graph import NodeNameNonExistentError
 
-__all__ = ["Node", "Parameter"]
+__all__ = ["Node", "NodeNameNonExistentError", "Parameter"]

@@ -1,19 +1,33 @@
 """The former name of rclpy.event_handler."""
 
 from navette.runtime.qos_events import (
+    IncompatibleTypeInfo,
     PublisherEventCallbacks,
+    QoSLivelinessChangedInfo,
+    QoSLivelinessLostInfo,
+    QoSMessageLostInfo,
+    QoSOfferedDeadlineMissedInfo,
     QoSOfferedIncompatibleQoSInfo,
     QoSPublisherMatchedInfo,
+    QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
     QoSSubscriptionMatchedInfo,
     SubscriptionEventCallbacks,
+    UnsupportedEventTypeError,
 )
 
 __all__ = [
+    "IncompatibleTypeInfo",
     "PublisherEventCallbacks",
+    "QoSLivelinessChangedInfo",
+    "QoSLivelinessLostInfo",
+    "QoSMessageLostInfo",
+    "QoSOfferedDeadlineMissedInfo",
     "QoSOfferedIncompatibleQoSInfo",
     "QoSPublisherMatchedInfo",
+    "QoSRequestedDeadlineMissedInfo",
     "QoSRequestedIncompatibleQoSInfo",
     "QoSSubscriptionMatchedInfo",
     "SubscriptionEventCallbacks",
+    "UnsupportedEventTypeError",
 ]
