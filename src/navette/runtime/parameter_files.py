@@ -17,7 +17,16 @@ NodeParameters = list[tuple[str, dict[str, Any]]]
 
 
 class _Loader(yaml.SafeLoader):
-    """Plain scalars as ROS 2 reads them: ``1e5`` is a double, dates are strings."""
+    """Plain scalars as ROS 2 reads them: ``1e5`` is a double, dates are strings.
+
+    Keys are text whatever they look like: a parameter may be named ``y``.
+    """
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                key.tag = "tag:yaml.org,2002:str"
+        return super().construct_mapping(node, deep)
 
 
 _Loader.yaml_implicit_resolvers = {}

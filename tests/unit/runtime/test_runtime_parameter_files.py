@@ -115,6 +115,11 @@ def test_alias_bomb_ends_early() -> None:
         parse_parameters(f"n:\n  ros__parameters:\n{body}\n")
 
 
+def test_names_are_text_whatever_they_look_like() -> None:
+    found = parse_parameters("n:\n  ros__parameters: {y: 1, on: {off: 2}, 3: 4}")
+    assert found == [("/n", {"y": 1, "on.off": 2, "3": 4})]
+
+
 def test_error_names_file_and_line(tmp_path: Path) -> None:
     path = tmp_path / "bad.yaml"
     path.write_text("a:\n  b: [1\n  c: 2\n", encoding="utf-8")
