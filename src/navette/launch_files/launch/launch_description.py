@@ -1,6 +1,7 @@
 """Launch descriptions: the entities of one launch file."""
 
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from navette.launch_files.launch.launch_description_entity import (
@@ -49,8 +50,19 @@ class LaunchDescription(LaunchDescriptionEntity):
         return list(found.values())
 
 
-def walk(root: LaunchDescriptionEntity) -> Iterable[LaunchDescriptionEntity]:
-    """``root`` and everything that it is known to lead to, in order."""
+def walk(
+    root: LaunchDescriptionEntity, files: tuple[Path, ...] = ()
+) -> Iterable[LaunchDescriptionEntity]:
+    """``root`` and everything that it is known to lead to, in order.
+
+    A file that includes itself (which a condition may end) is not entered again.
+    """
     yield root
-    for entity in root.describe_sub_entities():
-        yield from walk(entity)
+    inside = root.describe_sub_entities()
+    file = getattr(root, "included_file", None)
+    if file is not None:
+        if file in files:
+            return
+        files = (*files, file)
+    for entity in inside:
+        yield from walk(entity, files)

@@ -133,8 +133,9 @@ class LaunchService:
     def _notice_standstill(self) -> None:
         """On a virtual clock, a run with nothing left to happen stays like that."""
         context = self.context
-        if context.loop.clock.is_virtual and not context.events and not self._idle():
-            self._stands_still = True
+        nothing_left = context.loop.clock.is_virtual and not context.events
+        self._stands_still = nothing_left and not self._idle()
+        if self._stands_still and not self._ending:
             context.emit_event(Shutdown(reason="nothing is left to happen"))
 
     def _work(self) -> None:

@@ -91,7 +91,8 @@ def program_words(program: PythonProgram) -> list[str]:
         if program.file is not None
         else f"{program.module}:{program.function}"
     )
-    return [sys.executable, "-c", code, "run", target]
+    # -u: what a program prints is seen when it prints it.
+    return [sys.executable, "-u", "-c", code, "run", target]
 
 
 def _start_guard() -> subprocess.Popen[bytes]:

@@ -1,6 +1,7 @@
 """Includes: another launch description, with arguments."""
 
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from navette.launch_files.launch.action import Action
@@ -76,6 +77,11 @@ class IncludeLaunchDescription(Action):
     @property
     def launch_description_source(self) -> LaunchDescriptionSource:
         return self.source
+
+    @property
+    def included_file(self) -> Path | None:
+        """The file, once it has been read."""
+        return self.source.path
 
     def describe(self) -> str:
         return f"IncludeLaunchDescription({self.source.location})"

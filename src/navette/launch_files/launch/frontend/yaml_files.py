@@ -9,6 +9,7 @@ from navette.errors import FileFormatError
 from navette.launch_files.launch.frontend.element import Element
 
 MAX_DEPTH = 64
+MAX_ELEMENTS = 100_000
 _CHILDREN = "children"
 
 
@@ -25,6 +26,8 @@ def read_yaml(text: bytes, path: Path) -> Element:
         line = None if mark is None else mark.line + 1
         reason = getattr(error, "problem", None) or str(error)
         raise FileFormatError(path, f"not YAML: {reason}", line) from None
+    except RecursionError:
+        raise FileFormatError(path, f"nested deeper than {MAX_DEPTH}") from None
     if not isinstance(root, yaml.MappingNode) or len(root.value) != 1:
         raise FileFormatError(path, "wanted one mapping, 'launch:', at the top")
     key, value = root.value[0]
@@ -36,12 +39,16 @@ class _Reader:
 
     def __init__(self, path: Path) -> None:
         self._path = path
+        self._count = 0
 
     def element(self, tag: str, node: yaml.Node, line: int, depth: int) -> Element:
         """``tag: {attributes and lists}``, or ``tag: [children]``."""
         element = Element(tag, self._path, line)
-        if depth > MAX_DEPTH:
-            raise element.error(f"nested deeper than {MAX_DEPTH}")
+        self._count += 1  # aliases can make very many of a few lines
+        if depth > MAX_DEPTH or self._count > MAX_ELEMENTS:
+            raise element.error(
+                f"nested deeper than {MAX_DEPTH}, or more than {MAX_ELEMENTS} elements"
+            )
         if isinstance(node, yaml.SequenceNode):
             element.children = self._children(element, node, depth)
             return element
@@ -97,4 +104,8 @@ class _Reader:
         items = node.value if isinstance(node, yaml.SequenceNode) else [node]
         if not all(isinstance(item, yaml.ScalarNode) for item in items):
             raise element.error(f"attribute {name!r}: wanted a value or a list of them")
-        return yaml.safe_load(yaml.serialize(node, Dumper=yaml.SafeDumper))
+        try:
+            return yaml.safe_load(yaml.serialize(node, Dumper=yaml.SafeDumper))
+        except yaml.YAMLError as error:
+            reason = getattr(error, "problem", None) or str(error)
+            raise element.error(f"attribute {name!r}: not YAML: {reason}") from None
