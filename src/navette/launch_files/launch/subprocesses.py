@@ -99,7 +99,6 @@ def _start_guard() -> subprocess.Popen[bytes]:
     return subprocess.Popen(
         [sys.executable, "-I", "-S", str(_GUARD)],
         stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
         start_new_session=True,
     )
 
