@@ -12,6 +12,7 @@ from threading import Lock
 from navette.bringup.streams import program_output, program_streams
 from navette.interop.process import RunningProgram, program_threads
 from navette.interop.program import Program, entry_point, script
+from navette.interop.sleeping import sleeping_lets_others_run
 from navette.launch_files.launch.logging import get_logger
 from navette.launch_files.launch.running import (
     INTERRUPT,
@@ -42,6 +43,7 @@ class InProcessRunner:
         self._processes = SubprocessRunner()
         self._stack = ExitStack()
         self._stack.enter_context(program_threads())
+        self._stack.enter_context(sleeping_lets_others_run())
         self._stack.enter_context(program_streams())
 
     def start(self, command: Command, listener: Listener) -> Running:
@@ -96,6 +98,8 @@ class RunningThread:
     ) -> None:
         self._listener = listener
         self._input: SimpleQueue[bytes] = SimpleQueue()
+        self._is_inside = False
+        self._interrupted = False
         self._over = False
         self._lock = Lock()
         self._running = make(
@@ -115,7 +119,7 @@ class RunningThread:
         A thread cannot be ended from outside; it goes with the process.
         """
         if number == INTERRUPT:
-            self._running.interrupt()
+            self._interrupt()
         elif number == KILL:
             self._end(LEFT_BEHIND)
         else:
@@ -124,10 +128,24 @@ class RunningThread:
     def write(self, data: bytes) -> None:
         self._input.put(data)
 
+    def _interrupt(self) -> None:
+        """Raise KeyboardInterrupt in the program itself, not in what is around it."""
+        with self._lock:
+            self._interrupted = True
+            if self._is_inside:
+                self._running.interrupt()
+
     def _main(self, program: Program) -> object:
         program_output.set(self._listener.output)
         program_input.set(self._input)
-        return program.main()
+        with self._lock:
+            if self._interrupted:
+                raise KeyboardInterrupt
+            self._is_inside = True
+        try:
+            return program.main()
+        finally:
+            self._is_inside = False
 
     def _end(self, code: int) -> None:
         with self._lock:

@@ -25,7 +25,7 @@ from navette.launch_files.launch.launch_description_sources import (
 )
 from navette.launch_files.launch.logging import ConsoleHandler, get_logger
 from navette.launch_files.launch.subprocesses import SubprocessRunner
-from navette.packages import find_package
+from navette.packages import activate, find_package
 from navette.packages.finding import PATH_VARIABLE
 
 _INTERRUPTED = 130
@@ -54,6 +54,7 @@ def find_launch_file(words: list[str]) -> tuple[Path, list[str]]:
 def show_arguments(path: Path) -> str:
     """What arguments a launch file takes, with those of the files it includes."""
     with _workspace_of(path):
+        activate()
         return describe_arguments(_load(_source(path)).get_launch_arguments())
 
 
@@ -79,6 +80,7 @@ def launch(
         NavetteError: the file or an argument is wrong.
     """
     with _workspace_of(path), _console(debug=debug):
+        activate()
         source = _source(path)
         description = _load(source)
         known = [each.name for each in description.get_launch_arguments()]

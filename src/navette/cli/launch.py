@@ -42,10 +42,8 @@ def launch(
     from navette.bringup import parse_launch_arguments, show_arguments
     from navette.bringup.session import find_launch_file
     from navette.interop import install
-    from navette.packages import activate
 
     install(instead_of_ros=on_navette)
-    activate()
     path, rest = find_launch_file(words)
     if show_args:
         typer.echo(show_arguments(path))

@@ -72,7 +72,7 @@ class LaunchContext:
     @property
     def locals(self) -> SimpleNamespace:
         """Values of the present scope (an include, an event handler)."""
-        return SimpleNamespace(**self._globals, **self._locals[-1])
+        return SimpleNamespace(**self.get_locals_as_dict())
 
     def get_locals_as_dict(self) -> dict[str, Any]:
         return {**self._globals, **self._locals[-1]}

@@ -6,6 +6,7 @@ from navette.launch_files.launch.action import Action
 from navette.launch_files.launch.event import Event
 from navette.launch_files.launch.event_handler import EventHandler
 from navette.launch_files.launch.events import Shutdown as ShutdownEvent
+from navette.launch_files.launch.events.process import ProcessExited
 from navette.launch_files.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
@@ -75,8 +76,8 @@ class Shutdown(Action):
 
     def execute(self, context: "LaunchContext") -> None:
         reason = perform_substitutions(context, self.reason)
-        process = getattr(context.locals, "event", None)
-        name = getattr(process, "process_name", None)
-        if name is not None and not context.is_shutdown:
+        event = context.get_locals_as_dict().get("event")
+        if isinstance(event, ProcessExited) and not context.is_shutdown:
+            name = event.process_name
             _log.info("process[%s] was required: shutting down launched system", name)
         context.emit_event(ShutdownEvent(reason=reason))
