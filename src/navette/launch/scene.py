@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from navette.launch.options import RunOptions
+from navette.runtime.overrides import ParameterOverrides
 from navette.sim import (
     Robot,
     Scene,
@@ -25,6 +26,13 @@ class ResolvedScene:
     robot_name: str
     params_file: Path | None
     derived: dict[str, dict[str, object]]
+
+    def override_parameters(self, overrides: ParameterOverrides) -> None:
+        """Give every node of the stack what the robot asks of it."""
+        for node, values in self.derived.items():
+            overrides.add(node, values, f"derived from robot {self.robot_name}")
+        if self.params_file is not None:
+            overrides.add_file(self.params_file)
 
 
 def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedScene:

@@ -63,10 +63,7 @@ class Simulation:
     def _override_parameters(self, resolved: ResolvedScene) -> None:
         """The robot's defaults, then the options, then the user's files: last wins."""
         overrides = self.context.overrides
-        for node, values in resolved.derived.items():
-            overrides.add(node, values, f"derived from robot {resolved.robot_name}")
-        if resolved.params_file is not None:
-            overrides.add_file(resolved.params_file)
+        resolved.override_parameters(overrides)
         goals = [value for goal in self.options.goals for value in goal]
         overrides.add("sim", {"seed": self.options.seed}, "--seed")
         if goals:
