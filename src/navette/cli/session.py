@@ -1,0 +1,140 @@
+"""Looking in from outside: how a verb joins what runs, waits, and leaves.
+
+::
+
+    with connect() as node:
+        for endpoint in endpoints(node, "/map"):
+            …
+        if not wait_for(node, lambda: something_came, 5.0):
+            fail("nothing came")
+"""
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Never
+
+import typer
+
+from navette.errors import CallbackError
+
+if TYPE_CHECKING:
+    from navette.runtime import Context, Node
+    from navette.transports import Endpoint, EndpointKind
+
+FAILED = 1
+INTERRUPTED = 128 + signal.SIGINT
+TERMINATED = 128 + signal.SIGTERM
+
+
+@contextmanager
+def connect(
+    context: "Context | None" = None, *, node_name: str | None = None
+) -> "Iterator[Node]":
+    """A node of this process that sees all that runs; its callbacks run in waits.
+
+    Ctrl-C and SIGTERM inside end the command with exit code 130 or 143; what a
+    callback raises comes out as it was raised.
+
+    Args:
+        context: where to look instead of on the network; stays open.
+        node_name: by default ``_navette_<pid>``, which listings leave out.
+    """
+    from navette.runtime import Executor, Node
+
+    with _ending_on_signals():
+        joined = context if context is not None else _outside()
+        node = Node(
+            node_name or f"_navette_{os.getpid()}",
+            context=joined,
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        executor = Executor(context=joined)
+        executor.add_node(node)
+        try:
+            yield node
+        except CallbackError as error:
+            # The verb's own callbacks: where they hang is no news to anybody.
+            if isinstance(error.__cause__, Exception):
+                raise error.__cause__ from None
+            raise
+        finally:
+            node.destroy_node()
+            if context is None:
+                joined.try_shutdown()
+
+
+def wait_for(
+    node: "Node", condition: Callable[[], bool], timeout_s: float | None = None
+) -> bool:
+    """Let events run until the condition holds; tells whether it does.
+
+    Without a timeout it ends only so, or by Ctrl-C (under a virtual clock also when
+    nothing is left to happen).
+    """
+    timeout_ns = None if timeout_s is None else round(timeout_s * 1e9)
+    holds: bool = node.executor.spin_until_complete(condition, timeout_ns)
+    return holds
+
+
+def endpoints(
+    node: "Node", topic: str | None = None, *, kind: "EndpointKind | None" = None
+) -> "list[Endpoint]":
+    """Publishers and subscriptions that run; not those of ``node`` itself."""
+    own = node.get_fully_qualified_name()
+    found = node.context.graph.endpoints(topic, kind=kind)
+    return [each for each in found if each.node_full_name != own]
+
+
+def service_endpoints(
+    node: "Node", service: str | None = None, *, kind: "EndpointKind | None" = None
+) -> "list[Endpoint]":
+    """Servers and clients that run; not those of ``node`` itself."""
+    own = node.get_fully_qualified_name()
+    found = node.context.graph.service_endpoints(service, kind=kind)
+    return [each for each in found if each.node_full_name != own]
+
+
+def is_hidden(name: str) -> bool:
+    """Whether a topic's, service's or node's name is for machines, as ROS 2 says."""
+    return any(token.startswith("_") for token in name.split("/"))
+
+
+def fail(message: str) -> Never:
+    """End the command: what was asked for failed (exit code 1)."""
+    typer.secho(f"navette: {message}", fg="red", err=True)
+    raise typer.Exit(FAILED)
+
+
+def _outside() -> "Context":
+    """A context of its own that says on standard error only what went wrong."""
+    from navette.runtime import Context, LoggingSeverity
+
+    context = Context()
+    context.init(args=[], console_level=LoggingSeverity.WARN)
+    return context
+
+
+@contextmanager
+def _ending_on_signals() -> Iterator[None]:
+    """Make exit codes of Ctrl-C and SIGTERM; only a main thread can."""
+    code = INTERRUPTED
+
+    def interrupt(signum: int, frame: object) -> None:
+        nonlocal code
+        code = TERMINATED
+        raise KeyboardInterrupt
+
+    in_main = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGTERM, interrupt) if in_main else None
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise typer.Exit(code) from None
+    finally:
+        if in_main:
+            signal.signal(signal.SIGTERM, before)
