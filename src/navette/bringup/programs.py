@@ -42,6 +42,8 @@ class InProcessRunner:
         self._graph = new_graph()
         self._processes = SubprocessRunner()
         self._stack = ExitStack()
+        # What the programs start goes with the launch as well.
+        self._stack.enter_context(self._processes.keeper.keeping_all())
         self._stack.enter_context(program_threads())
         self._stack.enter_context(sleeping_lets_others_run())
         self._stack.enter_context(program_streams())
@@ -68,8 +70,8 @@ class InProcessRunner:
         return running
 
     def close(self) -> None:
-        self._processes.close()
         self._stack.close()
+        self._processes.close()
         self._graph.close()
 
 

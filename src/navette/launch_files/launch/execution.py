@@ -1,6 +1,5 @@
 """One run of a command: from its start over its output to its end."""
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from navette.launch_files.launch.events.process import (
@@ -11,32 +10,13 @@ from navette.launch_files.launch.events.process import (
 )
 from navette.launch_files.launch.logging import get_logger
 from navette.launch_files.launch.output import LabelledOutput
-from navette.launch_files.launch.running import (
-    INTERRUPT,
-    KILL,
-    TERMINATE,
-    Command,
-    Running,
-)
+from navette.launch_files.launch.running import Command, Running
+from navette.processes import Ending, Patience
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from navette.launch_files.launch.launch_context import LaunchContext
-    from navette.runtime.loop import Call
-
-_NAMES = {INTERRUPT: "SIGINT", TERMINATE: "SIGTERM", KILL: "SIGKILL"}
-
-
-@dataclass(frozen=True)
-class Patience:
-    """How long a command that was asked to end may take, seconds.
-
-    ``interrupt_s``: from SIGINT to SIGTERM; ``terminate_s``: from there to SIGKILL.
-    """
-
-    interrupt_s: float = 5.0
-    terminate_s: float = 5.0
 
 
 class Execution:
@@ -60,17 +40,20 @@ class Execution:
         self._context = context
         self.command = command
         self._output = output
-        self._patience = patience
         self._on_exit = on_exit
         self._log = get_logger(command.label)
-        self._escalation: Call | None = None
-        self._strength = 0
+        self._ending = Ending(
+            patience,
+            self.signal,
+            lambda s, do: context.call_after(s, do, f"end of {command.label}"),
+            lambda name: self._log.warning("does not end; sending %s", name),
+        )
         self.running: Running | None = None
         self.return_code: int | None = None
 
     @property
     def was_asked_to_end(self) -> bool:
-        return self._strength > 0
+        return self._ending.has_begun
 
     def start(self) -> None:
         """Start it, and say so."""
@@ -98,25 +81,8 @@ class Execution:
 
     def end(self) -> None:
         """Ask it to end; a second time: at once with more force."""
-        steps = (INTERRUPT, TERMINATE, KILL)
-        number = steps[min(self._strength, 2)]
-        self._strength += 1
-        if self._escalation is not None:
-            self._escalation.cancel()
-            self._escalation = None
-        if self.running is None or self.return_code is not None:
-            return
-        if self._strength > 1:
-            self._log.warning("does not end; sending %s", _NAMES[number])
-        self.running.signal(number)
-        if number != KILL:
-            patience = self._patience
-            left_s = (
-                patience.interrupt_s if number == INTERRUPT else patience.terminate_s
-            )
-            self._escalation = self._context.call_after(
-                left_s, self.end, f"end of {self.command.label}"
-            )
+        if self.running is not None and self.return_code is None:
+            self._ending.go_on()
 
     def signal(self, number: int) -> None:
         """Send it a signal."""
@@ -146,8 +112,7 @@ class Execution:
 
     def _end(self, code: int) -> None:
         self.return_code = code
-        if self._escalation is not None:
-            self._escalation.cancel()
+        self._ending.cancel()
         self._output.close()
         self._say_how_it_ended(code)
         self._context.busy.discard(self)

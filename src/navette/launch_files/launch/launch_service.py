@@ -100,9 +100,9 @@ class LaunchService:
                 except CallbackError as error:
                     self._fail(error)
         finally:
+            context.restore_environment(context.notes["first environment"])
             context.runner.close()
             context.close()
-            context.restore_environment(context.notes["first environment"])
         return FAILED if self.errors or context.failed_labels else SUCCEEDED
 
     def _hurry(self) -> None:

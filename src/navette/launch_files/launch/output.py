@@ -7,9 +7,9 @@ from typing import IO
 
 from navette.launch_files.launch.errors import InvalidLaunchValueError
 from navette.launch_files.launch.logging import launch_config
+from navette.processes import LineCutter
 
 STREAMS = ("stdout", "stderr")
-_MAX_LINE = 1 << 20
 _MODES: dict[str, dict[str, set[str]]] = {
     "screen": {"stdout": {"screen"}, "stderr": {"screen"}},
     "log": {"stdout": {"log"}, "stderr": {"log", "screen"}},
@@ -61,31 +61,24 @@ class LabelledOutput:
         self._label = label
         self._places = places
         self._format = line_format or (lambda line: f"[{label}] {line}")
-        self._rest: dict[str, bytes] = dict.fromkeys(STREAMS, b"")
+        self._cutters = {stream: LineCutter() for stream in STREAMS}
         self._log: IO[str] | None = None
 
     def write(self, stream: str, data: bytes) -> None:
         """Print the whole lines of what came, keep the rest for later."""
-        *lines, rest = (self._rest[stream] + data).split(b"\n")
-        if len(rest) > _MAX_LINE:
-            lines.append(rest)
-            rest = b""
-        self._rest[stream] = rest
-        self._print(stream, lines)
+        self._print(stream, self._cutters[stream].feed(data))
 
     def close(self) -> None:
         """Print what has no end of line yet."""
         for stream in STREAMS:
-            if self._rest[stream]:
-                self.write(stream, b"\n")
+            self._print(stream, self._cutters[stream].finish())
         if self._log is not None:
             self._log.close()
             self._log = None
 
-    def _print(self, stream: str, lines: list[bytes]) -> None:
-        if not lines:
+    def _print(self, stream: str, texts: list[str]) -> None:
+        if not texts:
             return
-        texts = [line.decode("utf-8", "replace").rstrip("\r") for line in lines]
         places = self._places[stream]
         if "screen" in places:
             terminal = sys.stdout if stream == "stdout" else sys.stderr

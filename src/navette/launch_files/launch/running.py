@@ -1,14 +1,22 @@
 """The seam between actions and whatever runs their commands."""
 
-import signal
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-INTERRUPT = int(signal.SIGINT)
-TERMINATE = int(signal.SIGTERM)
-KILL = int(getattr(signal, "SIGKILL", 9))
+from navette.processes import INTERRUPT, KILL, TERMINATE, Listener
+
+__all__ = [
+    "INTERRUPT",
+    "KILL",
+    "TERMINATE",
+    "Command",
+    "Listener",
+    "PythonProgram",
+    "Runner",
+    "Running",
+]
 
 
 @dataclass(frozen=True)
@@ -47,16 +55,6 @@ class Command:
     def words(self) -> list[str]:
         """The command line, as a person would type it."""
         return [*self.prefix, *self.argv]
-
-
-class Listener(Protocol):
-    """Is told what becomes of a command; from any thread."""
-
-    def output(self, stream: str, data: bytes) -> None:
-        """It wrote ``data``; ``stream`` is ``stdout`` or ``stderr``."""
-
-    def exited(self, code: int) -> None:
-        """It ended; nothing comes after this. Negative: ended by that signal."""
 
 
 class Running(Protocol):

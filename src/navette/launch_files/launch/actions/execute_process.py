@@ -15,7 +15,7 @@ from navette.launch_files.launch.events.process import (
     ProcessTargetedEvent,
     SignalProcess,
 )
-from navette.launch_files.launch.execution import Execution, Patience
+from navette.launch_files.launch.execution import Execution
 from navette.launch_files.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
@@ -29,6 +29,7 @@ from navette.launch_files.launch.substitution import (
 )
 from navette.launch_files.launch.substitutions import LaunchConfiguration
 from navette.launch_files.launch.typed import perform_bool, perform_seconds
+from navette.processes import Patience
 
 if TYPE_CHECKING:
     from navette.launch_files.launch.launch_context import LaunchContext

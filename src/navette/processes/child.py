@@ -1,0 +1,125 @@
+"""A process under way: its output, its end, signals to it and all that it started."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import threading
+from collections.abc import Callable
+from typing import IO, Protocol
+
+_POSIX = os.name == "posix"
+_CHUNK = 65536
+# How long the output of a process that has ended may still come (its children's).
+_LAST_OUTPUT_S = 0.5
+# How long the rest of its group may take to end, and how often that is looked at.
+_GROUP_END_S = 2.0
+_LOOK_S = 0.02
+
+INTERRUPT = int(signal.SIGINT)
+TERMINATE = int(signal.SIGTERM)
+KILL = int(getattr(signal, "SIGKILL", 9))
+
+
+class Listener(Protocol):
+    """Is told what becomes of a process; from any thread."""
+
+    def output(self, stream: str, data: bytes) -> None:
+        """It wrote ``data``; ``stream`` is ``stdout`` or ``stderr``."""
+
+    def exited(self, code: int) -> None:
+        """It ended; nothing comes after this. Negative: ended by that signal."""
+
+
+class ChildProcess:
+    """Made by :class:`Keeper`; threads read what it writes.
+
+    Args:
+        process: the leader of its group.
+        listener: is told of output and end, from those threads.
+        on_end: called once nothing of its group is left.
+    """
+
+    def __init__(
+        self,
+        process: "subprocess.Popen[bytes]",
+        listener: Listener,
+        on_end: Callable[[], None],
+    ) -> None:
+        self._process = process
+        self._listener = listener
+        self._on_end = on_end
+        pipes = (("stdout", process.stdout), ("stderr", process.stderr))
+        self._readers = [
+            threading.Thread(target=self._read, args=(name, pipe), daemon=True)
+            for name, pipe in pipes
+            if pipe is not None
+        ]
+        for reader in self._readers:
+            reader.start()
+        threading.Thread(target=self._wait, daemon=True).start()
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    def signal(self, number: int) -> None:
+        """Send a signal to it and all that it started; after its end: nothing."""
+        if self._process.poll() is not None:
+            return
+        with contextlib.suppress(ProcessLookupError):  # it ended just now
+            if _POSIX:
+                os.killpg(self.pid, number)
+            elif number == INTERRUPT:
+                self._process.send_signal(signal.CTRL_BREAK_EVENT)  # type: ignore[attr-defined]
+            else:
+                self._process.terminate()
+
+    def write(self, data: bytes) -> None:
+        """To its standard input."""
+        if self._process.stdin is not None:
+            # It may have closed its input or ended; that is its own affair.
+            with contextlib.suppress(BrokenPipeError, ValueError):
+                self._process.stdin.write(data)
+                self._process.stdin.flush()
+
+    def _read(self, name: str, pipe: IO[bytes]) -> None:
+        with pipe:
+            while data := os.read(pipe.fileno(), _CHUNK):
+                self._listener.output(name, data)
+
+    def _wait(self) -> None:
+        code = self._process.wait()
+        self._last_output()
+        # What the process left behind in its group ends with it.
+        is_alone = not self._signal_group(TERMINATE)
+        if self._process.stdin is not None:
+            with contextlib.suppress(BrokenPipeError):
+                self._process.stdin.close()
+        self._listener.exited(code)
+        if not is_alone and not self._group_ends():
+            self._signal_group(KILL)
+        self._on_end()
+
+    def _last_output(self) -> None:
+        """Its children may hold its output open, for ever if they like."""
+        for reader in self._readers:
+            reader.join(_LAST_OUTPUT_S / len(self._readers))
+
+    def _group_ends(self) -> bool:
+        """Wait for the end of what is left of the group; False if it takes long."""
+        pause, left_s = threading.Event(), _GROUP_END_S
+        while left_s > 0 and self._signal_group(0):
+            pause.wait(_LOOK_S)
+            left_s -= _LOOK_S
+        return left_s > 0
+
+    def _signal_group(self, number: int) -> bool:
+        """Whether there is anybody of it."""
+        if not _POSIX:
+            return False
+        try:
+            os.killpg(self.pid, number)
+        except (ProcessLookupError, PermissionError):
+            return False
+        return True

@@ -1,0 +1,20 @@
+"""How a process ended, in words."""
+
+import signal
+
+
+def describe_exit(code: int) -> str:
+    """``0`` → "ended", ``3`` → "exit code 3", ``-11`` → "killed by SIGSEGV".
+
+    Shells and wrappers report a signal as 128 + its number.
+    """
+    if code == 0:
+        return "ended"
+    number = -code if code < 0 else code - 128 if code > 128 else 0
+    if number:
+        try:
+            name = signal.Signals(number).name
+        except ValueError:
+            return f"exit code {code}"
+        return f"killed by {name}" if code < 0 else f"exit code {code} ({name})"
+    return f"exit code {code}"
