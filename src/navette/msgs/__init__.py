@@ -10,6 +10,7 @@ from navette.msgs.registry import (
     load_interfaces,
     packages,
 )
+from navette.msgs.ros1 import ros1_definition
 from navette.msgs.type_hash import type_description, type_hash
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
         fields,
         from_dict,
         get_interface,
+        register_definition,
         serialize,
         to_dict,
         type_name,
@@ -44,6 +46,8 @@ __all__ = [
     "type_description",
     "load_interfaces",
     "load_definition_text",
+    "register_definition",
+    "ros1_definition",
     "add_interface_path",
     "packages",
     "interface_names",
