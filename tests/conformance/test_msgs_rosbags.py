@@ -1,5 +1,6 @@
 """Bytes, hashes and definitions against rosbags, which was written independently."""
 
+from array import array
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,11 @@ def as_rosbags(message: Message) -> Any:
 def _value(field: Field, value: Any) -> Any:
     if isinstance(value, bytes):
         return int.from_bytes(value, signed=True)  # it takes a byte for an int8
+    if field.type.base in ("bool", "byte") and isinstance(value, list):
+        octets = b"".join(value) if field.type.base == "byte" else bytes(value)
+        return np.frombuffer(octets, "?" if field.type.base == "bool" else "i1")
+    if isinstance(value, array):
+        return np.asarray(value)
     if not field.type.is_message:
         return value
     return as_rosbags(value) if field.type.is_scalar else [*map(as_rosbags, value)]

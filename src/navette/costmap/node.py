@@ -7,6 +7,8 @@ what depends on costmaps sees them go stale.
 
 from typing import Any, ClassVar
 
+import numpy as np
+
 from navette.costmap.params import CostmapParams
 from navette.costmap.scan_costmap import Scan, ScanCostmap
 from navette.errors import InvalidValueError
@@ -49,7 +51,7 @@ class CostmapNode(StageNode):
         """Publish the scan's costmap."""
         try:
             scan = Scan(
-                msg.ranges,
+                np.asarray(msg.ranges),
                 msg.angle_min,
                 msg.angle_increment,
                 msg.range_min,

@@ -16,7 +16,7 @@ from navette.msgs.std_msgs.msg import Header
 def grid_to_message(
     cells: NDArray[np.int8], spec: GridSpec, frame_id: str, stamp_ns: int
 ) -> OccupancyGrid:
-    """A message that shares ``cells`` (H, W); -1 unknown, 0 free … 100 lethal."""
+    """A message of ``cells`` (H, W), copied; -1 unknown, 0 free … 100 lethal."""
     data = grid_array("cells", cells, np.int8, spec).reshape(-1)
     stamp = Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)
     x, y, z, w = quaternion_from_yaw(spec.origin.yaw)
@@ -50,9 +50,10 @@ def grid_from_message(msg: OccupancyGrid) -> tuple[NDArray[np.int8], GridSpec]:
         info.height,
         Pose2(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w))),
     )
-    if msg.data.size != spec.width * spec.height:
+    cells = np.asarray(msg.data)
+    if cells.size != spec.width * spec.height:
         raise InvalidValueError(
-            f"occupancy grid: {msg.data.size} cells, wanted {spec.width} x "
+            f"occupancy grid: {cells.size} cells, wanted {spec.width} x "
             f"{spec.height} = {spec.width * spec.height}"
         )
-    return msg.data.reshape(spec.shape), spec
+    return cells.reshape(spec.shape), spec

@@ -1,5 +1,6 @@
 """What all message classes share."""
 
+from array import array
 from collections.abc import Callable
 from typing import Any, ClassVar, Never, Self
 
@@ -7,8 +8,6 @@ import numpy as np
 
 from navette.errors import MessageError
 from navette.msgs.interface import Field, FieldType, MessageSpec, short_name
-
-_SHOWN = 6  # elements of an array in a repr
 
 
 class _Default:
@@ -88,13 +87,8 @@ def _equal(mine: Any, other: Any) -> bool:
 
 
 def _show(value: Any) -> str:
-    if not isinstance(value, (list, np.ndarray)):
-        return repr(value)
-    items = value[:_SHOWN].tolist() if isinstance(value, np.ndarray) else value[:_SHOWN]
-    shown = [repr(item) for item in items]
-    if len(value) > _SHOWN:
-        shown.append(f"… {len(value)} in all")
-    return f"[{', '.join(shown)}]"
+    """As rclpy prints it: a sequence of numbers like a list, whole."""
+    return repr(value.tolist() if isinstance(value, array) else value)
 
 
 _IDL_NAMES = {"float64": "double", "float32": "float", "bool": "boolean"}

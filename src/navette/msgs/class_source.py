@@ -4,13 +4,20 @@ Names of ours start with an underscore: no field's name may, so none can clash.
 """
 
 import keyword
+from array import array
 from typing import Any
 
 import numpy as np
 
 from navette.msgs.base import DEFAULT, Message, refuse_keywords
-from navette.msgs.interface import INTEGER_RANGES, Field, MessageSpec
-from navette.msgs.values import DTYPES, FLOAT32_MAX, make_checker
+from navette.msgs.interface import (
+    INTEGER_RANGES,
+    Default,
+    Field,
+    FieldType,
+    MessageSpec,
+)
+from navette.msgs.values import DTYPES, FLOAT32_MAX, TYPECODES, make_checker
 
 
 def generate(spec: MessageSpec, nested: list[type[Message] | None]) -> dict[str, Any]:
@@ -22,6 +29,7 @@ def generate(spec: MessageSpec, nested: list[type[Message] | None]) -> dict[str,
         "_DEFAULT": DEFAULT,
         "_new": object.__new__,
         "_ndarray": np.ndarray,
+        "_array": array,
         "_refuse_keywords": refuse_keywords,
     }
     for index, field in enumerate(spec.fields):
@@ -83,14 +91,7 @@ def _known_right(index: int, field: Field) -> str:
     if not type_.is_scalar:
         if not type_.is_numeric:
             return "False"
-        test = (
-            f"_value.__class__ is _ndarray and _value.dtype is _dtype_{index}"
-            " and _value.ndim == 1 and _value.flags.c_contiguous"
-        )
-        if type_.size is not None:
-            sign = "==" if type_.container == "array" else "<="
-            test += f" and len(_value) {sign} {type_.size}"
-        return test
+        return _known_numbers(index, type_)
     if type_.is_message:
         return f"_value.__class__ is _class_{index}"
     if type_.is_string:
@@ -111,6 +112,18 @@ def _known_right(index: int, field: Field) -> str:
     }[type_.base]
 
 
+def _known_numbers(index: int, type_: FieldType) -> str:
+    if type_.container == "array":
+        return (
+            f"_value.__class__ is _ndarray and _value.dtype is _dtype_{index}"
+            " and _value.ndim == 1 and _value.flags.c_contiguous"
+            f" and len(_value) == {type_.size}"
+        )
+    code = TYPECODES[type_.base]
+    test = f"_value.__class__ is _array and _value.typecode == {code!r}"
+    return test if type_.size is None else f"{test} and len(_value) <= {type_.size}"
+
+
 def _default_value(field: Field, nested: type[Message] | None) -> Any:
     """What ``_default_<i>`` holds: a value, or a function that makes one."""
     type_, default = field.type, field.default
@@ -119,13 +132,21 @@ def _default_value(field: Field, nested: type[Message] | None) -> Any:
         return nested._make_default_
     if type_.is_scalar:
         return default if default is not None else _zero(type_.base)
+    values = _default_elements(type_, default)
     if not type_.is_numeric:
-        count = type_.size if type_.container == "array" else 0
-        return default if default is not None else [""] * (count or 0)
-    if default is not None:
-        return np.array(default, DTYPES[type_.base])
-    count = type_.size if type_.container == "array" else 0
-    return np.zeros(count or 0, DTYPES[type_.base])
+        return values
+    if type_.container == "array":
+        return np.array(values, DTYPES[type_.base])
+    return array(TYPECODES[type_.base], values)
+
+
+def _default_elements(type_: FieldType, default: Default | None) -> list[Any]:
+    if not isinstance(default, list):
+        count = (type_.size or 0) if type_.container == "array" else 0
+        return [_zero(type_.base)] * count
+    if type_.base == "byte":  # read as integers
+        return [bytes((int(number),)) for number in default]
+    return default
 
 
 def _zero(base: str) -> Any:
@@ -145,8 +166,6 @@ def _default_expression(index: int, field: Field) -> str:
         return f"[{name}() for _ in range({type_.size})]"
     if type_.is_scalar:
         return name
-    if type_.is_numeric:
-        # An empty array has nothing to change, so all messages share one.
-        is_empty = type_.container == "sequence" and not field.default
-        return name if is_empty else f"{name}.copy()"
+    if type_.is_numeric and type_.container == "array":
+        return f"{name}.copy()"
     return f"{name}[:]"

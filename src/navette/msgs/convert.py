@@ -1,5 +1,6 @@
 """Messages as plain dicts: for JSON, YAML and the command line."""
 
+from array import array
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
@@ -43,7 +44,7 @@ def from_dict(cls: type[M], values: Mapping[str, Any]) -> M:
 def _plain(value: Any) -> Any:
     if isinstance(value, Message):
         return to_dict(value)
-    if isinstance(value, np.ndarray):
+    if isinstance(value, (np.ndarray, array)):
         return value.tolist()
     if isinstance(value, list):
         return [_plain(item) for item in value]

@@ -82,6 +82,7 @@ class _Emitter:
                 self.scope[f"E{number}_{field.name}"] = copier_of(element)
                 value = f"[E{number}_{field.name}(e) for e in {value}]"
             elif not field.type.is_scalar:
-                value += ".copy()" if field.type.is_numeric else "[:]"
+                is_numpy = field.type.is_numeric and field.type.container == "array"
+                value += ".copy()" if is_numpy else "[:]"
             self.lines.append(f" {target}.{slot} = {value}")
         return target

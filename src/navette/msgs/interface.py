@@ -50,8 +50,11 @@ class FieldType:
 
     @property
     def is_numeric(self) -> bool:
-        """Whether the base is a number, bool, char or byte: arrays of it are numpy."""
-        return not self.is_message and not self.is_string
+        """Whether the base is a number (a char is one, bool and byte are none).
+
+        Fixed-size arrays of numbers are numpy arrays, sequences ``array.array``.
+        """
+        return self.base in INTEGER_RANGES or self.base in FLOATS
 
     @property
     def is_scalar(self) -> bool:

@@ -17,8 +17,6 @@ _WHAT = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 _GENERATED = "# Written by python -m navette.msgs.generate; do not edit.\n"
 _STUB_HEAD = f"{_GENERATED}# ruff: noqa\n# fmt: off\n"
 _NUMPY = {
-    "bool": "np.bool_",
-    "byte": "np.uint8",
     "char": "np.uint8",
     **{base: f"np.{base}" for base in (*INTEGER_RANGES, *FLOATS) if base != "char"},
 }
@@ -67,14 +65,14 @@ class _StubWriter:
         """The whole stub."""
         lines = [_STUB_HEAD]
         body = "\n\n".join(self._blocks)
+        if "array[" in body:
+            lines += ["from array import array", ""]
         if "ClassVar" in body:
             lines += ["from typing import ClassVar", ""]
         if "np." in body:
-            lines += [
-                "import numpy as np",
-                "from numpy.typing import ArrayLike, NDArray",
-                "",
-            ]
+            lines += ["import numpy as np", ""]
+        if "ArrayLike" in body:
+            lines += ["from numpy.typing import ArrayLike, NDArray", ""]
         lines.append("from navette.msgs.base import Message")
         lines += [f"import {module}" for module in sorted(self._imports)]
         return "\n".join(lines) + "\n\n" + body + "\n"
@@ -125,7 +123,7 @@ class _StubWriter:
     def _attribute(self, field: Field) -> list[str]:
         if field.type.is_scalar or not field.type.is_numeric:
             return [f"    {field.name}: {self._read_type(field.type)}"]
-        # Reads give an array; anything that converts to one may be assigned.
+        # Reads give an array; any numbers may be assigned.
         return [
             "    @property",
             f"    def {field.name}(self) -> {self._read_type(field.type)}: ...",
@@ -146,10 +144,12 @@ class _StubWriter:
     def _read_type(self, type_: FieldType) -> str:
         if type_.is_message:
             item = self._reference(type_.base)
-        elif type_.is_scalar or type_.is_string:
+        elif type_.is_scalar or not type_.is_numeric:
             item = _python_type(type_.base)
         else:
-            return f"NDArray[{_NUMPY[type_.base]}]"
+            if type_.container == "array":
+                return f"NDArray[{_NUMPY[type_.base]}]"
+            return f"array[{_python_type(type_.base)}]"
         return item if type_.is_scalar else f"list[{item}]"
 
     def _reference(self, name: str) -> str:

@@ -7,7 +7,8 @@ did not already know the value to be right.
 
 import math
 from array import array
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from operator import is_
 from typing import Any
 
 import numpy as np
@@ -19,8 +20,6 @@ from navette.msgs.interface import INTEGER_RANGES, Field, FieldType
 Checker = Callable[[Any], Any]
 
 DTYPES: dict[str, np.dtype[Any]] = {
-    "bool": np.dtype("?"),
-    "byte": np.dtype("u1"),
     "char": np.dtype("u1"),
     "int8": np.dtype("i1"),
     "uint8": np.dtype("u1"),
@@ -33,6 +32,20 @@ DTYPES: dict[str, np.dtype[Any]] = {
     "float32": np.dtype("<f4"),
     "float64": np.dtype("<f8"),
 }
+# Type codes of ``array.array``, as rclpy has them.
+TYPECODES: dict[str, str] = {
+    "char": "B",
+    "int8": "b",
+    "uint8": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+    "float32": "f",
+    "float64": "d",
+}
 FLOAT32_MAX = float(np.finfo(np.float32).max)
 
 
@@ -44,6 +57,8 @@ def make_checker(owner: str, field: Field, message_class: type | None) -> Checke
         if type_.is_numeric:
             return _array_checker(where, type_)
         item = make_checker(owner, Field(field.name, _item_of(type_)), message_class)
+        if type_.base == "byte":
+            return _bytes_checker(where, type_, item)
         return _list_checker(where, type_, item)
     if message_class is not None:
         return _message_checker(where, message_class)
@@ -179,32 +194,67 @@ def _check_length(where: str, type_: FieldType, length: int) -> None:
 
 
 def _list_checker(where: str, type_: FieldType, check_item: Checker) -> Checker:
-    """Strings and messages: kept as a list (the same object if it is one)."""
+    """Strings, messages and bools: a list (the same one if nothing is converted)."""
 
     def check(value: Any) -> list[Any]:
-        is_text = isinstance(value, (str, bytes, dict))
+        is_text = isinstance(value, (str, bytes, Mapping))
         if is_text or not isinstance(value, Iterable):
             raise _refuse(where, value, f"a list ({type_})")
         items = value if isinstance(value, list) else list(value)
         _check_length(where, type_, len(items))
+        converted = []
         for index, item in enumerate(items):
             try:
-                check_item(item)
+                converted.append(check_item(item))
             except MessageError as error:
                 text = str(error).replace(where, f"{where}[{index}]", 1)
                 raise MessageError(text) from None
+        return items if all(map(is_, items, converted)) else converted
+
+    return check
+
+
+def _bytes_checker(where: str, type_: FieldType, check_item: Checker) -> Checker:
+    """``byte[]``: a list of single bytes, as in rclpy; also from a bytes object."""
+    check_list = _list_checker(where, type_, check_item)
+
+    def check(value: Any) -> list[Any]:
+        if isinstance(value, (bytes, bytearray)):
+            value = [bytes((number,)) for number in value]
+        items: list[bytes] = check_list(value)
         return items
 
     return check
 
 
 def _array_checker(where: str, type_: FieldType) -> Checker:
+    """Numbers: a numpy array where the size is fixed, else an ``array.array``."""
+    to_ndarray = _ndarray_checker(where, type_)
+    if type_.container == "array":
+        return to_ndarray
+    typecode = TYPECODES[type_.base]
+    is_octet = DTYPES[type_.base].itemsize == 1
+
+    def check(value: Any) -> "array[Any]":
+        if isinstance(value, array) and value.typecode == typecode:
+            _check_length(where, type_, len(value))
+            return value
+        numbers = array(typecode)
+        if is_octet and isinstance(value, (bytes, bytearray)):
+            _check_length(where, type_, len(value))
+            numbers.frombytes(value)
+        else:
+            numbers.frombytes(to_ndarray(value).view(np.uint8).data)
+        return numbers
+
+    return check
+
+
+def _ndarray_checker(where: str, type_: FieldType) -> Checker:
     dtype = DTYPES[type_.base]
     allowed = f"a sequence of {type_.base}"
 
     def check(value: Any) -> NDArray[Any]:
-        if type_.base == "byte":
-            value = _joined_bytes(value)
         found = _as_array(where, value, dtype, allowed)
         if found.ndim != 1:
             raise MessageError(
@@ -219,15 +269,6 @@ def _array_checker(where: str, type_: FieldType) -> Checker:
     return check
 
 
-def _joined_bytes(value: Any) -> Any:
-    """rclpy's form of ``byte[]``, a list of single bytes, as one bytes object."""
-    if not isinstance(value, (list, tuple)) or not value:
-        return value
-    if all(isinstance(item, bytes) and len(item) == 1 for item in value):
-        return b"".join(value)
-    return value
-
-
 def _as_array(
     where: str, value: Any, dtype: np.dtype[Any], allowed: str
 ) -> NDArray[Any]:
@@ -240,9 +281,10 @@ def _as_array(
         return np.frombuffer(value, dtype).copy()
     if isinstance(value, (array, memoryview)):
         return np.array(value)
-    is_sequence = isinstance(value, (Sequence, range)) and not isinstance(value, str)
-    if not is_sequence:
+    if isinstance(value, (str, Mapping)) or not isinstance(value, Iterable):
         raise _refuse(where, value, allowed)
+    if not isinstance(value, Sequence):
+        value = list(value)
     if not len(value):
         return np.zeros(0, dtype)
     try:
@@ -266,7 +308,7 @@ def _cast(
     where: str, found: NDArray[Any], dtype: np.dtype[Any], base: str
 ) -> NDArray[Any]:
     """To the wanted dtype where every value fits; a fraction never fits an integer."""
-    kinds = {"b": "b", "i": "iu", "u": "iu", "f": "fiu"}[dtype.kind]
+    kinds = {"i": "iu", "u": "iu", "f": "fiu"}[dtype.kind]
     if found.dtype.kind not in kinds:
         raise MessageError(
             f"{where}: elements of {found.dtype} ({shortened(found[:8].tolist())}), "
@@ -275,7 +317,7 @@ def _cast(
     if not found.size:
         return np.zeros(0, dtype)
     if dtype.kind in "iu":
-        low, high = INTEGER_RANGES["uint8" if base == "byte" else base]
+        low, high = INTEGER_RANGES[base]
     elif dtype.itemsize == 4:
         low, high = -FLOAT32_MAX, FLOAT32_MAX  # type: ignore[assignment]
     else:

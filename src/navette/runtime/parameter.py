@@ -194,8 +194,6 @@ def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
     if kind is ParameterType.NOT_SET:
         return None
     value = getattr(parameter_value, _VALUE_FIELDS[kind])
-    if kind is ParameterType.BYTE_ARRAY:
-        return [bytes([item]) for item in bytes(value)]
     return _plain(value) if kind >= ParameterType.BYTE_ARRAY else value
 
 

@@ -82,7 +82,7 @@ def test_a_velodynes_layout() -> None:
     read = point_cloud2.read_points(cloud)
     assert read.dtype == points.dtype
     assert np.array_equal(read, points)
-    assert np.shares_memory(read, cloud.data)  # nothing was copied
+    assert np.shares_memory(read, np.asarray(cloud.data))  # nothing was copied
     points["x"] = -1.0  # nor shares the cloud with what it was made from
     assert point_cloud2.read_points(cloud)["x"][3] == 3.0
     with pytest.raises(AssertionError, match="ring uint16"):
@@ -99,12 +99,12 @@ def test_big_endian_data_is_left_as_it_is() -> None:
     )
     cloud.is_bigendian = True
     cloud.data = np.frombuffer(swapped.tobytes(), np.uint8)
-    before = cloud.data.copy()
+    before = bytes(cloud.data)
     for _ in range(2):
         points = point_cloud2.read_points(cloud)
         assert points["x"].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
         assert points.dtype["x"] == np.float32  # in the machine's order
-    assert np.array_equal(cloud.data, before)
+    assert bytes(cloud.data) == before
 
 
 def test_padding_of_points_and_of_rows() -> None:

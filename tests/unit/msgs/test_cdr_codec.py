@@ -1,8 +1,8 @@
 """CDR on known bytes, and on bytes that are wrong."""
 
 import struct
+from typing import Any
 
-import numpy as np
 import pytest
 
 from navette.errors import DecodeError, MessageError
@@ -14,7 +14,14 @@ from navette.msgs.geometry_msgs.msg import Point, Polygon, Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 from navette.msgs.sensor_msgs.msg import JointState, LaserScan
-from navette.msgs.std_msgs.msg import Bool, Empty, Float64, String, UInt8MultiArray
+from navette.msgs.std_msgs.msg import (
+    Bool,
+    Empty,
+    Float64,
+    Float64MultiArray,
+    String,
+    UInt8MultiArray,
+)
 from navette.msgs.visualization_msgs.msg import Marker
 
 LITTLE = b"\x00\x01\x00\x00"
@@ -141,10 +148,52 @@ def test_bounds_hold_for_what_is_read() -> None:
 
 def test_bool_arrays_are_checked() -> None:
     data = bytearray(serialize(ParameterValue(bool_array_value=[True, False])))
-    assert deserialize(data, ParameterValue).bool_array_value.dtype == np.bool_
+    assert deserialize(data, ParameterValue).bool_array_value == [True, False]
     data[data.index(b"\x02\0\0\0\x01") + 4] = 3
     with pytest.raises(DecodeError, match=r"bool_array_value: 3 is no bool"):
         deserialize(data, ParameterValue)
+
+
+def test_octets_of_fixed_and_bounded_size() -> None:
+    text = "bool[3] flags\nbyte[2] raw [1, 2]\nbool[<=2] few\nint64[<=2] numbers\n"
+    load_definition_text("codec_cases/msg/Octets", text)
+    octets = get_interface("codec_cases/msg/Octets")
+    assert octets().raw == [b"\x01", b"\x02"]
+    message = octets(flags=[True, False, True], few=[True], numbers=[-1])
+    data = serialize(message)
+    assert deserialize(data, octets) == message
+    assert data[4:9] == b"\x01\0\x01\x01\x02"
+    message.flags.append(True)
+    with pytest.raises(MessageError, match=r"flags: 4 elements, wanted exactly 3"):
+        serialize(message)
+    message = octets(numbers=[1, 2])
+    message.numbers.append(3)
+    with pytest.raises(MessageError, match=r"numbers: 3 elements, wanted at most 2"):
+        serialize(message)
+
+
+@pytest.mark.parametrize(
+    ("items", "what"), [([True, 2], "2 is int"), ([300], "300 is int"), (["a"], "str")]
+)
+def test_wrong_bools_put_into_a_list_are_named(items: list[Any], what: str) -> None:
+    value = ParameterValue()
+    value.bool_array_value.extend(items)
+    with pytest.raises(MessageError, match=rf"bool_array_value\[\d\]: .*{what}"):
+        serialize(value)
+
+
+def test_wrong_bytes_put_into_a_list_are_named() -> None:
+    value = ParameterValue(byte_array_value=b"ab")
+    value.byte_array_value.append(b"cd")
+    with pytest.raises(MessageError, match=r"byte_array_value\[2\]: b'cd'"):
+        serialize(value)
+
+
+def test_numbers_that_end_before_their_length() -> None:
+    data = serialize(Float64MultiArray(data=[1, 2, 3]))
+    for cut in range(1, 25):
+        with pytest.raises(DecodeError, match="length 3 is more"):
+            deserialize(data[:-cut], Float64MultiArray)
 
 
 def test_what_was_put_into_a_list_is_named() -> None:

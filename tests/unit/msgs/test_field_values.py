@@ -14,6 +14,7 @@ from navette.msgs.geometry_msgs.msg import Point, Polygon, PoseWithCovariance, V
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Path
 from navette.msgs.rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 from navette.msgs.sensor_msgs.msg import CompressedImage, JointState, LaserScan
+from navette.msgs.shape_msgs.msg import SolidPrimitive
 from navette.msgs.std_msgs.msg import (
     Bool,
     ByteMultiArray,
@@ -48,7 +49,8 @@ def test_integers_take_numpy_scalars() -> None:
 
 def test_a_byte_is_bytes_as_in_rclpy_and_takes_integers() -> None:
     assert DiagnosticStatus(level=2).level == DiagnosticStatus.ERROR == b"\x02"
-    assert ByteMultiArray(data=[b"\x01", b"\xff"]).data.tolist() == [1, 255]
+    assert ByteMultiArray(data=[b"\x01", 255]).data == [b"\x01", b"\xff"]
+    assert ByteMultiArray(data=b"\x01\xff").data == [b"\x01", b"\xff"]
 
 
 @pytest.mark.parametrize(
@@ -83,6 +85,7 @@ def test_a_byte_is_bytes_as_in_rclpy_and_takes_integers() -> None:
         (lambda: LaserScan(ranges=[[1], [1, 2]]), "wanted a sequence"),
         (lambda: LaserScan(ranges=np.zeros((2, 2))), r"shape \(2, 2\), wanted one dim"),
         (lambda: LaserScan(ranges=[1e39]), "do not fit float32"),
+        (lambda: LaserScan(ranges={1.0: 2.0}), "is dict, wanted a sequence"),
         (lambda: LaserScan(ranges=b"1234"), "is bytes, wanted a sequence"),
         (lambda: OccupancyGrid(data=[128]), "128 to 128 do not fit int8"),
         (lambda: OccupancyGrid(data=[0.5]), "elements of float64"),
@@ -90,7 +93,10 @@ def test_a_byte_is_bytes_as_in_rclpy_and_takes_integers() -> None:
         (lambda: UInt64MultiArray(data=[-1]), "do not fit uint64"),
         (lambda: UInt64MultiArray(data=[2**64]), "wanted a sequence of uint64"),
         (lambda: PoseWithCovariance(covariance=[0.0]), "1 elements, wanted exactly 36"),
-        (lambda: ParameterValue(bool_array_value=[1]), "wanted bool"),
+        (
+            lambda: ParameterValue(bool_array_value=[1]),
+            r"value\[0\]: 1 is int",
+        ),
     ],
 )
 def test_wrong_values_are_refused_by_name(make: Callable[[], Any], text: str) -> None:
@@ -121,13 +127,12 @@ def test_assignment_checks_as_the_constructor_does() -> None:
         np.array([1, 9, 2, 9, 3])[::2],
         array("f", [1, 2, 3]),
         memoryview(array("d", [1, 2, 3])),
+        (number for number in (1, 2, 3)),
+        {1: "a", 2: "b", 3: "c"}.keys(),
     ],
 )
 def test_arrays_come_from_many_things(value: Any) -> None:
-    ranges = LaserScan(ranges=value).ranges
-    assert ranges.dtype == np.float32
-    assert ranges.flags.c_contiguous
-    assert ranges.tolist() == [1.0, 2.0, 3.0]
+    assert LaserScan(ranges=value).ranges == array("f", [1.0, 2.0, 3.0])
 
 
 def test_octets_come_from_bytes_and_stay_writable() -> None:
@@ -142,7 +147,7 @@ def test_octets_come_from_bytes_and_stay_writable() -> None:
 def test_integers_around_2_to_the_63() -> None:
     values = [0, 2**63, 2**64 - 1]
     assert UInt64MultiArray(data=values).data.tolist() == values
-    assert UInt64MultiArray(data=[]).data.dtype == np.uint64
+    assert UInt64MultiArray(data=[]).data.typecode == "Q"
 
 
 def test_floats_in_arrays_may_be_nan_or_infinite() -> None:
@@ -152,8 +157,30 @@ def test_floats_in_arrays_may_be_nan_or_infinite() -> None:
 
 
 def test_an_array_of_the_right_type_is_kept_as_it_is() -> None:
-    data = np.zeros(4, np.int8)
+    data = array("b", [0, 1])
     assert OccupancyGrid(data=data).data is data
+    matrix = np.zeros(36)
+    assert PoseWithCovariance(covariance=matrix).covariance is matrix
+    names, flags = ["a"], [True]
+    assert JointState(name=names).name is names
+    assert ParameterValue(bool_array_value=flags).bool_array_value is flags
+
+
+def test_sequences_of_numbers_are_arrays_as_in_rclpy() -> None:
+    grid = OccupancyGrid(data=np.array([1, 2], np.int8))
+    grid.data.append(3)
+    assert grid.data == array("b", [1, 2, 3])
+    with pytest.raises(OverflowError):
+        grid.data.append(128)
+    view = np.asarray(grid.data)
+    view[0] = 9  # no copy in between
+    assert grid.data[0] == 9
+
+
+def test_bools_are_a_list_as_in_rclpy() -> None:
+    value = ParameterValue(bool_array_value=np.array([True, False]))
+    assert value.bool_array_value == [True, False]
+    assert type(value.bool_array_value[0]) is bool
 
 
 def test_bounds_of_sequences() -> None:
@@ -163,6 +190,9 @@ def test_bounds_of_sequences() -> None:
     assert ParameterDescriptor(integer_range=[one]).integer_range == [one]
     with pytest.raises(MessageError, match="2 elements, wanted at most 1"):
         ParameterDescriptor(integer_range=[one, one])
+    for wrong in ([0.0] * 4, array("d", [0.0] * 4), np.zeros(4)):
+        with pytest.raises(MessageError, match="4 elements, wanted at most 3"):
+            SolidPrimitive(dimensions=wrong)
 
 
 def test_validate_finds_what_was_put_into_a_list() -> None:

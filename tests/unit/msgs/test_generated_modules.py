@@ -9,11 +9,13 @@ import pytest
 from navette.msgs import generate
 
 SNIPPET = """
+from array import array
 import numpy as np
 from numpy.typing import NDArray
 from navette.msgs import copy_message, deserialize, get_interface, serialize
 from navette.msgs.example_interfaces.action import Fibonacci
-from navette.msgs.geometry_msgs.msg import Point, Twist
+from navette.msgs.geometry_msgs.msg import Point, PoseWithCovariance, Twist
+from navette.msgs.rcl_interfaces.msg import ParameterValue
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_srvs.srv import SetBool
 from navette.msgs.visualization_msgs.msg import Marker
@@ -23,7 +25,13 @@ twist.linear.x = 1.0
 twist = copy_message(deserialize(serialize(twist), Twist))
 scan = LaserScan(ranges=[1, 2])
 scan.ranges = [3.0]
-ranges: NDArray[np.float32] = scan.ranges
+scan.ranges = np.zeros(3)
+scan.ranges.append(1.0)
+ranges: array[float] = scan.ranges
+view: NDArray[np.float32] = np.asarray(scan.ranges)
+covariance: NDArray[np.float64] = PoseWithCovariance().covariance
+values: list[bool] = ParameterValue(bool_array_value=[True]).bool_array_value
+octets: list[bytes] = ParameterValue().byte_array_value
 marker = Marker(type=Marker.ARROW, points=[Point(x=1)])
 ok: bool = SetBool.Response(success=True).success
 goal = Fibonacci.Goal(order=3)

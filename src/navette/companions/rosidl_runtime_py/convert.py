@@ -4,6 +4,7 @@
 ``...``; ``no_arr`` and ``no_str`` put the type and length in their place.
 """
 
+from array import array
 from collections import OrderedDict
 from dataclasses import dataclass
 from typing import Any
@@ -116,7 +117,7 @@ def _plain(
         if shortening.no_str:
             return _hidden_text(value)
         return _short(value, shortening.length, "...")
-    if isinstance(value, (list, np.ndarray)):
+    if isinstance(value, (list, array, np.ndarray)):
         if shortening.no_arr and field_type is not None:
             return _hidden_array(field_type, len(value))
         items = _short(value, shortening.length, None)
@@ -126,8 +127,8 @@ def _plain(
 
 
 def _plain_items(items: Any, shortening: _Shortening) -> list[Any]:
-    if isinstance(items, np.ndarray):
-        return items.tolist()  # type: ignore[no-any-return]
+    if isinstance(items, (array, np.ndarray)):
+        return items.tolist()
     return [_plain(item, shortening) for item in items]
 
 
@@ -139,11 +140,11 @@ def _csv(
         return ",".join(
             _csv(getattr(value, name), shortening, t) for name, t in types.items()
         )
-    if isinstance(value, (list, np.ndarray)):
+    if isinstance(value, (list, array, np.ndarray)):
         if shortening.no_arr and field_type is not None:
             return _hidden_array(field_type, len(value))
         items = _short(value, shortening.length, None)
-        plain = items.tolist() if isinstance(items, np.ndarray) else items
+        plain = items.tolist() if isinstance(items, (array, np.ndarray)) else items
         texts = [_csv(item, shortening) for item in plain]
         return ",".join(texts if items is value else [*texts, "..."])
     if isinstance(value, str):

@@ -182,7 +182,7 @@ def create_cloud(
         fields=fields,
         point_step=step,
         row_step=step * width,
-        data=np.frombuffer(structured.tobytes(), dtype=np.uint8).copy(),
+        data=structured.tobytes(),
     )
 
 
@@ -208,7 +208,7 @@ def _rows(cloud: PointCloud2) -> NDArray[Any]:
     if height <= 1:
         row_step = width * step
     needed = (height - 1) * row_step + width * step if height and width else 0
-    data = np.ascontiguousarray(cloud.data)
+    data = np.asarray(cloud.data)
     if data.size < needed:
         raise PointCloudError(
             f"cloud of {width} × {height} points of {step} bytes: wanted {needed} "

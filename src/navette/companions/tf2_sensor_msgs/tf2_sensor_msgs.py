@@ -82,7 +82,7 @@ def do_transform_cloud(
         is_bigendian=sys.byteorder != "little",
         point_step=cloud.point_step,
         row_step=cloud.point_step * cloud.width,
-        data=np.frombuffer(points.tobytes(), dtype=np.uint8).copy(),
+        data=points.tobytes(),
         is_dense=cloud.is_dense,
     )
 

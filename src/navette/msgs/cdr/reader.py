@@ -3,11 +3,12 @@
 Lengths in the data are compared with what is left before anything is allocated.
 """
 
+import sys
+from array import array
 from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navette.errors import DecodeError
 from navette.msgs.base import Message
@@ -20,13 +21,15 @@ from navette.msgs.cdr.layout import (
     leaf_run,
     uniform_leaves,
 )
+from navette.msgs.cdr.octets import UNPACK
 from navette.msgs.cdr.wide import WIDE_UNIT, decode_wide
 from navette.msgs.classes import get_message_class
 from navette.msgs.interface import PLACEHOLDER, Field, FieldType, MessageSpec
 from navette.msgs.registry import get_message_spec
-from navette.msgs.values import DTYPES
+from navette.msgs.values import DTYPES, TYPECODES
 
 HEADER_SIZE = 4
+NATIVE_ORDER = "<" if sys.byteorder == "little" else ">"
 
 Order = Literal["<", ">"]
 Reader = Callable[[bytes | memoryview, int, int], tuple[Any, int]]
@@ -78,12 +81,6 @@ def _read_string(field: str, b: bytes | memoryview, p: int, end: int) -> str:
     return str(b[p : end - 1], "utf-8")
 
 
-def _bool_array(field: str, raw: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    if raw.size and raw.max() > 1:
-        _refuse_bool(field, int(raw.max()))
-    return raw.astype(np.bool_)
-
-
 class _Emitter:
     """Collects the lines of one function.
 
@@ -97,11 +94,11 @@ class _Emitter:
         self.builders: list[str] = []
         self.scope: dict[str, Any] = {
             "new": object.__new__,
+            "array": array,
             "frombuffer": np.frombuffer,
             "refuse_bool": _refuse_bool,
             "refuse_length": _refuse_length,
             "read_string": _read_string,
-            "bool_array": _bool_array,
             "decode_wide": decode_wide,
         }
         self._order = order
@@ -176,48 +173,59 @@ class _Emitter:
 
     def _array(self, field: Field, path: str) -> str:
         type_ = field.type
-        if not type_.is_numeric:
+        if not type_.is_numeric and type_.base not in UNPACK:
             self.finish_run()
             return self._loop(type_, path, str(type_.size))
-        size = DTYPES[type_.base].itemsize
+        _, size = CODES[type_.base]
         total = size * (type_.size or 0)
         raw = self._new_name("v")
         self._run.add(size, f"{total}s", total, raw)
-        return self._array_value(type_, path, f"frombuffer({raw}, DT)")
-
-    def _array_value(self, type_: FieldType, path: str, raw: str) -> str:
-        """The expression that turns a view of the data into a native, own array."""
-        dtype = DTYPES[type_.base]
-        name = f"D{type_.base}"
-        if type_.base == "bool":
-            self.scope[name] = np.dtype(np.uint8)
-            return f"bool_array({path!r}, {raw.replace('DT', name)})"
+        if type_.base in UNPACK:
+            return self._octets(type_, path, raw)
+        # astype: the message's own, native and writable.
+        dtype, name = DTYPES[type_.base], f"D{type_.base}"
         self.scope[name] = dtype.newbyteorder(self._order)
         self.scope[f"N{name}"] = dtype
-        return f"{raw.replace('DT', name)}.astype(N{name})"
+        return f"frombuffer({raw}, {name}).astype(N{name})"
+
+    def _octets(self, type_: FieldType, path: str, raw: str) -> str:
+        self.scope[f"unpack_{type_.base}"] = UNPACK[type_.base]
+        return f"unpack_{type_.base}({path!r}, {raw})"
 
     def _sequence(self, field: Field, path: str) -> str:
         type_ = field.type
         length = self._new_name("n")
         self._run.add(4, "I", 4, length)
         self.finish_run()
-        limit = f"{length} * {item_size(type_)} > end - p"
+        size = item_size(type_)
+        if type_.is_numeric and size == PHASES:
+            # Offsets count the header: a multiple of 8 behind it is 4 more here.
+            self.lines.append(f" if {length} and not p & 4: p += 4")
+        limit = f"{length} * {size} > end - p"
         if type_.size is not None:
             limit += f" or {length} > {type_.size}"
         self.lines.append(f" if {limit}: refuse_length({path!r}, {length})")
-        if not type_.is_numeric:
-            return self._loop(type_, path, length)
-        return self._numeric_sequence(type_, path, length)
+        if type_.is_numeric:
+            return self._numeric_sequence(type_, length, size)
+        if type_.base in UNPACK:
+            value = self._new_name("a")
+            octets = self._octets(type_, path, f"b[p:p + {length}]")
+            self.lines += [f" {value} = {octets}", f" p += {length}"]
+            self._phase = None
+            return value
+        return self._loop(type_, path, length)
 
-    def _numeric_sequence(self, type_: FieldType, path: str, length: str) -> str:
-        size = DTYPES[type_.base].itemsize
-        if size == PHASES:
-            # Offsets count the header: a multiple of 8 behind it is 4 more here.
-            self.lines.append(f" if {length} and not p & 4: p += 4")
+    def _numeric_sequence(self, type_: FieldType, length: str, size: int) -> str:
+        """One copy from the data into an array, by a view that copies nothing."""
         value = self._new_name("a")
-        array = self._array_value(type_, path, f"frombuffer(b, DT, {length}, p)")
-        self.lines.append(f" {value} = {array}")
-        self.lines.append(f" p += {length} * {size}")
+        self.lines += [
+            f" {value} = array({TYPECODES[type_.base]!r})",
+            f" q = p + {length} * {size}",
+            f" {value}.frombytes(memoryview(b)[p:q])",
+            " p = q",
+        ]
+        if self._order != NATIVE_ORDER and size > 1:
+            self.lines.append(f" {value}.byteswap()")
         self._phase = None
         return value
 

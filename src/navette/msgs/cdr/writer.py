@@ -5,6 +5,7 @@ from typing import Any
 
 from navette.msgs.base import Message
 from navette.msgs.cdr.layout import CODES, PHASES, Leaf, Run, leaf_run, uniform_leaves
+from navette.msgs.cdr.octets import PACK
 from navette.msgs.cdr.wide import WIDE_UNIT, encode_wide
 from navette.msgs.interface import PLACEHOLDER, Field, FieldType, MessageSpec
 from navette.msgs.registry import get_message_spec
@@ -128,7 +129,17 @@ class _Emitter:
         items = self._new_name("a")
         self.lines.append(f" {items} = {value}")
         self._check_count(field, items, "!=")
-        self._loop(type_, items)
+        if type_.base in PACK:
+            packed = self._packed_octets(type_, items)
+            self._run.add(1, f"{type_.size}s", type_.size or 0, packed)
+        else:
+            self._loop(type_, items)
+
+    def _packed_octets(self, type_: FieldType, items: str) -> str:
+        packed = self._new_name("o")
+        self.scope[f"pack_{type_.base}"] = PACK[type_.base]
+        self.lines.append(f" {packed} = pack_{type_.base}({items})")
+        return packed
 
     def _sequence(self, field: Field, value: str) -> None:
         type_ = field.type
@@ -137,7 +148,9 @@ class _Emitter:
         if type_.size is not None:
             self._check_count(field, items, ">")
         self._run.add(4, "I", 4, f"len({items})")
-        if type_.is_numeric:
+        if type_.base in PACK:
+            self._bytes_part(self._packed_octets(type_, items))
+        elif type_.is_numeric:
             self.finish_run()
             size = DTYPES[type_.base].itemsize
             if size == PHASES:  # what needs 8 may not follow the length at once
@@ -148,17 +161,16 @@ class _Emitter:
                 self.lines.append(f" else: {pad} = b''")
                 self.parts.append(pad)
             self.parts.append(items)
-            self.lines.append(f" p += {items}.nbytes")
+            self.lines.append(f" p += {size} * len({items})")
             self._phase = None
             self.is_single_run = False
         else:
             self._loop(type_, items)
 
     def _check_count(self, field: Field, items: str, wrong: str) -> None:
-        # Only a list changed in place can fail this; the caller finds the field.
-        if not field.type.is_numeric:
-            self.lines.append(f" if len({items}) {wrong} {field.type.size}:")
-            self.lines.append("  raise TypeError('length')")
+        # Only what was changed in place can fail this; the caller finds the field.
+        self.lines.append(f" if len({items}) {wrong} {field.type.size}:")
+        self.lines.append("  raise TypeError('length')")
 
     def _loop(self, type_: FieldType, items: str) -> None:
         self.finish_run()

@@ -2,7 +2,8 @@
 # ruff: noqa
 # fmt: off
 
-import numpy as np
+from array import array
+
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -15,7 +16,7 @@ class ListNodes_Request(Message):
 class ListNodes_Response(Message):
     full_node_names: list[str]
     @property
-    def unique_ids(self) -> NDArray[np.uint64]: ...
+    def unique_ids(self) -> array[int]: ...
     @unique_ids.setter
     def unique_ids(self, value: ArrayLike) -> None: ...
     def __init__(

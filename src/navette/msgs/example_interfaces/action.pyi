@@ -2,7 +2,8 @@
 # ruff: noqa
 # fmt: off
 
-import numpy as np
+from array import array
+
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -22,7 +23,7 @@ class Fibonacci_Goal(Message):
 
 class Fibonacci_Result(Message):
     @property
-    def sequence(self) -> NDArray[np.int32]: ...
+    def sequence(self) -> array[int]: ...
     @sequence.setter
     def sequence(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -33,7 +34,7 @@ class Fibonacci_Result(Message):
 
 class Fibonacci_Feedback(Message):
     @property
-    def sequence(self) -> NDArray[np.int32]: ...
+    def sequence(self) -> array[int]: ...
     @sequence.setter
     def sequence(self, value: ArrayLike) -> None: ...
     def __init__(

@@ -2,7 +2,8 @@
 # ruff: noqa
 # fmt: off
 
-import numpy as np
+from array import array
+
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -25,15 +26,12 @@ class Byte(Message):
 
 class ByteMultiArray(Message):
     layout: MultiArrayLayout
-    @property
-    def data(self) -> NDArray[np.uint8]: ...
-    @data.setter
-    def data(self, value: ArrayLike) -> None: ...
+    data: list[bytes]
     def __init__(
         self,
         *,
         layout: MultiArrayLayout = ...,
-        data: ArrayLike = ...,
+        data: list[bytes] = ...,
     ) -> None: ...
 
 class Char(Message):
@@ -58,7 +56,7 @@ class Float32(Message):
 class Float32MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.float32]: ...
+    def data(self) -> array[float]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -79,7 +77,7 @@ class Float64(Message):
 class Float64MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.float64]: ...
+    def data(self) -> array[float]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -100,7 +98,7 @@ class Int16(Message):
 class Int16MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.int16]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -121,7 +119,7 @@ class Int32(Message):
 class Int32MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.int32]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -142,7 +140,7 @@ class Int64(Message):
 class Int64MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.int64]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -163,7 +161,7 @@ class Int8(Message):
 class Int8MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.int8]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -214,7 +212,7 @@ class UInt16(Message):
 class UInt16MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.uint16]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -235,7 +233,7 @@ class UInt32(Message):
 class UInt32MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.uint32]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -256,7 +254,7 @@ class UInt64(Message):
 class UInt64MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.uint64]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -277,7 +275,7 @@ class UInt8(Message):
 class UInt8MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.uint8]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(

@@ -3,6 +3,7 @@
 # fmt: off
 
 import numpy as np
+
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message

@@ -2,9 +2,10 @@
 # ruff: noqa
 # fmt: off
 
+from array import array
+
 from typing import ClassVar
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -40,15 +41,12 @@ class BehaviorTreeStatusChange(Message):
 
 class CollisionDetectorState(Message):
     polygons: list[str]
-    @property
-    def detections(self) -> NDArray[np.bool_]: ...
-    @detections.setter
-    def detections(self, value: ArrayLike) -> None: ...
+    detections: list[bool]
     def __init__(
         self,
         *,
         polygons: list[str] = ...,
-        detections: ArrayLike = ...,
+        detections: list[bool] = ...,
     ) -> None: ...
 
 class CollisionMonitorState(Message):
@@ -70,7 +68,7 @@ class Costmap(Message):
     header: navette.msgs.std_msgs.msg.Header
     metadata: CostmapMetaData
     @property
-    def data(self) -> NDArray[np.uint8]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -124,7 +122,7 @@ class CostmapUpdate(Message):
     size_x: int
     size_y: int
     @property
-    def data(self) -> NDArray[np.uint8]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -231,7 +229,7 @@ class SpeedLimit(Message):
 class VoxelGrid(Message):
     header: navette.msgs.std_msgs.msg.Header
     @property
-    def data(self) -> NDArray[np.uint32]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     origin: navette.msgs.geometry_msgs.msg.Point32

@@ -2,9 +2,10 @@
 # ruff: noqa
 # fmt: off
 
+from array import array
+
 from typing import ClassVar
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -150,11 +151,11 @@ class ClearEntireCostmap:
 
 class DynamicEdges_Request(Message):
     @property
-    def closed_edges(self) -> NDArray[np.uint16]: ...
+    def closed_edges(self) -> array[int]: ...
     @closed_edges.setter
     def closed_edges(self, value: ArrayLike) -> None: ...
     @property
-    def opened_edges(self) -> NDArray[np.uint16]: ...
+    def opened_edges(self) -> array[int]: ...
     @opened_edges.setter
     def opened_edges(self, value: ArrayLike) -> None: ...
     adjust_edges: list[navette.msgs.nav2_msgs.msg.EdgeCost]
@@ -274,7 +275,7 @@ class IsPathValid_Request(Message):
 class IsPathValid_Response(Message):
     is_valid: bool
     @property
-    def invalid_pose_indices(self) -> NDArray[np.int32]: ...
+    def invalid_pose_indices(self) -> array[int]: ...
     @invalid_pose_indices.setter
     def invalid_pose_indices(self, value: ArrayLike) -> None: ...
     def __init__(

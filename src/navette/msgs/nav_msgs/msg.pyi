@@ -2,7 +2,8 @@
 # ruff: noqa
 # fmt: off
 
-import numpy as np
+from array import array
+
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -44,7 +45,7 @@ class OccupancyGrid(Message):
     header: navette.msgs.std_msgs.msg.Header
     info: MapMetaData
     @property
-    def data(self) -> NDArray[np.int8]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(

@@ -2,9 +2,10 @@
 # ruff: noqa
 # fmt: off
 
+from array import array
+
 from typing import ClassVar
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -164,20 +165,14 @@ class ParameterValue(Message):
     integer_value: int
     double_value: float
     string_value: str
+    byte_array_value: list[bytes]
+    bool_array_value: list[bool]
     @property
-    def byte_array_value(self) -> NDArray[np.uint8]: ...
-    @byte_array_value.setter
-    def byte_array_value(self, value: ArrayLike) -> None: ...
-    @property
-    def bool_array_value(self) -> NDArray[np.bool_]: ...
-    @bool_array_value.setter
-    def bool_array_value(self, value: ArrayLike) -> None: ...
-    @property
-    def integer_array_value(self) -> NDArray[np.int64]: ...
+    def integer_array_value(self) -> array[int]: ...
     @integer_array_value.setter
     def integer_array_value(self, value: ArrayLike) -> None: ...
     @property
-    def double_array_value(self) -> NDArray[np.float64]: ...
+    def double_array_value(self) -> array[float]: ...
     @double_array_value.setter
     def double_array_value(self, value: ArrayLike) -> None: ...
     string_array_value: list[str]
@@ -189,8 +184,8 @@ class ParameterValue(Message):
         integer_value: int = ...,
         double_value: float = ...,
         string_value: str = ...,
-        byte_array_value: ArrayLike = ...,
-        bool_array_value: ArrayLike = ...,
+        byte_array_value: list[bytes] = ...,
+        bool_array_value: list[bool] = ...,
         integer_array_value: ArrayLike = ...,
         double_array_value: ArrayLike = ...,
         string_array_value: list[str] = ...,

@@ -2,9 +2,10 @@
 # ruff: noqa
 # fmt: off
 
+from array import array
+
 from typing import ClassVar
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -87,7 +88,7 @@ class GetParameterTypes_Request(Message):
 
 class GetParameterTypes_Response(Message):
     @property
-    def types(self) -> NDArray[np.uint8]: ...
+    def types(self) -> array[int]: ...
     @types.setter
     def types(self, value: ArrayLike) -> None: ...
     def __init__(

@@ -5,6 +5,7 @@
 from typing import ClassVar
 
 import numpy as np
+
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message

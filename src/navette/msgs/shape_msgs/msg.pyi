@@ -2,9 +2,12 @@
 # ruff: noqa
 # fmt: off
 
+from array import array
+
 from typing import ClassVar
 
 import numpy as np
+
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -59,7 +62,7 @@ class SolidPrimitive(Message):
     PRISM_HEIGHT: ClassVar[int]
     type: int
     @property
-    def dimensions(self) -> NDArray[np.float64]: ...
+    def dimensions(self) -> array[float]: ...
     @dimensions.setter
     def dimensions(self, value: ArrayLike) -> None: ...
     polygon: navette.msgs.geometry_msgs.msg.Polygon

@@ -2,7 +2,8 @@
 # ruff: noqa
 # fmt: off
 
-import numpy as np
+from array import array
+
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -26,15 +27,12 @@ class Byte(Message):
 
 class ByteMultiArray(Message):
     layout: MultiArrayLayout
-    @property
-    def data(self) -> NDArray[np.uint8]: ...
-    @data.setter
-    def data(self, value: ArrayLike) -> None: ...
+    data: list[bytes]
     def __init__(
         self,
         *,
         layout: MultiArrayLayout = ...,
-        data: ArrayLike = ...,
+        data: list[bytes] = ...,
     ) -> None: ...
 
 class Char(Message):
@@ -73,7 +71,7 @@ class Float32(Message):
 class Float32MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.float32]: ...
+    def data(self) -> array[float]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -94,7 +92,7 @@ class Float64(Message):
 class Float64MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.float64]: ...
+    def data(self) -> array[float]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -125,7 +123,7 @@ class Int16(Message):
 class Int16MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.int16]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -146,7 +144,7 @@ class Int32(Message):
 class Int32MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.int32]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -167,7 +165,7 @@ class Int64(Message):
 class Int64MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.int64]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -188,7 +186,7 @@ class Int8(Message):
 class Int8MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.int8]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -239,7 +237,7 @@ class UInt16(Message):
 class UInt16MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.uint16]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -260,7 +258,7 @@ class UInt32(Message):
 class UInt32MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.uint32]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -281,7 +279,7 @@ class UInt64(Message):
 class UInt64MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.uint64]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
@@ -302,7 +300,7 @@ class UInt8(Message):
 class UInt8MultiArray(Message):
     layout: MultiArrayLayout
     @property
-    def data(self) -> NDArray[np.uint8]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(

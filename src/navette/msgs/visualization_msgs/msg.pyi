@@ -2,9 +2,10 @@
 # ruff: noqa
 # fmt: off
 
+from array import array
+
 from typing import ClassVar
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from navette.msgs.base import Message
@@ -272,7 +273,7 @@ class MenuEntry(Message):
 class MeshFile(Message):
     filename: str
     @property
-    def data(self) -> NDArray[np.uint8]: ...
+    def data(self) -> array[int]: ...
     @data.setter
     def data(self, value: ArrayLike) -> None: ...
     def __init__(
