@@ -12,6 +12,7 @@ from navette.cli.arguments import join_pairs, parse_goal, parse_speed, spread_li
 from navette.cli.launch import launch
 from navette.cli.pkg import pkg
 from navette.cli.run import run
+from navette.cli.topic import topic
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
@@ -183,6 +184,7 @@ def _run(options: "RunOptions", *, as_json: bool) -> None:
 # What stands behind the program's name is the program's.
 app.command(context_settings={"allow_interspersed_args": False})(run)
 app.add_typer(pkg)
+app.add_typer(topic)
 app.command()(launch)
 
 

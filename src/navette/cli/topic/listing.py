@@ -1,0 +1,205 @@
+"""Topics as they are: who publishes and subscribes, with which type and QoS."""
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from navette.cli.output import aligned, is_terminal, styled
+from navette.cli.session import endpoints, fail, is_hidden
+from navette.runtime import Node
+from navette.runtime.topic_endpoint_info import TopicEndpointInfo
+from navette.transports import (
+    INFINITE_NS,
+    Endpoint,
+    EndpointKind,
+    EndpointQos,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPolicyKind,
+    incompatible_policies,
+)
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic and its endpoints."""
+
+    name: str
+    publishers: tuple[Endpoint, ...]
+    subscriptions: tuple[Endpoint, ...]
+
+    @property
+    def types(self) -> list[str]:
+        """Sorted; more than one is a fault of the programs."""
+        every = (*self.publishers, *self.subscriptions)
+        return sorted({endpoint.type_name for endpoint in every})
+
+    @property
+    def mismatches(self) -> list[str]:
+        """Pairs that exchange nothing, and why, for a person."""
+        return [
+            _mismatch(publisher, subscription)
+            for publisher in self.publishers
+            for subscription in self.subscriptions
+            if _mismatch(publisher, subscription)
+        ]
+
+    def to_json(self) -> dict[str, Any]:
+        return {
+            "name": self.name,
+            "types": self.types,
+            "publishers": [_endpoint_json(each) for each in self.publishers],
+            "subscriptions": [_endpoint_json(each) for each in self.subscriptions],
+            "mismatches": self.mismatches,
+        }
+
+
+def topics(node: Node, *, hidden: bool = False) -> list[Topic]:
+    """All topics that run beside ``node``, by name."""
+    by_name: dict[str, list[Endpoint]] = {}
+    for endpoint in endpoints(node):
+        by_name.setdefault(endpoint.topic, []).append(endpoint)
+    names = sorted(name for name in by_name if hidden or not is_hidden(name))
+    return [_topic(name, by_name[name]) for name in names]
+
+
+def topic(node: Node, name: str) -> Topic:
+    """The topic of that name; ends the command if nobody has it."""
+    full_name = node.resolve_topic_name(name)
+    found = endpoints(node, full_name)
+    if not found:
+        fail(unknown_topic(full_name, (each.topic for each in endpoints(node))))
+    return _topic(full_name, found)
+
+
+def unknown_topic(name: str, known: Iterable[str]) -> str:
+    """That nobody has the topic, and which ones look like it."""
+    alike = difflib.get_close_matches(name, sorted(set(known)), n=3)
+    hint = f"; did you mean {' or '.join(alike)}?" if alike else ""
+    return f"nobody publishes or subscribes to {name}{hint}"
+
+
+def listed(found: list[Topic], *, show_types: bool, verbose: bool) -> str:
+    """Lines for a list: as ``ros2 topic list`` prints them, aligned for a person."""
+    if verbose:
+        return _table(found) if is_terminal() else _by_direction(found)
+    if show_types:
+        return _with_types(found)
+    return "\n".join(each.name for each in found)
+
+
+def described(found: Topic, *, verbose: bool) -> str:
+    """One topic as ``ros2 topic info`` prints it, and what does not fit."""
+    types = ", ".join(found.types)
+    blocks = [f"Type: {types}", f"Publisher count: {len(found.publishers)}"]
+    if verbose:
+        blocks += [str(TopicEndpointInfo(each)) for each in found.publishers]
+    blocks.append(f"Subscription count: {len(found.subscriptions)}")
+    if verbose:
+        blocks += [str(TopicEndpointInfo(each)) for each in found.subscriptions]
+    blocks += [styled(f"No exchange: {text}", fg="red") for text in found.mismatches]
+    return ("\n\n" if verbose else "\n").join(blocks)
+
+
+def describe_qos(qos: EndpointQos) -> str:
+    """What matters of a QoS in few words: ``reliable, volatile, last 10``."""
+    kept = "all" if qos.history == HistoryPolicy.KEEP_ALL else f"last {qos.depth}"
+    words = [qos.reliability.short_key, qos.durability.short_key, kept]
+    if qos.deadline_ns != INFINITE_NS:
+        words.append(f"deadline {qos.deadline_ns / 1e9:g} s")
+    if qos.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC:
+        words.append("manual liveliness")
+    return ", ".join(words)
+
+
+def _topic(name: str, found: list[Endpoint]) -> Topic:
+    publishers = [e for e in found if e.kind == EndpointKind.PUBLISHER]
+    subscriptions = [e for e in found if e.kind == EndpointKind.SUBSCRIPTION]
+    return Topic(name, tuple(publishers), tuple(subscriptions))
+
+
+def _with_types(found: list[Topic]) -> str:
+    if not is_terminal():
+        return "\n".join(f"{each.name} [{', '.join(each.types)}]" for each in found)
+    width = max(len(each.name) for each in found)
+    return "\n".join(
+        f"{each.name.ljust(width)}  {styled(', '.join(each.types), dim=True)}"
+        for each in found
+    )
+
+
+def _by_direction(found: list[Topic]) -> str:
+    sections = (
+        ("Published topics:", "publisher", [each.publishers for each in found]),
+        ("Subscribed topics:", "subscriber", [each.subscriptions for each in found]),
+    )
+    lines = []
+    for title, word, groups in sections:
+        lines.append(title)
+        for each, group in zip(found, groups, strict=True):
+            if group:
+                types = ", ".join(each.types)
+                lines.append(f" * {each.name} [{types}] {_count(len(group), word)}")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def _table(found: list[Topic]) -> str:
+    head = ("TOPIC", "TYPE", "PUB", "SUB", "QOS OF THE PUBLISHERS")
+    rows = [
+        (
+            each.name,
+            ", ".join(each.types),
+            str(len(each.publishers)),
+            str(len(each.subscriptions)),
+            "; ".join(sorted({describe_qos(e.qos) for e in each.publishers})),
+        )
+        for each in found
+    ]
+    first, *lines = aligned([head, *rows])
+    for each in found:
+        lines += [styled(f"{each.name}: {text}", fg="red") for text in each.mismatches]
+    return "\n".join([styled(first, dim=True), *lines])
+
+
+def _count(number: int, word: str) -> str:
+    return f"{number} {word}" + ("s" if number > 1 else "")
+
+
+def _mismatch(publisher: Endpoint, subscription: Endpoint) -> str:
+    pair = f"{publisher.node_full_name} → {subscription.node_full_name}"
+    if publisher.type_name != subscription.type_name:
+        return f"{pair}: {publisher.type_name} is not {subscription.type_name}"
+    short = incompatible_policies(publisher.qos, subscription.qos)
+    reasons = [_reason(kind, publisher.qos, subscription.qos) for kind in short]
+    return f"{pair}: {', '.join(reasons)}" if reasons else ""
+
+
+def _reason(kind: QoSPolicyKind, offered: EndpointQos, wanted: EndpointQos) -> str:
+    word = kind.name.lower()
+    mine, other = getattr(offered, word, None), getattr(wanted, word, None)
+    if mine is None or other is None:
+        return word.replace("_", " ")
+    return f"{word} {other.short_key} wanted, {mine.short_key} offered"
+
+
+def _endpoint_json(endpoint: Endpoint) -> dict[str, Any]:
+    info = TopicEndpointInfo(endpoint)
+    qos = endpoint.qos
+    return {
+        "node": endpoint.node_full_name,
+        "type": endpoint.type_name,
+        "hash": str(info.topic_type_hash),
+        "gid": endpoint.gid.hex(),
+        "qos": {
+            "history": qos.history.short_key,
+            "depth": qos.depth,
+            "reliability": qos.reliability.short_key,
+            "durability": qos.durability.short_key,
+            "deadline_ns": None if qos.deadline_ns == INFINITE_NS else qos.deadline_ns,
+            "lifespan_ns": None if qos.lifespan_ns == INFINITE_NS else qos.lifespan_ns,
+            "liveliness": qos.liveliness.short_key,
+            "lease_ns": None if qos.lease_ns == INFINITE_NS else qos.lease_ns,
+        },
+    }
