@@ -9,6 +9,7 @@ NavetteError
 ├── FileFormatError (ValueError)        a file: carries path and line
 ├── DecodeError (ValueError)            bytes that are not what they claim to be
 ├── TransformError                      a transform that cannot be given
+├── NetworkError (ConnectionError)      the network cannot be joined or reached
 └── CallbackError (RuntimeError)        a callback raised: node, topic, stamp
 """
 
@@ -64,6 +65,10 @@ class DecodeError(NavetteError, ValueError):
 
 class TransformError(NavetteError):
     """A transform is unknown, not connected or outside the buffered time."""
+
+
+class NetworkError(NavetteError, ConnectionError):
+    """The network cannot be joined, or what was there is gone."""
 
 
 class CallbackError(NavetteError, RuntimeError):

@@ -18,6 +18,12 @@ from navette.runtime.log import LogHub, StdlibHandler
 from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.log_sinks import ConsoleSink, FileSink
 from navette.runtime.loop import EventLoop
+from navette.runtime.network import (
+    IN_PROCESS,
+    checked_transport,
+    chosen_transport,
+    join_network,
+)
 from navette.runtime.overrides import ParameterOverrides
 from navette.transports import InProcessTransport
 
@@ -37,11 +43,21 @@ class Context:
     Args:
         graph: one that several contexts share, each with a loop of its own, so that
             programs in one process meet; its maker closes its transports.
+        transport: ``inprocess`` or ``zenoh`` (which is in process and the network);
+            None: ``NAVETTE_TRANSPORT``, else the network, except in lock-step virtual
+            time and under pytest.
     """
 
     def __init__(
-        self, *, clock: TimeSource | None = None, graph: Graph | None = None
+        self,
+        *,
+        clock: TimeSource | None = None,
+        graph: Graph | None = None,
+        transport: str | None = None,
     ) -> None:
+        if transport is not None:
+            checked_transport(transport, "Context")
+        self._transport = transport
         self.loop = EventLoop(clock or SystemClock())
         scope = current_scope.get()
         graph = graph or scope.graph
@@ -96,6 +112,7 @@ class Context:
                 raise RuntimeError("Context.init() must only be called once")
             arguments = parse_ros_arguments(sys.argv if args is None else args)
             self._domain_id = _domain_id(domain_id)
+            self._join_network()
             self.overrides.add_arguments(arguments.parameters, "command line")
             self.arguments = arguments
             if initialize_logging:
@@ -173,6 +190,14 @@ class Context:
         exc_tb: TracebackType | None,
     ) -> None:
         self.try_shutdown()
+
+    def _join_network(self) -> None:
+        if chosen_transport(self._transport, self.clock) == IN_PROCESS:
+            return
+        # A graph that began without the network stays so, unless asked otherwise.
+        if self._transport is None and self.graph.nodes():
+            return
+        join_network(self.graph, self._domain_id, lambda: self.clock.now_ns)
 
     def _look_around(self) -> None:
         """Something came or went by another thread: a wait may be for just that."""

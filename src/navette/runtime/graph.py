@@ -1,12 +1,14 @@
 """Who is there: nodes, topics, endpoints; with a hook for viewers and recorders."""
 
 import itertools
+import threading
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import replace
 
 from navette.transports import (
     Endpoint,
     EndpointKind,
+    NodeInfo,
     QoSPolicyKind,
     Transport,
     TransportObserver,
@@ -15,27 +17,17 @@ from navette.transports import (
 IncompatibleHook = Callable[[Endpoint, Endpoint, tuple[QoSPolicyKind, ...]], None]
 
 
-@dataclass(frozen=True)
-class NodeInfo:
-    """A node as the graph lists it."""
-
-    name: str
-    namespace: str
-    enclave: str = "/"
-
-    @property
-    def full_name(self) -> str:
-        return f"{self.namespace.rstrip('/')}/{self.name}"
-
-
 class Graph(TransportObserver):
     """Everything that the context's transports can see."""
 
     def __init__(self) -> None:
         self.transports: list[Transport] = []
+        #: Held while transports are chosen.
+        self.joining = threading.Lock()
         self._nodes: list[NodeInfo] = []
         self._on_change: list[Callable[[], None]] = []
         self._on_incompatible: list[IncompatibleHook] = []
+        self._on_incompatible_type: list[Callable[[Endpoint, Endpoint], None]] = []
         self._on_match: list[Callable[[Endpoint, Endpoint, bool], None]] = []
         self._on_liveliness: list[Callable[[Endpoint, bool], None]] = []
         #: Gids of the publishers that assert themselves and whose lease holds.
@@ -57,6 +49,13 @@ class Graph(TransportObserver):
         self._on_incompatible.append(callback)
         return lambda: self._on_incompatible.remove(callback)
 
+    def on_incompatible_type(
+        self, callback: Callable[[Endpoint, Endpoint], None]
+    ) -> Callable[[], None]:
+        """Call back with an endpoint here and a remote one of another type."""
+        self._on_incompatible_type.append(callback)
+        return lambda: self._on_incompatible_type.remove(callback)
+
     def on_match(
         self, callback: Callable[[Endpoint, Endpoint, bool], None]
     ) -> Callable[[], None]:
@@ -74,6 +73,7 @@ class Graph(TransportObserver):
     # -- what transports and nodes report --------------------------------------
 
     def add_transport(self, transport: Transport) -> None:
+        """One that the ports of all endpoints to come are opened on too."""
         self.transports.append(transport)
         transport.observe(self)
 
@@ -84,17 +84,28 @@ class Graph(TransportObserver):
 
     def add_node(self, info: NodeInfo) -> None:
         self._nodes.append(info)
+        for transport in self.transports:
+            transport.announce(info)
         self.graph_changed()
 
     def remove_node(self, info: NodeInfo) -> None:
         if info in self._nodes:
             self._nodes.remove(info)
+            for transport in self.transports:
+                transport.withdraw(info)
             self.graph_changed()
 
-    def new_gid(self) -> bytes:
-        """A 16-byte id, the same ones in the same order in every run."""
+    def with_gid(self, endpoint: Endpoint) -> Endpoint:
+        """The endpoint with the 16-byte id by which it is known, also to remote ones.
+
+        In process alone: the same ids in the same order in every run.
+        """
+        for transport in self.transports:
+            gid = transport.gid_for(endpoint)
+            if gid is not None:
+                return replace(endpoint, gid=gid)
         # next() is one step, also where several threads share the graph.
-        return next(self._gids).to_bytes(16, "big")
+        return replace(endpoint, gid=next(self._gids).to_bytes(16, "big"))
 
     def graph_changed(self) -> None:
         for callback in tuple(self._on_change):
@@ -126,11 +137,16 @@ class Graph(TransportObserver):
         for callback in tuple(self._on_incompatible):
             callback(publisher, subscription, policies)
 
+    def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
+        for callback in tuple(self._on_incompatible_type):
+            callback(local, remote)
+
     # -- queries ---------------------------------------------------------------
 
     def nodes(self) -> list[NodeInfo]:
-        """In order of appearance; two nodes of one name are listed twice."""
-        return list(self._nodes)
+        """Those here, then remote ones; two nodes of one name are listed twice."""
+        remote = (info for t in self.transports for info in t.remote_nodes())
+        return [*self._nodes, *remote]
 
     def endpoints(
         self,

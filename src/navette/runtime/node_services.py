@@ -153,12 +153,13 @@ class NodeServices:
         self._check_alive()
         if not isinstance(qos, QoSProfile):
             raise TypeError(f"service {name}: qos_profile {qos!r}: wanted a QoSProfile")
-        return Endpoint(
+        endpoint = Endpoint(
             kind=kind,
             topic=self._remapper.resolve(name, is_service=True),
             type_name=type_name,
             qos=qos.to_endpoint_qos(),
             node_name=self._remapper.node_name,
             node_namespace=self._remapper.namespace,
-            gid=self._context.graph.new_gid(),
+            gid=b"",
         )
+        return self._context.graph.with_gid(endpoint)

@@ -190,12 +190,13 @@ class NodeTopics:
         self, kind: EndpointKind, msg_type: type, topic: str, qos: QoSProfile
     ) -> Endpoint:
         self._check_alive()
-        return Endpoint(
+        endpoint = Endpoint(
             kind=kind,
             topic=self._remapper.resolve(topic),
             type_name=interface_name(msg_type, "msg"),
             qos=qos.to_endpoint_qos(),
             node_name=self._remapper.node_name,
             node_namespace=self._remapper.namespace,
-            gid=self._context.graph.new_gid(),
+            gid=b"",
         )
+        return self._context.graph.with_gid(endpoint)

@@ -11,7 +11,13 @@ from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.loop import Entity, EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.signatures import takes_arguments
-from navette.transports import INFINITE_NS, Endpoint, Item, SubscriptionPort
+from navette.transports import (
+    INFINITE_NS,
+    Encoded,
+    Endpoint,
+    Item,
+    SubscriptionPort,
+)
 
 MsgT = TypeVar("MsgT")
 
@@ -123,12 +129,24 @@ class Subscription(Entity, Generic[MsgT]):
         if not queue:  # destroyed while the event waited, or one event too many
             return None
         if self._plain:
-            return self._callback(queue.popleft()[0])
+            message = queue.popleft()[0]
+            if message.__class__ is Encoded:
+                message = message.decode()
+                if message is None:
+                    return None
+            return self._callback(message)
         return self._run_with_info(queue.popleft())
 
     def take(self) -> MsgT | None:
         """The oldest sample of the queue, without a callback; None if it is empty."""
-        return self._queue.popleft()[0] if self._queue else None
+        while self._queue:
+            message = self._queue.popleft()[0]
+            if message.__class__ is Encoded:
+                message = message.decode()
+            if message is not None:
+                taken: MsgT = message
+                return taken
+        return None
 
     def origin(self) -> tuple[str, str]:
         return self.endpoint.node_full_name, f"topic {self.endpoint.topic}"
@@ -153,9 +171,13 @@ class Subscription(Entity, Generic[MsgT]):
 
     def _run_with_info(self, item: Item) -> Any:
         message, source_ns, received_ns, sequence = item
-        self._received += 1
-        if self.raw:
+        if message.__class__ is Encoded:
+            message = message.data if self.raw else message.decode()
+            if message is None:
+                return None
+        elif self.raw:
             message = serialize(message)
+        self._received += 1
         if not self._informed:
             return self._callback(message)
         info: MessageInfo = {

@@ -4,12 +4,14 @@ from navette.transports.base import (
     Endpoint,
     EndpointKind,
     Item,
+    NodeInfo,
     PublisherPort,
     Sink,
     SubscriptionPort,
     Transport,
     TransportObserver,
 )
+from navette.transports.encoded import Encoded
 from navette.transports.inprocess import InProcessTransport
 from navette.transports.qos import (
     INFINITE_NS,
@@ -34,6 +36,7 @@ from navette.transports.service_ports import (
 __all__ = [
     "ClientPort",
     "DurabilityPolicy",
+    "Encoded",
     "Endpoint",
     "EndpointKind",
     "EndpointQos",
@@ -42,6 +45,7 @@ __all__ = [
     "InProcessTransport",
     "Item",
     "LivelinessPolicy",
+    "NodeInfo",
     "PublisherPort",
     "QoSPolicyKind",
     "ReliabilityPolicy",

@@ -21,10 +21,26 @@ from navette.transports.service_ports import (
 )
 
 Item = tuple[Any, int, int, int]
-"""One delivered sample: message, source stamp (ns), received stamp (ns), sequence."""
+"""One delivered sample: message, source stamp (ns), received stamp (ns), sequence.
+
+A message that came as bytes is an :class:`~navette.transports.encoded.Encoded`.
+"""
 
 Sink = Callable[[Item], None]
 """Takes one delivered sample; must only queue it and return."""
+
+
+@dataclass(frozen=True)
+class NodeInfo:
+    """A node as the graph lists it."""
+
+    name: str
+    namespace: str
+    enclave: str = "/"
+
+    @property
+    def full_name(self) -> str:
+        return f"{self.namespace.rstrip('/')}/{self.name}"
 
 
 class EndpointKind(Enum):
@@ -40,7 +56,8 @@ class EndpointKind(Enum):
 class Endpoint:
     """One end of a topic or service, as the graph lists it (labels, no node object).
 
-    ``topic`` is the name of the service for servers and clients.
+    ``topic`` is the name of the service for servers and clients. ``type_hash`` is that
+    of a remote endpoint, as it was announced; empty = the one of the type here.
     """
 
     kind: EndpointKind
@@ -50,6 +67,7 @@ class Endpoint:
     node_name: str
     node_namespace: str
     gid: bytes
+    type_hash: str = ""
 
     @property
     def node_full_name(self) -> str:
@@ -75,6 +93,9 @@ class TransportObserver:
         policies: tuple[QoSPolicyKind, ...],
     ) -> None:
         """Same topic and type, but the offer falls short of the request."""
+
+    def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
+        """Same topic, another type or another definition of it: they do not meet."""
 
 
 class PublisherPort(ABC):
@@ -149,6 +170,22 @@ class Transport(ABC):
         Raises:
             InvalidValueError: the service is of another type; both are named.
         """
+
+    def announce(self, node: NodeInfo) -> None:
+        """A node is here from now on; in process nobody needs telling."""
+        return
+
+    def withdraw(self, node: NodeInfo) -> None:
+        """A node of :meth:`announce` is gone."""
+        return
+
+    def gid_for(self, endpoint: Endpoint) -> bytes | None:
+        """The id under which a new endpoint will be known; None = any will do."""
+        return None
+
+    def remote_nodes(self) -> list[NodeInfo]:
+        """Nodes of other processes, in order of appearance."""
+        return []
 
     @abstractmethod
     def endpoints(self) -> list[Endpoint]:

@@ -1,0 +1,88 @@
+"""Zenoh configurations: of a peer, of the router, of a client that only asks."""
+
+import json
+from typing import Any
+
+import zenoh
+
+from navette.errors import InvalidValueError
+from navette.transports.zenoh.settings import Settings
+
+# As in rmw_zenoh's default configurations, but for the retries: the router is in one
+# of the processes, and another one takes over at once.
+_COMMON: dict[str, Any] = {
+    "connect": {
+        "timeout_ms": {"router": -1, "peer": -1, "client": 0},
+        "exit_on_failure": {"router": False, "peer": False, "client": True},
+        "retry": {
+            "period_init_ms": 50,
+            "period_max_ms": 1000,
+            "period_increase_factor": 2,
+        },
+    },
+    "scouting": {
+        "multicast": {"enabled": False},
+        "gossip": {
+            "enabled": True,
+            "target": {"router": ["router", "peer"], "peer": ["router"]},
+            "autoconnect": {"router": [], "peer": ["router", "peer"]},
+            "autoconnect_strategy": {
+                "peer": {"to_router": "always", "to_peer": "greater-zid"}
+            },
+        },
+    },
+    "timestamping": {"enabled": True},
+    "queries_default_timeout": 600_000,
+    "transport": {"unicast": {"accept_pending": 1000, "max_sessions": 10_000}},
+}
+
+
+def peer_config(settings: Settings) -> zenoh.Config:
+    """Of the session that does the work."""
+    config = _base(settings.session_file)
+    config.insert_json5("mode", '"peer"')
+    if settings.session_file is None or "router" in settings.explicit:
+        config.insert_json5("connect/endpoints", json.dumps(settings.router))
+    if settings.session_file is None or "listen" in settings.explicit:
+        config.insert_json5("listen/endpoints", json.dumps(settings.listen))
+    if settings.session_file is None:
+        # The graph waits for those who are there (see session); Zenoh need not.
+        config.insert_json5("scouting/delay", "0")
+    return config
+
+
+def client_config(settings: Settings) -> zenoh.Config:
+    """Of a session that asks the router who is there."""
+    config = peer_config(settings)
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("listen/endpoints", "[]")
+    config.insert_json5("connect/timeout_ms", "0")
+    config.insert_json5("connect/exit_on_failure", "true")
+    return config
+
+
+def router_config(settings: Settings) -> zenoh.Config:
+    """Of the router, at the endpoints where the others look for it."""
+    config = _base(settings.router_file or settings.session_file)
+    config.insert_json5("mode", '"router"')
+    if settings.router_file is None:
+        config.insert_json5("listen/endpoints", json.dumps(router_endpoints(settings)))
+        config.insert_json5("connect/endpoints", "[]")
+    return config
+
+
+def router_endpoints(settings: Settings) -> list[str]:
+    """Where the router is looked for."""
+    if settings.session_file is None or "router" in settings.explicit:
+        return list(settings.router)
+    found = json.loads(peer_config(settings).get_json("connect/endpoints"))
+    return list(found.get("peer", [])) if isinstance(found, dict) else list(found)
+
+
+def _base(path: Any) -> zenoh.Config:
+    if path is None:
+        return zenoh.Config.from_json5(json.dumps(_COMMON))
+    try:
+        return zenoh.Config.from_file(str(path))
+    except zenoh.ZError as error:
+        raise InvalidValueError(f"Zenoh configuration {path}: {error}") from error

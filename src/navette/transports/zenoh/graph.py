@@ -1,0 +1,239 @@
+"""The others: which nodes and endpoints there are, and which of them match ours."""
+
+import threading
+from collections import Counter, deque
+from collections.abc import Callable, Iterable
+from functools import partial
+
+from navette.errors import DecodeError
+from navette.transports.base import (
+    Endpoint,
+    EndpointKind,
+    NodeInfo,
+    TransportObserver,
+)
+from navette.transports.qos import QoSPolicyKind, incompatible_policies
+from navette.transports.zenoh.complaints import Complaints
+from navette.transports.zenoh.tokens import EndpointToken, gid_of, parse_token
+
+# What is listed of one session; nobody has as many, except to do harm.
+MOST_TOKENS_OF_A_SESSION = 20_000
+
+_OPPOSITE = {
+    EndpointKind.PUBLISHER: EndpointKind.SUBSCRIPTION,
+    EndpointKind.SUBSCRIPTION: EndpointKind.PUBLISHER,
+    EndpointKind.SERVICE: EndpointKind.CLIENT,
+    EndpointKind.CLIENT: EndpointKind.SERVICE,
+}
+
+
+class Matches:
+    """The remote endpoints that an endpoint here exchanges samples with.
+
+    ``remotes`` (by token) and ``refused`` (gids of those whose QoS does not fit) change
+    while others read them.
+    """
+
+    __slots__ = ("endpoint", "refused", "remotes", "type_hash")
+
+    def __init__(self, endpoint: Endpoint, type_hash: str) -> None:
+        self.endpoint = endpoint
+        self.type_hash = type_hash
+        self.remotes: dict[str, Endpoint] = {}
+        self.refused: set[bytes] = set()
+
+
+class RemoteGraph:
+    """Keeps the tokens of other sessions; tells observers what they mean.
+
+    Tokens come on Zenoh's threads. The lock is a leaf: no observer is called under it.
+
+    Args:
+        own_zid: the session whose own tokens are left out.
+    """
+
+    def __init__(self, own_zid: str, complaints: Complaints) -> None:
+        self.observers: list[TransportObserver] = []
+        self._own_zid = own_zid
+        self._complaints = complaints
+        self._nodes: dict[str, NodeInfo] = {}
+        self._endpoints: dict[str, Endpoint] = {}
+        self._by_name: dict[tuple[EndpointKind, str], dict[str, Endpoint]] = {}
+        self._count_of: Counter[str] = Counter()
+        self._locals: dict[tuple[EndpointKind, str], list[Matches]] = {}
+        self._lock = threading.Condition()
+        self._events: deque[Callable[[], None]] = deque()
+        self._telling = threading.RLock()
+
+    # -- the others ------------------------------------------------------------
+
+    def on_token(self, key: str, *, alive: bool) -> None:
+        """A token has come or gone; anything that is no token is reported once."""
+        if alive:
+            self._add(key)
+        else:
+            self._remove(key)
+        self._tell()
+
+    def nodes(self) -> list[NodeInfo]:
+        """Remote nodes, in order of appearance."""
+        with self._lock:
+            return list(self._nodes.values())
+
+    def endpoints(self, kinds: Iterable[EndpointKind]) -> list[Endpoint]:
+        """Remote endpoints of those kinds, in order of appearance."""
+        wanted = set(kinds)
+        with self._lock:
+            return [e for e in self._endpoints.values() if e.kind in wanted]
+
+    def wait_until_known(self, keys: set[str], timeout_s: float) -> bool:
+        """Whether all those tokens are here within the time."""
+
+        def all_here() -> bool:
+            return all(key in self._nodes or key in self._endpoints for key in keys)
+
+        with self._lock:
+            return self._lock.wait_for(all_here, timeout_s)
+
+    # -- ours ------------------------------------------------------------------
+
+    def add_local(self, endpoint: Endpoint, type_hash: str) -> Matches:
+        """An endpoint of this session, from now on matched against the others."""
+        matches = Matches(endpoint, type_hash)
+        with self._lock:
+            self._locals.setdefault((endpoint.kind, endpoint.topic), []).append(matches)
+            there = self._by_name.get((_OPPOSITE[endpoint.kind], endpoint.topic), {})
+            for key, remote in there.items():
+                self._meet(matches, key, remote)
+        self._tell()
+        return matches
+
+    def remove_local(self, matches: Matches) -> None:
+        """The endpoint of :meth:`add_local` is gone."""
+        name = matches.endpoint.kind, matches.endpoint.topic
+        with self._lock:
+            here = self._locals.get(name, [])
+            if matches not in here:
+                return
+            here.remove(matches)
+            if not here:
+                del self._locals[name]
+            for remote in matches.remotes.values():
+                self._queue_match(matches.endpoint, remote, up=False)
+            matches.remotes.clear()
+        self._tell()
+
+    # -- inside, under the lock --------------------------------------------------
+
+    def _add(self, key: str) -> None:
+        try:
+            token = parse_token(key)
+        except DecodeError as error:
+            peer = "/".join(key[:200].split("/")[:3])
+            self._complaints.once(("token", peer), f"token ignored: {error}")
+            return
+        if token.zid == self._own_zid:
+            return
+        with self._lock:
+            if key in self._nodes or key in self._endpoints:
+                return
+            if self._count_of[token.zid] >= MOST_TOKENS_OF_A_SESSION:
+                self._complaints.once(
+                    ("tokens", token.zid),
+                    f"session {token.zid} has more than {MOST_TOKENS_OF_A_SESSION} "
+                    "nodes and endpoints: the others are ignored",
+                )
+                return
+            self._count_of[token.zid] += 1
+            if isinstance(token, EndpointToken):
+                self._add_endpoint(key, token)
+            else:
+                self._nodes[key] = token.node
+            self._events.append(self._tell_changed)
+            self._lock.notify_all()
+
+    def _add_endpoint(self, key: str, token: EndpointToken) -> None:
+        endpoint = Endpoint(
+            kind=token.kind,
+            topic=token.topic,
+            type_name=token.type_name,
+            qos=token.qos,
+            node_name=token.node.name,
+            node_namespace=token.node.namespace,
+            gid=gid_of(key),
+            type_hash=token.type_hash,
+        )
+        self._endpoints[key] = endpoint
+        self._by_name.setdefault((endpoint.kind, endpoint.topic), {})[key] = endpoint
+        for matches in self._locals.get((_OPPOSITE[token.kind], token.topic), ()):
+            self._meet(matches, key, endpoint)
+
+    def _remove(self, key: str) -> None:
+        with self._lock:
+            endpoint = self._endpoints.pop(key, None)
+            if endpoint is not None:
+                self._part(key, endpoint)
+            elif self._nodes.pop(key, None) is None:
+                return
+            zid = key.split("/", 3)[2]
+            self._count_of[zid] -= 1
+            if not self._count_of[zid]:
+                del self._count_of[zid]
+            self._events.append(self._tell_changed)
+            self._lock.notify_all()
+
+    def _part(self, key: str, endpoint: Endpoint) -> None:
+        name = endpoint.kind, endpoint.topic
+        del self._by_name[name][key]
+        if not self._by_name[name]:
+            del self._by_name[name]
+        opposite = _OPPOSITE[endpoint.kind], endpoint.topic
+        for matches in self._locals.get(opposite, ()):
+            matches.refused.discard(endpoint.gid)
+            if matches.remotes.pop(key, None) is not None:
+                self._queue_match(matches.endpoint, endpoint, up=False)
+
+    def _meet(self, matches: Matches, key: str, remote: Endpoint) -> None:
+        local = matches.endpoint
+        if (remote.type_name, remote.type_hash) != (local.type_name, matches.type_hash):
+            self._queue("incompatible_type", local, remote)
+            return
+        publisher, subscription = _in_order(local, remote)
+        short = incompatible_policies(publisher.qos, subscription.qos)
+        if local.kind in (EndpointKind.SERVICE, EndpointKind.CLIENT):
+            short += incompatible_policies(subscription.qos, publisher.qos)
+            if not short:
+                matches.remotes[key] = remote
+        elif short:
+            matches.refused.add(remote.gid)
+            self._queue("incompatible_qos", publisher, subscription, short)
+        else:
+            matches.remotes[key] = remote
+            self._queue_match(local, remote, up=True)
+
+    def _queue_match(self, local: Endpoint, remote: Endpoint, *, up: bool) -> None:
+        if local.kind in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
+            self._queue("matched" if up else "unmatched", *_in_order(local, remote))
+
+    def _queue(self, event: str, *ends: Endpoint | tuple[QoSPolicyKind, ...]) -> None:
+        for observer in self.observers:
+            self._events.append(partial(getattr(observer, event), *ends))
+
+    # -- telling ---------------------------------------------------------------
+
+    def _tell(self) -> None:
+        """Call the observers, in the order in which things happened."""
+        with self._telling:
+            while self._events:
+                self._events.popleft()()
+
+    def _tell_changed(self) -> None:
+        for observer in self.observers:
+            observer.graph_changed()
+
+
+def _in_order(local: Endpoint, remote: Endpoint) -> tuple[Endpoint, Endpoint]:
+    """The one that sends (or serves), then the other."""
+    if local.kind in (EndpointKind.PUBLISHER, EndpointKind.SERVICE):
+        return local, remote
+    return remote, local

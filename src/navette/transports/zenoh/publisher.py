@@ -1,0 +1,89 @@
+"""Publishers: serialise once a message, and only while someone remote listens."""
+
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+from zenoh import ext
+
+from navette.msgs import serialize
+from navette.transports.base import PublisherPort
+from navette.transports.qos import EndpointQos, HistoryPolicy, ReliabilityPolicy
+from navette.transports.zenoh.attachment import Attachment
+from navette.transports.zenoh.graph import Matches
+
+
+class ZenohPublisher(PublisherPort):
+    """Puts CDR with an attachment; Zenoh keeps the samples of latched topics.
+
+    Args:
+        qos: as it was announced.
+        gid: as hashed from the liveliness token.
+        closed: called once when the port is closed.
+    """
+
+    __slots__ = ("_closed", "_gid", "_latched", "_publisher", "_put", "matches")
+
+    def __init__(
+        self,
+        session: zenoh.Session,
+        key: str,
+        qos: EndpointQos,
+        gid: bytes,
+        matches: Matches,
+        closed: Callable[["ZenohPublisher"], None],
+    ) -> None:
+        self.matches = matches
+        self._gid = gid
+        self._latched = qos.is_latched
+        self._closed = closed
+        self._publisher: Any = _declare(session, key, qos)
+        self._put = self._publisher.put
+
+    def send(self, message: Any, source_ns: int, sequence: int) -> None:
+        if not self.matches.remotes and not self._latched:
+            return
+        attachment = Attachment(sequence, source_ns, self._gid)
+        self._put(serialize(message), attachment=attachment.encode())
+
+    @property
+    def matched_count(self) -> int:
+        return len(self.matches.remotes)
+
+    def close(self) -> None:
+        if self._publisher is None:
+            return
+        publisher, self._publisher = self._publisher, None
+        self._latched = False
+        self._closed(self)  # nothing matches from here on: nothing is sent
+        publisher.undeclare()
+
+
+def _declare(session: zenoh.Session, key: str, qos: EndpointQos) -> Any:
+    reliable = qos.reliability == ReliabilityPolicy.RELIABLE
+    keeps_all = qos.history == HistoryPolicy.KEEP_ALL
+    options: dict[str, Any] = {
+        "reliability": (
+            zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT
+        ),
+        # As rmw_zenoh: a robot must not wait for a slow or lost listener.
+        "congestion_control": (
+            zenoh.CongestionControl.BLOCK
+            if reliable and keeps_all
+            else zenoh.CongestionControl.DROP
+        ),
+        "allowed_destination": zenoh.Locality.REMOTE,
+    }
+    if not qos.is_latched:
+        return session.declare_publisher(key, **options)
+    return ext.declare_advanced_publisher(
+        session,
+        key,
+        cache=ext.CacheConfig(max_samples=qos.queue_length or _ALL),
+        publisher_detection=True,
+        **options,
+    )
+
+
+# What KEEP_ALL keeps for late joiners.
+_ALL = 100_000

@@ -1,0 +1,126 @@
+"""QoS as one chunk of a liveliness token; what has its default value is left empty.
+
+``<rel>:<dur>:<hist>,<depth>:<deadline s>,<ns>:<lifespan s>,<ns>:<liv>,<lease s>,<ns>``
+"""
+
+import re
+from dataclasses import replace
+
+from navette.errors import DecodeError
+from navette.transports.qos import (
+    DEFAULT_DEPTH,
+    INFINITE_NS,
+    DurabilityPolicy,
+    EndpointQos,
+    HistoryPolicy,
+    LivelinessPolicy,
+    ReliabilityPolicy,
+)
+
+_DURATION = r"(\d{0,10}),(\d{0,9})"
+_CHUNK = re.compile(
+    rf"(\d?):(\d?):(\d?),(\d{{0,10}}):{_DURATION}:{_DURATION}:(\d?),{_DURATION}",
+    re.ASCII,
+)
+_NS = 1_000_000_000
+
+# Left open in a profile, and what rmw_zenoh makes of it.
+_RELIABILITY = {
+    ReliabilityPolicy.SYSTEM_DEFAULT: ReliabilityPolicy.RELIABLE,
+    ReliabilityPolicy.UNKNOWN: ReliabilityPolicy.RELIABLE,
+}
+_DURABILITY = {
+    DurabilityPolicy.SYSTEM_DEFAULT: DurabilityPolicy.VOLATILE,
+    DurabilityPolicy.UNKNOWN: DurabilityPolicy.VOLATILE,
+}
+
+
+def announced(qos: EndpointQos, *, offers: bool) -> EndpointQos:
+    """What the others are told: nothing is left open.
+
+    ``BEST_AVAILABLE`` fits everybody: the most where it ``offers`` (a publisher),
+    the least where it requests.
+    """
+    reliability = _RELIABILITY.get(qos.reliability, qos.reliability)
+    if reliability == ReliabilityPolicy.BEST_AVAILABLE:
+        reliability = (
+            ReliabilityPolicy.RELIABLE if offers else ReliabilityPolicy.BEST_EFFORT
+        )
+    durability = _DURABILITY.get(qos.durability, qos.durability)
+    if durability == DurabilityPolicy.BEST_AVAILABLE:
+        durability = (
+            DurabilityPolicy.TRANSIENT_LOCAL if offers else DurabilityPolicy.VOLATILE
+        )
+    manual = qos.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
+    keeps_all = qos.history == HistoryPolicy.KEEP_ALL
+    return replace(
+        qos,
+        reliability=reliability,
+        durability=durability,
+        history=HistoryPolicy.KEEP_ALL if keeps_all else HistoryPolicy.KEEP_LAST,
+        depth=qos.depth or DEFAULT_DEPTH,
+        liveliness=(
+            LivelinessPolicy.MANUAL_BY_TOPIC if manual else LivelinessPolicy.AUTOMATIC
+        ),
+    )
+
+
+def format_qos(qos: EndpointQos) -> str:
+    """The chunk of a QoS that leaves nothing open (see :func:`announced`)."""
+    return ":".join(
+        (
+            _or_empty(qos.reliability, ReliabilityPolicy.RELIABLE),
+            _or_empty(qos.durability, DurabilityPolicy.VOLATILE),
+            f"{_or_empty(qos.history, HistoryPolicy.KEEP_LAST)},"
+            f"{_or_empty(qos.depth, DEFAULT_DEPTH)}",
+            _format_duration(qos.deadline_ns),
+            _format_duration(qos.lifespan_ns),
+            f"{_or_empty(qos.liveliness, LivelinessPolicy.AUTOMATIC)},"
+            f"{_format_duration(qos.lease_ns)}",
+        )
+    )
+
+
+def parse_qos(chunk: str) -> EndpointQos:
+    """The inverse of :func:`format_qos`.
+
+    Raises:
+        DecodeError: it is no such chunk.
+    """
+    match = _CHUNK.fullmatch(chunk)
+    if match is None:
+        raise DecodeError(f"{chunk[:100]!r} is no QoS")
+    parts = match.groups()
+    try:
+        return EndpointQos(
+            reliability=ReliabilityPolicy(_number(parts[0], 1)),
+            durability=DurabilityPolicy(_number(parts[1], 2)),
+            history=HistoryPolicy(_number(parts[2], 1)),
+            depth=_number(parts[3], DEFAULT_DEPTH),
+            deadline_ns=_duration(parts[4], parts[5]),
+            lifespan_ns=_duration(parts[6], parts[7]),
+            liveliness=LivelinessPolicy(_number(parts[8], 1)),
+            lease_ns=_duration(parts[9], parts[10]),
+        )
+    except ValueError as error:
+        raise DecodeError(f"{chunk!r} is no QoS: {error}") from None
+
+
+def _or_empty(value: int, default: int) -> str:
+    return "" if value == default else str(int(value))
+
+
+def _number(text: str, default: int) -> int:
+    return int(text) if text else default
+
+
+def _format_duration(duration_ns: int) -> str:
+    if duration_ns >= INFINITE_NS:
+        return ","
+    return f"{duration_ns // _NS},{duration_ns % _NS}"
+
+
+def _duration(seconds: str, nanoseconds: str) -> int:
+    if not seconds and not nanoseconds:
+        return INFINITE_NS
+    return min(_number(seconds, 0) * _NS + _number(nanoseconds, 0), INFINITE_NS)

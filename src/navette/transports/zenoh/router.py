@@ -1,0 +1,126 @@
+"""The router among the processes: the first one serves, and another takes over.
+
+Peers find each other at the router and talk directly from then on; whose process ends
+takes its router along. Who binds the endpoint first is the next.
+"""
+
+import contextlib
+import logging
+import threading
+
+import zenoh
+
+from navette.errors import NetworkError
+from navette.transports.zenoh.config import (
+    client_config,
+    router_config,
+    router_endpoints,
+)
+from navette.transports.zenoh.settings import Settings
+
+_log = logging.getLogger(__name__)
+
+# While one process binds, another may neither bind nor connect: it looks again.
+_LOOKS = 20
+_LOOK_S = 0.05
+
+
+class RouterRole:
+    """Serves as the router where there is none, from now on until :meth:`close`."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._router: zenoh.Session | None = None
+        self._lost = threading.Event()
+        self._stop = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    @property
+    def is_serving(self) -> bool:
+        """Whether this process is the router."""
+        return self._router is not None
+
+    def find_or_serve(self) -> zenoh.Session | None:
+        """A client's session with the router that is there, or that is made here.
+
+        None if there is none and none can be made here (it is to be on another
+        machine, and cannot be reached).
+        """
+        for _ in range(_LOOKS):
+            client = self._ask()
+            if client is not None:
+                return client
+            if not self._serve():
+                return None
+            if self._stop.wait(0.0 if self.is_serving else _LOOK_S):
+                return None
+        return None
+
+    def watch(self, session: zenoh.Session) -> None:
+        """Take over when ``session`` loses its router."""
+
+        def on_event(event: zenoh.TransportEvent) -> None:
+            if (
+                event.kind == zenoh.SampleKind.DELETE
+                and event.transport.whatami == zenoh.WhatAmI.ROUTER
+            ):
+                self._lost.set()
+
+        self._thread = threading.Thread(
+            target=self._take_over, name="navette-router", daemon=True
+        )
+        self._thread.start()
+        session.info.declare_transport_events_listener(
+            zenoh.handlers.Callback(on_event, indirect=False)
+        )
+
+    def close(self) -> None:
+        """Serve no more; another process takes over."""
+        self._stop.set()
+        self._lost.set()
+        if self._thread is not None:
+            self._thread.join()
+        if self._router is not None:
+            self._router.close()
+            self._router = None
+
+    def _take_over(self) -> None:
+        while True:
+            self._lost.wait()
+            if self._stop.is_set():
+                return
+            self._lost.clear()
+            client = self.find_or_serve()
+            if client is not None:
+                client.close()
+
+    def _ask(self) -> zenoh.Session | None:
+        try:
+            return zenoh.open(client_config(self._settings))
+        except zenoh.ZError:
+            return None  # nobody answers
+
+    def _serve(self) -> bool:
+        """Try to bind; False where the endpoint is not of this machine."""
+        if self._router is not None:
+            return True
+        try:
+            self._router = zenoh.open(router_config(self._settings))
+        except zenoh.ZError as error:
+            if "in use" in str(error):
+                return True  # by who was faster
+            where = ", ".join(router_endpoints(self._settings))
+            _log.warning("no router at %s, and none can be started: %s", where, error)
+            return False
+        return True
+
+
+def refuse(settings: Settings, error: zenoh.ZError) -> NetworkError:
+    """Why the network cannot be joined, in the user's words."""
+    with contextlib.suppress(IndexError):
+        reason = str(error).split(" at /")[0]
+    listen = ", ".join(settings.listen)
+    return NetworkError(
+        f"cannot join the network (router {', '.join(router_endpoints(settings))}, "
+        f"listening on {listen}): {reason}"
+    )

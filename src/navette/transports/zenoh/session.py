@@ -1,0 +1,91 @@
+"""The session of a process with the network: opened, looked around, closed."""
+
+import atexit
+import weakref
+
+import zenoh
+
+from navette.errors import NetworkError
+from navette.transports.zenoh.complaints import Complaints
+from navette.transports.zenoh.config import peer_config
+from navette.transports.zenoh.graph import RemoteGraph
+from navette.transports.zenoh.router import RouterRole, refuse
+from navette.transports.zenoh.settings import Settings
+from navette.transports.zenoh.tokens import SPACE
+
+# Those who are there are listed when the session opens; one that is just leaving, or
+# cannot be reached, is waited for this long.
+_LOOKS = 4
+_LOOK_S = 0.25
+_ASK_S = 2.0
+
+_open: "weakref.WeakSet[Session]" = weakref.WeakSet()
+
+
+class Session:
+    """A peer on the network, and the router where there was none.
+
+    Args:
+        domain_id: whose nodes are seen.
+
+    Raises:
+        NetworkError: says with which endpoints, and why.
+    """
+
+    def __init__(self, settings: Settings, domain_id: int) -> None:
+        self.settings = settings
+        self.complaints = Complaints()
+        self._tokens = f"{SPACE}/{domain_id}/**"
+        self._role = RouterRole(settings)
+        router = self._role.find_or_serve()
+        try:
+            self.zenoh = zenoh.open(peer_config(settings))
+        except zenoh.ZError as error:
+            self._role.close()
+            raise refuse(settings, error) from error
+        self.zid = str(self.zenoh.zid())
+        self.graph = RemoteGraph(self.zid, self.complaints)
+        self.zenoh.liveliness().declare_subscriber(
+            self._tokens,
+            zenoh.handlers.Callback(self._on_token, indirect=False),
+            history=True,
+        )
+        self._role.watch(self.zenoh)
+        if router is not None:
+            self._look_around(router)
+            router.close()
+        _open.add(self)
+
+    @property
+    def serves_as_router(self) -> bool:
+        """Whether the others find each other through this process."""
+        return self._role.is_serving
+
+    def close(self) -> None:
+        """Leave the network; closing twice is harmless."""
+        _open.discard(self)
+        if not self.zenoh.is_closed():
+            self.zenoh.close()
+        self._role.close()
+
+    def _on_token(self, sample: zenoh.Sample) -> None:
+        alive = sample.kind == zenoh.SampleKind.PUT
+        self.graph.on_token(str(sample.key_expr), alive=alive)
+
+    def _look_around(self, router: zenoh.Session) -> None:
+        """Wait until all that the router knows of are known here."""
+        for _ in range(_LOOKS):
+            replies = router.liveliness().get(self._tokens, timeout=_ASK_S)
+            known = {str(reply.ok.key_expr) for reply in replies if reply.ok}
+            if self.graph.wait_until_known(known, _LOOK_S):
+                return
+
+
+@atexit.register
+def _close_all() -> None:
+    """Zenoh's threads must not outlive the interpreter that they call back."""
+    for session in list(_open):
+        session.close()
+
+
+__all__ = ["NetworkError", "Session"]

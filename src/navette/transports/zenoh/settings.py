@@ -1,0 +1,92 @@
+"""What the environment says about the network; loopback only where it says nothing."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from navette.errors import InvalidValueError
+
+DEFAULT_ROUTER = "tcp/127.0.0.1:7447"
+DEFAULT_LISTEN = "tcp/127.0.0.1:0"
+DEFAULT_MAX_MESSAGE_BYTES = 128 * 1024 * 1024
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to join the network.
+
+    Args:
+        router: endpoints at which the router is reached; who finds none there serves
+            as the router itself.
+        listen: endpoints at which this process is reached by the others.
+        session_file: a Zenoh configuration (JSON5) to start from.
+        router_file: the same for the router, where this process serves as one.
+        explicit: which of ``router`` and ``listen`` were asked for: they win over
+            what a file says.
+        max_message_bytes: longer messages of others are rejected.
+    """
+
+    router: tuple[str, ...] = (DEFAULT_ROUTER,)
+    listen: tuple[str, ...] = (DEFAULT_LISTEN,)
+    session_file: Path | None = None
+    router_file: Path | None = None
+    explicit: frozenset[str] = frozenset()
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
+
+    @classmethod
+    def from_environment(
+        cls, environment: Mapping[str, str] = os.environ
+    ) -> "Settings":
+        """Read ``NAVETTE_ROUTER``, ``NAVETTE_LISTEN`` (several apart by commas),
+        ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_ROUTER_CONFIG_URI`` and
+        ``NAVETTE_MAX_MESSAGE_BYTES``.
+
+        Raises:
+            InvalidValueError: names variable, value and what is allowed.
+        """
+        router = _endpoints(environment, "NAVETTE_ROUTER")
+        listen = _endpoints(environment, "NAVETTE_LISTEN")
+        asked = {"router": router, "listen": listen}
+        return cls(
+            router=router or (DEFAULT_ROUTER,),
+            listen=listen or (DEFAULT_LISTEN,),
+            session_file=_file(environment, "ZENOH_SESSION_CONFIG_URI"),
+            router_file=_file(environment, "ZENOH_ROUTER_CONFIG_URI"),
+            explicit=frozenset(name for name, value in asked.items() if value),
+            max_message_bytes=_positive(
+                environment, "NAVETTE_MAX_MESSAGE_BYTES", DEFAULT_MAX_MESSAGE_BYTES
+            ),
+        )
+
+
+def _endpoints(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
+    parts = [part.strip() for part in environment.get(name, "").split(",")]
+    endpoints = tuple(part for part in parts if part)
+    for endpoint in endpoints:
+        protocol, slash, address = endpoint.partition("/")
+        if not (protocol.isalnum() and slash and address):
+            raise InvalidValueError(
+                f"{name}: {endpoint!r} is no endpoint; wanted protocol/address, such "
+                f"as {DEFAULT_ROUTER}"
+            )
+    return endpoints
+
+
+def _file(environment: Mapping[str, str], name: str) -> Path | None:
+    text = environment.get(name, "")
+    if not text:
+        return None
+    path = Path(text)
+    if not path.is_file():
+        raise InvalidValueError(f"{name}: there is no file {text}")
+    return path
+
+
+def _positive(environment: Mapping[str, str], name: str, default: int) -> int:
+    text = environment.get(name, "")
+    if not text:
+        return default
+    if not (text.isascii() and text.isdigit() and int(text) > 0):
+        raise InvalidValueError(f"{name} {text!r}: wanted a number of bytes > 0")
+    return int(text)

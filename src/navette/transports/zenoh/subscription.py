@@ -1,0 +1,155 @@
+"""Subscriptions: check what arrives and queue its bytes; who takes it decodes."""
+
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+from zenoh import ext
+
+from navette.errors import DecodeError
+from navette.transports.base import Sink, SubscriptionPort
+from navette.transports.encoded import Encoded
+from navette.transports.qos import EndpointQos
+from navette.transports.zenoh.attachment import decode_attachment
+from navette.transports.zenoh.complaints import Complaints
+from navette.transports.zenoh.graph import Matches
+
+_HEADER_SIZE = 4
+_HEADERS = (b"\x00\x01", b"\x00\x00")  # plain CDR, little and big endian
+
+# Publishers remembered at most; those that are not listed in the graph come to it.
+_MOST_PUBLISHERS = 4096
+
+
+class ZenohSubscription(SubscriptionPort):
+    """Gives each sample to the sink as :class:`Encoded`, in the publisher's order.
+
+    Args:
+        now_ns: the time here, for the received stamp.
+        closed: called once when the port is closed.
+    """
+
+    __slots__ = (
+        "_closed",
+        "_complaints",
+        "_last",
+        "_longest",
+        "_message_class",
+        "_now_ns",
+        "_sink",
+        "_subscriber",
+        "matches",
+    )
+
+    def __init__(
+        self,
+        session: zenoh.Session,
+        key: str,
+        message_class: type,
+        sink: Sink,
+        matches: Matches,
+        *,
+        complaints: Complaints,
+        max_message_bytes: int,
+        now_ns: Callable[[], int],
+        closed: Callable[["ZenohSubscription"], None],
+    ) -> None:
+        self.matches = matches
+        self._message_class = message_class
+        self._sink = sink
+        self._complaints = complaints
+        self._longest = max_message_bytes
+        self._now_ns = now_ns
+        self._closed = closed
+        #: Newest sequence number of each publisher, by gid.
+        self._last: dict[bytes, int] = {}
+        self._subscriber: Any = _declare(
+            session, key, matches.endpoint.qos, self._on_sample
+        )
+
+    @property
+    def matched_count(self) -> int:
+        return len(self.matches.remotes)
+
+    def close(self) -> None:
+        if self._subscriber is None:
+            return
+        subscriber, self._subscriber = self._subscriber, None
+        self._closed(self)
+        subscriber.undeclare()
+
+    # -- on Zenoh's threads ------------------------------------------------------
+
+    def _on_sample(self, sample: zenoh.Sample) -> None:
+        if self._subscriber is None and self._last:  # closed
+            return
+        try:
+            item = self._checked(sample)
+        except DecodeError as error:
+            self._complain(str(sample.source_info or ""), error)
+            return
+        if item is not None:
+            self._sink(item)
+
+    def _checked(self, sample: zenoh.Sample) -> tuple[Any, int, int, int] | None:
+        """The item to deliver; None if it was delivered before."""
+        payload, attachment = sample.payload, sample.attachment
+        if len(payload) > self._longest:
+            raise DecodeError(
+                f"{len(payload)} bytes: longer than {self._longest} "
+                "(NAVETTE_MAX_MESSAGE_BYTES)"
+            )
+        if attachment is None:
+            raise DecodeError("without an attachment")
+        if len(payload) < _HEADER_SIZE:
+            raise DecodeError(f"{len(payload)} bytes: no CDR header")
+        sequence, source_ns, gid = decode_attachment(attachment.to_bytes())
+        data = payload.to_bytes()
+        if data[:2] not in _HEADERS:
+            raise DecodeError(f"no plain CDR: header {data[:4].hex(' ')}")
+        if not self._is_next(gid, sequence):
+            return None
+
+        def failed(error: DecodeError) -> None:
+            self._complain(gid.hex(), error)
+
+        message = Encoded(data, self._message_class, failed)
+        return message, source_ns, self._now_ns(), sequence
+
+    def _is_next(self, gid: bytes, sequence: int) -> bool:
+        """Whether it is newer than all before, and from one whose QoS fits."""
+        if gid in self.matches.refused or sequence <= self._last.get(gid, -1):
+            return False
+        if gid not in self._last and len(self._last) >= _MOST_PUBLISHERS:
+            del self._last[next(iter(self._last))]
+        self._last[gid] = sequence
+        return True
+
+    def _complain(self, peer: str, error: DecodeError) -> None:
+        topic = self.matches.endpoint.topic
+        self._complaints.once(
+            ("sample", topic, peer), f"topic {topic}: message ignored: {error}"
+        )
+
+
+def _declare(
+    session: zenoh.Session,
+    key: str,
+    qos: EndpointQos,
+    on_sample: Callable[[zenoh.Sample], None],
+) -> Any:
+    # Direct: a thread of Python's for every subscription would be many.
+    handler = zenoh.handlers.Callback(on_sample, indirect=False)
+    if not qos.is_latched:
+        return session.declare_subscriber(
+            key, handler, allowed_origin=zenoh.Locality.REMOTE
+        )
+    return ext.declare_advanced_subscriber(
+        session,
+        key,
+        handler,
+        allowed_origin=zenoh.Locality.REMOTE,
+        history=ext.HistoryConfig(
+            detect_late_publishers=True, max_samples=qos.queue_length
+        ),
+    )

@@ -1,0 +1,157 @@
+"""Liveliness tokens: how nodes and endpoints tell of themselves.
+
+Node: ``@ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<name>``; endpoint:
+``…/<zid>/<nid>/<eid>/<kind>/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>``.
+"""
+
+import re
+from dataclasses import dataclass
+
+import xxhash
+
+from navette.errors import DecodeError
+from navette.transports.base import EndpointKind, NodeInfo
+from navette.transports.qos import EndpointQos
+from navette.transports.zenoh.keys import (
+    dds_type_name,
+    demangled_name,
+    mangled,
+    ros_type_name,
+)
+from navette.transports.zenoh.qos_text import format_qos, parse_qos
+
+SPACE = "@ros2_lv"
+_LONGEST = 2048
+_NODE, _ENDPOINT = 9, 13  # chunks
+
+_KINDS = {
+    "MP": EndpointKind.PUBLISHER,
+    "MS": EndpointKind.SUBSCRIPTION,
+    "SS": EndpointKind.SERVICE,
+    "SC": EndpointKind.CLIENT,
+}
+_LETTERS = {kind: letters for letters, kind in _KINDS.items()}
+
+_DOMAIN = re.compile(r"\d{1,10}", re.ASCII)
+_ZID = re.compile(r"[0-9a-f]{1,32}")
+_ID = re.compile(r"\d{1,20}", re.ASCII)
+_ENCLAVE = re.compile(r"%|(%[A-Za-z_][\w.-]*)+", re.ASCII)
+_NODE_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+# Types of before Jazzy have a word instead of a hash.
+_HASH = re.compile(r"\w{1,128}", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class NodeToken:
+    """A node of the session ``zid``, the ``nid``-th."""
+
+    domain_id: int
+    zid: str
+    nid: int
+    node: NodeInfo
+
+    def key(self) -> str:
+        """The token's key expression."""
+        return _head(self, self.nid, "NN")
+
+
+@dataclass(frozen=True, slots=True)
+class EndpointToken:
+    """An endpoint of a node: the ``eid``-th entity of its session."""
+
+    domain_id: int
+    zid: str
+    nid: int
+    eid: int
+    kind: EndpointKind
+    node: NodeInfo
+    topic: str
+    type_name: str
+    type_hash: str
+    qos: EndpointQos
+
+    def key(self) -> str:
+        """The token's key expression."""
+        head = _head(self, self.eid, _LETTERS[self.kind])
+        return "/".join(
+            (
+                head,
+                mangled(self.topic),
+                dds_type_name(self.type_name),
+                self.type_hash,
+                format_qos(self.qos),
+            )
+        )
+
+
+Token = NodeToken | EndpointToken
+
+
+def gid_of(key: str) -> bytes:
+    """The 16 bytes by which an endpoint's samples are known."""
+    return xxhash.xxh3_128_digest(key.encode())[::-1]
+
+
+def parse_token(key: str) -> Token:
+    """The inverse of ``key()``.
+
+    Raises:
+        DecodeError: it is no token of a node or an endpoint.
+    """
+    if len(key) > _LONGEST:
+        raise DecodeError(
+            f"token of {len(key)} characters: at most {_LONGEST} are read"
+        )
+    parts = key.split("/")
+    if len(parts) not in (_NODE, _ENDPOINT) or parts[0] != SPACE:
+        raise DecodeError(f"{key!r} is no token of a node or endpoint")
+    domain = int(_checked(_DOMAIN, parts[1], "domain id"))
+    zid = _checked(_ZID, parts[2], "session id")
+    nid = int(_checked(_ID, parts[3], "node id"))
+    eid = int(_checked(_ID, parts[4], "entity id"))
+    node = NodeInfo(
+        name=_checked(_NODE_NAME, parts[8], "node name"),
+        namespace="/" if parts[7] == "%" else demangled_name(parts[7]),
+        enclave=_checked(_ENCLAVE, parts[6], "enclave").replace("%", "/"),
+    )
+    if len(parts) == _NODE:
+        if parts[5] != "NN":
+            raise DecodeError(f"{key!r}: entity {parts[5]!r} with a node's parts")
+        return NodeToken(domain, zid, nid, node)
+    if parts[5] not in _KINDS:
+        raise DecodeError(f"{key!r}: entity {parts[5]!r}, wanted MP, MS, SS or SC")
+    return EndpointToken(
+        domain,
+        zid,
+        nid,
+        eid,
+        _KINDS[parts[5]],
+        node,
+        demangled_name(parts[9]),
+        ros_type_name(parts[10]),
+        _checked(_HASH, parts[11], "type hash"),
+        parse_qos(parts[12]),
+    )
+
+
+def _head(token: Token, eid: int, kind: str) -> str:
+    node = token.node
+    return "/".join(
+        (
+            SPACE,
+            str(token.domain_id),
+            token.zid,
+            str(token.nid),
+            str(eid),
+            kind,
+            mangled(node.enclave),
+            mangled(node.namespace),
+            node.name,
+        )
+    )
+
+
+def _checked(pattern: re.Pattern[str], text: str, what: str) -> str:
+    if not pattern.fullmatch(text):
+        raise DecodeError(f"{text!r} is no {what}")
+    return text

@@ -1,0 +1,238 @@
+"""The Zenoh transport: endpoints of other processes and machines, rmw_zenoh's way."""
+
+import itertools
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+
+from navette.msgs import type_hash
+from navette.transports.base import (
+    Endpoint,
+    EndpointKind,
+    NodeInfo,
+    Sink,
+    Transport,
+    TransportObserver,
+)
+from navette.transports.service_ports import ReplySink, RequestSink
+from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.keys import data_key
+from navette.transports.zenoh.publisher import ZenohPublisher
+from navette.transports.zenoh.qos_text import announced
+from navette.transports.zenoh.services import ZenohClient, ZenohService
+from navette.transports.zenoh.session import Session
+from navette.transports.zenoh.settings import Settings
+from navette.transports.zenoh.subscription import ZenohSubscription
+from navette.transports.zenoh.tokens import EndpointToken, NodeToken, gid_of
+
+_TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
+_SERVICE_KINDS = (EndpointKind.SERVICE, EndpointKind.CLIENT)
+
+Port = ZenohPublisher | ZenohSubscription | ZenohService | ZenohClient
+
+
+class ZenohTransport(Transport):
+    """Exchanges samples with other sessions only; safe to use from several threads.
+
+    Endpoints of the same transport do not meet here: the in-process one is beside it.
+
+    Args:
+        domain_id: separates systems on one network.
+        now_ns: the time here, for received stamps and replies.
+
+    Raises:
+        NetworkError: the network cannot be joined.
+        InvalidValueError: the environment says something that cannot be.
+    """
+
+    def __init__(
+        self,
+        domain_id: int,
+        now_ns: Callable[[], int],
+        settings: Settings | None = None,
+    ) -> None:
+        self.domain_id = domain_id
+        self._now_ns = now_ns
+        self.session = Session(settings or Settings.from_environment(), domain_id)
+        self._graph = self.session.graph
+        self._ids = itertools.count()
+        self._nodes: dict[NodeInfo, list[tuple[int, zenoh.LivelinessToken]]] = {}
+        self._announced: dict[bytes, EndpointToken] = {}
+        self._ports: dict[Port, zenoh.LivelinessToken] = {}
+        self._hashes: dict[str, str] = {}
+        self._lock = threading.Lock()
+
+    def observe(self, observer: TransportObserver) -> None:
+        self._graph.observers.append(observer)
+
+    # -- nodes -----------------------------------------------------------------
+
+    def announce(self, node: NodeInfo) -> None:
+        nid = next(self._ids)
+        token = NodeToken(self.domain_id, self.session.zid, nid, node)
+        declared = self._declare_token(token.key())
+        with self._lock:
+            self._nodes.setdefault(node, []).append((nid, declared))
+
+    def withdraw(self, node: NodeInfo) -> None:
+        with self._lock:
+            tokens = self._nodes.get(node, [])
+            if not tokens:
+                return
+            _, token = tokens.pop(0)
+            if not tokens:
+                del self._nodes[node]
+        if not self.session.zenoh.is_closed():
+            token.undeclare()
+
+    def remote_nodes(self) -> list[NodeInfo]:
+        return self._graph.nodes()
+
+    # -- endpoints -------------------------------------------------------------
+
+    def gid_for(self, endpoint: Endpoint) -> bytes:
+        """The gid is a hash of the token, which is therefore made up here."""
+        token = self._token_of(endpoint)
+        gid = gid_of(token.key())
+        with self._lock:
+            self._announced[gid] = token
+        return gid
+
+    def advertise(self, endpoint: Endpoint, message_class: type) -> ZenohPublisher:
+        token, matches = self._enter(endpoint)
+        port = ZenohPublisher(
+            self.session.zenoh,
+            self._key(token),
+            token.qos,
+            gid_of(token.key()),
+            matches,
+            self._leave,
+        )
+        self._announce(port, token)
+        return port
+
+    def subscribe(
+        self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
+    ) -> ZenohSubscription:
+        token, matches = self._enter(endpoint)
+        port = ZenohSubscription(
+            self.session.zenoh,
+            self._key(token),
+            message_class,
+            sink,
+            matches,
+            closed=self._leave,
+            now_ns=self._now_ns,
+            **self._limits(),
+        )
+        self._announce(port, token)
+        return port
+
+    def serve(self, endpoint: Endpoint, sink: RequestSink) -> ZenohService:
+        token, matches = self._enter(endpoint)
+        port = ZenohService(
+            self.session.zenoh,
+            self._key(token),
+            sink,
+            matches,
+            closed=self._leave,
+            now_ns=self._now_ns,
+            **self._limits(),
+        )
+        self._announce(port, token)
+        return port
+
+    def connect(self, endpoint: Endpoint, sink: ReplySink) -> ZenohClient:
+        token, matches = self._enter(endpoint)
+        port = ZenohClient(
+            self.session.zenoh,
+            self._key(token),
+            gid_of(token.key()),
+            sink,
+            matches,
+            closed=self._leave,
+            **self._limits(),
+        )
+        self._announce(port, token)
+        return port
+
+    def endpoints(self) -> list[Endpoint]:
+        """Those of other sessions."""
+        return self._graph.endpoints(_TOPIC_KINDS)
+
+    def service_endpoints(self) -> list[Endpoint]:
+        """Those of other sessions."""
+        return self._graph.endpoints(_SERVICE_KINDS)
+
+    def close(self) -> None:
+        with self._lock:
+            ports = list(self._ports)
+        for port in ports:
+            port.close()
+        self.session.close()
+
+    # -- inside ----------------------------------------------------------------
+
+    def _token_of(self, endpoint: Endpoint) -> EndpointToken:
+        offers = endpoint.kind in (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
+        nid, node = self._node_of(endpoint)
+        return EndpointToken(
+            domain_id=self.domain_id,
+            zid=self.session.zid,
+            nid=nid,
+            eid=next(self._ids),
+            kind=endpoint.kind,
+            node=node,
+            topic=endpoint.topic,
+            type_name=endpoint.type_name,
+            type_hash=self._hash(endpoint.type_name),
+            qos=announced(endpoint.qos, offers=offers),
+        )
+
+    def _node_of(self, endpoint: Endpoint) -> tuple[int, NodeInfo]:
+        """The newest announced node of that name; 0 where none was."""
+        with self._lock:
+            for node, tokens in self._nodes.items():
+                if node.full_name == endpoint.node_full_name:
+                    return tokens[-1][0], node
+        return 0, NodeInfo(endpoint.node_name, endpoint.node_namespace)
+
+    def _hash(self, type_name: str) -> str:
+        found = self._hashes.get(type_name)
+        if found is None:
+            found = self._hashes[type_name] = type_hash(type_name)
+        return found
+
+    def _key(self, token: EndpointToken) -> str:
+        return data_key(token.domain_id, token.topic, token.type_name, token.type_hash)
+
+    def _enter(self, endpoint: Endpoint) -> tuple[EndpointToken, Matches]:
+        with self._lock:
+            token = self._announced.pop(endpoint.gid, None)
+        if token is None:
+            token = self._token_of(endpoint)
+        return token, self._graph.add_local(endpoint, token.type_hash)
+
+    def _limits(self) -> dict[str, Any]:
+        return {
+            "complaints": self.session.complaints,
+            "max_message_bytes": self.session.settings.max_message_bytes,
+        }
+
+    def _announce(self, port: Port, token: EndpointToken) -> None:
+        # After the port is open: who sees the token may rely on it.
+        declared = self._declare_token(token.key())
+        with self._lock:
+            self._ports[port] = declared
+
+    def _leave(self, port: Port) -> None:
+        with self._lock:
+            token = self._ports.pop(port)
+        self._graph.remove_local(port.matches)
+        if not self.session.zenoh.is_closed():
+            token.undeclare()
+
+    def _declare_token(self, key: str) -> zenoh.LivelinessToken:
+        return self.session.zenoh.liveliness().declare_token(key)
