@@ -1,6 +1,7 @@
 """ROS 2 parameter files: YAML → (node pattern, name, value), safely and bounded."""
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -177,3 +178,45 @@ def _leaf(name: str, value: Any, origin: str) -> Any:
         f"{origin}: parameter {name!r}: {value!r} is not a parameter value; wanted "
         "a bool, int, float, string, or a list of one of these"
     )
+
+
+class _Dumper(yaml.SafeDumper):
+    """Quotes text that either YAML or :class:`_Loader` takes for something else."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+_Dumper.yaml_implicit_resolvers = {
+    start: [*_Dumper.yaml_implicit_resolvers.get(start, ()), *own]
+    for start, own in {
+        **dict.fromkeys(_Dumper.yaml_implicit_resolvers, ()),
+        **_Loader.yaml_implicit_resolvers,
+    }.items()
+}
+
+
+def format_parameters(nodes: Mapping[str, Mapping[str, Any]]) -> str:
+    """A parameter file of (node → flat name → value) that reads back as the same.
+
+    Dotted names are nested; where a name is both a value and a prefix, the longer
+    name stays dotted.
+    """
+    document = {node: {"ros__parameters": _nested(own)} for node, own in nodes.items()}
+    text: str = yaml.dump(document, Dumper=_Dumper, allow_unicode=True, width=2**31 - 1)
+    return text
+
+
+def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
+    tree: dict[str, Any] = {}
+    for name in sorted(values, key=lambda name: (name.count("."), name)):
+        *path, last = name.split(".")
+        branch, rest = tree, []
+        for at, part in enumerate(path):
+            below = branch.setdefault(part, {})
+            if not isinstance(below, dict):
+                rest = path[at:]
+                break
+            branch = below
+        branch[".".join([*rest, last])] = values[name]
+    return tree

@@ -11,6 +11,7 @@ from navette.runtime.arguments import parse_ros_arguments, remove_ros_args
 from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.overrides import ParameterOverrides
 from navette.runtime.parameter_files import (
+    format_parameters,
     parse_parameters,
     parse_value,
     read_parameter_file,
@@ -262,3 +263,29 @@ def test_bad_arguments_are_named(args: list[str]) -> None:
 def test_remove_ros_args() -> None:
     args = ["prog", "-a", "--ros-args", "-r", "a:=b", "--", "-b", "--ros-args", "-p"]
     assert remove_ros_args(args) == ["prog", "-a", "-b"]
+
+
+def test_what_is_formatted_reads_back_the_same() -> None:
+    values: dict[str, Any] = {
+        "x": 2,
+        "x.y": 1e-5,  # x is a value and a prefix
+        "limits.max_speed": 1e16,
+        "infinite": float("inf"),
+        "y": True,
+        "text.number": "1e5",  # a number to ROS 2, not to YAML's own rules
+        "text.octal": "0o17",
+        "text.switch": "on",
+        "text.empty": "",
+        "text.nothing": "null",
+        "text.lines": "one\ntwo: ü",
+        "names": ["1", "a"],
+        "poses": [1.0, -2.5],
+        "none": [],
+    }
+    text = format_parameters({"/ns/node": values})
+    ((pattern, read),) = parse_parameters(text)
+    assert pattern == "/ns/node"
+    assert read == values
+    assert {name: type(value) for name, value in read.items()} == {
+        name: type(value) for name, value in values.items()
+    }
