@@ -7,6 +7,7 @@ from pathlib import Path
 from navette.errors import InvalidValueError
 from navette.interop.program import Program, entry_point, file_entry_point, script
 from navette.packages import find_package
+from navette.packages.executables import BUILT_IN, built_in_executables
 
 WITH = "--with"
 _FORMS = (
@@ -42,8 +43,10 @@ def _read_program(words: Sequence[str]) -> Program:
         return entry_point(place, attribute, arguments)
     if target.endswith(".py") or Path(target).is_file():
         return script(_existing(Path(target)), arguments)
-    if arguments:
+    if arguments and not arguments[0].startswith("-"):
         return _executable(target, arguments[0], arguments[1:])
+    if any(each.name == target for each in built_in_executables(BUILT_IN)):
+        return _executable(BUILT_IN, target, arguments)
     raise InvalidValueError(f"{target!r} is no program; wanted {_FORMS}")
 
 
@@ -55,7 +58,8 @@ def _executable(package: str, name: str, arguments: tuple[str, ...]) -> Program:
         program = entry_point(
             executable.module, executable.attribute, arguments, name=name
         )
-        return replace(program, path=(found.share,))
+        folder = found.python_path
+        return program if folder is None else replace(program, path=(folder,))
     with executable.path.open("rb") as file:
         first = file.readline()
     if executable.path.suffix != ".py" and b"python" not in first:

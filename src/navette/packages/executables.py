@@ -15,6 +15,21 @@ from pathlib import Path
 
 from navette.errors import FileFormatError, UnknownNameError
 
+BUILT_IN = "navette"
+_STAGES = {
+    name: ("navette.launch.stages", name)
+    for name in (
+        "sim",
+        "costmap",
+        "map_memory",
+        "planner",
+        "control",
+        "missions",
+        "viewer",
+        "recorder",
+    )
+}
+
 _ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
 _CMAKE_PROGRAMS = re.compile(
     r"\binstall\s*\(\s*PROGRAMS\s+(.*?)\s+DESTINATION", re.DOTALL | re.IGNORECASE
@@ -42,6 +57,16 @@ class Executable:
         if name not in known:
             raise UnknownNameError.of(f"executable of {package}", name, list(known))
         return known[name]
+
+
+def built_in_executables(package: str) -> tuple[Executable, ...]:
+    """Navette's own: each stage as a program."""
+    if package != BUILT_IN:
+        return ()
+    return tuple(
+        Executable(package, name, module, attribute)
+        for name, (module, attribute) in sorted(_STAGES.items())
+    )
 
 
 def source_executables(package: str, folder: Path) -> tuple[Executable, ...]:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from navette.packages.executables import (
     Executable,
+    built_in_executables,
     installed_executables,
     source_executables,
 )
@@ -72,7 +73,7 @@ class Package:
             return source_executables(self.name, self.share)
         if self.origin is Origin.INSTALLED:
             return installed_executables(self.name, self.prefix / "lib" / self.name)
-        return ()
+        return built_in_executables(self.name)
 
     def executable(self, name: str) -> Executable:
         """One of them, by name.

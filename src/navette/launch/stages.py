@@ -1,0 +1,211 @@
+"""Each stage as a program of its own: ``navette run navette planner``, and so on.
+
+Several of them, each a process, are the stack that ``navette sim`` runs in one: every
+program finds out by itself which robot it is for, takes that robot's parameters, then
+those of its command line. A program imports what its own stage needs, no more.
+"""
+
+import argparse
+import functools
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navette import runtime
+from navette.errors import CallbackError, NavetteError
+from navette.launch.overrides import check_reached
+from navette.runtime import Context, Node, PacedClock, TimeSource
+from navette.runtime.overrides import ParameterOverrides
+
+if TYPE_CHECKING:
+    from navette.launch.scene import ResolvedScene
+
+
+def _program(main: Callable[[], None]) -> Callable[[], None]:
+    """What a person got wrong ends the program with one line, not a traceback."""
+
+    @functools.wraps(main)
+    def run() -> None:
+        try:
+            main()
+        except CallbackError:
+            raise  # a fault in a program: where it is, matters
+        except NavetteError as error:
+            raise SystemExit(f"navette: {error}") from error
+
+    return run
+
+
+@_program
+def sim() -> None:
+    """The simulated robot; at real time, unless told otherwise."""
+    parser = _parser("sim", "A robot in a world: takes /cmd_vel, gives sensors.")
+    _add_robot(parser)
+    parser.add_argument("--start", nargs=3, type=float, metavar=("X", "Y", "YAW_DEG"))
+    parser.add_argument("--speed", type=float, default=1.0, metavar="FACTOR")
+    given = _parse(parser)
+    from navette.geometry import Pose2
+    from navette.sim.node import SimNode
+
+    x, y, yaw_deg = given.start or (0.0, 0.0, 0.0)
+    start = Pose2(x, y, math.radians(yaw_deg)) if given.start else None
+    resolved = _resolve(given)
+    _run(
+        lambda context: SimNode(resolved.scene, start=start, context=context),
+        _profile(resolved, "sim"),
+        PacedClock(given.speed),
+    )
+
+
+@_program
+def costmap() -> None:
+    """What is dangerous around the robot."""
+    from navette.costmap.node import CostmapNode
+
+    _run_stage("costmap", CostmapNode, "/lidar → /costmap")
+
+
+@_program
+def map_memory() -> None:
+    """What the robot has seen so far."""
+    from navette.mapping.node import MapMemoryNode
+
+    _run_stage("map_memory", MapMemoryNode, "/costmap, /odom/filtered → /map")
+
+
+@_program
+def planner() -> None:
+    """The way to a goal."""
+    from navette.planning.node import PlannerNode
+
+    _run_stage("planner", PlannerNode, "/map, /goal_point → /path")
+
+
+@_program
+def control() -> None:
+    """Follows the way; the last stage before the wheels."""
+    from navette.control.node import ControlNode
+
+    _run_stage("control", ControlNode, "/path, /odom/filtered → /cmd_vel")
+
+
+@_program
+def missions() -> None:
+    """Sends goals, one after the other."""
+    parser = _parser("missions", "Goals, one after the other → /goal_point")
+    _add_robot(parser)
+    parser.add_argument(
+        "--goal", nargs=2, type=float, action="append", metavar=("X", "Y")
+    )
+    given = _parse(parser)
+    from navette.missions.node import MissionNode
+
+    profile = _profile(_resolve(given), "missions")
+    if given.goal:
+        goals = [value for goal in given.goal for value in goal]
+        profile.add("missions", {"goals": goals}, "--goal")
+    _run(lambda context: MissionNode(context=context), profile)
+
+
+@_program
+def viewer() -> None:
+    """The live view."""
+    _parse(_parser("viewer", "The live view on one port (parameter port)."))
+    _run(_announced_viewer, ParameterOverrides())
+
+
+@_program
+def recorder() -> None:
+    """Every topic into a bag."""
+    parser = _parser("recorder", "Records the topics into a bag.")
+    parser.add_argument("file", type=Path, metavar="FILE.mcap")
+    given = _parse(parser)
+    from navette.bags.node import RecorderNode
+
+    _run(
+        lambda context: RecorderNode(given.file, context=context), ParameterOverrides()
+    )
+
+
+def _announced_viewer(context: Context) -> Node:
+    from navette.viewer.node import ViewerNode
+
+    node = ViewerNode(context=context)
+    node.get_logger().info(f"live view: {node.url}")
+    return node
+
+
+def _run_stage(name: str, node_class: Callable[..., Node], text: str) -> None:
+    parser = _parser(name, text)
+    _add_robot(parser)
+    resolved = _resolve(_parse(parser))
+    _run(lambda context: node_class(context=context), _profile(resolved, name))
+
+
+# -- command lines -----------------------------------------------------------------
+
+
+def _parser(name: str, text: str) -> argparse.ArgumentParser:
+    return argparse.ArgumentParser(
+        f"navette run navette {name}",
+        description=text,
+        epilog="Parameters: --ros-args -p NAME:=VALUE --params-file FILE.",
+        allow_abbrev=False,
+    )
+
+
+def _add_robot(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--world",
+        default="arena",
+        help="a built-in world or a file; it may bring a robot (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--robot",
+        help="a built-in robot or a model file, whose parameters count; "
+        "by default the world's own",
+    )
+
+
+def _parse(parser: argparse.ArgumentParser) -> Any:
+    return parser.parse_args(runtime.remove_ros_args(sys.argv[1:]))
+
+
+# -- the robot ---------------------------------------------------------------------
+
+
+def _resolve(given: Any) -> "ResolvedScene":
+    from navette.launch.options import RunOptions
+    from navette.launch.scene import resolve_scene
+
+    return resolve_scene(RunOptions(world=given.world, robot=given.robot or None))
+
+
+def _profile(resolved: "ResolvedScene", name: str) -> ParameterOverrides:
+    """What the robot asks of this node, whatever name it is given in the end."""
+    of_all, own = ParameterOverrides(), ParameterOverrides()
+    resolved.override_parameters(of_all)
+    for parameter, override in of_all.for_node(f"/{name}").items():
+        own.add("/**", {parameter: override.value}, override.origin)
+    return own
+
+
+def _run(
+    make: Callable[[Context], Node],
+    profile: ParameterOverrides,
+    clock: TimeSource | None = None,
+) -> None:
+    """Make the node and spin it until Ctrl-C or a shutdown."""
+    context = Context(clock=clock)
+    context.overrides.sets += profile.sets
+    try:
+        context.init(args=sys.argv)
+        node = make(context)
+        check_reached(context.overrides, node)
+        runtime.spin(node)
+    except KeyboardInterrupt:
+        pass  # the way to end it
+    finally:
+        context.try_shutdown()

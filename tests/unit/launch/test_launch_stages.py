@@ -1,0 +1,109 @@
+"""Each stage as a program: its robot's parameters, then its own, and what is refused."""
+
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from navette.interop.process import RunningProgram, program_threads
+from navette.interop.targets import read_programs
+from navette.launch import stages
+from navette.packages import find_package
+from navette.runtime import Context, Node, spin_until_future_complete
+from navette.runtime.context import new_graph
+from navette.runtime.graph import Graph
+from navette.runtime.parameter import parameter_value_to_python
+from navette.runtime.parameter_client import AsyncParameterClient
+
+WAIT_S = 20.0
+
+
+@contextmanager
+def running(graph: Graph, *words: str) -> Iterator[None]:
+    """A program in a thread, until the block ends."""
+    seen = threading.Event()
+    forget = graph.on_change(lambda: seen.set() if graph.nodes() else None)
+    (program,) = read_programs(words)
+    with program_threads():
+        thread = RunningProgram(program, graph)
+        thread.start()
+        try:
+            assert seen.wait(WAIT_S), f"{words}: no node came"
+            yield
+        finally:
+            forget()
+            thread.shut_down()
+            assert thread.join(WAIT_S)
+
+
+def parameters(graph: Graph, node: str, *names: str) -> list[object]:
+    context = Context(graph=graph)
+    with context:
+        asking = Node("asking", context=context)
+        client = AsyncParameterClient(asking, node)
+        assert client.wait_for_services(WAIT_S)
+        future = client.get_parameters(list(names))
+        spin_until_future_complete(asking, future, timeout_sec=WAIT_S)
+        return [parameter_value_to_python(v) for v in future.result().values]
+
+
+@pytest.mark.slow
+def test_a_stage_has_its_robots_parameters_and_then_its_own() -> None:
+    graph = new_graph()
+    words = "control --robot husky --ros-args -r __node:=steer -p cruise_speed_mps:=0.3"
+    with running(graph, *words.split()):
+        cruise, fastest = parameters(
+            graph, "/steer", "cruise_speed_mps", "max_speed_mps"
+        )
+    assert (cruise, fastest) == (0.3, 1.0)
+    graph.close()
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("planner --robot husk", "unknown robot .* 'husk'; known: course, husky"),
+        ("planner --ros-args -p clearence:=1", "unknown parameter 'clearence'"),
+        ("costmap --ros-args -p use_sim_time:=3", "is INTEGER, wanted BOOL"),
+        ("sim --speed 0", "real-time factor 0.0"),
+        ("missions --goal 1 nan", "'goals': nan is not allowed"),
+    ],
+)
+def test_what_is_wrong_is_told_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, words: str, reason: str
+) -> None:
+    name, *arguments = words.split()
+    monkeypatch.setattr(sys, "argv", [name, *arguments])
+    with pytest.raises(SystemExit, match=f"navette: .*{reason}"):
+        getattr(stages, name)()
+
+
+def test_a_file_of_the_whole_stack_is_no_error_but_one_for_others_is(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    file = tmp_path / "stack.yaml"
+    file.write_text("planer:\n  ros__parameters:\n    method: dijkstra\n")
+    argv = ["planner", "--ros-args", "--params-file", str(file)]
+    monkeypatch.setattr(sys, "argv", argv)
+    with pytest.raises(SystemExit, match="no node matches '/planer'; nodes: /planner"):
+        stages.planner()
+    made = []
+    monkeypatch.setattr(
+        stages.runtime, "spin", lambda node: made.append(node.params.method)
+    )
+    file.write_text(
+        file.read_text() + "planner:\n  ros__parameters:\n    method: dijkstra\n"
+    )
+    stages.planner()
+    assert made == ["dijkstra"]
+
+
+def test_every_stage_is_an_executable() -> None:
+    names = [each.name for each in find_package("navette").executables()]
+    assert {"sim", "costmap", "map_memory", "planner", "control"} <= set(names)
+    for name in names:
+        assert read_programs([name])[0].name == name
+        assert read_programs(["navette", name, "--x"])[0].arguments == ("--x",)
