@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
+from navette.expressions import ExpressionError, evaluate
 from navette.launch_files.launch.errors import SubstitutionFailure
-from navette.launch_files.launch.expressions import ExpressionError, evaluate
 from navette.launch_files.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -16,12 +16,13 @@ if TYPE_CHECKING:
     from navette.launch_files.launch.launch_context import LaunchContext
 
 _MODULES = ("math",)
+_HINT = "for more than an expression, use OpaqueFunction in a Python launch file"
 
 
 class PythonExpression(Substitution):
     """The text of a Python expression's value (``$(eval '1 + 1')``).
 
-    Expressions are bounded: see :mod:`navette.launch_files.launch.expressions`.
+    Expressions are bounded: see :mod:`navette.expressions`.
 
     Args:
         expression: joined to one expression.
@@ -48,7 +49,8 @@ class PythonExpression(Substitution):
                     f"expressions; available: {', '.join(_MODULES)}"
                 )
         try:
-            return str(evaluate(perform_substitutions(context, self.expression)))
+            text = perform_substitutions(context, self.expression)
+            return str(evaluate(text, _HINT))
         except ExpressionError as error:
             raise SubstitutionFailure(str(error)) from None
 
