@@ -10,6 +10,8 @@ import typer
 from navette._version import __version__
 from navette.cli.arguments import join_pairs, parse_goal, parse_speed, spread_lists
 from navette.cli.launch import launch
+from navette.cli.node import node
+from navette.cli.param import param
 from navette.cli.pkg import pkg
 from navette.cli.run import run
 from navette.cli.topic import topic
@@ -184,6 +186,8 @@ def _run(options: "RunOptions", *, as_json: bool) -> None:
 # What stands behind the program's name is the program's.
 app.command(context_settings={"allow_interspersed_args": False})(run)
 app.add_typer(pkg)
+app.add_typer(node)
+app.add_typer(param)
 app.add_typer(topic)
 app.command()(launch)
 

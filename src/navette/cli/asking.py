@@ -1,0 +1,93 @@
+"""Asking running nodes by their services, all at once, and not for ever."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from navette.cli.nearest import did_you_mean
+from navette.cli.session import fail, is_hidden, wait_for
+
+if TYPE_CHECKING:
+    from navette.runtime import Node
+
+ANSWER_S = 2.0
+"""Who has not answered by then hangs, or is stopped."""
+
+
+class Question(NamedTuple):
+    """A request: to which service, of which type, with which fields."""
+
+    service: str
+    type_name: str
+    fields: dict[str, Any]
+
+
+class Answer(NamedTuple):
+    """A response, or why there is none."""
+
+    response: Any
+    reason: str = ""
+
+
+def ask_all(
+    node: "Node", questions: Sequence[Question], timeout_s: float = ANSWER_S
+) -> list[Answer]:
+    """Ask all of them at the same time; an answer each, in that order."""
+    from navette.msgs import get_interface
+
+    futures = []
+    for question in questions:
+        client = node.create_client(get_interface(question.type_name), question.service)
+        request = client.srv_type.Request(**question.fields)
+        futures.append(client.call_async(request))
+    wait_for(node, lambda: all(future.done() for future in futures), timeout_s)
+    return [
+        answer(future, question.service)
+        for future, question in zip(futures, questions, strict=True)
+    ]
+
+
+def answer(future: Any, service: str) -> Answer:
+    """What a future of a response has come to."""
+    if not future.done():
+        return Answer(None, f"service {service}: no answer")
+    if future.exception() is not None:
+        return Answer(None, str(future.exception()))
+    return Answer(future.result())
+
+
+def ask(node: "Node", service: str, type_name: str, **fields: Any) -> Any:
+    """Ask one; ends the command if there is no answer."""
+    (got,) = ask_all(node, [Question(service, type_name, fields)])
+    if got.response is None:
+        fail(got.reason)
+    return got.response
+
+
+def node_names(node: "Node", *, hidden: bool = False) -> list[str]:
+    """Full names of the nodes that run, this one aside; a name per node, sorted."""
+    names = node.get_fully_qualified_node_names()
+    names.remove(node.get_fully_qualified_name())
+    return sorted(name for name in names if hidden or not is_hidden(name))
+
+
+def chosen_node(node: "Node", name: str, known: Sequence[str] | None = None) -> str:
+    """The full name of a node that runs; ends the command where there is none.
+
+    Args:
+        name: as typed; a leading slash may be left out.
+        known: those to choose from, where not all will do.
+    """
+    full = "/" + name.strip("/")
+    every = node_names(node, hidden=True)
+    if full in (every if known is None else known):
+        return full
+    if full in every:
+        fail(f"node {full} is not one of those: {', '.join(known or ()) or 'none'}")
+    if not every:
+        fail(
+            f"no node {full}: nothing runs here (or not with this ROS_DOMAIN_ID and"
+            " NAVETTE_ROUTER)"
+        )
+    return fail(
+        f"no node {full}{did_you_mean(full, every if known is None else known)}"
+    )

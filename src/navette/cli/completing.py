@@ -1,0 +1,110 @@
+"""What the shell offers at Tab: names of what runs and of what is installed.
+
+A completion says nothing where it knows nothing: no message would fit into a half
+typed line.
+"""
+
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+import typer
+
+from navette.cli.asking import Question, ask_all, node_names
+from navette.cli.session import connect, endpoints, is_hidden, service_endpoints
+from navette.errors import NavetteError
+
+if TYPE_CHECKING:
+    from navette.runtime import Node
+
+_ANSWER_S = 0.2
+
+
+def complete_nodes(incomplete: str) -> list[str]:
+    """Full names of nodes."""
+    return _running(incomplete, node_names)
+
+
+def complete_topics(incomplete: str) -> list[str]:
+    """Full names of topics."""
+    return _running(incomplete, lambda here: (e.topic for e in endpoints(here)))
+
+
+def complete_services(incomplete: str) -> list[str]:
+    """Full names of services."""
+    return _running(incomplete, lambda here: (e.topic for e in service_endpoints(here)))
+
+
+def complete_actions(incomplete: str) -> list[str]:
+    """Full names of actions."""
+    from navette.runtime.action import get_action_names_and_types
+
+    return _running(
+        incomplete, lambda here: (n for n, _ in get_action_names_and_types(here))
+    )
+
+
+def complete_parameters(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Names of the parameters of the node named before."""
+    name = str(ctx.params.get("node_name") or "").strip("/")
+    question = Question(
+        f"/{name}/list_parameters", "rcl_interfaces/srv/ListParameters", {}
+    )
+
+    def names(here: "Node") -> list[str]:
+        (answer,) = ask_all(here, [question], _ANSWER_S)
+        return list(answer.response.result.names) if answer.response else []
+
+    return _running(incomplete, names) if name else []
+
+
+def complete_types(incomplete: str) -> list[str]:
+    """Every interface that is installed, as ``pkg/msg/Name``."""
+    return _types(incomplete, "msg", "srv", "action")
+
+
+def complete_messages(incomplete: str) -> list[str]:
+    return _types(incomplete, "msg")
+
+
+def complete_service_types(incomplete: str) -> list[str]:
+    return _types(incomplete, "srv")
+
+
+def complete_action_types(incomplete: str) -> list[str]:
+    return _types(incomplete, "action")
+
+
+def complete_packages(incomplete: str) -> list[str]:
+    """Packages, installed or in the workspace."""
+    from navette.packages import find_packages
+
+    return _chosen(incomplete, find_packages())
+
+
+def _running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[str]:
+    """Names out of what runs; those for machines only where their start is typed."""
+    hidden = "_" in incomplete
+    with suppress(NavetteError, typer.Exit), connect() as here:
+        return _chosen(
+            incomplete, (n for n in names(here) if hidden or not is_hidden(n))
+        )
+    return []
+
+
+def _types(incomplete: str, *kinds: str) -> list[str]:
+    from navette.companions.rosidl_runtime_py import get_interfaces
+
+    return _chosen(
+        incomplete,
+        (
+            f"{package}/{name}"
+            for package, names in get_interfaces().items()
+            for name in names
+            if name.partition("/")[0] in kinds
+        ),
+    )
+
+
+def _chosen(incomplete: str, names: Iterable[str]) -> list[str]:
+    return sorted({name for name in names if name.startswith(incomplete)})

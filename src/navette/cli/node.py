@@ -1,0 +1,107 @@
+"""``navette node``: which nodes run, and what each says and hears."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from navette.cli.asking import chosen_node, node_names
+from navette.cli.completing import complete_nodes
+from navette.cli.output import note, show, show_json, styled
+from navette.cli.session import connect, is_hidden
+
+if TYPE_CHECKING:
+    from navette.runtime import Node
+
+node = typer.Typer(
+    name="node",
+    help="Look at the nodes that run.",
+    no_args_is_help=True,
+)
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+
+
+@node.command("list")
+def list_(
+    all_: Annotated[
+        bool, typer.Option("--all", "-a", help="Also hidden ones (_name).")
+    ] = False,
+    count: Annotated[
+        bool, typer.Option("--count-nodes", "-c", help="Only their number.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """List the nodes that run."""
+    with connect() as here:
+        names = node_names(here, hidden=all_)
+    if count:
+        show(str(len(names)))
+    elif as_json:
+        show_json(names)
+    else:
+        if len(set(names)) < len(names):
+            note("some nodes share a name: which of them answers is chance")
+        for name in names:
+            show(name)
+
+
+@node.command()
+def info(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NODE", help="As /planner.", autocompletion=complete_nodes
+        ),
+    ],
+    include_hidden: Annotated[
+        bool,
+        typer.Option("--include-hidden", help="Also hidden topics, services, actions."),
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Say what a node subscribes to, publishes, serves and calls."""
+    with connect() as here:
+        full = chosen_node(here, name)
+        same = node_names(here, hidden=True).count(full)
+        if same > 1:
+            note(f"{same} nodes are named {full}: this is all of them together")
+        sections = _sections(here, full, hidden=include_hidden)
+    if as_json:
+        keyed = {title.lower().replace(" ", "_"): s for title, s in sections.items()}
+        show_json({"node": full, **keyed})
+        return
+    show(styled(full, bold=True))
+    for title, names in sections.items():
+        show(f"  {styled(f'{title}:', bold=True)}")
+        lines = [f"    {each}: {_types(names[each])}" for each in names]
+        # An empty section is an empty line, as ROS 2's command prints it.
+        show("\n".join(lines))
+
+
+def _types(names: list[str]) -> str:
+    return styled(", ".join(names), dim=True)
+
+
+def _sections(
+    here: "Node", full: str, *, hidden: bool
+) -> dict[str, dict[str, list[str]]]:
+    """Heading → name → types."""
+    from navette.runtime.action import (
+        get_action_client_names_and_types_by_node,
+        get_action_server_names_and_types_by_node,
+    )
+
+    namespace, _, base = full.rpartition("/")
+    whose = (base, namespace or "/")
+    found = {
+        "Subscribers": here.get_subscriber_names_and_types_by_node(*whose),
+        "Publishers": here.get_publisher_names_and_types_by_node(*whose),
+        "Service Servers": here.get_service_names_and_types_by_node(*whose),
+        "Service Clients": here.get_client_names_and_types_by_node(*whose),
+        "Action Servers": get_action_server_names_and_types_by_node(here, *whose),
+        "Action Clients": get_action_client_names_and_types_by_node(here, *whose),
+    }
+    return {
+        title: {n: types for n, types in pairs if hidden or not is_hidden(n)}
+        for title, pairs in found.items()
+    }

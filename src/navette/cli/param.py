@@ -1,0 +1,258 @@
+"""``navette param``: read and change the parameters of nodes that run."""
+
+import re
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navette.cli import parameter_text, parameters
+from navette.cli.asking import chosen_node, node_names
+from navette.cli.completing import complete_nodes, complete_parameters
+from navette.cli.output import note, show, show_json, styled
+from navette.cli.session import connect, fail
+from navette.errors import InvalidValueError
+
+param = typer.Typer(
+    name="param",
+    help="Read and change the parameters of nodes that run.",
+    no_args_is_help=True,
+)
+
+NodeName = Annotated[
+    str,
+    typer.Argument(metavar="NODE", help="As /planner.", autocompletion=complete_nodes),
+]
+AnyNode = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="[NODE]", help="By default every node.", autocompletion=complete_nodes
+    ),
+]
+Name = Annotated[
+    str,
+    typer.Argument(
+        metavar="NAME",
+        help="The parameter's name, as limits.max_speed_mps.",
+        autocompletion=complete_parameters,
+    ),
+]
+Names = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="NAME...",
+        help="The parameters' names.",
+        autocompletion=complete_parameters,
+    ),
+]
+Hidden = Annotated[
+    bool, typer.Option("--include-hidden-nodes", help="Also nodes named _name.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+
+
+@param.command("list")
+def list_(
+    node_name: AnyNode = None,
+    filter_: Annotated[
+        str | None,
+        typer.Option("--filter", metavar="REGEX", help="Only names that match."),
+    ] = None,
+    prefixes: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--param-prefixes",
+            "--prefixes",
+            metavar="PREFIX...",
+            help="Only names below these, as limits for limits.max_speed_mps.",
+        ),
+    ] = None,
+    types: Annotated[
+        bool, typer.Option("--param-type", help="With their types.")
+    ] = False,
+    include_hidden_nodes: Hidden = False,
+    as_json: Json = False,
+) -> None:
+    """List parameters: of a node, or of all."""
+    pattern = _pattern(filter_)
+    with connect() as here:
+        every = node_names(here, hidden=include_hidden_nodes)
+        nodes = [chosen_node(here, node_name)] if node_name else every
+        listed = parameters.names(here, nodes, prefixes or ())
+        for name, reason in listed.silent.items():
+            note(f"{name}: {reason}")
+        found = {
+            node: [name for name in names if pattern is None or pattern.match(name)]
+            for node, names in listed.found.items()
+        }
+        kinds = parameters.types(here, found) if types else {}
+    if as_json:
+        show_json(
+            {
+                node: {n: kinds[node, n] for n in names} if types else names
+                for node, names in found.items()
+            }
+        )
+    else:
+        _show_names(found, kinds, with_nodes=node_name is None)
+    if node_name and listed.silent:
+        raise typer.Exit(1)
+
+
+def _pattern(text: str | None) -> re.Pattern[str] | None:
+    if text is None:
+        return None
+    try:
+        return re.compile(text)
+    except re.error as error:
+        raise InvalidValueError(
+            f"--filter {text!r}: wanted a regular expression: {error}"
+        ) from None
+
+
+def _show_names(
+    found: dict[str, list[str]], kinds: dict[tuple[str, str], str], *, with_nodes: bool
+) -> None:
+    for node, names in found.items():
+        if with_nodes and names:
+            show(styled(f"{node}:", bold=True))
+        for name in names:
+            kind = styled(f" (type: {kinds[node, name]})", dim=True) if kinds else ""
+            show(f"  {name}{kind}")
+
+
+@param.command()
+def get(
+    node_name: NodeName,
+    name: Name,
+    hide_type: Annotated[
+        bool, typer.Option("--hide-type", help="Only the value.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Print a parameter's value."""
+    with connect() as here:
+        node = chosen_node(here, node_name)
+        got = parameters.get(here, node, [name])[name]
+    if as_json:
+        show_json(parameter_text.plain(got))
+    elif hide_type:
+        show(str(got.value))
+    else:
+        show(parameter_text.labelled(got))
+
+
+@param.command("set", context_settings={"ignore_unknown_options": True})
+def set_(
+    node_name: NodeName,
+    name: Name,
+    value: Annotated[
+        str,
+        typer.Argument(
+            metavar="VALUE", help="As YAML: 1.5, true, text, \"'5'\", [1, 2]."
+        ),
+    ],
+) -> None:
+    """Set a parameter of a node that runs.
+
+    A whole number will do where a double is wanted. A value that the node refuses
+    changes nothing: the reason is printed and the exit code is 1.
+    """
+    with connect() as here:
+        node = chosen_node(here, node_name)
+        result = parameters.set_values(here, node, {name: parameters.parsed(value)})[0]
+    if not result.successful:
+        fail(_with_reason("Setting parameter failed", result))
+    show(_with_reason("Set parameter successful", result))
+
+
+@param.command()
+def describe(node_name: NodeName, names: Names, as_json: Json = False) -> None:
+    """Say what a parameter means, its type and its limits."""
+    with connect() as here:
+        node = chosen_node(here, node_name)
+        described = parameters.describe(here, node, names)
+    if as_json:
+        show_json([parameter_text.descriptor_dict(each) for each in described])
+        return
+    for each in described:
+        show(styled(f"Parameter name: {each.name}", bold=True))
+        for line in parameter_text.descriptor_lines(each):
+            show(line)
+
+
+@param.command()
+def dump(
+    node_name: AnyNode = None,
+    output_dir: Annotated[
+        Path | None,
+        typer.Option(
+            "--output-dir",
+            "-o",
+            metavar="FOLDER",
+            help="Write a file per node there instead of printing.",
+        ),
+    ] = None,
+    include_hidden_nodes: Hidden = False,
+) -> None:
+    """Print a node's parameters as a parameter file; without NODE, all nodes'.
+
+    What is printed can be given to --params-file, params: in a launch file, and
+    navette param load.
+    """
+    with connect() as here:
+        every = node_names(here, hidden=include_hidden_nodes)
+        nodes = [chosen_node(here, node_name)] if node_name else every
+        values = parameters.dump(here, nodes)
+        for remark in values.remarks:
+            note(remark)
+    if output_dir is None:
+        show(parameters.as_file(values.found).rstrip("\n"))
+    else:
+        for path in parameters.write(values.found, output_dir):
+            show(f"Saving to: {path}")
+    if values.remarks and not values.found:
+        raise typer.Exit(1)
+
+
+@param.command()
+def load(
+    node_name: NodeName,
+    parameter_file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="A ROS 2 parameter file.")
+    ],
+    no_use_wildcard: Annotated[
+        bool, typer.Option("--no-use-wildcard", help="Not what stands under /**.")
+    ] = False,
+) -> None:
+    """Set what a parameter file has for a node."""
+    with connect() as here:
+        node = chosen_node(here, node_name)
+        values = parameters.from_file(
+            parameter_file, node, use_wildcard=not no_use_wildcard
+        )
+        results = parameters.set_values(here, node, values)
+    failed = False
+    for name, result in zip(values, results, strict=True):
+        if result.successful:
+            show(_with_reason(f"Set parameter {name} successful", result))
+        else:
+            failed = True
+            note(_with_reason(f"Set parameter {name} failed", result))
+    if failed:
+        raise typer.Exit(1)
+
+
+@param.command()
+def delete(node_name: NodeName, name: Name) -> None:
+    """Delete a parameter; nodes allow it for those without a fixed type."""
+    with connect() as here:
+        node = chosen_node(here, node_name)
+        result = parameters.delete(here, node, name)
+    if not result.successful:
+        fail(_with_reason("Deleting parameter failed", result))
+    show(_with_reason("Deleted parameter successfully", result))
+
+
+def _with_reason(text: str, result: Any) -> str:
+    return f"{text}: {result.reason}" if result.reason else text

@@ -1,0 +1,79 @@
+"""Parameters in words, as ``ros2 param`` has them."""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from navette.runtime import Parameter
+
+_LABELS = {
+    "BOOL": "Boolean value is:",
+    "INTEGER": "Integer value is:",
+    "DOUBLE": "Double value is:",
+    "STRING": "String value is:",
+    "BYTE_ARRAY": "Byte values are:",
+    "BOOL_ARRAY": "Boolean values are:",
+    "INTEGER_ARRAY": "Integer values are:",
+    "DOUBLE_ARRAY": "Double values are:",
+    "STRING_ARRAY": "String values are:",
+}
+
+
+def labelled(parameter: "Parameter[Any]") -> str:
+    """As ``ros2 param get`` prints it."""
+    label = _LABELS.get(parameter.type_.name)
+    return f"{label} {parameter.value}" if label else "Parameter not set."
+
+
+def plain(parameter: "Parameter[Any]") -> Any:
+    """The value as JSON has it; bytes as numbers."""
+    value = parameter.value
+    if isinstance(value, list):
+        return [item[0] if isinstance(item, bytes) else item for item in value]
+    return value
+
+
+def type_word(kind: int) -> str:
+    """``string array`` for STRING_ARRAY, as ROS 2's command says it."""
+    from navette.runtime.parameter import ParameterType
+
+    name: str = ParameterType(kind).name.lower().replace("_", " ")
+    return name.replace("bool", "boolean")
+
+
+def descriptor_dict(descriptor: Any) -> dict[str, Any]:
+    limits = _limits(descriptor)
+    return {
+        "name": descriptor.name,
+        "type": type_word(descriptor.type),
+        "description": descriptor.description,
+        "read_only": descriptor.read_only,
+        "additional_constraints": descriptor.additional_constraints,
+        **(
+            {"min": limits.from_value, "max": limits.to_value, "step": limits.step}
+            if limits
+            else {}
+        ),
+    }
+
+
+def descriptor_lines(descriptor: Any) -> list[str]:
+    """As ``ros2 param describe`` prints it, without the name."""
+    lines = [f"  Type: {type_word(descriptor.type)}"]
+    if descriptor.description:
+        lines.append(f"  Description: {descriptor.description}")
+    lines.append("  Constraints:")
+    if descriptor.read_only:
+        lines.append("    Read only: true")
+    if limits := _limits(descriptor):
+        lines.append(f"    Min value: {limits.from_value}")
+        lines.append(f"    Max value: {limits.to_value}")
+        if limits.step:
+            lines.append(f"    Step: {limits.step}")
+    if descriptor.additional_constraints:
+        lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
+    return lines
+
+
+def _limits(descriptor: Any) -> Any:
+    ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
+    return ranges[0] if ranges else None

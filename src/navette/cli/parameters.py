@@ -1,0 +1,232 @@
+"""The parameters of running nodes, as the verbs of ``navette param`` need them."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from navette.cli.asking import ANSWER_S, Question, answer, ask_all
+from navette.cli.nearest import did_you_mean
+from navette.cli.parameter_text import type_word
+from navette.cli.session import fail, wait_for
+from navette.errors import ParameterError
+
+if TYPE_CHECKING:
+    from navette.runtime import Node, Parameter
+    from navette.runtime.parameter_client import AsyncParameterClient
+
+
+class Listed(NamedTuple):
+    """Names by node, and why some nodes gave none."""
+
+    found: dict[str, list[str]]
+    silent: dict[str, str]
+
+
+class Dumped(NamedTuple):
+    """Values by node and name, and what had to be left out."""
+
+    found: dict[str, dict[str, Any]]
+    remarks: list[str]
+
+
+def names(here: "Node", nodes: Sequence[str], prefixes: Iterable[str] = ()) -> Listed:
+    """The names of all the nodes' parameters, sorted; all nodes are asked at once."""
+    fields = {"prefixes": list(prefixes)}
+    found: dict[str, list[str]] = {}
+    silent: dict[str, str] = {}
+    answers = ask_all(here, [_question(n, "list_parameters", fields) for n in nodes])
+    for node, (response, reason) in zip(nodes, answers, strict=True):
+        if response is None:
+            silent[node] = reason
+        else:
+            found[node] = sorted(response.result.names)
+    return Listed(found, silent)
+
+
+def types(
+    here: "Node", found: Mapping[str, Sequence[str]]
+) -> dict[tuple[str, str], str]:
+    """(node, name) → ROS 2's word for the type."""
+    nodes = [node for node in found if found[node]]
+    answers = ask_all(
+        here,
+        [_question(n, "get_parameter_types", {"names": list(found[n])}) for n in nodes],
+    )
+    kinds: dict[tuple[str, str], str] = {}
+    for node, (response, _) in zip(nodes, answers, strict=True):
+        given = list(response.types) if response is not None else []
+        given += [0] * (len(found[node]) - len(given))
+        for name, kind in zip(found[node], given, strict=False):
+            kinds[node, name] = type_word(kind)
+    return kinds
+
+
+def get(here: "Node", node: str, wanted: Sequence[str]) -> "dict[str, Parameter[Any]]":
+    """The values of a node's parameters; ends the command if one is not there."""
+    from navette.runtime import Parameter
+    from navette.runtime.parameter import ParameterType, parameter_value_to_python
+
+    client = _client(here, node)
+    values = _answered(here, client.get_parameters(list(wanted)), node).values
+    if len(values) != len(wanted):
+        _fail_unknown(here, node, wanted)
+    found: dict[str, Parameter[Any]] = {}
+    for name, value in zip(wanted, values, strict=True):
+        kind = ParameterType(value.type)
+        found[name] = Parameter(name, kind, parameter_value_to_python(value))
+    return found
+
+
+def set_values(here: "Node", node: str, values: Mapping[str, Any]) -> list[Any]:
+    """Set a node's parameters one by one; a SetParametersResult each.
+
+    A value is sent as the type that the node declared: a whole number as a double, an
+    empty list as any list. What is refused is not altered; a refusal of an unknown
+    name says which are near.
+    """
+    from navette.runtime import Parameter
+    from navette.runtime.parameter import ParameterType, coerced
+
+    client = _client(here, node)
+    wanted = list(values)
+    kinds = list(_answered(here, client.get_parameter_types(wanted), node).types)
+    parameters = []
+    for name, kind in zip(wanted, kinds or [0] * len(wanted), strict=True):
+        value = values[name]
+        parameter: Parameter[Any]
+        try:
+            declared = ParameterType(kind)
+            parameter = Parameter(name, declared, coerced(name, value, declared))
+        except (ParameterError, ValueError):
+            # The node says what it thinks of that.
+            parameter = Parameter(name, value=value)
+        parameters.append(parameter)
+    results = list(_answered(here, client.set_parameters(parameters), node).results)
+    if not all(result.successful for result in results) and not kinds:
+        known = names(here, [node]).found.get(node, [])
+        for name, result in zip(wanted, results, strict=True):
+            if name not in known and not result.successful:
+                result.reason += did_you_mean(name, known)
+    return results
+
+
+def delete(here: "Node", node: str, name: str) -> Any:
+    """Take a parameter away; the node's SetParametersResult."""
+    client = _client(here, node)
+    if name not in (known := names(here, [node]).found.get(node, [])):
+        fail(f"node {node} has no parameter {name!r}{did_you_mean(name, known)}")
+    return _answered(here, client.delete_parameters([name]), node).results[0]
+
+
+def describe(here: "Node", node: str, wanted: Sequence[str]) -> list[Any]:
+    """Descriptors of a node's parameters; ends the command if one is not there."""
+    client = _client(here, node)
+    response = _answered(here, client.describe_parameters(list(wanted)), node)
+    if len(response.descriptors) != len(wanted):
+        _fail_unknown(here, node, wanted)
+    return list(response.descriptors)
+
+
+def dump(here: "Node", nodes: Sequence[str]) -> Dumped:
+    """All values that a parameter file can hold."""
+    from navette.runtime.parameter import ParameterType, parameter_value_to_python
+
+    listed = names(here, nodes)
+    remarks = [f"{node}: {reason}" for node, reason in listed.silent.items()]
+    asked = [
+        _question(node, "get_parameters", {"names": found})
+        for node, found in listed.found.items()
+    ]
+    values: dict[str, dict[str, Any]] = {}
+    answers = ask_all(here, asked)
+    for (node, found), (response, reason) in zip(
+        listed.found.items(), answers, strict=True
+    ):
+        if response is None:
+            remarks.append(f"{node}: {reason}")
+            continue
+        values[node] = {}
+        for name, value in zip(found, response.values, strict=False):
+            kind = ParameterType(value.type)
+            if kind in (ParameterType.NOT_SET, ParameterType.BYTE_ARRAY):
+                remarks.append(
+                    f"{node}: {name} is left out: {type_word(kind)} has no form in YAML"
+                )
+            else:
+                values[node][name] = parameter_value_to_python(value)
+    return Dumped(values, remarks)
+
+
+def as_file(values: Mapping[str, Mapping[str, Any]]) -> str:
+    """A parameter file of (node → name → value)."""
+    from navette.runtime.parameter_files import format_parameters
+
+    return format_parameters(values)
+
+
+def write(values: Mapping[str, Mapping[str, Any]], folder: Path) -> list[Path]:
+    """A file per node, named as ROS 2 does: ``/ns/node`` → ``ns__node.yaml``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for node, own in values.items():
+        path = folder / f"{node.strip('/').replace('/', '__')}.yaml"
+        path.write_text(as_file({node: own}), encoding="utf-8")
+        paths.append(path)
+    return paths
+
+
+def from_file(path: Path, node: str, *, use_wildcard: bool) -> dict[str, Any]:
+    """What a file has for a node, as at its start: the last entry that fits wins."""
+    from navette.runtime.overrides import ParameterOverrides
+
+    overrides = ParameterOverrides()
+    overrides.add_file(path)
+    patterns = [each.pattern for each in overrides.sets]
+    if not use_wildcard:
+        overrides.sets = [each for each in overrides.sets if each.names_a_node]
+    values = {name: each.value for name, each in overrides.for_node(node).items()}
+    if not values:
+        fail(
+            f"{path}: nothing for {node}; it has values for "
+            f"{', '.join(patterns) or 'no node'}"
+        )
+    return values
+
+
+def parsed(text: str) -> Any:
+    """The value that a person typed, read as YAML."""
+    from navette.runtime.parameter_files import parse_value
+
+    return parse_value(text)
+
+
+def _question(node: str, name: str, fields: dict[str, Any]) -> Question:
+    type_name = "".join(part.title() for part in name.split("_"))
+    return Question(f"{node}/{name}", f"rcl_interfaces/srv/{type_name}", fields)
+
+
+def _client(here: "Node", node: str) -> "AsyncParameterClient":
+    from navette.runtime.parameter_client import AsyncParameterClient
+
+    client = AsyncParameterClient(here, node)
+    if not client.wait_for_services(ANSWER_S):
+        fail(f"node {node} has no parameter services")
+    return client
+
+
+def _answered(here: "Node", future: Any, node: str) -> Any:
+    wait_for(here, future.done, ANSWER_S)
+    got = answer(future, f"of {node}'s parameters")
+    if got.response is None:
+        fail(got.reason)
+    return got.response
+
+
+def _fail_unknown(here: "Node", node: str, wanted: Sequence[str]) -> None:
+    """Say which of the names the node does not have."""
+    known = names(here, [node]).found.get(node, [])
+    unknown = [name for name in wanted if name not in known]
+    if not unknown:
+        fail(f"node {node}: {', '.join(wanted)}: declared, but without a value")
+    name = unknown[0]
+    fail(f"node {node} has no parameter {name!r}{did_you_mean(name, known)}")
