@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
-from navette.msgs.geometry_msgs.msg import PointStamped
+from navette.msgs.geometry_msgs.msg import PointStamped, Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.sensor_msgs.msg import Image, LaserScan
 from navette.msgs.std_msgs.msg import Header, String
@@ -42,7 +42,11 @@ class Robot(Node):
         self.odometry = self.create_publisher(Odometry, "/odom/filtered", 10)
         self.create_publisher(Image, "/camera", 10)
         self.create_subscription(PointStamped, "/goal_point", self.on_goal, 10)
+        self.speeds: list[tuple[float, float]] = []
+        self.stands = threading.Event()
+        self.create_subscription(Twist, "/cmd_vel", self.on_speed, 10)
         grid = OccupancyGrid(header=Header(frame_id="map"))
+        grid.info.width, grid.info.height, grid.info.resolution = 3, 1, 2.0
         grid.data = np.array([0, 100, -1], np.int8)
         self.create_publisher(OccupancyGrid, "/map", LATCHED).publish(grid)
         status = DiagnosticStatus(name="planner", message="waiting_for_goal")
@@ -54,13 +58,18 @@ class Robot(Node):
     def on_timer(self) -> None:
         self.chatter.publish(String(data="grüezi"))
         self.lidar.publish(LaserScan(ranges=RANGES))
-        odometry = Odometry()
+        odometry = Odometry(header=Header(frame_id="map"), child_frame_id="base_link")
         odometry.pose.pose.position.x = -6.25
         self.odometry.publish(odometry)
 
     def on_goal(self, goal: PointStamped) -> None:
         self.goals.append(goal)
         self.goal.set()
+
+    def on_speed(self, speed: Twist) -> None:
+        self.speeds.append((speed.linear.x, speed.angular.z))
+        if self.speeds[-1] == (0.0, 0.0):
+            self.stands.set()
 
 
 @pytest.fixture
@@ -96,7 +105,7 @@ def robot_of(program: Program) -> Robot:
 def assert_goal_arrived(program: Program) -> None:
     robot = robot_of(program)
     assert robot.goal.wait(10.0)
-    (goal,) = robot.goals
+    goal = robot.goals[0]
     assert (goal.point.x, goal.point.y, goal.header.frame_id) == (6.0, -12.5, "map")
 
 
@@ -135,3 +144,10 @@ def test_the_page_works_in_a_browser(program: Program) -> None:
     assert rows["/camera"][3] == "measure"
     assert "/robot" in seen["nodes"]
     assert_goal_arrived(program)
+    assert seen["layers"] == ["/map", "/lidar"]
+    clicked = robot_of(program).goals[1].point
+    assert [clicked.x, clicked.y] == pytest.approx(seen["place"], abs=0.05)
+    assert robot_of(program).stands.wait(10.0)
+    speeds = robot_of(program).speeds
+    assert (0.5, 0.8) in speeds
+    assert speeds[-1] == (0.0, 0.0)

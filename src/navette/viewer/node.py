@@ -293,11 +293,17 @@ class ViewerNode(StageNode):
 
     def _make_server(self) -> ViewerServer:
         params = self.params
-        page = importlib.resources.files("navette.viewer") / "data" / "page.html"
+        data = importlib.resources.files("navette.viewer") / "data"
+        scripts = {
+            f"/{file.name}": file.read_bytes()
+            for file in data.iterdir()
+            if file.name.endswith(".js")
+        }
         return ViewerServer(
             self._hub,
             Site(
-                page.read_bytes(),
+                (data / "page.html").read_bytes(),
+                scripts,
                 lambda: build_layout(*self._frames),
                 self._health,
             ),

@@ -12,7 +12,7 @@ _LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
 _LOCAL_SUFFIXES = (".localhost", ".local", ".lan", ".home.arpa", ".internal")
 
 PAGE_POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "default-src 'none'; script-src 'self' 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data:; connect-src 'self' ws: wss:; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'"
 )
@@ -87,15 +87,21 @@ def _is_address(name: str) -> bool:
 
 
 class Site:
-    """The pages: ``/``, ``/layout.json``, ``/health``; 404 for all else."""
+    """The pages: ``/``, ``/layout.json``, ``/health``, scripts; 404 for all else.
+
+    Args:
+        scripts: path → JavaScript that the page loads.
+    """
 
     def __init__(
         self,
         page: bytes,
+        scripts: Mapping[str, bytes],
         layout: Callable[[], Mapping[str, Any]],
         health: Callable[[], Mapping[str, Any]],
     ) -> None:
         self._page = page
+        self._scripts = scripts
         self._layout = layout
         self._health = health
 
@@ -106,6 +112,9 @@ class Site:
         if path in ("/", "/index.html"):
             headers = {"Content-Security-Policy": PAGE_POLICY}
             answer = Answer(200, "text/html; charset=utf-8", self._page, headers)
+        elif path in self._scripts:
+            kind = "text/javascript; charset=utf-8"
+            answer = Answer(200, kind, self._scripts[path])
         elif path == "/layout.json":
             download = 'attachment; filename="navette-layout.json"'
             headers = {"Content-Disposition": download}

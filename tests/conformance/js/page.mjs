@@ -25,11 +25,23 @@ try {
   await page.fill("#y", "-12,5");
   await page.click("#go");
   await until(() => /is sent/.test(document.querySelector("#answer").textContent));
+  // The picture: what it draws, a goal by a click, speed commands by a held key.
+  await until(() => new Set(new Uint32Array(view.context.getImageData(0, 0, view.canvas.width, view.canvas.height).data.buffer)).size > 5);
+  const place = await page.evaluate(() => view.toWorld(200, 100));
+  await page.click("#above canvas", { position: { x: 200, y: 100 } });
+  await until(() => /^Goal .*sent/.test(document.querySelector("#answer").textContent) && !/6.0, −12.5/.test(document.querySelector("#answer").textContent));
+  const layers = await page.$$eval("#layers label", (all) => all.map((label) => label.textContent));
+  await page.focus("#above canvas");
+  await page.keyboard.down("ArrowUp");
+  await page.keyboard.down("ArrowLeft");
+  await page.waitForFunction(() => [...document.querySelectorAll("#topics tr")].some((row) => row.cells[0].textContent === "/cmd_vel" && row.cells[3].textContent !== "–"), null, { timeout: 10_000 });
+  await page.keyboard.up("ArrowUp");
+  await page.keyboard.up("ArrowLeft");
   const rows = await page.$$eval("#topics tr", (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
   const open = new URL(await page.getAttribute("#open", "href"));
   console.log(JSON.stringify({
     title: await page.title(), address: await text("#address"), foxglove: open.searchParams.get("ds.url"),
-    position: await text("#position"), rows, nodes: await text("#nodes"), problems,
+    position: await text("#position"), rows, place, layers, nodes: await text("#nodes"), problems,
   }));
 } finally {
   await browser.close();

@@ -94,14 +94,17 @@ def test_strangers_are_refused(
         assert "allowed_" in refusal
 
 
-def test_the_site_has_three_pages() -> None:
-    site = Site(b"<html>", lambda: {"layout": 1}, lambda: {"status": "ok"})
+def test_the_site_has_three_pages_and_its_scripts() -> None:
+    site = Site(
+        b"<html>", {"/a.js": b"1"}, lambda: {"layout": 1}, lambda: {"status": "ok"}
+    )
     page = site.answer("GET", "/")
     assert (page.status, page.body) == (200, b"<html>")
     assert "default-src 'none'" in page.headers["Content-Security-Policy"]
     layout = site.answer("GET", "/layout.json?x=1")
     assert json.loads(layout.body) == {"layout": 1}
     assert json.loads(site.answer("GET", "/health").body) == {"status": "ok"}
+    assert site.answer("GET", "/a.js").body == b"1"
     assert site.answer("GET", "/../etc/passwd").status == 404
     assert site.answer("GET", "").status == 404
     assert site.answer("POST", "/").status == 405
