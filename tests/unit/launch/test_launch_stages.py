@@ -1,4 +1,4 @@
-"""Each stage as a program: its robot's parameters, then its own, and what is refused."""
+"""Each stage as a program: its robot's parameters, then its own; what is refused."""
 
 import sys
 import threading
