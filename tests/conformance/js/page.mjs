@@ -34,7 +34,7 @@ try {
   await page.focus("#above canvas");
   await page.keyboard.down("ArrowUp");
   await page.keyboard.down("ArrowLeft");
-  await page.waitForFunction(() => [...document.querySelectorAll("#topics tr")].some((row) => row.cells[0].textContent === "/cmd_vel" && row.cells[3].textContent !== "–"), null, { timeout: 10_000 });
+  await page.waitForFunction(() => [...document.querySelectorAll("#topics tr")].some((row) => row.cells[0].textContent === "/cmd_vel" && /Hz/.test(row.cells[3].textContent)), null, { timeout: 10_000 });
   await page.keyboard.up("ArrowUp");
   await page.keyboard.up("ArrowLeft");
   const rows = await page.$$eval("#topics tr", (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
