@@ -17,7 +17,15 @@ ROOT = Path(__file__).parent.parent
 SOURCE = ROOT / "src" / "navette"
 SLEEPS = ("time.sleep", "asyncio.sleep")
 LINT = "from importlinter.cli import lint_imports_command as lint; lint()"
-FLOW = ("sim", "costmap", "mapping", "planning", "control", "missions")
+FLOW = (
+    "sim",
+    "localization",
+    "costmap",
+    "mapping",
+    "planning",
+    "control",
+    "missions",
+)
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 

@@ -4,17 +4,19 @@ from dataclasses import dataclass
 
 from navette.control.node import ControlNode
 from navette.costmap.node import CostmapNode
+from navette.localization.distance.node import OdomIntegratorNode
 from navette.mapping.node import MapMemoryNode
 from navette.missions.node import MissionNode
 from navette.planning.node import PlannerNode
 from navette.runtime import Context, StageNode
 from navette.sim.node import SimNode
 
-FLOW = ("sim", "costmap", "mapping", "planning", "control", "missions")
+FLOW = ("sim", "localization", "costmap", "mapping", "planning", "control", "missions")
 """The stages, in the order data flows through them."""
 
 NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("sim", SimNode),
+    ("odom_integrator", OdomIntegratorNode),
     ("costmap", CostmapNode),
     ("map_memory", MapMemoryNode),
     ("planner", PlannerNode),
@@ -25,7 +27,11 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
 
 @dataclass(frozen=True)
 class NavigationStack:
-    """The nodes between sensors and wheels; they meet on topics only."""
+    """The nodes between sensors and wheels; they meet on topics only.
+
+    Those of localization are not among them: the simulator says where its robot is, on
+    the same topic as they do. They are started by name beside what needs them.
+    """
 
     costmap: CostmapNode
     map_memory: MapMemoryNode

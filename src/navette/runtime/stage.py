@@ -97,7 +97,7 @@ class StageNode(Node):
         self._arrivals_ns: dict[str, int] = {}
         self._timeouts_ns = {
             i.topic: None if i.timeout_s is None else round(i.timeout_s * 1e9)
-            for i in self.INPUTS
+            for i in self.inputs()
         }
         self.publishers_by_topic: dict[str, Publisher[Any]] = {
             output.topic: self.create_publisher(
@@ -105,7 +105,7 @@ class StageNode(Node):
             )
             for output in self.OUTPUTS
         }
-        for declared in self.INPUTS:
+        for declared in self.inputs():
             self.create_subscription(
                 get_interface(declared.type),
                 declared.topic,
@@ -113,6 +113,10 @@ class StageNode(Node):
                 declared.qos,
                 shared=True,
             )
+
+    def inputs(self) -> tuple[Input, ...]:
+        """INPUTS; override where ``self.params`` chooses topics or types."""
+        return self.INPUTS
 
     def publish(self, topic: str, msg: Any) -> None:
         """Publish on a declared output, by the name it has in OUTPUTS."""

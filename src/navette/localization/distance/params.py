@@ -1,0 +1,57 @@
+"""Parameters of the distance node."""
+
+from dataclasses import dataclass
+
+from navette.errors import ParameterError
+from navette.params import Params, param
+
+GPS = "gnss_driver/msg/Gps"
+FIX = "sensor_msgs/msg/NavSatFix"
+TWIST = "geometry_msgs/msg/TwistStamped"
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+_HAVE_POSITION = (GPS, FIX, ODOMETRY)
+_HAVE_VELOCITY = (GPS, TWIST, ODOMETRY)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DistanceParams(Params):
+    """What the distance is summed from."""
+
+    odom_type: str = param(
+        "pos",
+        "what is summed: changes of position (pos, or gps: the same), or velocity "
+        "times time (vel)",
+        choices=("pos", "gps", "vel"),
+    )
+    topic: str = param("/gnss_driver/odometry", "where the messages come from")
+    topic_type: str = param(
+        GPS,
+        "their type; NavSatFix has no velocity and TwistStamped no position",
+        choices=(GPS, FIX, TWIST, ODOMETRY),
+    )
+    max_gap_s: float = param(
+        2.0,
+        "longest time between two messages of one way; after a longer one (a bag was "
+        "set forward) counting goes on from there",
+        unit="s",
+        above=0.0,
+    )
+
+    @property
+    def by_velocity(self) -> bool:
+        """Whether velocity is summed, not position."""
+        return self.odom_type == "vel"
+
+    @property
+    def max_gap_ns(self) -> int:
+        return max(1, round(self.max_gap_s * 1e9))
+
+    def check(self) -> None:
+        able = _HAVE_VELOCITY if self.by_velocity else _HAVE_POSITION
+        if self.topic_type not in able:
+            raise ParameterError(
+                f"parameter 'topic_type': {self.topic_type} has no "
+                f"{'velocity' if self.by_velocity else 'position'}, which odom_type "
+                f"{self.odom_type!r} sums; wanted one of {', '.join(able)}"
+            )
