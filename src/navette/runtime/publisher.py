@@ -1,18 +1,21 @@
 """Publishers."""
 
+import logging
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Generic, TypeVar, cast
 
-from navette.errors import MessageError
+from navette.errors import DecodeError, MessageError
 from navette.msgs import deserialize, type_name
 from navette.runtime.exceptions import InvalidHandle
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.time import Duration
-from navette.transports import Endpoint, PublisherPort
+from navette.transports import Encoded, Endpoint, PublisherPort
 
 MsgT = TypeVar("MsgT")
+
+_log = logging.getLogger(__name__)
 
 
 class Publisher(Generic[MsgT]):
@@ -59,6 +62,15 @@ class Publisher(Generic[MsgT]):
             msg = self._converted(msg)
         self._sequence = sequence = self._sequence + 1
         self._send(msg, self._loop.clock.now_ns, sequence)
+
+    def publish_encoded(self, data: bytes) -> None:
+        """Send a message that is there as CDR: decoded where it is read, or never.
+
+        What turns out to be no such message is reported where it should be read.
+        """
+        self._sequence = sequence = self._sequence + 1
+        message = Encoded(data, self.msg_type, self._report_undecodable)
+        self._send(message, self._loop.clock.now_ns, sequence)
 
     @property
     def topic_name(self) -> str:
@@ -123,6 +135,9 @@ class Publisher(Generic[MsgT]):
             f"publisher of {self.endpoint.topic} (node "
             f"{self.endpoint.node_full_name}) was destroyed"
         )
+
+    def _report_undecodable(self, error: DecodeError) -> None:
+        _log.warning("topic %s: not delivered: %s", self.endpoint.topic, error)
 
     def _converted(self, msg: Any) -> Any:
         if isinstance(msg, self.msg_type):

@@ -16,6 +16,7 @@ from navette.transports.base import (
     Transport,
     TransportObserver,
 )
+from navette.transports.encoded import Encoded
 from navette.transports.inprocess_services import (
     InProcessClient,
     InProcessService,
@@ -42,6 +43,9 @@ class InProcessPublisher(PublisherPort):
             self._history = deque(maxlen=endpoint.qos.queue_length)
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
+        if message.__class__ is Encoded:
+            self._send_encoded((message, source_ns, source_ns, sequence))
+            return
         for sink in self._sinks:
             sink((copy_message(message), source_ns, source_ns, sequence))
         if self._shared_sinks or self._history is not None:
@@ -51,6 +55,13 @@ class InProcessPublisher(PublisherPort):
                 self._history.append(item)
             for sink in self._shared_sinks:
                 sink(item)
+
+    def _send_encoded(self, item: Item) -> None:
+        """Bytes do not change: each who reads them decodes an object of its own."""
+        for sink in (*self._sinks, *self._shared_sinks):
+            sink(item)
+        if self._history is not None:
+            self._history.append(item)
 
     def relink(self, subscriptions: "list[InProcessSubscription]") -> None:
         """Take over the current list of matched subscriptions."""
@@ -63,7 +74,7 @@ class InProcessPublisher(PublisherPort):
             return
         wanted = subscription.endpoint.qos.queue_length
         for item in list(self._history)[-wanted if wanted else 0 :]:
-            if subscription.shared:
+            if subscription.shared or item[0].__class__ is Encoded:
                 subscription.sink(item)
             else:
                 subscription.sink((copy_message(item[0]), *item[1:]))

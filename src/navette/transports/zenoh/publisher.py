@@ -8,6 +8,7 @@ from zenoh import ext
 
 from navette.msgs import serialize
 from navette.transports.base import PublisherPort
+from navette.transports.encoded import Encoded
 from navette.transports.qos import EndpointQos, HistoryPolicy, ReliabilityPolicy
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.graph import Matches
@@ -44,7 +45,8 @@ class ZenohPublisher(PublisherPort):
         if not self.matches.remotes and not self._latched:
             return
         attachment = Attachment(sequence, source_ns, self._gid)
-        self._put(serialize(message), attachment=attachment.encode())
+        data = message.data if message.__class__ is Encoded else serialize(message)
+        self._put(data, attachment=attachment.encode())
 
     @property
     def matched_count(self) -> int:
