@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from navette._version import __version__
+from navette.cli.action import action
 from navette.cli.arguments import join_pairs, parse_goal, parse_speed, spread_lists
 from navette.cli.launch import launch
+from navette.cli.lifecycle import lifecycle
 from navette.cli.node import node
 from navette.cli.param import param
 from navette.cli.pkg import pkg
 from navette.cli.run import run
+from navette.cli.service import service
 from navette.cli.topic import topic
 from navette.errors import NavetteError
 
@@ -188,6 +191,9 @@ app.command(context_settings={"allow_interspersed_args": False})(run)
 app.add_typer(pkg)
 app.add_typer(node)
 app.add_typer(param)
+app.add_typer(service)
+app.add_typer(action)
+app.add_typer(lifecycle)
 app.add_typer(topic)
 app.command()(launch)
 

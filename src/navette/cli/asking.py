@@ -4,13 +4,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from navette.cli.nearest import did_you_mean
-from navette.cli.session import fail, is_hidden, wait_for
+from navette.cli.session import fail, is_hidden, service_endpoints, wait_for
 
 if TYPE_CHECKING:
     from navette.runtime import Node
 
 ANSWER_S = 2.0
 """Who has not answered by then hangs, or is stopped."""
+
+GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
 class Question(NamedTuple):
@@ -68,6 +70,18 @@ def node_names(node: "Node", *, hidden: bool = False) -> list[str]:
     names = node.get_fully_qualified_node_names()
     names.remove(node.get_fully_qualified_name())
     return sorted(name for name in names if hidden or not is_hidden(name))
+
+
+def managed_nodes(here: "Node", *, hidden: bool = False) -> list[str]:
+    """Full names of the nodes that serve their state, sorted."""
+    from navette.transports import EndpointKind
+
+    serving = {
+        end.topic.removesuffix("/get_state")
+        for end in service_endpoints(here, kind=EndpointKind.SERVICE)
+        if end.type_name == GET_STATE
+    }
+    return sorted(serving & set(node_names(here, hidden=hidden)))
 
 
 def chosen_node(node: "Node", name: str, known: Sequence[str] | None = None) -> str:

@@ -6,11 +6,11 @@ typed line.
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from navette.cli.asking import Question, ask_all, node_names
+from navette.cli.asking import Question, ask_all, managed_nodes, node_names
 from navette.cli.session import connect, endpoints, is_hidden, service_endpoints
 from navette.errors import NavetteError
 
@@ -46,16 +46,29 @@ def complete_actions(incomplete: str) -> list[str]:
 
 def complete_parameters(ctx: typer.Context, incomplete: str) -> list[str]:
     """Names of the parameters of the node named before."""
-    name = str(ctx.params.get("node_name") or "").strip("/")
-    question = Question(
-        f"/{name}/list_parameters", "rcl_interfaces/srv/ListParameters", {}
+    return _asked(
+        ctx,
+        incomplete,
+        "list_parameters",
+        "rcl_interfaces/srv/ListParameters",
+        lambda response: response.result.names,
     )
 
-    def names(here: "Node") -> list[str]:
-        (answer,) = ask_all(here, [question], _ANSWER_S)
-        return list(answer.response.result.names) if answer.response else []
 
-    return _running(incomplete, names) if name else []
+def complete_managed_nodes(incomplete: str) -> list[str]:
+    """Full names of the nodes that have a lifecycle."""
+    return _running(incomplete, managed_nodes)
+
+
+def complete_transitions(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Labels of the transitions that the node named before can make now."""
+    return _asked(
+        ctx,
+        incomplete,
+        "get_available_transitions",
+        "lifecycle_msgs/srv/GetAvailableTransitions",
+        lambda response: (t.transition.label for t in response.available_transitions),
+    )
 
 
 def complete_types(incomplete: str) -> list[str]:
@@ -90,6 +103,24 @@ def _running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[
             incomplete, (n for n in names(here) if hidden or not is_hidden(n))
         )
     return []
+
+
+def _asked(
+    ctx: typer.Context,
+    incomplete: str,
+    service: str,
+    type_name: str,
+    names: Callable[[Any], Iterable[str]],
+) -> list[str]:
+    """Names out of what the node named before answers."""
+    node = str(ctx.params.get("node_name") or "").strip("/")
+    question = Question(f"/{node}/{service}", type_name, {})
+
+    def ask(here: "Node") -> Iterable[str]:
+        (answer,) = ask_all(here, [question], _ANSWER_S)
+        return names(answer.response) if answer.response is not None else ()
+
+    return _running(incomplete, ask) if node else []
 
 
 def _types(incomplete: str, *kinds: str) -> list[str]:

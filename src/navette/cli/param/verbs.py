@@ -6,10 +6,10 @@ from typing import Annotated, Any
 
 import typer
 
-from navette.cli import parameter_text, parameters
 from navette.cli.asking import chosen_node, node_names
 from navette.cli.completing import complete_nodes, complete_parameters
 from navette.cli.output import note, show, show_json, styled
+from navette.cli.param import text, values
 from navette.cli.session import connect, fail
 from navette.errors import InvalidValueError
 
@@ -78,14 +78,14 @@ def list_(
     with connect() as here:
         every = node_names(here, hidden=include_hidden_nodes)
         nodes = [chosen_node(here, node_name)] if node_name else every
-        listed = parameters.names(here, nodes, prefixes or ())
+        listed = values.names(here, nodes, prefixes or ())
         for name, reason in listed.silent.items():
             note(f"{name}: {reason}")
         found = {
             node: [name for name in names if pattern is None or pattern.match(name)]
             for node, names in listed.found.items()
         }
-        kinds = parameters.types(here, found) if types else {}
+        kinds = values.types(here, found) if types else {}
     if as_json:
         show_json(
             {
@@ -133,13 +133,13 @@ def get(
     """Print a parameter's value."""
     with connect() as here:
         node = chosen_node(here, node_name)
-        got = parameters.get(here, node, [name])[name]
+        got = values.get(here, node, [name])[name]
     if as_json:
-        show_json(parameter_text.plain(got))
+        show_json(text.plain(got))
     elif hide_type:
         show(str(got.value))
     else:
-        show(parameter_text.labelled(got))
+        show(text.labelled(got))
 
 
 @param.command("set", context_settings={"ignore_unknown_options": True})
@@ -160,7 +160,7 @@ def set_(
     """
     with connect() as here:
         node = chosen_node(here, node_name)
-        result = parameters.set_values(here, node, {name: parameters.parsed(value)})[0]
+        result = values.set_values(here, node, {name: values.parsed(value)})[0]
     if not result.successful:
         fail(_with_reason("Setting parameter failed", result))
     show(_with_reason("Set parameter successful", result))
@@ -171,13 +171,13 @@ def describe(node_name: NodeName, names: Names, as_json: Json = False) -> None:
     """Say what a parameter means, its type and its limits."""
     with connect() as here:
         node = chosen_node(here, node_name)
-        described = parameters.describe(here, node, names)
+        described = values.describe(here, node, names)
     if as_json:
-        show_json([parameter_text.descriptor_dict(each) for each in described])
+        show_json([text.descriptor_dict(each) for each in described])
         return
     for each in described:
         show(styled(f"Parameter name: {each.name}", bold=True))
-        for line in parameter_text.descriptor_lines(each):
+        for line in text.descriptor_lines(each):
             show(line)
 
 
@@ -203,15 +203,15 @@ def dump(
     with connect() as here:
         every = node_names(here, hidden=include_hidden_nodes)
         nodes = [chosen_node(here, node_name)] if node_name else every
-        values = parameters.dump(here, nodes)
-        for remark in values.remarks:
+        dumped = values.dump(here, nodes)
+        for remark in dumped.remarks:
             note(remark)
     if output_dir is None:
-        show(parameters.as_file(values.found).rstrip("\n"))
+        show(values.as_file(dumped.found).rstrip("\n"))
     else:
-        for path in parameters.write(values.found, output_dir):
+        for path in values.write(dumped.found, output_dir):
             show(f"Saving to: {path}")
-    if values.remarks and not values.found:
+    if dumped.remarks and not dumped.found:
         raise typer.Exit(1)
 
 
@@ -228,12 +228,12 @@ def load(
     """Set what a parameter file has for a node."""
     with connect() as here:
         node = chosen_node(here, node_name)
-        values = parameters.from_file(
+        wanted = values.from_file(
             parameter_file, node, use_wildcard=not no_use_wildcard
         )
-        results = parameters.set_values(here, node, values)
+        results = values.set_values(here, node, wanted)
     failed = False
-    for name, result in zip(values, results, strict=True):
+    for name, result in zip(wanted, results, strict=True):
         if result.successful:
             show(_with_reason(f"Set parameter {name} successful", result))
         else:
@@ -248,7 +248,7 @@ def delete(node_name: NodeName, name: Name) -> None:
     """Delete a parameter; nodes allow it for those without a fixed type."""
     with connect() as here:
         node = chosen_node(here, node_name)
-        result = parameters.delete(here, node, name)
+        result = values.delete(here, node, name)
     if not result.successful:
         fail(_with_reason("Deleting parameter failed", result))
     show(_with_reason("Deleted parameter successfully", result))

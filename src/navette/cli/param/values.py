@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from navette.cli.asking import ANSWER_S, Question, answer, ask_all
 from navette.cli.nearest import did_you_mean
-from navette.cli.parameter_text import type_word
+from navette.cli.param.text import type_word
 from navette.cli.session import fail, wait_for
 from navette.errors import ParameterError
 

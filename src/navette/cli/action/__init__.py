@@ -1,0 +1,5 @@
+"""``navette action …``: who serves which actions; and sending goals."""
+
+from navette.cli.action.verbs import action
+
+__all__ = ["action"]

@@ -1,0 +1,192 @@
+"""``navette action send_goal``: a goal out of partial YAML, followed to its end."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navette.cli.action.looking import actions, types_of
+from navette.cli.action.options import ActionName, Json
+from navette.cli.completing import complete_action_types
+from navette.cli.filling import filled, from_stdin, interface, type_and_values
+from navette.cli.nearest import did_you_mean
+from navette.cli.output import note, show, show_json, styled
+from navette.cli.session import FAILED, connect, fail, wait_for
+
+if TYPE_CHECKING:
+    from navette.runtime import Future, Node
+    from navette.runtime.action import ActionClient
+    from navette.runtime.action.client import ClientGoalHandle
+
+_CANCEL_S = 5.0
+
+
+def send_goal(
+    action: ActionName,
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[TYPE] [YAML]",
+            help="The type (by default that of the server), and the fields of the goal"
+            " that are not to keep their defaults: '{order: 5}'.",
+            autocompletion=complete_action_types,
+        ),
+    ] = None,
+    feedback: Annotated[
+        bool, typer.Option("--feedback", "-f", help="Print feedback as it comes.")
+    ] = False,
+    timeout: Annotated[
+        float | None,
+        typer.Option(
+            "--timeout", "-t", metavar="S", help="Cancel the goal after this long."
+        ),
+    ] = None,
+    wait: Annotated[
+        float,
+        typer.Option("--wait", "-w", metavar="S", help="For a server; 0: for ever."),
+    ] = 5.0,
+    stdin: Annotated[
+        bool, typer.Option("--stdin", help="Read the YAML from standard input.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Send a goal, wait for its result and print it; Ctrl-C cancels the goal.
+
+    Exit code 0 only if the goal succeeded.
+    """
+    from navette.runtime.action import ActionClient
+
+    type_name, values = type_and_values(words or [], "action")
+    if stdin:
+        values = from_stdin()
+    with connect() as here:
+        name = here.resolve_topic_name(action)
+        _wait_for_server(here, name, wait or None)
+        kind = interface(type_name or types_of(here, name)[0], "action")
+        goal = filled(kind.Goal, values or "{}")
+        client = ActionClient(here, kind, name)
+        if not client.wait_for_server(wait or None):
+            fail(f"nobody serves the action {name}")
+        report = _Report(as_json=as_json)
+        report.say("Sending goal:", f" {_yaml(goal)}")
+        sent = client.send_goal_async(goal, report.feedback if feedback else None)
+        try:
+            status = _follow(here, client, sent, timeout, report)
+        except KeyboardInterrupt:
+            _cancel(here, sent, report)
+            raise
+    if status != "SUCCEEDED":
+        raise typer.Exit(FAILED)
+
+
+class _Report:
+    """What is printed of a goal: as ROS 2's command does it, or a JSON value a line."""
+
+    def __init__(self, *, as_json: bool) -> None:
+        self._as_json = as_json
+
+    def say(self, title: str, text: str = "") -> None:
+        if not self._as_json:
+            show(styled(title, bold=True) + (f"\n    {text}" if text else ""))
+
+    def feedback(self, message: Any) -> None:
+        if self._as_json:
+            show_json({"feedback": _fields(message.feedback)})
+        else:
+            self.say("Feedback:", _yaml(message.feedback))
+
+    def result(self, status: str, message: Any) -> None:
+        if self._as_json:
+            show_json({"status": status, "result": _fields(message)})
+        else:
+            self.say("Result:", _yaml(message))
+            self.say(f"Goal finished with status: {status}")
+
+    def rejected(self) -> None:
+        if self._as_json:
+            show_json({"status": "REJECTED", "result": None})
+        else:
+            self.say("Goal was rejected.")
+
+
+def _follow(
+    here: "Node",
+    client: "ActionClient",
+    sent: "Future[ClientGoalHandle]",
+    timeout_s: float | None,
+    report: _Report,
+) -> str:
+    """Wait for the goal's end; its status in a word."""
+    from navette.runtime.action.goal_states import STATUS_NAMES
+
+    _wait_with_server(here, client, sent)
+    handle = sent.result()
+    if handle is None or not handle.accepted:
+        report.rejected()
+        return "REJECTED"
+    report.say(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+    done = handle.get_result_async()
+    if not _wait_with_server(here, client, done, timeout_s):
+        note(f"no result in {timeout_s:g} s")
+        _cancel(here, sent, report)
+        wait_for(here, done.done, _CANCEL_S)
+        if not done.done():
+            fail(f"action {client.action_name}: no result after cancelling")
+    answer: Any = done.result()
+    status = STATUS_NAMES[answer.status]
+    report.result(status, answer.result)
+    return status
+
+
+def _wait_with_server(
+    here: "Node",
+    client: "ActionClient",
+    future: "Future[Any]",
+    timeout_s: float | None = None,
+) -> bool:
+    """Wait for an answer while there is somebody to give it."""
+    wait_for(here, lambda: future.done() or not client.server_is_ready(), timeout_s)
+    if future.done():
+        if future.exception() is not None:
+            fail(str(future.exception()))
+        return True
+    if not client.server_is_ready():
+        fail(f"action {client.action_name}: its server has gone")
+    return False
+
+
+def _cancel(here: "Node", sent: "Future[ClientGoalHandle]", report: _Report) -> None:
+    """Cancel the goal, whatever has come of it."""
+    wait_for(here, sent.done, _CANCEL_S)
+    handle = sent.result() if sent.done() else None
+    if handle is None or not handle.accepted:
+        return
+    report.say("Canceling goal...")
+    asked = handle.cancel_goal_async()
+    wait_for(here, asked.done, _CANCEL_S)
+    response: Any = asked.result() if asked.done() else None
+    if response is None or not response.goals_canceling:
+        note("the server did not cancel the goal")
+    else:
+        report.say("Goal canceled.")
+
+
+def _yaml(message: Any) -> str:
+    from navette.companions.rosidl_runtime_py import message_to_yaml
+
+    return message_to_yaml(message)
+
+
+def _fields(message: Any) -> Any:
+    from navette.companions.rosidl_runtime_py import message_to_ordereddict
+
+    return message_to_ordereddict(message)
+
+
+def _wait_for_server(here: "Node", name: str, patience_s: float | None) -> None:
+    every = actions(here)
+    if name in every:
+        return
+    hint = did_you_mean(name, every)
+    note(f"waiting for an action server of {name} to become available{hint or '...'}")
+    if not wait_for(here, lambda: name in actions(here), patience_s):
+        fail(f"nobody serves the action {name}{hint}")

@@ -1,0 +1,113 @@
+"""The verbs that say which actions there are: list, type, find, info."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from navette.cli.action.options import ActionName, ActionType, Json
+from navette.cli.nearest import did_you_mean
+from navette.cli.output import show, show_json
+from navette.cli.service.looking import show_names
+from navette.cli.session import connect, endpoints, fail
+
+if TYPE_CHECKING:
+    from navette.runtime import Node
+    from navette.transports import EndpointKind
+
+Count = Annotated[
+    bool, typer.Option("--count-actions", "-c", help="Only their number.")
+]
+ShowTypes = Annotated[
+    bool, typer.Option("--show-types", "-t", help="With their types.")
+]
+
+_FEEDBACK = "/_action/feedback"
+
+
+def list_(
+    show_types: ShowTypes = False, count: Count = False, as_json: Json = False
+) -> None:
+    """List the actions."""
+    with connect() as here:
+        found = actions(here)
+    if count:
+        show(str(len(found)))
+    elif as_json:
+        show_json([{"name": name, "types": found[name]} for name in found])
+    else:
+        show_names(found, with_types=show_types)
+
+
+def type_(action: ActionName) -> None:
+    """Print an action's type."""
+    with connect() as here:
+        types = types_of(here, here.resolve_topic_name(action))
+    for each in types:
+        show(each)
+
+
+def find(action_type: ActionType, count: Count = False, as_json: Json = False) -> None:
+    """List the actions of a type."""
+    parts = action_type.split("/")
+    full = f"{parts[0]}/action/{parts[1]}" if len(parts) == 2 else action_type
+    with connect() as here:
+        found = [name for name, types in actions(here).items() if full in types]
+    if count:
+        show(str(len(found)))
+    elif as_json:
+        show_json(found)
+    else:
+        for name in found:
+            show(name)
+
+
+def info(
+    action: ActionName,
+    show_types: ShowTypes = False,
+    count: Annotated[
+        bool, typer.Option("--count", "-c", help="Only how many, not who.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Say who serves an action and who is its client."""
+    from navette.transports import EndpointKind
+
+    with connect() as here:
+        name = here.resolve_topic_name(action)
+        types_of(here, name)
+        clients = _users(here, name, EndpointKind.SUBSCRIPTION)
+        servers = _users(here, name, EndpointKind.PUBLISHER)
+    if as_json:
+        show_json({"name": name, "clients": clients, "servers": servers})
+        return
+    show(f"Action: {name}")
+    for title, users in (("clients", clients), ("servers", servers)):
+        show(f"Action {title}: {len(users)}")
+        for user in users if not count else ():
+            show(f"    {user['node']}" + (f" [{user['type']}]" if show_types else ""))
+
+
+def _users(here: "Node", name: str, kind: "EndpointKind") -> list[dict[str, str]]:
+    """Whose feedback it is: every server publishes it, every client reads it."""
+    return [
+        {
+            "node": end.node_full_name,
+            "type": end.type_name.removesuffix("_FeedbackMessage"),
+        }
+        for end in endpoints(here, name + _FEEDBACK, kind=kind)
+    ]
+
+
+def actions(here: "Node") -> dict[str, list[str]]:
+    """Names → types, sorted."""
+    from navette.runtime.action import get_action_names_and_types
+
+    return dict(get_action_names_and_types(here))
+
+
+def types_of(here: "Node", name: str) -> list[str]:
+    """The types of an action; ends the command if nobody has it."""
+    every = actions(here)
+    if name not in every:
+        fail(f"nobody serves the action {name}{did_you_mean(name, every)}")
+    return every[name]

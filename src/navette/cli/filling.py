@@ -1,0 +1,84 @@
+"""Requests and goals out of what a person typed, as partial YAML."""
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import yaml
+
+from navette.errors import InvalidValueError, UnknownNameError
+
+MOST_BYTES = 4 * 1024 * 1024  # of text on standard input
+
+
+def filled(message_class: Any, text: str) -> Any:
+    """A message with the fields that ``text`` names; the others keep their defaults.
+
+    Raises:
+        InvalidValueError: not a YAML mapping, or a field or value does not fit.
+    """
+    from navette.companions.rosidl_runtime_py import set_message_fields
+
+    message = message_class()
+    try:
+        fields = yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise InvalidValueError(f"{text!r} is not YAML: {_reason(error)}") from None
+    if fields is not None:
+        set_message_fields(message, fields)
+    return message
+
+
+def _reason(error: yaml.YAMLError) -> str:
+    return getattr(error, "problem", None) or str(error)
+
+
+def from_stdin() -> str:
+    """All of standard input.
+
+    Raises:
+        InvalidValueError: more than a message may hold.
+    """
+    text = sys.stdin.read(MOST_BYTES + 1)
+    if len(text) > MOST_BYTES:
+        raise InvalidValueError(f"standard input: more than {MOST_BYTES} characters")
+    return text
+
+
+def is_type_name(text: str, kind: str) -> bool:
+    """Whether a word is the name of an interface: ``pkg/srv/Name`` or ``pkg/Name``."""
+    parts = text.split("/")
+    if len(parts) == 3 and parts[1] != kind:
+        return False
+    return len(parts) in (2, 3) and all(part.isidentifier() for part in parts)
+
+
+def interface(name: str, kind: str) -> Any:
+    """The class of an interface of a kind (srv, action); ``pkg/Name`` will do.
+
+    Raises:
+        UnknownNameError: there is none of that name.
+    """
+    from navette.msgs import get_interface
+
+    parts = name.split("/")
+    full = f"{parts[0]}/{kind}/{parts[1]}" if len(parts) == 2 else name
+    if not is_type_name(full, kind):
+        raise UnknownNameError(f"type {name!r}: wanted package/{kind}/Name")
+    return get_interface(full)
+
+
+def type_and_values(words: Sequence[str], kind: str) -> tuple[str | None, str | None]:
+    """The arguments ``[TYPE] [YAML]`` apart; the first may be left out.
+
+    Raises:
+        InvalidValueError: more words than that.
+    """
+    rest = list(words)
+    type_name = rest.pop(0) if rest and is_type_name(rest[0], kind) else None
+    if len(rest) > 1:
+        raise InvalidValueError(
+            f"{' '.join(words)!r}: wanted [TYPE] [YAML]; quote the YAML, as in"
+            " '{a: 1, b: 2}'"
+        )
+    return type_name, rest[0] if rest else None

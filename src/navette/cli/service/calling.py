@@ -1,0 +1,111 @@
+"""``navette service call``: a request out of partial YAML, and its response."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navette.cli.completing import complete_service_types
+from navette.cli.filling import filled, from_stdin, interface, type_and_values
+from navette.cli.nearest import did_you_mean
+from navette.cli.output import note, show, show_json, styled
+from navette.cli.service.looking import services, types_of
+from navette.cli.service.options import Json, ServiceName
+from navette.cli.session import connect, fail, wait_for
+from navette.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from navette.runtime import Client, Node
+
+
+def call(
+    service: ServiceName,
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[TYPE] [YAML]",
+            help="The type (by default that of the server), and the fields of the"
+            " request that are not to keep their defaults: '{a: 1, b: 2}'.",
+            autocompletion=complete_service_types,
+        ),
+    ] = None,
+    rate: Annotated[
+        float | None,
+        typer.Option("--rate", "-r", metavar="HZ", help="Call again and again."),
+    ] = None,
+    timeout: Annotated[
+        float,
+        typer.Option("--timeout", "-w", metavar="S", help="Give up waiting; 0: never."),
+    ] = 5.0,
+    stdin: Annotated[
+        bool, typer.Option("--stdin", help="Read the YAML from standard input.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Call a service and print its response.
+
+    Exit code 1: nobody serves it, or it failed.
+    """
+    if rate is not None and not rate > 0:
+        raise InvalidValueError(f"--rate {rate:g}: wanted more than 0 Hz")
+    type_name, values = type_and_values(words or [], "srv")
+    if stdin:
+        values = from_stdin()
+    patience = timeout or None
+    with connect() as here:
+        name = here.resolve_service_name(service)
+        _wait_for_server(here, name, patience)
+        kind = interface(type_name or types_of(here, name)[0], "srv")
+        _check_type(here, name, kind)
+        request = filled(kind.Request, values or "{}")
+        client = here.create_client(kind, name)
+        while True:
+            started_ns = here.get_clock().now_ns
+            _call_once(here, client, request, patience, as_json=as_json)
+            if rate is None:
+                break
+            passed_s = (here.get_clock().now_ns - started_ns) / 1e9
+            wait_for(here, lambda: False, max(0.0, 1 / rate - passed_s))
+
+
+def _wait_for_server(here: "Node", name: str, patience_s: float | None) -> None:
+    every = services(here, hidden=True)
+    if name in every:
+        return
+    hint = did_you_mean(name, every)
+    note(f"waiting for service {name} to become available{hint or '...'}")
+    if not wait_for(here, lambda: name in services(here, hidden=True), patience_s):
+        fail(f"nobody serves {name}{hint}")
+
+
+def _check_type(here: "Node", name: str, kind: Any) -> None:
+    """A request of another type would reach nobody."""
+    from navette.msgs import type_name
+
+    served = types_of(here, name)
+    if type_name(kind) not in served:
+        fail(f"service {name} is of type {', '.join(served)}, not {type_name(kind)}")
+
+
+def _call_once(
+    here: "Node",
+    client: "Client",
+    request: Any,
+    patience_s: float | None,
+    *,
+    as_json: bool,
+) -> None:
+    from navette.companions.rosidl_runtime_py import message_to_ordereddict
+
+    client.wait_for_service(patience_s)
+    future = client.call_async(request)
+    if not as_json:
+        show(f"{styled('requester: making request:', dim=True)} {request!r}\n")
+    if not wait_for(here, future.done, patience_s):
+        fail(f"service {client.srv_name}: no response in {patience_s:g} s")
+    if future.exception() is not None:
+        fail(str(future.exception()))
+    response: Any = future.result()
+    if as_json:
+        show_json(message_to_ordereddict(response))
+    else:
+        show(f"{styled('response:', bold=True)}\n{response!r}\n")

@@ -1,0 +1,128 @@
+"""The verbs that say which services there are: list, type, find, info."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from navette.cli.nearest import did_you_mean
+from navette.cli.output import aligned, is_terminal, show, show_json, styled
+from navette.cli.service.options import Hidden, Json, ServiceName, ServiceType
+from navette.cli.session import connect, fail, is_hidden, service_endpoints
+
+if TYPE_CHECKING:
+    from navette.runtime import Node
+    from navette.transports import Endpoint
+
+Count = Annotated[
+    bool, typer.Option("--count-services", "-c", help="Only their number.")
+]
+
+
+def list_(
+    show_types: Annotated[
+        bool, typer.Option("--show-types", "-t", help="With their types.")
+    ] = False,
+    count: Count = False,
+    include_hidden_services: Hidden = False,
+    as_json: Json = False,
+) -> None:
+    """List the services that are served."""
+    with connect() as here:
+        found = services(here, hidden=include_hidden_services)
+    if count:
+        show(str(len(found)))
+    elif as_json:
+        show_json([{"name": name, "types": found[name]} for name in found])
+    else:
+        show_names(found, with_types=show_types)
+
+
+def show_names(found: dict[str, list[str]], *, with_types: bool) -> None:
+    """A name per line; types in brackets, or in a column for a person."""
+    if not with_types:
+        lines = list(found)
+    elif is_terminal():
+        columns = aligned((name, ", ".join(types)) for name, types in found.items())
+        width = max(map(len, found), default=0)
+        lines = [line[:width] + styled(line[width:], dim=True) for line in columns]
+    else:
+        lines = [f"{name} [{', '.join(types)}]" for name, types in found.items()]
+    for line in lines:
+        show(line)
+
+
+def type_(service: ServiceName) -> None:
+    """Print a service's type."""
+    with connect() as here:
+        name = here.resolve_service_name(service)
+        types = types_of(here, name)
+    for each in types:
+        show(each)
+
+
+def find(
+    service_type: ServiceType,
+    count: Count = False,
+    include_hidden_services: Hidden = False,
+    as_json: Json = False,
+) -> None:
+    """List the services of a type."""
+    parts = service_type.split("/")
+    full = f"{parts[0]}/srv/{parts[1]}" if len(parts) == 2 else service_type
+    with connect() as here:
+        every = services(here, hidden=include_hidden_services)
+    found = [name for name, types in every.items() if full in types]
+    if count:
+        show(str(len(found)))
+    elif as_json:
+        show_json(found)
+    else:
+        for name in found:
+            show(name)
+
+
+def info(
+    service: ServiceName,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Also who serves and calls it.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Say of which type a service is, and how many serve and call it."""
+    from navette.transports import EndpointKind
+
+    with connect() as here:
+        name = here.resolve_service_name(service)
+        types = types_of(here, name)
+        clients = _nodes(service_endpoints(here, name, kind=EndpointKind.CLIENT))
+        servers = _nodes(service_endpoints(here, name, kind=EndpointKind.SERVICE))
+    if as_json:
+        users = {"clients": clients, "servers": servers}
+        show_json({"name": name, "types": types, **users})
+        return
+    show(f"Type: {', '.join(types)}")
+    for title, nodes in (("Clients", clients), ("Services", servers)):
+        show(f"{title} count: {len(nodes)}")
+        for node in nodes if verbose else ():
+            show(f"    {node}")
+
+
+def _nodes(found: "list[Endpoint]") -> list[str]:
+    return [endpoint.node_full_name for endpoint in found]
+
+
+def services(here: "Node", *, hidden: bool) -> dict[str, list[str]]:
+    """Names of what is served → types, sorted."""
+    from navette.runtime.graph import names_and_types
+    from navette.transports import EndpointKind
+
+    every = names_and_types(service_endpoints(here, kind=EndpointKind.SERVICE))
+    return {n: types for n, types in every.items() if hidden or not is_hidden(n)}
+
+
+def types_of(here: "Node", name: str) -> list[str]:
+    """The types under which a service is served; ends the command if it is not."""
+    every = services(here, hidden=True)
+    if name not in every:
+        fail(f"nobody serves {name}{did_you_mean(name, every)}")
+    return every[name]
