@@ -9,10 +9,11 @@
             fail("nothing came")
 """
 
+import difflib
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Never
 
@@ -104,6 +105,13 @@ def is_hidden(name: str) -> bool:
     return any(token.startswith("_") for token in name.split("/"))
 
 
+def unknown_topic(name: str, known: Iterable[str]) -> str:
+    """That nobody has the topic, and which ones look like it."""
+    alike = difflib.get_close_matches(name, sorted(set(known)), n=3)
+    hint = f"; did you mean {' or '.join(alike)}?" if alike else ""
+    return f"nobody publishes or subscribes to {name}{hint}"
+
+
 def fail(message: str) -> Never:
     """End the command: what was asked for failed (exit code 1)."""
     typer.secho(f"navette: {message}", fg="red", err=True)
@@ -112,10 +120,16 @@ def fail(message: str) -> Never:
 
 def _outside() -> "Context":
     """A context of its own that says on standard error only what went wrong."""
+    from navette.errors import NetworkError
     from navette.runtime import Context, LoggingSeverity
+    from navette.runtime.context import current_scope
 
-    context = Context()
-    context.init(args=[], console_level=LoggingSeverity.WARN)
+    is_set = "NAVETTE_TRANSPORT" in os.environ or current_scope.get().graph is not None
+    context = Context(transport=None if is_set else "zenoh")
+    try:
+        context.init(args=[], console_level=LoggingSeverity.WARN)
+    except NetworkError as error:
+        fail(str(error))
     return context
 
 

@@ -2,7 +2,7 @@
 
 import typer
 
-from navette.cli.topic import looking
+from navette.cli.topic import listening, looking
 
 topic = typer.Typer(
     name="topic",
@@ -11,5 +11,6 @@ topic = typer.Typer(
 )
 topic.command("list")(looking.list_)
 topic.command()(looking.info)
+topic.command()(listening.echo)
 topic.command("type")(looking.type_)
 topic.command()(looking.find)

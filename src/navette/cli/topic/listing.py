@@ -1,12 +1,10 @@
 """Topics as they are: who publishes and subscribes, with which type and QoS."""
 
-import difflib
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from navette.cli.output import aligned, is_terminal, styled
-from navette.cli.session import endpoints, fail, is_hidden
+from navette.cli.session import endpoints, fail, is_hidden, unknown_topic
 from navette.runtime import Node
 from navette.runtime.topic_endpoint_info import TopicEndpointInfo
 from navette.transports import (
@@ -71,13 +69,6 @@ def topic(node: Node, name: str) -> Topic:
     if not found:
         fail(unknown_topic(full_name, (each.topic for each in endpoints(node))))
     return _topic(full_name, found)
-
-
-def unknown_topic(name: str, known: Iterable[str]) -> str:
-    """That nobody has the topic, and which ones look like it."""
-    alike = difflib.get_close_matches(name, sorted(set(known)), n=3)
-    hint = f"; did you mean {' or '.join(alike)}?" if alike else ""
-    return f"nobody publishes or subscribes to {name}{hint}"
 
 
 def listed(found: list[Topic], *, show_types: bool, verbose: bool) -> str:

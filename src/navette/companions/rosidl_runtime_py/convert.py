@@ -63,6 +63,34 @@ def message_to_csv(
     )
 
 
+def value_to_yaml(
+    value: Any,
+    field_type: FieldType,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+    flow_style: bool = False,
+) -> str:
+    """A sequence of a message as YAML, as it would stand in the message's."""
+    shortening = _Shortening(truncate_length, no_arr, no_str)
+    return _dumped(
+        _plain(value, shortening, field_type), _Dumper, flow_style=flow_style
+    )
+
+
+def value_to_csv(
+    value: Any,
+    field_type: FieldType,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+) -> str:
+    """A field's value as it would stand in :func:`message_to_csv`."""
+    return _csv(value, _Shortening(truncate_length, no_arr, no_str), field_type)
+
+
 def message_to_ordereddict(
     msg: Message,
     *,
@@ -81,7 +109,7 @@ def get_message_slot_types(msg: Message) -> "OrderedDict[str, FieldType]":
     return OrderedDict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
 
 
-def _dumped(fields: dict[str, Any], dumper: Any, *, flow_style: bool) -> str:
+def _dumped(fields: Any, dumper: Any, *, flow_style: bool) -> str:
     text: str = yaml.dump(
         fields,
         Dumper=dumper,

@@ -1,0 +1,129 @@
+"""Asks a node what a type is that only it knows (``~/get_type_description``)."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from navette.errors import NavetteError
+from navette.msgs.interface import short_name
+from navette.runtime import Node
+from navette.transports import EndpointKind
+
+ANSWER_TIMEOUT_S = 2.0
+_SERVICE = "get_type_description"
+_SEPARATOR = "=" * 80
+_MOST_TYPES = 500
+
+# FieldType's numbers: scalars, and what arrays and sequences add to them.
+_SCALARS = {
+    2: "int8", 3: "uint8", 4: "int16", 5: "uint16", 6: "int32", 7: "uint32",
+    8: "int64", 9: "uint64", 10: "float32", 11: "float64", 13: "char", 15: "bool",
+    16: "byte", 17: "string", 18: "wstring", 21: "string", 22: "wstring",
+}  # fmt: skip
+_NESTED = 1
+_BOUNDED_STRINGS = (21, 22)
+_ARRAY, _BOUNDED_SEQUENCE, _SEQUENCE = 48, 96, 144
+# The one member that an empty definition has on the wire.
+_PLACEHOLDER = "structure_needs_at_least_one_member"
+
+
+@dataclass(frozen=True)
+class Definition:
+    """The text that ``register_definition`` takes, or why there is none."""
+
+    text: str | None
+    reason: str = ""
+
+
+def fetch_definition(node: Node, of: str, type_name: str) -> Definition:
+    """Ask the node called ``of`` for the definition of a type that it uses."""
+    from navette.msgs.type_description_interfaces.srv import GetTypeDescription
+
+    service = f"{of}/{_SERVICE}"
+    graph = node.context.graph
+    if not graph.service_endpoints(service, kind=EndpointKind.SERVICE):
+        return Definition(None, "describes no types")
+    hashes = {
+        each.type_hash
+        for each in (*graph.endpoints(node=of), *graph.service_endpoints(node=of))
+        if each.type_name == type_name
+    }
+    request = GetTypeDescription.Request(
+        type_name=type_name, type_hash=next(iter(hashes), ""), include_type_sources=True
+    )
+    client = node.create_client(GetTypeDescription, service)
+    try:
+        response = client.call(request, timeout_sec=ANSWER_TIMEOUT_S)
+    except TimeoutError:
+        return Definition(None, f"no answer in {ANSWER_TIMEOUT_S:g} s")
+    except NavetteError as error:
+        return Definition(None, str(error))
+    finally:
+        client.destroy()
+    if not response.successful:
+        return Definition(None, response.failure_reason[:200] or "refused")
+    return Definition(definition_of(type_name, response))
+
+
+def definition_of(type_name: str, response: Any) -> str:
+    """The definition's text out of a response: as it was written, if that was sent.
+
+    Without it constants and defaults are missing: they do not travel.
+    """
+    sources = {
+        source.type_name: source.raw_file_contents
+        for source in response.type_sources[:_MOST_TYPES]
+        if source.encoding in ("msg", "srv", "action") and source.raw_file_contents
+    }
+    described = response.type_description
+    every = [described.type_description]
+    every += described.referenced_type_descriptions[:_MOST_TYPES]
+    parts = {each.type_name: each for each in every}
+    top = sources.get(type_name)
+    if top is None:
+        top = "---\n".join(map(_fields_text, _tops(type_name, parts)))
+    texts = [top]
+    for name, part in parts.items():
+        if _is_message(name) and name != type_name:
+            body = sources.get(name) or _fields_text(part)
+            texts.append(f"{_SEPARATOR}\nMSG: {short_name(name)}\n{body}")
+    return "".join(text.rstrip("\n") + "\n" for text in texts)
+
+
+def _is_message(name: str) -> bool:
+    return name.split("/")[1:2] == ["msg"]
+
+
+def _tops(type_name: str, parts: dict[str, Any]) -> list[Any]:
+    """The message itself, or the parts that a service's or action's file has."""
+    endings: Sequence[str] = {
+        "srv": ("_Request", "_Response"),
+        "action": ("_Goal", "_Result", "_Feedback"),
+    }.get(type_name.split("/")[1], ("",))
+    return [parts[type_name + end] for end in endings if type_name + end in parts]
+
+
+def _fields_text(description: Any) -> str:
+    lines: Iterable[str] = (
+        f"{_type_text(field.type)} {field.name}\n"
+        for field in description.fields
+        if field.name != _PLACEHOLDER
+    )
+    return "".join(lines)
+
+
+def _type_text(type_: Any) -> str:
+    for offset in (_SEQUENCE, _BOUNDED_SEQUENCE, _ARRAY, 0):
+        if type_.type_id > offset:
+            break
+    scalar = type_.type_id - offset
+    if scalar == _NESTED:
+        base = short_name(type_.nested_type_name)
+    else:
+        base = _SCALARS.get(scalar, f"unknown_type_{type_.type_id}")
+    if scalar in _BOUNDED_STRINGS:
+        base += f"<={type_.string_capacity}"
+    if offset == 0:
+        return base
+    size = {_SEQUENCE: "", _BOUNDED_SEQUENCE: f"<={type_.capacity}"}
+    return f"{base}[{size.get(offset, type_.capacity)}]"

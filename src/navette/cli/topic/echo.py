@@ -1,0 +1,138 @@
+"""Prints the messages of a topic."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import yaml
+
+from navette.cli.message_types import topic_class
+from navette.cli.output import is_terminal, note, show
+from navette.cli.session import endpoints, fail, wait_for
+from navette.cli.topic.field_path import FieldPath, parse_field_path
+from navette.cli.topic.filtering import message_filter
+from navette.cli.topic.printing import SEPARATOR, Style
+from navette.cli.topic.qos_choice import fitting_profile, wished_profile
+from navette.cli.topic.qos_options import QosWishes
+from navette.msgs import type_name
+from navette.runtime import Node, QoSProfile
+from navette.runtime.qos_events import SubscriptionEventCallbacks
+from navette.transports import EndpointKind
+
+# Home, then every line erased as it is written over, then what is below: no flicker.
+_HOME, _END_OF_LINE, _BELOW = "\x1b[H", "\x1b[K", "\x1b[J"
+_CLEAR = "\x1b[2J"
+
+
+@dataclass(frozen=True, kw_only=True)
+class EchoOptions:
+    """What to print of a topic."""
+
+    topic: str
+    type_name: str | None = None
+    path: str | None = None
+    filter: str | None = None
+    raw: bool = False
+    count: int | None = None
+    timeout_s: float | None = None
+    with_info: bool = False
+    clear: bool = False
+    report_lost: bool = True
+    style: Style = field(default_factory=Style)
+    qos: QosWishes = field(default_factory=QosWishes)
+
+
+def echo(node: Node, options: EchoOptions) -> None:
+    """Print messages until there were enough, or the time is over.
+
+    Ends the command with a failure if what was waited for did not come.
+    """
+    keep = message_filter(options.filter)
+    deadline_ns = None
+    if options.timeout_s is not None:
+        deadline_ns = node.context.clock.now_ns + round(options.timeout_s * 1e9)
+    cls = topic_class(node, options.topic, options.type_name, options.timeout_s)
+    path = parse_field_path(options.path, type_name(cls)) if options.path else None
+    screen = Screen(options, path)
+
+    def receive(message: Any, info: dict[str, Any]) -> None:
+        if options.raw or keep(message):
+            screen.show(message, info)
+
+    topic = node.resolve_topic_name(options.topic)
+    events = SubscriptionEventCallbacks(
+        message_lost=_report_lost if options.report_lost else None
+    )
+    node.create_subscription(
+        cls, topic, receive, _profile(node, topic, options.qos), raw=options.raw,
+        event_callbacks=events, shared=True,
+    )  # fmt: skip
+    left_s = None
+    if deadline_ns is not None:
+        left_s = max(0.0, (deadline_ns - node.context.clock.now_ns) / 1e9)
+    enough = wait_for(node, lambda: screen.is_full, left_s)
+    if not enough and (options.count is not None or not screen.count):
+        fail(f"{screen.count} messages came on {topic} in {options.timeout_s:g} s")
+
+
+class Screen:
+    """Where messages are printed, and how many were."""
+
+    def __init__(self, options: EchoOptions, path: FieldPath | None) -> None:
+        self._options = options
+        self._path = path
+        self._style = options.style
+        self._said_short = False
+        self._clears = options.clear and is_terminal()
+        self.count = 0
+
+    @property
+    def is_full(self) -> bool:
+        return self._options.count is not None and self.count >= self._options.count
+
+    def show(self, message: Any, info: dict[str, Any]) -> None:
+        """Print one, unless there were enough."""
+        if self.is_full:
+            return
+        text = self._text(message)
+        if text is None:
+            return
+        self.count += 1
+        if self._options.with_info:
+            text = self._with_info(text, info)
+        if self._clears:
+            text = text.replace("\n", f"{_END_OF_LINE}\n")
+            first = _CLEAR if self.count == 1 else ""
+            text = f"{first}{_HOME}{text}{_END_OF_LINE}{_BELOW}"
+        show(text)
+
+    def _text(self, message: Any) -> str | None:
+        if self._options.raw:
+            return f"{message!r}\n{SEPARATOR}"
+        if self._path is None:
+            return self._style.text(message, None)
+        try:
+            value = self._path.of(message)
+        except IndexError:
+            if not self._said_short:
+                note(f"{self._path.text}: some messages have not so many elements")
+            self._said_short = True
+            return None
+        return self._style.text(value, self._path)
+
+    def _with_info(self, text: str, info: dict[str, Any]) -> str:
+        if self._style.csv:
+            return f"{','.join(str(value) for value in info.values())},{text}"
+        return f"{yaml.safe_dump(info)}{SEPARATOR}\n{text}"
+
+
+def _profile(node: Node, topic: str, wishes: QosWishes) -> QoSProfile:
+    if not wishes.is_empty:
+        return wished_profile(wishes, "sensor_data")
+    return fitting_profile(endpoints(node, topic, kind=EndpointKind.PUBLISHER))
+
+
+def _report_lost(event: Any) -> None:
+    note(
+        f"{event.total_count_change} messages lost on the way "
+        f"({event.total_count} so far)"
+    )

@@ -1,0 +1,87 @@
+"""Messages as text on a terminal or in a pipe: YAML, CSV, JSON, raw."""
+
+import json
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from navette.cli.output import is_terminal, styled
+from navette.cli.topic.field_path import FieldPath
+from navette.companions.rosidl_runtime_py.convert import (
+    message_to_csv,
+    message_to_yaml,
+    value_to_csv,
+    value_to_yaml,
+)
+from navette.msgs import Message, to_dict
+
+SEPARATOR = "---"
+_KEY = re.compile(r"^([ ]*(?:- )*)([A-Za-z]\w*)(?=:)", re.MULTILINE)
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Style:
+    """How messages are printed; lengths in items or characters, None = whole."""
+
+    csv: bool = False
+    as_json: bool = False
+    truncate_length: int | None = 128
+    no_arr: bool = False
+    no_str: bool = False
+    flow_style: bool = False
+
+    def text(self, value: Any, field: FieldPath | None) -> str:
+        """A message, or the part of one that ``field`` leads to."""
+        if self.as_json:
+            return json.dumps(_jsonable(value), ensure_ascii=False)
+        if self.csv:
+            return _harmless(self._csv(value, field))
+        return f"{self._yaml(value, field)}{styled(SEPARATOR, dim=True)}"
+
+    def _csv(self, value: Any, field: FieldPath | None) -> str:
+        shortened = self._shortened()
+        if isinstance(value, Message):
+            return message_to_csv(value, **shortened)
+        assert field is not None, "a message itself is a Message"
+        return value_to_csv(value, field.type, **shortened)
+
+    def _yaml(self, value: Any, field: FieldPath | None) -> str:
+        shortened = {**self._shortened(), "flow_style": self.flow_style}
+        if isinstance(value, Message):
+            return _coloured(message_to_yaml(value, **shortened))
+        assert field is not None, "a message itself is a Message"
+        if field.type.is_scalar:
+            return _harmless(value_to_csv(value, field.type)) + "\n"
+        return _coloured(value_to_yaml(value, field.type, **shortened))
+
+    def _shortened(self) -> dict[str, Any]:
+        return {
+            "truncate_length": self.truncate_length,
+            "no_arr": self.no_arr,
+            "no_str": self.no_str,
+        }
+
+
+def _jsonable(value: Any) -> Any:
+    if isinstance(value, Message):
+        return to_dict(value)
+    if isinstance(value, bytes):
+        return value[0]
+    if isinstance(value, list):
+        return [_jsonable(item) for item in value]
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _coloured(yaml: str) -> str:
+    """Names apart from values, for a person."""
+    if not is_terminal():
+        return yaml
+    return _KEY.sub(lambda m: m[1] + styled(m[2], fg="cyan"), yaml)
+
+
+def _harmless(text: str) -> str:
+    """On a terminal, control characters in a message must not act."""
+    if not is_terminal():
+        return text
+    return _CONTROL.sub(lambda match: f"\\x{ord(match[0]):02x}", text)

@@ -1,0 +1,70 @@
+"""``--qos-…``: the quality of service that a verb is told, or takes as it fits."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import typer
+
+PANEL = "Quality of service"
+
+# The words are ROS 2's; spelt out, so that the command line's start imports nothing.
+PROFILES = (
+    "unknown default system_default sensor_data services_default parameters "
+    "parameter_events action_status_default best_available"
+)
+Profile = Annotated[
+    str | None,
+    typer.Option("--qos-profile", help=f"One of: {PROFILES}.", rich_help_panel=PANEL),
+]
+Depth = Annotated[
+    int | None,
+    typer.Option("--qos-depth", min=0, help="Queue length.", rich_help_panel=PANEL),
+]
+History = Annotated[
+    str | None,
+    typer.Option("--qos-history", help="keep_last or keep_all.", rich_help_panel=PANEL),
+]
+Reliability = Annotated[
+    str | None,
+    typer.Option(
+        "--qos-reliability", help="reliable or best_effort.", rich_help_panel=PANEL
+    ),
+]
+Durability = Annotated[
+    str | None,
+    typer.Option(
+        "--qos-durability", help="volatile or transient_local.", rich_help_panel=PANEL
+    ),
+]
+Liveliness = Annotated[
+    str | None,
+    typer.Option(
+        "--qos-liveliness", help="automatic or manual_by_topic.", rich_help_panel=PANEL
+    ),
+]
+Lease = Annotated[
+    float | None,
+    typer.Option(
+        "--qos-liveliness-lease-duration-seconds",
+        metavar="S",
+        help="How long a sign of life counts.",
+        rich_help_panel=PANEL,
+    ),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class QosWishes:
+    """What was said with ``--qos-…``; None = nothing."""
+
+    profile: str | None = None
+    depth: int | None = None
+    history: str | None = None
+    reliability: str | None = None
+    durability: str | None = None
+    liveliness: str | None = None
+    lease_s: float | None = None
+
+    @property
+    def is_empty(self) -> bool:
+        return self == QosWishes()
