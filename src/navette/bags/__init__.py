@@ -1,8 +1,21 @@
 """Bags: what was said on the topics, in a file."""
 
+from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage
+from navette.bags.opening import open_bag
 from navette.bags.params import RecorderParams
 from navette.bags.qos import OfferedQos, qos_text
 from navette.bags.selection import TopicSelection
 from navette.bags.writer import BagWriter
 
-__all__ = ["BagWriter", "OfferedQos", "RecorderParams", "TopicSelection", "qos_text"]
+__all__ = [
+    "open_bag",
+    "BagReader",
+    "BagTopic",
+    "BagMessage",
+    "Damage",
+    "BagWriter",
+    "OfferedQos",
+    "RecorderParams",
+    "TopicSelection",
+    "qos_text",
+]

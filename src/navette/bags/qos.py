@@ -1,7 +1,10 @@
 """Quality of service as text, in the form that rosbag2 stores in a bag."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import yaml
 
 _INFINITE_NS = 2**63 - 1
 
@@ -44,3 +47,86 @@ def _profile(offer: OfferedQos) -> str:
 def _duration(name: str, duration_ns: int) -> tuple[str, str, str]:
     seconds, nanoseconds = divmod(duration_ns, 1_000_000_000)
     return f"  {name}:", f"    sec: {seconds}", f"    nsec: {nanoseconds}"
+
+
+# Numbers of older releases (rmw/types.h); rosbag2 wrote them up to Iron.
+_NAMES = {
+    "history": ("system_default", "keep_last", "keep_all", "unknown"),
+    "reliability": (
+        "system_default",
+        "reliable",
+        "best_effort",
+        "unknown",
+        "best_available",
+    ),
+    "durability": (
+        "system_default",
+        "transient_local",
+        "volatile",
+        "unknown",
+        "best_available",
+    ),
+    "liveliness": (
+        "system_default",
+        "automatic",
+        "manual_by_node",
+        "manual_by_topic",
+        "unknown",
+        "best_available",
+    ),
+}
+_LONGEST_TEXT = 1 << 16
+
+
+def parse_qos(text: object) -> tuple[OfferedQos, ...]:
+    """What :func:`qos_text` or any release of rosbag2 wrote.
+
+    What is not understood is taken for the default: it is advice, and no reason to
+    refuse a bag.
+    """
+    if isinstance(text, str):
+        if not text or len(text) > _LONGEST_TEXT:
+            return ()
+        try:
+            text = yaml.load(text, _LOADER)
+        except (yaml.YAMLError, ValueError, RecursionError):
+            return ()
+    if not isinstance(text, list):
+        return ()
+    return tuple(_offer(each) for each in text if isinstance(each, dict))
+
+
+_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def _offer(found: Mapping[str, Any]) -> OfferedQos:
+    depth = found.get("depth")
+    return OfferedQos(
+        history=_policy("history", found),
+        depth=depth if isinstance(depth, int) and depth >= 0 else OfferedQos.depth,
+        reliability=_policy("reliability", found),
+        durability=_policy("durability", found),
+        liveliness=_policy("liveliness", found),
+        deadline_ns=_nanoseconds(found.get("deadline")),
+        lifespan_ns=_nanoseconds(found.get("lifespan")),
+        lease_ns=_nanoseconds(found.get("liveliness_lease_duration")),
+    )
+
+
+def _policy(name: str, found: Mapping[str, Any]) -> str:
+    names, value = _NAMES[name], found.get(name)
+    if isinstance(value, int):
+        value = names[value] if 0 <= value < len(names) else None
+    default: str = getattr(OfferedQos, name)
+    return value if isinstance(value, str) and value in names else default
+
+
+def _nanoseconds(found: object) -> int:
+    """Infinite unless it says otherwise; 0 s is how older releases wrote infinite."""
+    if not isinstance(found, dict):
+        return _INFINITE_NS
+    seconds, rest = found.get("sec"), found.get("nsec")
+    if not isinstance(seconds, int) or not isinstance(rest, int):
+        return _INFINITE_NS
+    duration = seconds * 1_000_000_000 + rest
+    return duration if 0 < duration < _INFINITE_NS else _INFINITE_NS

@@ -1,0 +1,173 @@
+"""What readers of files of chunks have in common."""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from navette.bags.bag import BagMessage, BagTopic, Damage, OnDamage
+from navette.bags.chunks import Choice, Chunk, ChunkMerge, Entry
+from navette.bags.compression import is_zstd, unpack_zstd_message
+from navette.errors import DecodeError, FileFormatError
+
+Convert = Callable[[bytes], bytes]
+FOREVER_NS = 2**63 - 1
+
+
+class ChunkedReader:
+    """A :class:`~navette.bags.bag.BagReader` over the index of a file of chunks.
+
+    A derived class fills ``path``, ``topics``, ``chunks``, ``problems`` and the
+    channels (:meth:`_add_channel`) when it is made, and gives bytes and messages of
+    chunks.
+    """
+
+    storage = ""
+    version = ""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.topics: tuple[BagTopic, ...] = ()
+        self.problems: tuple[str, ...] = ()
+        self.chunks: Sequence[Chunk] = ()
+        self.size = 0
+        self._topic_of: dict[int, BagTopic] = {}
+        self._convert_of: dict[int, Convert] = {}
+        self._known_counts: dict[BagTopic, int] | None = None
+
+    # -- what a format brings ----------------------------------------------------
+
+    def _read_chunk(self, chunk: Chunk) -> bytes:
+        raise NotImplementedError
+
+    def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
+        raise NotImplementedError
+
+    def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
+        """Stamps by channel; overridden where an index has them."""
+        found: dict[int, list[int]] = {}
+        for entry in self._entries(chunk, self._read_chunk(chunk)):
+            found.setdefault(entry.channel, []).append(entry.stamp_ns)
+        return found
+
+    def close(self) -> None:
+        """Close the file; twice is harmless."""
+        raise NotImplementedError
+
+    def _add_channel(
+        self, number: int, topic: BagTopic, convert: Convert | None = None
+    ) -> None:
+        """Channels of the same topic and type are one topic to who reads."""
+        same = next((t for t in self.topics if t == topic), None)
+        if same is None:
+            self.topics = (*self.topics, topic)
+        self._topic_of[number] = same or topic
+        if convert is not None:
+            self._convert_of[number] = convert
+
+    # -- what all of them do -----------------------------------------------------
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        return (self.path,)
+
+    @property
+    def start_ns(self) -> int:
+        return min((chunk.start_ns for chunk in self._filled()), default=0)
+
+    @property
+    def end_ns(self) -> int:
+        return max((chunk.end_ns for chunk in self._filled()), default=0)
+
+    def _filled(self) -> Iterator[Chunk]:
+        """Chunks that hold messages; others have no times."""
+        return (c for c in self.chunks if c.channels or c.start_ns or c.end_ns)
+
+    @property
+    def compression(self) -> Mapping[str, int]:
+        return Counter(chunk.compression or "none" for chunk in self.chunks)
+
+    def counts(self) -> Mapping[BagTopic, int]:
+        if self._known_counts is None:
+            found: Counter[BagTopic] = Counter()
+            for topic, _ in self.stamps():
+                found[topic] += 1
+            self._known_counts = dict(found)
+        return {topic: self._known_counts.get(topic, 0) for topic in self.topics}
+
+    def _set_counts(self, by_channel: Mapping[int, int]) -> None:
+        counts: Counter[BagTopic] = Counter()
+        for channel, count in by_channel.items():
+            if channel in self._topic_of:
+                counts[self._topic_of[channel]] += count
+        self._known_counts = dict(counts)
+
+    def stamps(self) -> Iterator[tuple[BagTopic, int]]:
+        for chunk in self.chunks:
+            try:
+                by_channel = self._stamps_of(chunk)
+            except FileFormatError:
+                continue  # messages() tells of it; here, what is sound counts
+            for channel, stamps in by_channel.items():
+                topic = self._topic_of.get(channel)
+                if topic is not None:
+                    for stamp in stamps:
+                        yield topic, stamp
+
+    def messages(
+        self,
+        topics: Collection[str] | None = None,
+        *,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        on_damage: OnDamage | None = None,
+    ) -> Iterator[BagMessage]:
+        channels = frozenset(
+            number
+            for number, topic in self._topic_of.items()
+            if topics is None or topic.name in topics
+        )
+        choice = Choice(
+            channels if topics is not None else None,
+            -FOREVER_NS if start_ns is None else start_ns,
+            FOREVER_NS if end_ns is None else end_ns,
+        )
+        merge = ChunkMerge(self._read_chunk, self._entries, on_damage)
+        for entry, data in merge.messages(self.chunks, choice):
+            message = self._message(entry, data, on_damage)
+            if message is not None:
+                yield message
+
+    def _message(
+        self, entry: Entry, data: bytes, on_damage: OnDamage | None
+    ) -> BagMessage | None:
+        topic = self._topic_of.get(entry.channel)
+        convert = self._convert_of.get(entry.channel)
+        try:
+            if topic is None:
+                raise DecodeError(f"a message of channel {entry.channel}, never named")
+            if convert is not None:
+                data = convert(data)
+            elif is_zstd(data):  # rosbag2 with compression_mode "message"
+                data = unpack_zstd_message(data)
+        except DecodeError as error:
+            damage = Damage(
+                self.path, entry.begin, f"message at {entry.stamp_ns} ns: {error}"
+            )
+            if on_damage is None:
+                raise FileFormatError(self.path, damage.reason) from error
+            on_damage(damage)
+            return None
+        return BagMessage(topic, entry.stamp_ns, data)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()

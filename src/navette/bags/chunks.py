@@ -1,0 +1,174 @@
+"""Messages of a file of chunks, in the order of time.
+
+Chunks may overlap in time, and inside a chunk messages lie as they came. So chunks are
+opened when their time has come, and merged with those still open. The bytes of open
+chunks are kept up to a limit and read again beyond it: a file in which everything
+overlaps is slow, not fatal.
+"""
+
+from collections import OrderedDict, deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from typing import NamedTuple
+
+from navette.bags.bag import Damage, OnDamage
+from navette.errors import FileFormatError
+
+CACHE_BYTES = 128 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class Chunk:
+    """A piece of a file that is read at once.
+
+    ``channels`` are those that have messages in it, None where nobody says. A bare
+    chunk is a stretch of records that no chunk of the file encloses.
+    """
+
+    number: int
+    position: int
+    length: int
+    start_ns: int
+    end_ns: int
+    compression: str = ""
+    channels: frozenset[int] | None = None
+    bare: bool = False
+
+
+class Entry(NamedTuple):
+    """Where a message lies in the bytes of its chunk."""
+
+    stamp_ns: int
+    channel: int
+    begin: int
+    end: int
+
+
+class Choice(NamedTuple):
+    """What is wanted: channels (None: all) and stamps from first to last."""
+
+    channels: frozenset[int] | None
+    first_ns: int
+    last_ns: int
+
+    def may_be_in(self, chunk: Chunk) -> bool:
+        """Whether the chunk has to be opened."""
+        if chunk.end_ns < self.first_ns or chunk.start_ns > self.last_ns:
+            return False
+        if self.channels is None or chunk.channels is None:
+            return True
+        return not self.channels.isdisjoint(chunk.channels)
+
+    def takes(self, entry: Entry) -> bool:
+        """Whether the message is wanted."""
+        if not self.first_ns <= entry.stamp_ns <= self.last_ns:
+            return False
+        return self.channels is None or entry.channel in self.channels
+
+
+ReadChunk = Callable[[Chunk], bytes]
+ListEntries = Callable[[Chunk, bytes], list[Entry]]
+
+
+class _Open(NamedTuple):
+    """An open chunk in the heap: its next message first."""
+
+    stamp_ns: int
+    number: int
+    place: int
+    chunk: Chunk
+    entries: list[Entry]
+
+
+class ChunkMerge:
+    """Reads chunks in time order.
+
+    Args:
+        read: the bytes of a chunk, unpacked; raises FileFormatError.
+        list_entries: the messages in them, as they lie; raises FileFormatError.
+        on_damage: see :meth:`BagReader.messages`.
+    """
+
+    def __init__(
+        self,
+        read: ReadChunk,
+        list_entries: ListEntries,
+        on_damage: OnDamage | None = None,
+        cache_bytes: int = CACHE_BYTES,
+    ) -> None:
+        self._read = read
+        self._list_entries = list_entries
+        self._on_damage = on_damage
+        self._cache_bytes = cache_bytes
+        self._cached: OrderedDict[int, bytes] = OrderedDict()
+        self._size = 0
+
+    def messages(
+        self, chunks: Sequence[Chunk], choice: Choice
+    ) -> Iterator[tuple[Entry, bytes]]:
+        """The chosen messages: where each lay, and its bytes."""
+        wanted = [chunk for chunk in chunks if choice.may_be_in(chunk)]
+        waiting = deque(sorted(wanted, key=lambda c: (c.start_ns, c.number)))
+        heap: list[_Open] = []
+        while heap or waiting:
+            while waiting and (not heap or waiting[0].start_ns <= heap[0].stamp_ns):
+                self._open(waiting.popleft(), choice, heap)
+            if not heap:
+                continue
+            current = heappop(heap)
+            limit = min(
+                heap[0].stamp_ns if heap else choice.last_ns + 1,
+                waiting[0].start_ns if waiting else choice.last_ns + 1,
+            )
+            yield from self._run(current, limit, heap)
+
+    def _run(
+        self, current: _Open, limit_ns: int, heap: list[_Open]
+    ) -> Iterator[tuple[Entry, bytes]]:
+        """From one chunk, until another one's time has come; at least one message."""
+        data = self._bytes_of(current.chunk)
+        entries, place = current.entries, current.place
+        while True:
+            entry = entries[place]
+            yield entry, data[entry.begin : entry.end]
+            place += 1
+            if place == len(entries):
+                self._forget(current.chunk)
+                return
+            stamp_ns = entries[place].stamp_ns
+            if stamp_ns >= limit_ns:
+                heappush(heap, current._replace(stamp_ns=stamp_ns, place=place))
+                return
+
+    def _open(self, chunk: Chunk, choice: Choice, heap: list[_Open]) -> None:
+        try:
+            data = self._bytes_of(chunk)
+            entries = [e for e in self._list_entries(chunk, data) if choice.takes(e)]
+        except FileFormatError as error:
+            if self._on_damage is None:
+                raise
+            self._on_damage(Damage(error.path, chunk.position, error.reason))
+            return
+        if entries:
+            entries.sort(key=_stamp_of)
+            heappush(heap, _Open(entries[0].stamp_ns, chunk.number, 0, chunk, entries))
+        else:
+            self._forget(chunk)
+
+    def _bytes_of(self, chunk: Chunk) -> bytes:
+        found = self._cached.get(chunk.number)
+        if found is None:
+            found = self._read(chunk)
+            self._cached[chunk.number] = found
+            self._size += len(found)
+            while self._size > self._cache_bytes and len(self._cached) > 1:
+                self._size -= len(self._cached.popitem(last=False)[1])
+        return found
+
+    def _forget(self, chunk: Chunk) -> None:
+        self._size -= len(self._cached.pop(chunk.number, b""))
+
+
+def _stamp_of(entry: Entry) -> int:
+    return entry.stamp_ns

@@ -1,0 +1,327 @@
+"""Reads rosbag2's SQLite files, of every schema so far (Eloquent to Lyrical).
+
+Source: rosbag2_storage_sqlite3. SQLite itself walks the index over stamps, so that the
+first message comes at once and nothing is held in memory. It is Python's own
+``sqlite3``; a database is never written to.
+"""
+
+import sqlite3
+from collections.abc import Collection, Iterator, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NamedTuple, Self
+from urllib.parse import quote
+
+from navette.bags.bag import BagMessage, BagTopic, Damage, OnDamage
+from navette.bags.compression import LARGEST, is_zstd, unpack_zstd_message
+from navette.bags.definitions import idl_to_msg, ros2_name
+from navette.bags.qos import parse_qos
+from navette.errors import DecodeError, FileFormatError
+
+MAGIC = b"SQLite format 3\0"
+_SMALLEST_ROW = 8  # bytes that a row takes at least; bounds how many there can be
+_LOG_SUFFIX = "-wal"
+_DATA = "SELECT data FROM messages WHERE id = ?"
+
+
+class _Row(NamedTuple):
+    id: int
+    topic: int
+    stamp_ns: int
+
+
+class Db3Reader:
+    """An open ``.db3`` file; see :class:`~navette.bags.bag.BagReader`.
+
+    Raises:
+        FileFormatError: no such file, or no recording of rosbag2.
+    """
+
+    storage = "sqlite3"
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.topics: tuple[BagTopic, ...] = ()
+        self.version = "1"
+        self.start_ns = self.end_ns = 0
+        self._problems: list[str] = []
+        self._topic_of: dict[int, BagTopic] = {}
+        self._counts: dict[BagTopic, int] | None = None
+        self._database = _connect(path, self._problems)
+        try:
+            self.size = path.stat().st_size
+            self._read_head()
+        except (sqlite3.Error, FileFormatError) as error:
+            self.close()
+            if isinstance(error, FileFormatError):
+                raise
+            raise FileFormatError(path, f"cannot be read: {error}") from error
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        return tuple(self._problems)
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        return (self.path,)
+
+    @property
+    def compression(self) -> Mapping[str, int]:
+        return {"none": 1}
+
+    def close(self) -> None:
+        self._database.close()
+
+    def counts(self) -> Mapping[BagTopic, int]:
+        if self._counts is None:
+            query = "SELECT topic_id, count(*) FROM messages GROUP BY topic_id"
+            self._counts = dict.fromkeys(self.topics, 0)
+            for number, count in self._rows(query):
+                if number in self._topic_of:
+                    self._counts[self._topic_of[number]] += count
+        return self._counts
+
+    def stamps(self) -> Iterator[tuple[BagTopic, int]]:
+        for number, stamp in self._rows("SELECT topic_id, timestamp FROM messages"):
+            if number in self._topic_of and isinstance(stamp, int):
+                yield self._topic_of[number], stamp
+
+    def messages(
+        self,
+        topics: Collection[str] | None = None,
+        *,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        on_damage: OnDamage | None = None,
+    ) -> Iterator[BagMessage]:
+        wanted = {
+            number
+            for number, topic in self._topic_of.items()
+            if topics is None or topic.name in topics
+        }
+        last = 0, -(2**63)  # how far it has come: how many rows of the last stamp
+        try:
+            for row, data in self._in_order(start_ns, end_ns):
+                last = (last[0] + 1 if row.stamp_ns == last[1] else 1), row.stamp_ns
+                if row.topic in wanted:
+                    message = self._message(row, data, on_damage)
+                    if message is not None:
+                        yield message
+        except (sqlite3.Error, OverflowError) as error:
+            reason = f"damaged after the message at {last[1]} ns: {error}"
+            if on_damage is None:
+                raise FileFormatError(self.path, reason) from error
+            on_damage(Damage(self.path, 0, reason))
+            yield from self._salvage(wanted, start_ns, end_ns, last, on_damage)
+
+    # -- opening -------------------------------------------------------------------
+
+    def _read_head(self) -> None:
+        tables = dict(self._database.execute("SELECT name, type FROM sqlite_master"))
+        for table in ("messages", "topics"):
+            if tables.get(table) != "table":
+                raise FileFormatError(
+                    self.path, f"is no recording of rosbag2: it has no table {table!r}"
+                )
+        columns = self._columns("topics")
+        if "schema" in tables:
+            found = self._database.execute("SELECT schema_version FROM schema")
+            self.version = str((found.fetchone() or ("?",))[0])
+        elif "offered_qos_profiles" in columns:
+            self.version = "2"
+        definitions = self._definitions() if "message_definitions" in tables else {}
+        self._read_topics(columns, definitions)
+        first, last = self._database.execute(
+            "SELECT (SELECT min(timestamp) FROM messages),"
+            " (SELECT max(timestamp) FROM messages)"
+        ).fetchone()
+        if isinstance(first, int) and isinstance(last, int):
+            self.start_ns, self.end_ns = first, last
+
+    def _columns(self, table: str) -> set[str]:
+        return {row[1] for row in self._database.execute(f"PRAGMA table_info({table})")}
+
+    def _definitions(self) -> dict[str, tuple[str, str]]:
+        query = "SELECT topic_type, encoding, encoded_message_definition"
+        return {
+            str(name): (str(encoding), str(text))
+            for name, encoding, text in self._database.execute(
+                f"{query} FROM message_definitions"
+            )
+        }
+
+    def _read_topics(
+        self, columns: set[str], definitions: dict[str, tuple[str, str]]
+    ) -> None:
+        optional = [
+            name if name in columns else "''"
+            for name in ("offered_qos_profiles", "type_description_hash")
+        ]
+        query = f"SELECT id, name, type, serialization_format, {', '.join(optional)}"
+        for number, name, type_name, encoding, qos, hash_ in self._database.execute(
+            f"{query} FROM topics ORDER BY id"
+        ):
+            topic = BagTopic(
+                str(name),
+                ros2_name(str(type_name)),
+                self._text(str(type_name), definitions),
+                str(hash_ or ""),
+                parse_qos(qos),
+                str(encoding),
+            )
+            self._topic_of[number] = topic
+        self.topics = tuple(dict.fromkeys(self._topic_of.values()))
+
+    def _text(self, type_name: str, definitions: dict[str, tuple[str, str]]) -> str:
+        encoding, text = definitions.get(type_name, ("", ""))
+        if encoding == "ros2idl":
+            try:
+                return idl_to_msg(ros2_name(type_name), text)
+            except FileFormatError as error:
+                self._problems.append(str(error))
+                return ""
+        return text if encoding == "ros2msg" else ""
+
+    # -- messages ------------------------------------------------------------------
+
+    def _in_order(
+        self, start_ns: int | None, end_ns: int | None
+    ) -> Iterator[tuple[_Row, Any]]:
+        limits = [-(2**63) if start_ns is None else start_ns]
+        limits.append(2**63 - 1 if end_ns is None else end_ns)
+        where = "WHERE timestamp BETWEEN ? AND ? ORDER BY timestamp, id"
+        if self._has_index():
+            query = f"SELECT id, topic_id, timestamp, data FROM messages {where}"
+            for number, topic, stamp, data in self._database.execute(query, limits):
+                yield self._row(number, topic, stamp), data
+            return
+        # To be sorted by SQLite first, which then must not drag the data along.
+        query = f"SELECT id, topic_id, timestamp FROM messages {where}"
+        for number, topic, stamp in self._database.execute(query, limits):
+            yield self._row(number, topic, stamp), self._data(number)
+
+    def _has_index(self) -> bool:
+        query = "SELECT 1 FROM messages ORDER BY timestamp, id"
+        plan = self._database.execute(f"EXPLAIN QUERY PLAN {query}").fetchall()
+        return not any("TEMP B-TREE" in str(row[-1]) for row in plan)
+
+    def _row(self, number: object, topic: object, stamp: object) -> _Row:
+        if (
+            not isinstance(number, int)
+            or not isinstance(topic, int)
+            or not isinstance(stamp, int)
+        ):
+            raise sqlite3.DatabaseError(f"row {number!r} has no stamp or topic")
+        return _Row(number, topic, stamp)
+
+    def _data(self, number: int) -> Any:
+        found = self._database.execute(_DATA, (number,)).fetchone()
+        return found[0] if found else None
+
+    def _message(
+        self, row: _Row, data: object, on_damage: OnDamage | None
+    ) -> BagMessage | None:
+        try:
+            if not isinstance(data, bytes):
+                raise DecodeError("no data")
+            if is_zstd(data):
+                data = unpack_zstd_message(data)
+        except DecodeError as error:
+            reason = f"message {row.id} at {row.stamp_ns} ns: {error}"
+            if on_damage is None:
+                raise FileFormatError(self.path, reason) from error
+            on_damage(Damage(self.path, 0, reason))
+            return None
+        return BagMessage(self._topic_of[row.topic], row.stamp_ns, data)
+
+    def _salvage(
+        self,
+        wanted: set[int],
+        start_ns: int | None,
+        end_ns: int | None,
+        last: tuple[int, int],
+        on_damage: OnDamage,
+    ) -> Iterator[BagMessage]:
+        """What can be fetched row by row after the index over stamps has failed."""
+        rows = sorted(
+            row
+            for row in self._readable_rows()
+            if (start_ns is None or row.stamp_ns >= start_ns)
+            and (end_ns is None or row.stamp_ns <= end_ns)
+        )
+        rows.sort(key=lambda row: (row.stamp_ns, row.id))
+        skip = last[0]
+        for row in rows:
+            if row.stamp_ns < last[1] or (row.stamp_ns == last[1] and skip > 0):
+                skip -= row.stamp_ns == last[1]
+                continue
+            if row.topic in wanted:
+                found = self._attempt(_DATA, row.id)
+                message = self._message(row, found and found[0], on_damage)
+                if message is not None:
+                    yield message
+
+    def _readable_rows(self) -> Iterator[_Row]:
+        query = "SELECT id, topic_id, timestamp FROM messages WHERE id = ?"
+        for number in range(1, self.size // _SMALLEST_ROW + 1):
+            found = self._attempt(query, number)
+            if found is not None and all(isinstance(each, int) for each in found):
+                yield _Row(*found)
+
+    def _rows(self, query: str) -> Iterator[Any]:
+        """Rows up to the first that cannot be read."""
+        try:
+            yield from self._database.execute(query)
+        except sqlite3.Error as error:
+            self._problems.append(f"cannot be read to the end: {error}")
+
+    def _attempt(self, query: str, number: int) -> Any:
+        """One row; None where it is not there or cannot be read."""
+        try:
+            return self._database.execute(query, (number,)).fetchone()
+        except sqlite3.Error:
+            return None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def _connect(path: Path, problems: list[str]) -> sqlite3.Connection:
+    """Read only; with what a killed recording left in the log beside the file."""
+    try:
+        with path.open("rb") as file:
+            if file.read(len(MAGIC)) != MAGIC:
+                raise FileFormatError(path, "is no SQLite database")
+    except OSError as error:
+        raise FileFormatError(path, f"cannot be opened: {error.strerror}") from error
+    uri = f"file:{quote(str(path.absolute()))}"
+    log = path.with_name(path.name + _LOG_SUFFIX)
+    if log.exists() and log.stat().st_size:
+        try:
+            return _configured(sqlite3.connect(f"{uri}?mode=ro", uri=True))
+        except sqlite3.Error as error:
+            problems.append(f"{log.name} cannot be read: {error}")
+    try:
+        return _configured(sqlite3.connect(f"{uri}?mode=ro&immutable=1", uri=True))
+    except sqlite3.Error as error:
+        raise FileFormatError(path, f"cannot be opened: {error}") from error
+
+
+def _configured(database: sqlite3.Connection) -> sqlite3.Connection:
+    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
+    database.text_factory = _text
+    database.execute("PRAGMA trusted_schema = OFF")
+    database.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    return database
+
+
+def _text(data: bytes) -> str:
+    return data.decode("utf-8", "replace")

@@ -1,0 +1,33 @@
+"""Definitions in a file's own form, as ``ros2msg`` text."""
+
+from navette.errors import FileFormatError
+from navette.msgs.definition_sections import MOST_CHARACTERS
+
+_IDL_SEPARATOR = "=" * 80 + "\nIDL: "
+
+
+def ros2_name(name: str) -> str:
+    """``pkg/Name`` → ``pkg/msg/Name``; other names stay."""
+    package, slash, rest = name.partition("/")
+    return f"{package}/msg/{rest}" if slash and "/" not in rest else name
+
+
+def idl_to_msg(name: str, text: str) -> str:
+    """The ``ros2msg`` text of a type that is described in IDL.
+
+    Raises:
+        FileFormatError: the text is no IDL, or larger than definitions are.
+    """
+    from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_typestore
+
+    if len(text) > MOST_CHARACTERS:
+        raise FileFormatError(name, f"definition of {len(text)} characters")
+    store = get_typestore(Stores.EMPTY)
+    try:
+        for section in text.split(_IDL_SEPARATOR):
+            body = section.partition("\n")[2] if _IDL_SEPARATOR in text else section
+            if body.strip():
+                store.register(get_types_from_idl(body))
+        return store.generate_msgdef(name, ros_version=2)[0]
+    except (TypesysError, KeyError, ValueError, RecursionError) as error:
+        raise FileFormatError(name, f"IDL definition: {error}") from error

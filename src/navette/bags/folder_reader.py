@@ -1,0 +1,206 @@
+"""Reads the folders that rosbag2 writes: ``metadata.yaml`` and one or more files."""
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from heapq import heappop, heappush
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import yaml
+
+from navette.bags.bag import BagMessage, BagReader, BagTopic, OnDamage
+from navette.bags.qos import parse_qos
+from navette.errors import FileFormatError
+
+METADATA = "metadata.yaml"
+_LARGEST_METADATA = 16 << 20
+_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+@dataclass(frozen=True)
+class Metadata:
+    """What ``metadata.yaml`` says, as far as it says it."""
+
+    version: str = ""
+    files: tuple[str, ...] = ()
+    compression: str = ""
+    """``zstd (file)``, ``zstd (message)`` or "" for none."""
+    counts: Mapping[tuple[str, str], int] | None = None
+    """Messages by topic and type."""
+    qos: Mapping[tuple[str, str], Any] | None = None
+
+
+def read_metadata(folder: Path) -> Metadata:
+    """What the folder's metadata say.
+
+    Raises:
+        FileFormatError: they are not there, or not of rosbag2.
+    """
+    path = folder / METADATA
+    try:
+        if path.stat().st_size > _LARGEST_METADATA:
+            raise FileFormatError(path, "is larger than metadata are")
+        found = yaml.load(path.read_text("utf-8", "replace"), _LOADER)
+    except OSError as error:
+        raise FileFormatError(path, f"cannot be read: {error.strerror}") from error
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise FileFormatError(path, f"is no YAML: {error}") from error
+    try:
+        return _parse(found["rosbag2_bagfile_information"])
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        raise FileFormatError(path, f"is no metadata of rosbag2: {error!r}") from error
+
+
+def _parse(found: Mapping[str, Any]) -> Metadata:
+    topics = [
+        (each["topic_metadata"], int(each["message_count"]))
+        for each in found.get("topics_with_message_count") or ()
+    ]
+    kind = str(found.get("compression_format") or "")
+    mode = str(found.get("compression_mode") or "").lower()
+    names = [str(path) for path in found["relative_file_paths"]]
+    return Metadata(
+        str(found["version"]),
+        tuple(Path(name).name for name in names if Path(name).name),
+        f"{kind} ({mode})" if kind and mode not in ("", "none") else "",
+        {(str(t["name"]), str(t["type"])): count for t, count in topics},
+        {
+            (str(t["name"]), str(t["type"])): t.get("offered_qos_profiles", "")
+            for t, _ in topics
+        },
+    )
+
+
+class FolderReader:
+    """Several files as one recording; see :class:`~navette.bags.bag.BagReader`.
+
+    Args:
+        readers: of the files, already open; closed with this one.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        readers: Sequence[BagReader],
+        metadata: Metadata,
+        problems: Sequence[str] = (),
+    ) -> None:
+        self.path = path
+        self._readers = sorted(readers, key=lambda reader: reader.start_ns)
+        self._metadata = metadata
+        self.storage = readers[0].storage
+        self.version = metadata.version
+        names = {reader: reader.path.name for reader in readers}
+        self.problems = (
+            *problems,
+            *(f"{names[r]}: {each}" for r in readers for each in r.problems),
+        )
+        self._topic_of = {
+            topic: self._completed(topic) for r in readers for topic in r.topics
+        }
+        self.topics = tuple(dict.fromkeys(self._topic_of.values()))
+
+    def _completed(self, topic: BagTopic) -> BagTopic:
+        """With what only the metadata say, and what other files say of the type."""
+        if not topic.qos and self._metadata.qos:
+            qos = self._metadata.qos.get((topic.name, topic.type_name))
+            topic = replace(topic, qos=parse_qos(qos))
+        for reader in self._readers:
+            if topic.definition:
+                break
+            for other in reader.topics:
+                if other.type_name == topic.type_name and other.definition:
+                    topic = replace(topic, definition=other.definition)
+        return topic
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        return tuple(path for reader in self._readers for path in reader.files)
+
+    @property
+    def size(self) -> int:
+        return sum(reader.size for reader in self._readers)
+
+    @property
+    def start_ns(self) -> int:
+        return min((r.start_ns for r in self._readers if r.end_ns), default=0)
+
+    @property
+    def end_ns(self) -> int:
+        return max(reader.end_ns for reader in self._readers)
+
+    @property
+    def compression(self) -> Mapping[str, int]:
+        if self._metadata.compression:
+            return {self._metadata.compression: len(self._readers)}
+        found: Counter[str] = Counter()
+        for reader in self._readers:
+            found.update(reader.compression)
+        return found
+
+    def counts(self) -> Mapping[BagTopic, int]:
+        known = self._metadata.counts
+        if known and not self.problems:
+            return {t: known.get((t.name, t.type_name), 0) for t in self.topics}
+        found = Counter(dict.fromkeys(self.topics, 0))
+        for reader in self._readers:
+            for topic, count in reader.counts().items():
+                found[self._topic_of[topic]] += count
+        return found
+
+    def stamps(self) -> Iterator[tuple[BagTopic, int]]:
+        for reader in self._readers:
+            for topic, stamp in reader.stamps():
+                yield self._topic_of[topic], stamp
+
+    def messages(
+        self,
+        topics: Collection[str] | None = None,
+        *,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        on_damage: OnDamage | None = None,
+    ) -> Iterator[BagMessage]:
+        def opened(reader: BagReader) -> Iterator[BagMessage]:
+            return reader.messages(
+                topics, start_ns=start_ns, end_ns=end_ns, on_damage=on_damage
+            )
+
+        waiting = [
+            reader
+            for reader in reversed(self._readers)
+            if start_ns is None or reader.end_ns >= start_ns
+        ]
+        heap: list[tuple[int, int, BagMessage, Iterator[BagMessage]]] = []
+        order = 0
+        while heap or waiting:
+            # A file is opened when its first stamp has come.
+            while waiting and (not heap or waiting[-1].start_ns <= heap[0][0]):
+                rest = opened(waiting.pop())
+                order += 1
+                first = next(rest, None)
+                if first is not None:
+                    heappush(heap, (first.stamp_ns, order, first, rest))
+            if heap:
+                _, place, message, rest = heappop(heap)
+                yield message._replace(topic=self._topic_of[message.topic])
+                following = next(rest, None)
+                if following is not None:
+                    heappush(heap, (following.stamp_ns, place, following, rest))
+
+    def close(self) -> None:
+        for reader in self._readers:
+            reader.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()

@@ -1,0 +1,269 @@
+"""What is where in an MCAP file: by its summary, or by going through its records."""
+
+import zlib
+from dataclasses import dataclass, field
+from typing import Any
+
+from mcap.opcode import Opcode
+from mcap.records import Channel, Footer, Header, Schema, Statistics
+
+from navette.bags.chunks import Chunk
+from navette.bags.mcap_records import (
+    HEAD,
+    MAGIC,
+    MESSAGE,
+    Head,
+    RecordFile,
+    chunk_head,
+    parse,
+    parse_chunk_index,
+    parse_message_index,
+    read_chunk,
+    records_in,
+)
+from navette.errors import DecodeError, FileFormatError
+
+_FOOTER_SIZE = HEAD.size + 20
+_LARGEST_SUMMARY = 1 << 30
+_BARE_BYTES = 1 << 20
+
+
+@dataclass
+class McapIndex:
+    """Schemas and channels by number, and all chunks in the order of the file."""
+
+    profile: str = ""
+    library: str = ""
+    schemas: dict[int, Any] = field(default_factory=dict)
+    channels: dict[int, Any] = field(default_factory=dict)
+    chunks: list[Chunk] = field(default_factory=list)
+    counts: dict[int, int] | None = None
+    """Messages by channel, where the summary or every chunk's index says."""
+    problems: list[str] = field(default_factory=list)
+    from_summary: bool = False
+
+
+def read_index(file: RecordFile) -> McapIndex:
+    """The index by the quickest way there is.
+
+    Raises:
+        FileFormatError: this is no MCAP file.
+    """
+    if file.size < len(MAGIC) or file.read(0, len(MAGIC)) != MAGIC:
+        raise FileFormatError(file.path, "is no MCAP file: it does not begin as one")
+    try:
+        index = _read_summary(file)
+    except (FileFormatError, DecodeError) as error:
+        reason = error.reason if isinstance(error, FileFormatError) else str(error)
+        index = None
+        problems = [f"the summary cannot be read ({reason})"]
+    else:
+        problems = [] if index is not None else ["there is no summary"]
+    if index is None:
+        index = scan(file)
+        index.problems[:0] = problems
+    return index
+
+
+def _read_summary(file: RecordFile) -> McapIndex | None:
+    """None where the file has no summary, or one that does not name everything."""
+    tail = len(MAGIC) + _FOOTER_SIZE
+    if file.size < len(MAGIC) + tail or file.read(file.size - 8, 8) != MAGIC:
+        raise FileFormatError(file.path, "the file does not end as it should")
+    position = file.size - tail
+    head = file.head(position)
+    footer: Footer = parse(Footer, file.content(head))
+    if head.opcode != Opcode.FOOTER:
+        raise file.error(position, "no footer")
+    if footer.summary_start == 0:
+        return None
+    length = position - footer.summary_start
+    if not 0 <= length <= _LARGEST_SUMMARY:
+        raise file.error(position, f"a summary of {length} bytes")
+    summary = file.read(footer.summary_start, length)
+    if footer.summary_crc:
+        start = file.read(position, _FOOTER_SIZE - 4)
+        if zlib.crc32(start, zlib.crc32(summary)) != footer.summary_crc:
+            raise file.error(footer.summary_start, "its checksum is another one")
+    return _index_of_summary(file, footer.summary_start, summary)
+
+
+def _index_of_summary(file: RecordFile, start: int, summary: bytes) -> McapIndex | None:
+    index = McapIndex(from_summary=True)
+    _read_header(file, index)
+    statistics: Statistics | None = None
+    whole = Chunk(0, start, len(summary), 0, 0)
+    for opcode, begin, end in records_in(file.path, whole, summary):
+        content = summary[begin:end]
+        if opcode == Opcode.CHUNK_INDEX:
+            index.chunks.append(parse_chunk_index(len(index.chunks), content))
+        elif opcode == Opcode.STATISTICS:
+            statistics = parse(Statistics, content)
+        else:
+            _note(index, opcode, content)
+    index.chunks.sort(key=lambda chunk: chunk.position)
+    if statistics is None or not _is_complete(index, statistics):
+        return None
+    index.counts = dict(statistics.channel_message_counts)
+    return index
+
+
+def _is_complete(index: McapIndex, statistics: Statistics) -> bool:
+    """Whether the summary alone is enough to read all messages."""
+    counts = statistics.channel_message_counts
+    return (
+        len(index.chunks) == statistics.chunk_count
+        and (bool(index.chunks) or statistics.message_count == 0)
+        and set(counts) <= set(index.channels)
+        and sum(counts.values()) == statistics.message_count
+        and all(c.schema_id in {0, *index.schemas} for c in index.channels.values())
+    )
+
+
+def _read_header(file: RecordFile, index: McapIndex) -> int:
+    """Gives the position after it."""
+    head = file.head(len(MAGIC))
+    if head.opcode != Opcode.HEADER:
+        index.problems.append("there is no header")
+        return head.position
+    try:
+        header: Header = parse(Header, file.content(head, 1 << 16))
+        index.profile, index.library = header.profile, header.library
+    except (DecodeError, FileFormatError) as error:
+        index.problems.append(f"the header cannot be read ({error})")
+    return head.end
+
+
+def _note(index: McapIndex, opcode: int, content: bytes) -> None:
+    """Keep a schema or a channel; the first of a number stays."""
+    if opcode == Opcode.SCHEMA:
+        schema: Schema = parse(Schema, content)
+        index.schemas.setdefault(schema.id, schema)
+    elif opcode == Opcode.CHANNEL:
+        channel: Channel = parse(Channel, content)
+        index.channels.setdefault(channel.id, channel)
+
+
+def scan(file: RecordFile) -> McapIndex:
+    """The index by going from record to record, up to the first that is broken.
+
+    Chunks are unpacked only where they hold what is not known yet.
+    """
+    index = McapIndex(counts={})
+    try:
+        position = _read_header(file, index)
+        walk = _Walk(file, index)
+        while position < file.size:
+            head = file.head(position)
+            if head.opcode in (Opcode.DATA_END, Opcode.FOOTER):
+                break
+            walk.visit(head)
+            position = head.end
+    except (FileFormatError, DecodeError) as error:
+        reason = error.reason if isinstance(error, FileFormatError) else str(error)
+        index.problems.append(f"the data ends early ({reason})")
+    return index
+
+
+class _Walk:
+    """Collects the index while records pass by."""
+
+    def __init__(self, file: RecordFile, index: McapIndex) -> None:
+        self._file = file
+        self._index = index
+
+    def visit(self, head: Head) -> None:
+        """Take in one record."""
+        if head.opcode == Opcode.CHUNK:
+            self._chunk(head)
+        elif head.opcode == Opcode.MESSAGE:
+            self._message(head)
+        elif head.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            _note(self._index, head.opcode, self._file.content(head))
+
+    def _chunk(self, head: Head) -> None:
+        first, last, _, _, compression, _ = chunk_head(self._file, head)
+        by_channel = read_message_indexes(self._file, head.end)
+        known = by_channel.keys() <= self._index.channels.keys()
+        chunk = Chunk(
+            len(self._index.chunks),
+            head.position,
+            head.end - head.position,
+            first,
+            last,
+            compression,
+            frozenset(by_channel) or None,
+        )
+        if not by_channel or not known:
+            self._look_into(chunk)
+        self._index.chunks.append(chunk)
+        if not by_channel:
+            self._index.counts = None
+        if self._index.counts is not None:
+            for channel, stamps in by_channel.items():
+                count = self._index.counts.get(channel, 0)
+                self._index.counts[channel] = count + len(stamps)
+
+    def _look_into(self, chunk: Chunk) -> None:
+        """For schemas and channels."""
+        try:
+            data = read_chunk(self._file, chunk)
+            for opcode, begin, end in records_in(self._file.path, chunk, data):
+                if opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+                    _note(self._index, opcode, data[begin:end])
+        except FileFormatError as error:
+            self._index.problems.append(error.reason)
+        except DecodeError as error:
+            self._index.problems.append(f"byte {chunk.position}: chunk: {error}")
+
+    def _message(self, head: Head) -> None:
+        """Messages outside chunks: neighbours together make a bare chunk."""
+        if head.end - head.begin < MESSAGE.size:
+            raise self._file.error(head.position, "message without a head")
+        channel, _, stamp, _ = MESSAGE.unpack(self._file.read(head.begin, MESSAGE.size))
+        chunks, counts = self._index.chunks, self._index.counts
+        length = head.end - head.position
+        if counts is not None:
+            counts[channel] = counts.get(channel, 0) + 1
+        last = chunks[-1] if chunks else None
+        if (
+            last is not None
+            and last.bare
+            and last.position + last.length == head.position
+            and last.length + length <= _BARE_BYTES
+        ):
+            chunks[-1] = Chunk(
+                last.number,
+                last.position,
+                last.length + length,
+                min(last.start_ns, stamp),
+                max(last.end_ns, stamp),
+                channels=(last.channels or frozenset()) | {channel},
+                bare=True,
+            )
+            return
+        chunks.append(
+            Chunk(
+                len(chunks),
+                head.position,
+                length,
+                stamp,
+                stamp,
+                channels=frozenset({channel}),
+                bare=True,
+            )
+        )
+
+
+def read_message_indexes(file: RecordFile, position: int) -> dict[int, list[int]]:
+    """Stamps by channel from the indexes that follow a chunk; {} if there are none."""
+    found: dict[int, list[int]] = {}
+    while position + HEAD.size <= file.size:
+        head = file.head(position)
+        if head.opcode != Opcode.MESSAGE_INDEX:
+            break
+        channel, stamps = parse_message_index(file.content(head))
+        if stamps:
+            found.setdefault(channel, []).extend(stamps)
+        position = head.end
+    return found

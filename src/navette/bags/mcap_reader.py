@@ -1,0 +1,117 @@
+"""Reads ``.mcap``: with or without summary, index and chunks; ROS 2's and ROS 1's."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from navette.bags.bag import BagTopic
+from navette.bags.chunked_reader import ChunkedReader, Convert
+from navette.bags.chunks import Chunk, Entry
+from navette.bags.definitions import idl_to_msg, ros2_name
+from navette.bags.mcap_index import McapIndex, read_index, read_message_indexes, scan
+from navette.bags.mcap_records import RecordFile, message_entries, read_chunk
+from navette.bags.qos import parse_qos
+from navette.bags.ros1_messages import Ros1Type
+from navette.errors import DecodeError, FileFormatError, NavetteError
+
+
+class McapReader(ChunkedReader):
+    """An open ``.mcap`` file.
+
+    Args:
+        ignore_summary: go through the records even if there is a summary.
+
+    Raises:
+        FileFormatError: no such file, or no MCAP.
+    """
+
+    storage = "mcap"
+    version = "0"
+
+    def __init__(self, path: Path, *, ignore_summary: bool = False) -> None:
+        super().__init__(path)
+        try:
+            stream = path.open("rb")
+            self.size = path.stat().st_size
+        except OSError as error:
+            raise FileFormatError(
+                path, f"cannot be opened: {error.strerror}"
+            ) from error
+        self._file = RecordFile(path, stream, self.size)
+        try:
+            read = scan if ignore_summary else read_index
+            self.index = read(self._file)
+            self._take(self.index)
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def profile(self) -> str:
+        """``ros2``, ``ros1`` or another."""
+        return self.index.profile
+
+    def close(self) -> None:
+        self._file.close()
+
+    def _take(self, index: McapIndex) -> None:
+        problems = list(index.problems)
+        for number, channel in index.channels.items():
+            schema = index.schemas.get(channel.schema_id)
+            try:
+                topic, convert = _topic(channel, schema, problems)
+            except NavetteError as error:
+                problems.append(f"topic {channel.topic}: {error}")
+                continue
+            self._add_channel(number, topic, convert)
+        self.chunks = index.chunks
+        self.problems = tuple(problems)
+        if index.counts is not None:
+            self._set_counts(index.counts)
+
+    def _read_chunk(self, chunk: Chunk) -> bytes:
+        return read_chunk(self._file, chunk)
+
+    def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
+        return message_entries(self.path, chunk, data)
+
+    def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
+        if not chunk.bare:
+            try:
+                found = read_message_indexes(self._file, chunk.position + chunk.length)
+            except DecodeError:
+                found = {}
+            if found:
+                return found
+        return super()._stamps_of(chunk)
+
+
+def _topic(
+    channel: Any, schema: Any, problems: list[str]
+) -> tuple[BagTopic, Convert | None]:
+    """A channel in our words, and how its messages become CDR."""
+    qos = parse_qos(channel.metadata.get("offered_qos_profiles", ""))
+    name = schema.name if schema is not None else ""
+    text = schema.data.decode("utf-8", "replace") if schema is not None else ""
+    kind = schema.encoding if schema is not None else ""
+    encoding = channel.message_encoding
+    if encoding == "ros1" and kind == "ros1msg":
+        ros1 = Ros1Type(name, text)
+        topic = BagTopic(channel.topic, ros1.type_name, ros1.definition, qos=qos)
+        return topic, ros1.to_cdr
+    if kind == "ros2idl":
+        try:
+            text = idl_to_msg(ros2_name(name), text)
+        except FileFormatError as error:
+            problems.append(f"topic {channel.topic}: {error}")
+            text = ""
+    elif kind != "ros2msg":
+        text = ""
+    return BagTopic(
+        channel.topic,
+        ros2_name(name) if encoding == "cdr" else name,
+        text,
+        channel.metadata.get("topic_type_hash", ""),
+        qos,
+        encoding,
+    ), None

@@ -1,0 +1,201 @@
+"""Records of an MCAP file, read one by one with every length checked.
+
+Source: the MCAP specification, version 0. The contents of schemas, channels and
+statistics are read by the ``mcap`` library; heads, chunks and indexes here, because
+they are many.
+"""
+
+import struct
+import zlib
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+
+from navette.bags.chunks import Chunk, Entry
+from navette.bags.compression import LARGEST, unpack
+from navette.errors import DecodeError, FileFormatError
+
+MAGIC = b"\x89MCAP0\r\n"
+HEAD = struct.Struct("<BQ")
+MESSAGE = struct.Struct("<HIQQ")
+_CHUNK = struct.Struct("<QQQII")  # times, size, crc, length of the compression's name
+_CHUNK_INDEX = struct.Struct("<QQQQI")
+_LENGTH = struct.Struct("<Q")
+_STRING = struct.Struct("<I")
+
+
+class Head(NamedTuple):
+    """Where a record is: its content begins at ``begin`` and ends before ``end``."""
+
+    opcode: int
+    position: int
+    begin: int
+    end: int
+
+
+class RecordFile:
+    """Reads pieces of the file; a piece that is not there is a named error."""
+
+    def __init__(self, path: Path, stream: IO[bytes], size: int) -> None:
+        self.path = path
+        self.size = size
+        self._stream = stream
+
+    def read(self, position: int, length: int) -> bytes:
+        """Exactly ``length`` bytes."""
+        if position < 0 or length < 0 or position + length > self.size:
+            raise self.error(
+                position, f"wants {length} bytes; the file ends at {self.size}"
+            )
+        self._stream.seek(position)
+        found = self._stream.read(length)
+        if len(found) != length:
+            raise self.error(position, f"{len(found)} bytes of {length} could be read")
+        return found
+
+    def head(self, position: int) -> Head:
+        """The record that begins there."""
+        opcode, length = HEAD.unpack(self.read(position, HEAD.size))
+        begin = position + HEAD.size
+        if length > self.size - begin:
+            raise self.error(
+                position, f"record of {length} bytes; the file ends at {self.size}"
+            )
+        return Head(opcode, position, begin, begin + length)
+
+    def content(self, head: Head, limit: int = LARGEST) -> bytes:
+        """What is in the record."""
+        if head.end - head.begin > limit:
+            raise self.error(head.position, f"record of {head.end - head.begin} bytes")
+        return self.read(head.begin, head.end - head.begin)
+
+    def error(self, position: int, reason: str) -> FileFormatError:
+        """Names file and byte."""
+        return FileFormatError(self.path, f"byte {position}: {reason}")
+
+    def close(self) -> None:
+        """Close the file."""
+        self._stream.close()
+
+
+def parse(kind: Any, content: bytes) -> Any:
+    """A record of the library's class.
+
+    Raises:
+        DecodeError: the content is none.
+    """
+    try:
+        return kind.read(ReadDataStream(BytesIO(content)))
+    except (McapError, struct.error, ValueError, MemoryError, OverflowError) as error:
+        reason = str(error) or type(error).__name__
+        raise DecodeError(f"no {kind.__name__}: {reason}") from None
+
+
+def chunk_head(file: RecordFile, head: Head) -> tuple[int, int, int, int, str, int]:
+    """Times, unpacked size, CRC, compression and position of a chunk's data."""
+    if head.end - head.begin < _CHUNK.size + _LENGTH.size:
+        raise file.error(head.position, "chunk without a head")
+    first, last, size, crc, length = _CHUNK.unpack(file.read(head.begin, _CHUNK.size))
+    after = head.begin + _CHUNK.size
+    if length > 32 or after + length + _LENGTH.size > head.end:
+        raise file.error(head.position, "chunk whose compression has no name")
+    tail = file.read(after, length + _LENGTH.size)
+    compression = tail[:length].decode("ascii", "replace")
+    data = after + length + _LENGTH.size
+    (packed,) = _LENGTH.unpack_from(tail, length)
+    if packed != head.end - data:
+        raise file.error(head.position, f"chunk of {packed} bytes in another record")
+    return first, last, size, crc, compression, data
+
+
+def read_chunk(file: RecordFile, chunk: Chunk) -> bytes:
+    """The records in a chunk, unpacked and checked.
+
+    Raises:
+        FileFormatError: there is no chunk, or it is damaged.
+    """
+    if chunk.bare:
+        return file.read(chunk.position, chunk.length)
+    head = file.head(chunk.position)
+    if head.opcode != Opcode.CHUNK:
+        raise file.error(chunk.position, f"record {head.opcode}, wanted a chunk")
+    _, _, size, crc, compression, data = chunk_head(file, head)
+    try:
+        unpacked = unpack(compression, file.read(data, head.end - data), size)
+    except DecodeError as error:
+        raise file.error(chunk.position, f"chunk: {error}") from error
+    if crc and zlib.crc32(unpacked) != crc:
+        raise file.error(chunk.position, "chunk: its checksum is another one")
+    return unpacked
+
+
+def records_in(path: Path, chunk: Chunk, data: bytes) -> Iterator[tuple[int, int, int]]:
+    """Opcode, begin and end of the records in a chunk's bytes."""
+    position, size = 0, len(data)
+    while position < size:
+        if position + HEAD.size > size:
+            raise FileFormatError(
+                path, f"byte {chunk.position}: chunk ends inside a record"
+            )
+        opcode, length = HEAD.unpack_from(data, position)
+        begin = position + HEAD.size
+        position = begin + length
+        if position > size:
+            raise FileFormatError(
+                path, f"byte {chunk.position}: chunk ends inside a record"
+            )
+        yield opcode, begin, position
+
+
+def message_entries(path: Path, chunk: Chunk, data: bytes) -> list[Entry]:
+    """The messages in a chunk's bytes, as they lie."""
+    entries: list[Entry] = []
+    unpack_message = MESSAGE.unpack_from
+    for opcode, begin, end in records_in(path, chunk, data):
+        if opcode == Opcode.MESSAGE:
+            if end - begin < MESSAGE.size:
+                raise FileFormatError(
+                    path, f"byte {chunk.position}: message without a head"
+                )
+            channel, _, stamp, _ = unpack_message(data, begin)
+            entries.append(Entry(stamp, channel, begin + MESSAGE.size, end))
+    return entries
+
+
+def parse_chunk_index(number: int, content: bytes) -> Chunk:
+    """A chunk as the summary names it.
+
+    Raises:
+        DecodeError: the content is no chunk index.
+    """
+    try:
+        first, last, start, length, size = _CHUNK_INDEX.unpack_from(content)
+        offsets = content[_CHUNK_INDEX.size : _CHUNK_INDEX.size + size]
+        channels = frozenset(each[0] for each in struct.iter_unpack("<HQ", offsets))
+        after = _CHUNK_INDEX.size + size + 8
+        (name,) = _STRING.unpack_from(content, after)
+        compression = content[after + 4 : after + 4 + name].decode("ascii")
+    except (struct.error, ValueError) as error:
+        raise DecodeError(f"no chunk index: {error}") from error
+    return Chunk(number, start, length, first, last, compression, channels or None)
+
+
+def parse_message_index(content: bytes) -> tuple[int, list[int]]:
+    """Channel and stamps of its messages in one chunk.
+
+    Raises:
+        DecodeError: the content is no message index.
+    """
+    try:
+        channel, size = struct.unpack_from("<HI", content)
+        if size != len(content) - 6 or size % 16:
+            raise DecodeError(f"{size} bytes of message index in {len(content)}")
+        numbers = struct.unpack_from(f"<{size // 8}Q", content, 6)
+    except struct.error as error:
+        raise DecodeError(f"no message index: {error}") from error
+    return channel, list(numbers[::2])

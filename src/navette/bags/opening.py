@@ -1,0 +1,130 @@
+"""Opens a recording, whatever its format."""
+
+import shutil
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import zstandard
+
+from navette.bags.bag import BagReader
+from navette.bags.db3_reader import MAGIC as DB3_MAGIC
+from navette.bags.db3_reader import Db3Reader
+from navette.bags.folder_reader import METADATA, FolderReader, Metadata, read_metadata
+from navette.bags.mcap_reader import McapReader
+from navette.bags.mcap_records import MAGIC as MCAP_MAGIC
+from navette.bags.ros1_reader import Ros1Reader
+from navette.errors import FileFormatError
+
+SUFFIXES = (".mcap", ".bag", ".db3")
+PACKED = ".zstd"
+
+
+def open_bag(path: Path | str) -> BagReader:
+    """The recording in a ``.mcap``, ``.bag`` or ``.db3`` file, or a rosbag2 folder.
+
+    What a file is, its first bytes say. A file without an index is gone through once;
+    what is wrong with it is then in ``problems``, and what is sound can be read.
+
+    Raises:
+        FileFormatError: there is nothing, or no recording that can be read.
+    """
+    path = Path(path)
+    if path.is_dir():
+        return _open_folder(path)
+    return _open_file(path)
+
+
+def is_bag(path: Path) -> bool:
+    """Whether a file or folder looks like a recording, by its name."""
+    if path.is_dir():
+        return (path / METADATA).is_file()
+    name = path.name.removesuffix(PACKED).removesuffix(".active")
+    return path.is_file() and name.endswith(SUFFIXES)
+
+
+def _open_file(path: Path) -> BagReader:
+    try:
+        with path.open("rb") as file:
+            start = file.read(16)
+    except OSError as error:
+        raise FileFormatError(path, f"cannot be opened: {error.strerror}") from error
+    if not start:
+        raise FileFormatError(path, "is empty")
+    if start.startswith(DB3_MAGIC):
+        return Db3Reader(path)
+    if start.startswith(b"#ROS"):
+        return Ros1Reader(path)
+    if start.startswith(MCAP_MAGIC):
+        return McapReader(path)
+    if path.name.endswith(PACKED):
+        return _open_packed(path)
+    known: dict[str, Callable[[Path], BagReader]] = {
+        ".db3": Db3Reader,
+        ".bag": Ros1Reader,
+        ".mcap": McapReader,
+    }
+    reader = known.get(path.suffix)
+    if reader is not None:
+        return reader(path)  # says what is wrong with the beginning
+    raise FileFormatError(path, "is no recording: wanted .mcap, .bag, .db3 or a folder")
+
+
+def _open_packed(path: Path) -> BagReader:
+    """A file that rosbag2 compressed as a whole: it has to be unpacked beside."""
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(TemporaryDirectory(prefix="navette-bag-")))
+        unpacked = folder / path.name.removesuffix(PACKED)
+        try:
+            with path.open("rb") as packed, unpacked.open("wb") as out:
+                stream = zstandard.ZstdDecompressor().stream_reader(packed)
+                shutil.copyfileobj(stream, out, 1 << 20)
+        except (zstandard.ZstdError, OSError) as error:
+            raise FileFormatError(path, f"cannot be unpacked: {error}") from error
+        reader = stack.enter_context(_open_file(unpacked))
+        return _Unpacked(path, reader, stack.pop_all())
+
+
+class _Unpacked(FolderReader):
+    """One file that was compressed as a whole; its unpacked copy goes with it."""
+
+    def __init__(self, path: Path, reader: BagReader, stack: ExitStack) -> None:
+        metadata = Metadata(reader.version, compression="zstd (file)")
+        super().__init__(path, [reader], metadata)
+        self._stack = stack
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        return (self.path,)
+
+    @property
+    def size(self) -> int:
+        return self.path.stat().st_size
+
+    def close(self) -> None:
+        self._stack.close()
+
+
+def _open_folder(folder: Path) -> BagReader:
+    problems: list[str] = []
+    try:
+        metadata = read_metadata(folder)
+    except FileFormatError as error:
+        problems.append(str(error))
+        metadata = Metadata()
+    files = [each for each in folder.iterdir() if each.is_file() and is_bag(each)]
+    names = metadata.files or tuple(sorted(each.name for each in files))
+    if not names:
+        raise FileFormatError(folder, "holds no recording: no metadata.yaml, no files")
+    with ExitStack() as stack:
+        readers: list[BagReader] = []
+        for name in names:
+            try:
+                readers.append(stack.enter_context(_open_file(folder / name)))
+            except FileFormatError as error:
+                problems.append(str(error))
+        if not readers:
+            raise FileFormatError(folder, f"no file can be read: {'; '.join(problems)}")
+        stack.pop_all()
+        return FolderReader(folder, readers, metadata, problems)

@@ -1,0 +1,225 @@
+"""What is where in a ROS 1 bag: by its index, or by going through its records."""
+
+import struct
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from navette.bags.chunks import Chunk
+from navette.bags.ros1_records import (
+    MAGIC,
+    BagFile,
+    Op,
+    Record,
+    message_entries,
+    parse_fields,
+    read_chunk,
+    records_in,
+    text,
+    time_ns,
+    uint32,
+    uint64,
+)
+from navette.errors import DecodeError, FileFormatError
+
+_MOST_RECORDS = 10_000_000
+
+
+class Connection(NamedTuple):
+    """One publisher of one topic."""
+
+    number: int
+    topic: str
+    type_name: str
+    definition: str
+    latching: bool
+
+
+@dataclass
+class BagIndex:
+    """Connections by number, and all chunks in the order of the file."""
+
+    connections: dict[int, Connection] = field(default_factory=dict)
+    chunks: list[Chunk] = field(default_factory=list)
+    counts: Counter[int] = field(default_factory=Counter)
+    problems: list[str] = field(default_factory=list)
+    from_index: bool = False
+
+
+def read_index(file: BagFile) -> BagIndex:
+    """The index by the quickest way there is.
+
+    Raises:
+        FileFormatError: this is no ROS 1 bag, or one of another version.
+    """
+    start = file.read(0, min(len(MAGIC), file.size))
+    if start != MAGIC:
+        if start.startswith((b"#ROSBAG V", b"#ROSRECORD")):
+            version = start.split(b"\n")[0].decode("ascii", "replace")
+            raise FileFormatError(file.path, f"{version}; only version 2.0 is read")
+        raise FileFormatError(file.path, "is no ROS 1 bag: it does not begin as one")
+    try:
+        index = _read_index_section(file)
+    except (FileFormatError, DecodeError, struct.error) as error:
+        reason = error.reason if isinstance(error, FileFormatError) else str(error)
+        index = None
+        problems = [f"the index cannot be read ({reason})"]
+    else:
+        problems = [] if index is not None else ["the bag is not indexed"]
+    if index is None:
+        index = scan(file)
+        index.problems[:0] = problems
+    return index
+
+
+def _read_index_section(file: BagFile) -> BagIndex | None:
+    header = file.record(len(MAGIC), wanted=Op.BAG_HEADER)
+    position = uint64(header.fields, b"index_pos")
+    connections = uint32(header.fields, b"conn_count")
+    chunks = uint32(header.fields, b"chunk_count")
+    if header.fields.get(b"encryptor"):
+        raise FileFormatError(file.path, "is encrypted")
+    if position == 0:
+        return None
+    if connections + chunks > _MOST_RECORDS:
+        raise file.error(len(MAGIC), f"{connections} connections, {chunks} chunks")
+    index = BagIndex(from_index=True)
+    for _ in range(connections):
+        record = file.record(position, wanted=Op.CONNECTION)
+        connection = _connection(record, file.data(record))
+        index.connections[connection.number] = connection
+        position = record.end
+    for number in range(chunks):
+        record = file.record(position, wanted=Op.CHUNK_INFO)
+        index.chunks.append(_chunk_of_info(file, number, record, index.counts))
+        position = record.end
+    index.chunks.sort(key=lambda chunk: chunk.position)
+    return index
+
+
+def _connection(record: Record, data: bytes) -> Connection:
+    header = parse_fields(data)
+    return Connection(
+        uint32(record.fields, b"conn"),
+        _topic_name(text(record.fields, b"topic")),
+        text(header, b"type"),
+        text(header, b"message_definition"),
+        header.get(b"latching") == b"1",
+    )
+
+
+def _topic_name(name: str) -> str:
+    """As rosbag gives it, but for slashes that are doubled or at the end."""
+    parts = [part for part in name.split("/") if part]
+    return ("/" if name.startswith("/") else "") + "/".join(parts)
+
+
+def _chunk_of_info(
+    file: BagFile, number: int, record: Record, counts: Counter[int]
+) -> Chunk:
+    data = file.data(record)
+    in_chunk = dict(struct.iter_unpack("<II", data))
+    counts.update(in_chunk)
+    position = uint64(record.fields, b"chunk_pos")
+    chunk = file.record(position, wanted=Op.CHUNK)
+    return Chunk(
+        number,
+        position,
+        chunk.end - position,
+        time_ns(record.fields, b"start_time") if in_chunk else 0,
+        time_ns(record.fields, b"end_time") if in_chunk else 0,
+        text(chunk.fields, b"compression"),
+        frozenset(in_chunk),
+    )
+
+
+def scan(file: BagFile) -> BagIndex:
+    """The index by going from record to record, up to the first that is broken.
+
+    The last chunk of a recording that was killed has no length yet: its records are
+    met as if they were outside of any chunk.
+    """
+    index = BagIndex()
+    walk = _Walk(file, index)
+    position = len(MAGIC)
+    try:
+        while position < file.size:
+            record = file.record(position)
+            walk.visit(record)
+            position = record.end
+    except (FileFormatError, DecodeError) as error:
+        reason = error.reason if isinstance(error, FileFormatError) else str(error)
+        index.problems.append(f"the data ends early ({reason})")
+    return index
+
+
+class _Walk:
+    """Collects the index while records pass by."""
+
+    def __init__(self, file: BagFile, index: BagIndex) -> None:
+        self._file = file
+        self._index = index
+
+    def visit(self, record: Record) -> None:
+        """Take in one record."""
+        if record.op == Op.CHUNK:
+            self._chunk(record)
+        elif record.op == Op.CONNECTION:
+            self._note(_connection(record, self._file.data(record)))
+        elif record.op == Op.MESSAGE:
+            self._message(record)
+
+    def _note(self, connection: Connection) -> None:
+        self._index.connections.setdefault(connection.number, connection)
+
+    def _chunk(self, record: Record) -> None:
+        chunk = Chunk(
+            len(self._index.chunks),
+            record.position,
+            record.end - record.position,
+            0,
+            0,
+            text(record.fields, b"compression"),
+        )
+        try:
+            data = read_chunk(self._file, chunk)
+            for each in records_in(self._file.path, chunk, data):
+                if each.op == Op.CONNECTION:
+                    self._note(_connection(each, data[each.begin : each.end]))
+            entries = message_entries(self._file.path, chunk, data)
+        except (FileFormatError, DecodeError) as error:
+            reason = error.reason if isinstance(error, FileFormatError) else str(error)
+            self._index.problems.append(reason)
+            return
+        if not entries:
+            return
+        stamps = [entry.stamp_ns for entry in entries]
+        channels = Counter(entry.channel for entry in entries)
+        self._index.counts.update(channels)
+        self._index.chunks.append(
+            Chunk(
+                chunk.number,
+                chunk.position,
+                chunk.length,
+                min(stamps),
+                max(stamps),
+                chunk.compression,
+                frozenset(channels),
+            )
+        )
+
+    def _message(self, record: Record) -> None:
+        channel = uint32(record.fields, b"conn")
+        stamp = time_ns(record.fields, b"time")
+        self._index.counts[channel] += 1
+        self._index.chunks.append(
+            Chunk(
+                len(self._index.chunks),
+                record.position,
+                record.end - record.position,
+                stamp,
+                stamp,
+                channels=frozenset({channel}),
+                bare=True,
+            )
+        )

@@ -1,0 +1,112 @@
+"""Reads ROS 1's ``.bag``, indexed or not; messages come as ROS 2's."""
+
+import struct
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from navette.bags.bag import BagTopic
+from navette.bags.chunked_reader import ChunkedReader
+from navette.bags.chunks import Chunk, Entry
+from navette.bags.qos import OfferedQos
+from navette.bags.ros1_index import BagIndex, read_index, scan
+from navette.bags.ros1_messages import Ros1Type
+from navette.bags.ros1_records import (
+    BagFile,
+    Op,
+    message_entries,
+    read_chunk,
+    uint32,
+)
+from navette.errors import DecodeError, FileFormatError, NavetteError
+
+_LATCHED = (OfferedQos(depth=1, durability="transient_local"),)
+
+
+class Ros1Reader(ChunkedReader):
+    """An open ``.bag`` file.
+
+    Args:
+        ignore_index: go through the records even if there is an index.
+
+    Raises:
+        FileFormatError: no such file, or no ROS 1 bag of version 2.0.
+    """
+
+    storage = "rosbag1"
+    version = "2.0"
+
+    def __init__(self, path: Path, *, ignore_index: bool = False) -> None:
+        super().__init__(path)
+        try:
+            stream = path.open("rb")
+            self.size = path.stat().st_size
+        except OSError as error:
+            raise FileFormatError(
+                path, f"cannot be opened: {error.strerror}"
+            ) from error
+        self._file = BagFile(path, stream, self.size)
+        try:
+            self.index = scan(self._file) if ignore_index else read_index(self._file)
+            self._take(self.index)
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        self._file.close()
+
+    def _take(self, index: BagIndex) -> None:
+        problems = list(index.problems)
+        types: dict[tuple[str, str], Ros1Type] = {}
+        for number, connection in sorted(index.connections.items()):
+            key = connection.type_name, connection.definition
+            try:
+                if key not in types:
+                    types[key] = Ros1Type(*key)
+            except NavetteError as error:
+                problems.append(f"topic {connection.topic}: {error}")
+                continue
+            topic = BagTopic(
+                connection.topic,
+                types[key].type_name,
+                types[key].definition,
+                qos=_LATCHED if connection.latching else (),
+            )
+            self._add_channel(number, topic, types[key].to_cdr)
+        self.chunks = index.chunks
+        self.problems = tuple(problems)
+        self._set_counts(index.counts)
+
+    def _read_chunk(self, chunk: Chunk) -> bytes:
+        return read_chunk(self._file, chunk)
+
+    def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
+        return message_entries(self.path, chunk, data)
+
+    def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
+        if not chunk.bare:
+            found = self._stamps_of_index(chunk)
+            if found:
+                return found
+        return super()._stamps_of(chunk)
+
+    def _stamps_of_index(self, chunk: Chunk) -> dict[int, list[int]]:
+        """From the index records that follow the chunk; {} if they are not there."""
+        found: dict[int, list[int]] = {}
+        position = chunk.position + chunk.length
+        try:
+            while position < self.size:
+                record = self._file.record(position)
+                if record.op != Op.INDEX:
+                    break
+                stamps = [
+                    seconds * 1_000_000_000 + rest
+                    for seconds, rest, _ in struct.iter_unpack(
+                        "<III", self._file.data(record)
+                    )
+                ]
+                found.setdefault(uint32(record.fields, b"conn"), []).extend(stamps)
+                position = record.end
+        except (FileFormatError, DecodeError, struct.error):
+            return {}
+        return found
