@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from navette.runtime.api import (
     InitContextManager,
-    SignalHandlerOptions,
     create_node,
     get_global_executor,
     init,
@@ -46,7 +45,7 @@ from navette.runtime.executor import (
     SingleThreadedExecutor,
 )
 from navette.runtime.future import Future, Task
-from navette.runtime.graph import Graph, NodeInfo
+from navette.runtime.graph import Graph
 from navette.runtime.log import Logger
 from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.node import Node
@@ -66,6 +65,7 @@ from navette.runtime.qos import (
 from navette.runtime.rate import Rate
 from navette.runtime.ros_clock import Clock, JumpThreshold, ROSClock, TimeJump
 from navette.runtime.service import Service
+from navette.runtime.signals import SignalHandlerOptions
 from navette.runtime.stage import Input, Output, StageNode
 from navette.runtime.stage_params import declare_params
 from navette.runtime.status import StatusReporter, status_output
@@ -84,6 +84,7 @@ from navette.runtime.time import (
     stamp_to_ns,
 )
 from navette.runtime.timer import Timer
+from navette.transports import NodeInfo
 
 if TYPE_CHECKING:
     from navette.runtime.action import (

@@ -2,7 +2,6 @@
 
 import sys
 from collections.abc import Sequence
-from enum import IntEnum
 from types import TracebackType
 from typing import Any
 
@@ -16,15 +15,11 @@ from navette.runtime.context import (
 from navette.runtime.executor import Executor, SingleThreadedExecutor
 from navette.runtime.future import Future
 from navette.runtime.node import Node
-
-
-class SignalHandlerOptions(IntEnum):
-    """Accepted for compatibility: Python's own handlers stay in place."""
-
-    NO = 0
-    SIGINT = 1
-    SIGTERM = 2
-    ALL = 3
+from navette.runtime.signals import (
+    SignalHandlerOptions,
+    install_signal_handlers,
+    uninstall_signal_handlers,
+)
 
 
 class InitContextManager:
@@ -42,7 +37,8 @@ class InitContextManager:
         exc_val: BaseException | None,
         exc_tb: TracebackType | None,
     ) -> None:
-        try_shutdown(context=self.context)
+        is_default = self.context is get_default_context()
+        try_shutdown(context=self.context, uninstall_handlers=is_default)
 
 
 def init(
@@ -56,9 +52,12 @@ def init(
     """Make the context valid; read ``args`` (``sys.argv`` if None).
 
     Args:
+        signal_handler_options: default: all for the default context, else none.
         clock: how time passes (default: the system clock).
     """
     if context is None:
+        if signal_handler_options is None:
+            signal_handler_options = SignalHandlerOptions.ALL
         # A default context that was shut down cannot come back: take a new one.
         context = get_default_context()
         if context.was_shut_down:
@@ -67,6 +66,8 @@ def init(
     if clock is not None:
         context.use_clock(clock)
     context.init(args, domain_id=domain_id)
+    if signal_handler_options is not None:
+        install_signal_handlers(signal_handler_options)
     return InitContextManager(context)
 
 
@@ -78,15 +79,24 @@ def ok(*, context: Context | None = None) -> bool:
 def shutdown(
     *, context: Context | None = None, uninstall_handlers: bool | None = None
 ) -> None:
-    """Shut the context down; its nodes are destroyed, its spins return."""
+    """Shut the context down; its nodes are destroyed, its spins return.
+
+    Args:
+        uninstall_handlers: of signals; default: those of the default context.
+    """
     (context or get_default_context()).shutdown()
+    if uninstall_handlers is None:
+        uninstall_handlers = context is None
+    if uninstall_handlers:
+        uninstall_signal_handlers()
 
 
 def try_shutdown(
     *, context: Context | None = None, uninstall_handlers: bool | None = None
 ) -> None:
     """Shut down if it is valid."""
-    (context or get_default_context()).try_shutdown()
+    if ok(context=context):
+        shutdown(context=context, uninstall_handlers=uninstall_handlers)
 
 
 def create_node(node_name: str, **kwargs: Any) -> Node:

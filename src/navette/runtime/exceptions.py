@@ -46,6 +46,10 @@ class TimeoutException(NavetteError):
     """A wait took longer than allowed."""
 
 
+class ConditionReachedException(NavetteError):
+    """What was waited for has happened."""
+
+
 class NameValidationException(InvalidNameError):
     """A name breaks the rules at ``invalid_index``."""
 

@@ -5,15 +5,22 @@ the order of (time, sequence), in the thread that spins.
 """
 
 from collections.abc import Callable, Coroutine
+from functools import partial
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from navette.errors import InvalidValueError
 from navette.runtime.clock import TimeSource
 from navette.runtime.context import Context, get_default_context
-from navette.runtime.exceptions import NotInitializedException
+from navette.runtime.exceptions import (
+    ConditionReachedException,
+    ExternalShutdownException,
+    NotInitializedException,
+    ShutdownException,
+    TimeoutException,
+)
 from navette.runtime.future import Future, Task
-from navette.runtime.loop import Call, EventLoop
+from navette.runtime.loop import Call, Entity, EventLoop
 
 if TYPE_CHECKING:
     from navette.runtime.node import Node
@@ -103,10 +110,22 @@ class Executor:
 
     def spin(self) -> None:
         """Run until shutdown or :meth:`stop`; a virtual run, until nothing is left."""
-        self._run()
+        if type(self).spin_once is _OWN_SPIN_ONCE:
+            self._run()
+            return
+        self._stopping = False
+        while self._context.ok() and not self._stopping:
+            self.spin_once()
+        self._stopping = False
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Run one event; wait for it at most ``timeout_sec`` (None = for ever)."""
+        """Run one event; wait for it at most ``timeout_sec`` (None = for ever).
+
+        Raises:
+            ExternalShutdownException: the context is not valid any more.
+        """
+        if not self._context.ok():
+            raise ExternalShutdownException("the context was shut down")
         self._run(timeout_s=timeout_sec, limit=1)
 
     def spin_until_future_complete(
@@ -120,6 +139,44 @@ class Executor:
     ) -> None:
         """Run one event, unless ``future`` is done first."""
         self._run(timeout_s=timeout_sec, done=future.done, limit=1)
+
+    def can_execute(self, entity: Entity) -> bool:
+        """Whether the entity's group lets its callback start now."""
+        return entity.group.can_execute(entity)
+
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | None = None,
+        nodes: "list[Node] | None" = None,
+        condition: Callable[[], bool] = lambda: False,
+    ) -> "tuple[Callable[[], None], Entity, Node | None]":
+        """The next event, for executors that override :meth:`spin_once`.
+
+        Returns:
+            What runs it (from any thread; callbacks still run one at a time), what it
+            is, and whose (None: nobody's).
+
+        Raises:
+            TimeoutException: none in time.
+            ConditionReachedException: the condition holds.
+            ShutdownException: the executor was shut down.
+            ExternalShutdownException: the context was.
+        """
+        until_ns = None
+        if timeout_sec is not None and timeout_sec >= 0:
+            until_ns = self.now_ns + round(timeout_sec * 1e9)
+        entity = self.loop.take(until_ns, lambda: self._stopping or condition())
+        if entity is not None:
+            owner = entity.origin()[0]
+            named = (n for n in self._nodes if n.get_fully_qualified_name() == owner)
+            return partial(self.loop.execute, entity), entity, next(named, None)
+        if not self._context.ok():
+            raise ExternalShutdownException("the context was shut down")
+        if self._stopping:
+            raise ShutdownException("the executor was shut down")
+        if condition():
+            raise ConditionReachedException("the condition holds")
+        raise TimeoutException("no callback became ready in time")
 
     def spin_until(self, time_ns: int) -> None:
         """Run all events up to and including ``time_ns``; then it is that time."""
@@ -200,6 +257,10 @@ class Executor:
             self._depth -= 1
 
 
+#: What :meth:`Executor.spin` need not go through for each event.
+_OWN_SPIN_ONCE = Executor.spin_once
+
+
 class SingleThreadedExecutor(Executor):
     """rclpy's name for the one deterministic executor."""
 
@@ -215,3 +276,20 @@ class MultiThreadedExecutor(Executor):
         clock: TimeSource | None = None,
     ) -> None:
         super().__init__(context=context, clock=clock)
+
+    def shutdown(
+        self, timeout_sec: float | None = None, *, wait_for_threads: bool = True
+    ) -> bool:
+        """As the base class; there are no threads to wait for."""
+        return super().shutdown(timeout_sec)
+
+
+class EventsExecutor(Executor):
+    """rclpy's experimental one, driven by events: as every executor is here."""
+
+
+class TimeoutObject:
+    """Holds a timeout, seconds."""
+
+    def __init__(self, timeout: float) -> None:
+        self.timeout = timeout

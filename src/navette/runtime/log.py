@@ -39,6 +39,8 @@ class LogHub:
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self.now_ns = now_ns
         self.sinks: list[LogSink] = []
+        #: Takes the records while there is no sink, if set.
+        self.fallback: LogSink | None = None
         self.default_level = LoggingSeverity.INFO
         self._levels: dict[str, LoggingSeverity] = {}
         self._effective: dict[str, LoggingSeverity] = {}
@@ -50,6 +52,12 @@ class LogHub:
             self._levels[name] = level
         else:
             self.default_level = level or LoggingSeverity.INFO
+        self._effective.clear()
+
+    def reset_levels(self) -> None:
+        """Every logger inherits again, and the default is INFO."""
+        self.default_level = LoggingSeverity.INFO
+        self._levels.clear()
         self._effective.clear()
 
     def get_level(self, name: str) -> LoggingSeverity:
@@ -68,6 +76,8 @@ class LogHub:
     def emit(self, record: LogRecord) -> None:
         for sink in self.sinks:
             sink(record)
+        if not self.sinks and self.fallback is not None:
+            self.fallback(record)
 
     def _find_level(self, name: str) -> LoggingSeverity:
         while name:

@@ -254,6 +254,58 @@ class EventLoop:
             if stop is not None and stop():
                 return
 
+    def take(self, until_ns: int | None, stop: Callable[[], bool]) -> Entity | None:
+        """The next event that may run now, without running it.
+
+        None if there is none until ``until_ns``, or ``stop`` asks for the end.
+        """
+        while not self._closed and not stop():
+            if not self._take_turn():
+                if until_ns is not None and self.clock.now_ns >= until_ns:
+                    return None
+                continue
+            try:
+                self._attention = False
+                self._collect()
+                entity = self._next_ready()
+                if entity is not None or not self._go_on(until_ns):
+                    return entity
+            finally:
+                self._give_turn()
+        return None
+
+    def execute(self, entity: Entity) -> None:
+        """Run what :meth:`take` gave; from any thread, between two callbacks.
+
+        Raises:
+            CallbackError: as :meth:`run`.
+        """
+        self.ready.appendleft(entity)
+        if self.in_driver_thread:
+            self._run_nested(self.clock.now_ns, None, 1, None, calling=False)
+            return
+        while not self._closed:
+            if self._take_turn():
+                try:
+                    self._run(self.clock.now_ns, None, 1, None)
+                finally:
+                    self._give_turn()
+                return
+
+    def _next_ready(self) -> Entity | None:
+        ready = self.ready
+        while ready:
+            entity = ready.popleft()
+            if not self._must_wait(entity):
+                return entity
+            entity.group.parked.append(entity)
+        return None
+
+    @staticmethod
+    def _must_wait(entity: Entity) -> bool:
+        group = entity.group
+        return bool(group.held) and not (entity.answers_calls and group.calling)
+
     def _take_turn(self) -> bool:
         """Become the driver; False after a short wait if another thread is."""
         with self._turn:

@@ -11,10 +11,14 @@ from navette.errors import InvalidValueError
 from navette.runtime.exceptions import (
     InvalidNamespaceException,
     InvalidNodeNameException,
+    InvalidParameterException,
     InvalidServiceNameException,
     InvalidTopicNameException,
     NameValidationException,
 )
+
+TOPIC_SEPARATOR_STRING = "/"
+HIDDEN_TOPIC_PREFIX = "_"
 
 _TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_/~{}]")
@@ -85,7 +89,15 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 def topic_or_service_is_hidden(name: str) -> bool:
     """Whether any part of the name starts with an underscore."""
-    return any(token.startswith("_") for token in name.split("/"))
+    tokens = name.split(TOPIC_SEPARATOR_STRING)
+    return any(token.startswith(HIDDEN_TOPIC_PREFIX) for token in tokens)
+
+
+def validate_parameter_name(name: str) -> bool:
+    """True, or raise InvalidParameterException where it is empty."""
+    if not name:
+        raise InvalidParameterException(name)
+    return True
 
 
 def _check_tokens(name: str, kind: type[NameValidationException]) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import Any
 
 from navette.errors import InvalidValueError, NavetteError
 from navette.msgs.rcl_interfaces.msg import Log, ParameterEvent
@@ -13,7 +13,6 @@ from navette.runtime.callback_groups import (
 )
 from navette.runtime.context import Context, get_default_context
 from navette.runtime.exceptions import NotInitializedException
-from navette.runtime.graph import NodeInfo
 from navette.runtime.log import Logger, LogRecord
 from navette.runtime.logging_service import LoggingService
 from navette.runtime.names import (
@@ -41,8 +40,9 @@ from navette.runtime.ros_clock import Clock, ROSClock
 from navette.runtime.time import ns_to_stamp, seconds_to_ns
 from navette.runtime.time_source import TimeSource
 from navette.runtime.timer import Timer
+from navette.transports import NodeInfo
 
-MsgT = TypeVar("MsgT")
+HIDDEN_NODE_PREFIX = "_"
 
 
 class Node(NodeParameters, NodeTopics, NodeServices, NodeWaitables, NodeGraph):

@@ -20,6 +20,13 @@ class ClockType(IntEnum):
     STEADY_TIME = 3
 
 
+def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
+    """Seconds as nanoseconds; -1 = for ever (None or negative)."""
+    if timeout_sec is None or timeout_sec < 0:
+        return -1
+    return int(float(timeout_sec) * NS_PER_S)
+
+
 def seconds_to_ns(seconds: float) -> int:
     """Whole nanoseconds nearest to ``seconds``; exact for an ``int``."""
     if isinstance(seconds, int):

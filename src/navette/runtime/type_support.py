@@ -1,9 +1,16 @@
 """Which interface a class is, checked where a user hands one in."""
 
-from typing import Any
+from typing import Any, TypeVar
 
 from navette.errors import MessageError, UnknownNameError
-from navette.msgs import type_name
+from navette.msgs import Message, type_name
+
+# rclpy's names for annotations.
+Msg = Message
+MsgT = TypeVar("MsgT")
+SrvRequestT = TypeVar("SrvRequestT")
+SrvResponseT = TypeVar("SrvResponseT")
+SrvEventT = TypeVar("SrvEventT")
 
 _KINDS = {"msg": "a message", "srv": "a service", "action": "an action"}
 

@@ -8,9 +8,22 @@ import pytest
 import navette
 from navette.errors import InvalidValueError
 from navette.msgs.std_msgs.msg import String
-from navette.runtime import Context, Executor, Future, Node, VirtualClock
+from navette.runtime import (
+    Context,
+    Executor,
+    ExternalShutdownException,
+    Future,
+    Node,
+    ReentrantCallbackGroup,
+    VirtualClock,
+)
 from navette.runtime.context import get_default_context, reset_default_context
-from navette.runtime.exceptions import NotInitializedException
+from navette.runtime.exceptions import (
+    ConditionReachedException,
+    NotInitializedException,
+    ShutdownException,
+    TimeoutException,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -332,3 +345,81 @@ def test_domain_id(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", "seven")
     with pytest.raises(InvalidValueError, match="ROS_DOMAIN_ID 'seven'"):
         Context().init(args=[])
+
+
+class Picking(Executor):
+    """Runs what waits, one spin_once at a time, and notes whose it was."""
+
+    def __init__(self) -> None:
+        super().__init__(clock=VirtualClock())
+        self.seen: list[str] = []
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        handler, entity, node = self.wait_for_ready_callbacks(timeout_sec)
+        assert self.can_execute(entity)
+        self.seen.append(node.get_name() if node is not None else "")
+        handler()
+
+
+def test_an_executor_of_ones_own() -> None:
+    with Picking() as executor:
+        node = Node("n", context=executor.context)
+        executor.add_node(node)
+        ticks: list[int] = []
+        timer = node.create_timer(0.5, lambda: ticks.append(executor.now_ns))
+
+        def stop() -> None:
+            executor.stop()
+
+        node.create_timer(1.6, stop)
+        executor.spin()
+        assert [round(t / 1e9, 3) for t in ticks] == [0.5, 1.0, 1.5]
+        assert executor.seen == ["n"] * 4
+        timer.cancel()
+        with pytest.raises(TimeoutException, match="in time"):
+            executor.wait_for_ready_callbacks(timeout_sec=0.1)
+        with pytest.raises(ConditionReachedException):
+            executor.wait_for_ready_callbacks(condition=lambda: True)
+        executor.stop()
+        with pytest.raises(ShutdownException):
+            executor.wait_for_ready_callbacks()
+        executor.context.shutdown()
+        with pytest.raises(ExternalShutdownException):
+            executor.wait_for_ready_callbacks()
+
+
+def test_handlers_run_in_other_threads_one_at_a_time() -> None:
+    with Picking() as executor:
+        node = Node("n", context=executor.context)
+        executor.add_node(node)
+        names: list[str] = []
+        node.create_timer(0.5, lambda: names.append(threading.current_thread().name))
+        handler, _, _ = executor.wait_for_ready_callbacks()
+        thread = threading.Thread(target=handler, name="worker")
+        thread.start()
+        thread.join(10.0)
+        assert names == ["worker"]
+
+
+def test_a_handler_may_run_inside_a_callback() -> None:
+    with Picking() as executor:
+        node = Node("n", context=executor.context)
+        executor.add_node(node)
+        ran: list[str] = []
+        group = ReentrantCallbackGroup()
+        node.create_timer(1.0, lambda: ran.append("late"), callback_group=group)
+        late, _, _ = executor.wait_for_ready_callbacks()
+        node.create_timer(0.1, late, callback_group=group)
+        early, _, _ = executor.wait_for_ready_callbacks()
+        early()
+        assert ran == ["late"]
+
+
+def test_spin_once_on_a_context_that_is_over() -> None:
+    start()
+    node = Node("n")
+    executor = navette.SingleThreadedExecutor()
+    executor.add_node(node)
+    navette.shutdown()
+    with pytest.raises(ExternalShutdownException, match="shut down"):
+        executor.spin_once()

@@ -1,5 +1,7 @@
 """Clocks and their jumps."""
 
+from navette.runtime import Context, get_default_context
+from navette.runtime.exceptions import NotInitializedException
 from navette.runtime.ros_clock import (
     Clock,
     ClockChange,
@@ -14,10 +16,13 @@ __all__ = [
     "Clock",
     "ClockChange",
     "ClockType",
+    "Context",
     "Duration",
     "JumpHandle",
     "JumpThreshold",
+    "NotInitializedException",
     "ROSClock",
     "Time",
     "TimeJump",
+    "get_default_context",
 ]

@@ -1,5 +1,6 @@
 """rclpy's exceptions."""
 
+from navette.runtime import Parameter
 from navette.runtime.exceptions import (
     InvalidHandle,
     InvalidNamespaceException,
@@ -32,6 +33,7 @@ __all__ = [
     "NameValidationException",
     "NoTypeSupportImportedException",
     "NotInitializedException",
+    "Parameter",
     "ParameterAlreadyDeclaredException",
     "ParameterException",
     "ParameterImmutableException",

@@ -1,5 +1,7 @@
 """Parameters."""
 
+from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
+from navette.msgs.rcl_interfaces.msg import ParameterType, ParameterValue
 from navette.runtime.parameter import (
     PARAMETER_SEPARATOR_STRING,
     Parameter,
@@ -11,6 +13,9 @@ from navette.runtime.parameter import (
 __all__ = [
     "PARAMETER_SEPARATOR_STRING",
     "Parameter",
+    "ParameterMsg",
+    "ParameterType",
+    "ParameterValue",
     "get_parameter_value",
     "parameter_dict_from_yaml_file",
     "parameter_value_to_python",

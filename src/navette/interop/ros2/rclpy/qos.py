@@ -1,5 +1,6 @@
 """Quality of service."""
 
+from navette.runtime import Duration
 from navette.runtime.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -9,6 +10,7 @@ from navette.runtime.qos import (
     QoSDurabilityPolicy,
     QoSHistoryPolicy,
     QoSLivelinessPolicy,
+    QoSPolicyEnum,
     QoSPolicyKind,
     QoSPresetProfiles,
     QoSProfile,
@@ -29,6 +31,7 @@ from navette.runtime.qos import (
 
 __all__ = [
     "DurabilityPolicy",
+    "Duration",
     "HistoryPolicy",
     "InvalidQoSProfileException",
     "LivelinessPolicy",
@@ -36,6 +39,7 @@ __all__ = [
     "QoSDurabilityPolicy",
     "QoSHistoryPolicy",
     "QoSLivelinessPolicy",
+    "QoSPolicyEnum",
     "QoSPolicyKind",
     "QoSPresetProfiles",
     "QoSProfile",

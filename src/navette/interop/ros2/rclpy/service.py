@@ -1,5 +1,19 @@
 """Services."""
 
+from navette.runtime import CallbackGroup
+from navette.runtime.qos import QoSProfile
+from navette.runtime.ros_clock import Clock
 from navette.runtime.service import Service
+from navette.runtime.service_introspection import ServiceIntrospectionState
+from navette.runtime.type_support import SrvEventT, SrvRequestT, SrvResponseT
 
-__all__ = ["Service"]
+__all__ = [
+    "CallbackGroup",
+    "Clock",
+    "QoSProfile",
+    "Service",
+    "ServiceIntrospectionState",
+    "SrvEventT",
+    "SrvRequestT",
+    "SrvResponseT",
+]

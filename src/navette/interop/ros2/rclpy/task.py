@@ -1,5 +1,10 @@
 """Futures and tasks."""
 
+from navette.runtime import Executor
 from navette.runtime.future import Future, Task
 
-__all__ = ["Future", "Task"]
+__all__ = [
+    "Executor",
+    "Future",
+    "Task",
+]

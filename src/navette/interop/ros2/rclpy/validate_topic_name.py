@@ -1,5 +1,14 @@
 """Is it a topic name?"""
 
-from navette.runtime.names import validate_topic_name
+from navette.runtime.exceptions import (
+    InvalidServiceNameException,
+    InvalidTopicNameException,
+)
+from navette.runtime.names import TOPIC_SEPARATOR_STRING, validate_topic_name
 
-__all__ = ["validate_topic_name"]
+__all__ = [
+    "InvalidServiceNameException",
+    "InvalidTopicNameException",
+    "TOPIC_SEPARATOR_STRING",
+    "validate_topic_name",
+]

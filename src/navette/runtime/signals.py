@@ -1,0 +1,75 @@
+"""What signals do to a program's contexts.
+
+SIGINT raises KeyboardInterrupt, as Python does, whatever the options say: contexts stay
+valid, so that a program can still publish a last command. SIGTERM shuts down the
+contexts: spins end and ``ok()`` is false. Handlers that others installed stay in place.
+"""
+
+import signal
+import threading
+from enum import IntEnum
+from types import FrameType
+
+from navette.runtime.context import current_scope
+from navette.runtime.guard_condition import GuardCondition
+
+
+class SignalHandlerOptions(IntEnum):
+    """Which signals are looked after; numbers as in rclpy."""
+
+    NO = 0
+    SIGINT = 1
+    SIGTERM = 2
+    ALL = 3
+
+
+class _Installed:
+    """What is in place in this process."""
+
+    options = SignalHandlerOptions.NO
+    is_ours = False
+
+
+def install_signal_handlers(
+    options: SignalHandlerOptions = SignalHandlerOptions.ALL,
+) -> None:
+    """Let SIGTERM shut down the contexts, if the options say so.
+
+    Only where nobody handles it yet, and in the main thread: elsewhere Python allows
+    no handlers.
+    """
+    _Installed.options = SignalHandlerOptions(options)
+    if not options & SignalHandlerOptions.SIGTERM:
+        return
+    if threading.current_thread() is not threading.main_thread():
+        return
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, _on_sigterm)
+        _Installed.is_ours = True
+
+
+def uninstall_signal_handlers() -> None:
+    """Undo :func:`install_signal_handlers`."""
+    _Installed.options = SignalHandlerOptions.NO
+    if not _Installed.is_ours:
+        return
+    if threading.current_thread() is threading.main_thread():
+        if signal.getsignal(signal.SIGTERM) is _on_sigterm:
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        _Installed.is_ours = False
+
+
+def get_current_signal_handlers_options() -> SignalHandlerOptions:
+    return _Installed.options
+
+
+def _on_sigterm(number: int, frame: FrameType | None) -> None:
+    # A second one ends the process, should the program not end by itself.
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    _Installed.is_ours = False
+    for context in tuple(current_scope.get().contexts):
+        context.try_shutdown()
+
+
+#: rclpy's guard condition that a signal triggers; here a signal wakes every wait.
+SignalHandlerGuardCondition = GuardCondition

@@ -1,0 +1,75 @@
+"""What SIGTERM does, and what init and shutdown do about it."""
+
+import signal
+import subprocess
+import sys
+import textwrap
+from collections.abc import Iterator
+
+import pytest
+
+import navette
+from navette.runtime import SignalHandlerOptions, VirtualClock
+from navette.runtime.context import get_default_context, reset_default_context
+from navette.runtime.signals import (
+    get_current_signal_handlers_options,
+    install_signal_handlers,
+    uninstall_signal_handlers,
+)
+
+
+@pytest.fixture(autouse=True)
+def fresh_default_context() -> Iterator[None]:
+    reset_default_context()
+    yield
+    get_default_context().try_shutdown()
+    uninstall_signal_handlers()
+    reset_default_context()
+
+
+def test_init_installs_and_shutdown_removes() -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    navette.init(args=[], clock=VirtualClock())
+    assert get_current_signal_handlers_options() is SignalHandlerOptions.ALL
+    navette.shutdown()
+    assert get_current_signal_handlers_options() is SignalHandlerOptions.NO
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_a_context_of_ones_own_installs_only_what_is_asked() -> None:
+    context = navette.Context()
+    with navette.init(args=[], context=context, clock=VirtualClock()):
+        assert get_current_signal_handlers_options() is SignalHandlerOptions.NO
+    navette.init(args=[], signal_handler_options=SignalHandlerOptions.SIGINT)
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+    assert get_current_signal_handlers_options() is SignalHandlerOptions.SIGINT
+
+
+def test_handlers_of_others_stay() -> None:
+    before = signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    try:
+        install_signal_handlers()
+        assert signal.getsignal(signal.SIGTERM) is signal.SIG_IGN
+        uninstall_signal_handlers()
+        assert signal.getsignal(signal.SIGTERM) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def test_sigterm_ends_the_spin_and_the_program_goes_on() -> None:
+    program = """
+        import navette, os, signal
+        navette.init(args=[])
+        node = navette.Node("n")
+        node.create_timer(0.01, lambda: os.kill(os.getpid(), signal.SIGTERM))
+        navette.spin(node)
+        print("ended:", navette.ok())
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(program)],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=30,
+    )
+    assert done.stdout == "ended: False\n"
