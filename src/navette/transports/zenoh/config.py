@@ -21,6 +21,8 @@ _COMMON: dict[str, Any] = {
         },
     },
     "scouting": {
+        # The session waits for those who are there itself (see session.py).
+        "delay": 0,
         "multicast": {"enabled": False},
         "gossip": {
             "enabled": True,
@@ -45,9 +47,6 @@ def peer_config(settings: Settings) -> zenoh.Config:
         config.insert_json5("connect/endpoints", json.dumps(settings.router))
     if settings.session_file is None or "listen" in settings.explicit:
         config.insert_json5("listen/endpoints", json.dumps(settings.listen))
-    if settings.session_file is None:
-        # The graph waits for those who are there (see session); Zenoh need not.
-        config.insert_json5("scouting/delay", "0")
     return config
 
 

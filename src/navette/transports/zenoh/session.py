@@ -1,11 +1,12 @@
 """The session of a process with the network: opened, looked around, closed."""
 
 import atexit
+import threading
 import weakref
+from typing import Any
 
 import zenoh
 
-from navette.errors import NetworkError
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.config import peer_config
 from navette.transports.zenoh.graph import RemoteGraph
@@ -18,6 +19,8 @@ from navette.transports.zenoh.tokens import SPACE
 _LOOKS = 4
 _LOOK_S = 0.25
 _ASK_S = 2.0
+# Tokens that wait to be read; who declares more at once waits for the reader.
+_CHANNEL = 10_000
 
 _open: "weakref.WeakSet[Session]" = weakref.WeakSet()
 
@@ -45,11 +48,15 @@ class Session:
             raise refuse(settings, error) from error
         self.zid = str(self.zenoh.zid())
         self.graph = RemoteGraph(self.zid, self.complaints)
-        self.zenoh.liveliness().declare_subscriber(
-            self._tokens,
-            zenoh.handlers.Callback(self._on_token, indirect=False),
-            history=True,
+        # Through a channel: a callback would run in the thread that declares a token
+        # here, and a Ctrl-C that came just then would be lost in it.
+        self._samples: Any = self.zenoh.liveliness().declare_subscriber(
+            self._tokens, zenoh.handlers.FifoChannel(_CHANNEL), history=True
         )
+        self._reader = threading.Thread(
+            target=self._read, name="navette-graph", daemon=True
+        )
+        self._reader.start()
         self._role.watch(self.zenoh)
         if router is not None:
             self._look_around(router)
@@ -66,11 +73,19 @@ class Session:
         _open.discard(self)
         if not self.zenoh.is_closed():
             self.zenoh.close()
+        if self._reader is not threading.current_thread():
+            self._reader.join()
         self._role.close()
 
-    def _on_token(self, sample: zenoh.Sample) -> None:
-        alive = sample.kind == zenoh.SampleKind.PUT
-        self.graph.on_token(str(sample.key_expr), alive=alive)
+    def _read(self) -> None:
+        """Take tokens as they come and go, until the session is closed."""
+        while True:
+            try:
+                sample = self._samples.recv()
+            except zenoh.ZError:
+                return
+            alive = sample.kind == zenoh.SampleKind.PUT
+            self.graph.on_token(str(sample.key_expr), alive=alive)
 
     def _look_around(self, router: zenoh.Session) -> None:
         """Wait until all that the router knows of are known here."""
@@ -86,6 +101,3 @@ def _close_all() -> None:
     """Zenoh's threads must not outlive the interpreter that they call back."""
     for session in list(_open):
         session.close()
-
-
-__all__ = ["NetworkError", "Session"]
