@@ -1,0 +1,16 @@
+"""Playing bags: which message when, and to whom."""
+
+from navette.bags.play.feed import DirectFeed, PrefetchingFeed
+from navette.bags.play.options import PlayOptions
+from navette.bags.play.player import Jump, Player, PlayState
+from navette.bags.play.source import Source
+
+__all__ = [
+    "PlayOptions",
+    "Player",
+    "PlayState",
+    "Jump",
+    "Source",
+    "DirectFeed",
+    "PrefetchingFeed",
+]

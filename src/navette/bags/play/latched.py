@@ -1,0 +1,66 @@
+"""What a late joiner would have been told by a point of a recording."""
+
+from collections import defaultdict, deque
+
+from navette.bags.bag import BagMessage, BagTopic
+from navette.bags.play.source import Source
+
+_FIRST_WINDOW_NS = 10_000_000_000
+_WIDER = 8
+_MOST = 1000
+_TRANSFORMS = "tf2_msgs/msg/TFMessage"
+
+
+def is_latched(topic: BagTopic) -> bool:
+    """As it was recorded; static transforms always are, by convention."""
+    return topic.latched or topic.name.endswith("/tf_static")
+
+
+def latched_depth(topic: BagTopic) -> int:
+    """How many of its last messages count.
+
+    Each publisher keeps its own, and static transforms come from many senders, of
+    which the file tells nothing: all of them are taken.
+    """
+    if topic.type_name == _TRANSFORMS:
+        return _MOST
+    offers = [q for q in topic.qos if q.durability == "transient_local"]
+    if any(q.history == "keep_all" for q in offers):
+        return _MOST
+    return min(_MOST, max(1, sum(max(1, q.depth) for q in offers)))
+
+
+def latched_before(
+    source: Source, topics: tuple[BagTopic, ...], stamp_ns: int
+) -> list[BagMessage]:
+    """The last messages of latched topics before a stamp, in the order of stamps.
+
+    Looks back in ever wider windows: a map that is told every second is found without
+    reading an hour of maps.
+    """
+    missing = {t: latched_depth(t) for t in topics if is_latched(t)}
+    found: dict[BagTopic, deque[BagMessage]] = defaultdict(deque)
+    end_ns, window_ns = stamp_ns - 1, _FIRST_WINDOW_NS
+    while missing and end_ns >= source.start_ns:
+        start_ns = max(source.start_ns, end_ns - window_ns + 1)
+        for topic, older in _by_topic(source, set(missing), start_ns, end_ns).items():
+            wanted = missing[topic]
+            found[topic].extendleft(list(reversed(older))[:wanted])
+            missing[topic] -= min(wanted, len(older))
+        missing = {t: n for t, n in missing.items() if n > 0}
+        end_ns, window_ns = start_ns - 1, window_ns * _WIDER
+    every = [message for messages in found.values() for message in messages]
+    return sorted(every, key=lambda message: message.stamp_ns)
+
+
+def _by_topic(
+    source: Source, topics: set[BagTopic], start_ns: int, end_ns: int
+) -> dict[BagTopic, deque[BagMessage]]:
+    names = {topic.name for topic in topics}
+    found: dict[BagTopic, deque[BagMessage]] = {
+        t: deque(maxlen=latched_depth(t)) for t in topics
+    }
+    for message in source.messages(names, start_ns=start_ns, end_ns=end_ns):
+        if message.topic in found:
+            found[message.topic].append(message)
+    return found

@@ -1,0 +1,87 @@
+"""What a person asks of playing a bag."""
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from navette.errors import InvalidValueError, UnknownNameError
+
+MIN_RATE = 0.001
+MAX_RATE = 10_000.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlayOptions:
+    """Which part of a bag is played, and how fast.
+
+    ``regex`` and ``exclude`` are searched anywhere in a topic's name. With neither
+    ``topics`` nor ``regex`` every topic is played.
+    """
+
+    rate: float = 1.0
+    loop: bool = False
+    paused: bool = False
+    start_offset_s: float = 0.0
+    duration_s: float | None = None
+    topics: tuple[str, ...] = ()
+    regex: str = ""
+    exclude: str = ""
+
+    def __post_init__(self) -> None:
+        check_rate(self.rate)
+        if not (math.isfinite(self.start_offset_s) and self.start_offset_s >= 0):
+            raise InvalidValueError(
+                f"start offset {self.start_offset_s!r}: wanted 0 seconds or more"
+            )
+        if self.duration_s is not None and not 0 < self.duration_s < math.inf:
+            raise InvalidValueError(
+                f"duration {self.duration_s!r}: wanted more than 0 seconds, finite"
+            )
+        for name in ("regex", "exclude"):
+            try:
+                re.compile(getattr(self, name))
+            except re.error as error:
+                raise InvalidValueError(
+                    f"{name} {getattr(self, name)!r} is no regular expression: {error}"
+                ) from None
+
+    def choose(self, names: Iterable[str]) -> tuple[str, ...]:
+        """The topics to play, of those that there are.
+
+        Raises:
+            UnknownNameError: a topic asked for by name is not there.
+            InvalidValueError: nothing is left to play.
+        """
+        known = list(dict.fromkeys(names))
+        wanted = [f"/{name.lstrip('/')}" for name in self.topics]
+        for name in wanted:
+            if name not in known:
+                raise UnknownNameError.of("topic", name, known)
+        chosen = tuple(n for n in known if self._takes(n, wanted))
+        if not chosen:
+            raise InvalidValueError(
+                f"no topic is left to play; recorded: {', '.join(known) or 'none'}"
+            )
+        return chosen
+
+    def _takes(self, name: str, wanted: list[str]) -> bool:
+        if self.exclude and re.search(self.exclude, name):
+            return False
+        if not wanted and not self.regex:
+            return True
+        matches = bool(self.regex) and re.search(self.regex, name) is not None
+        return name in wanted or matches
+
+
+def check_rate(rate: float) -> float:
+    """The rate, if bags can be played at it.
+
+    Raises:
+        InvalidValueError: it is not.
+    """
+    if not MIN_RATE <= rate <= MAX_RATE:
+        raise InvalidValueError(
+            f"rate {rate!r}: wanted {MIN_RATE:g} to {MAX_RATE:g} times real time"
+        )
+    return float(rate)

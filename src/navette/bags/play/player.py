@@ -1,0 +1,206 @@
+"""Plays a recording: which message is next, and when. No node, no clock, no thread.
+
+Whoever plays tells the time with every call (``now_ns``, integer nanoseconds of any
+clock), asks :meth:`Player.due_ns` when to come back, and takes one message at a time.
+So the same calls give the same messages, whatever clock they come from.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from navette.bags.bag import BagMessage
+from navette.bags.play.feed import DirectFeed, Feed, MakeFeed
+from navette.bags.play.latched import latched_before
+from navette.bags.play.options import PlayOptions
+from navette.bags.play.playhead import Playhead
+from navette.bags.play.source import Source
+from navette.errors import InvalidValueError
+
+# A recording of one instant, looped, must let time pass.
+_SHORTEST_PASS_NS = 10_000_000
+# Who was away for longer (a suspended process) does not hurry to catch up.
+_MAX_LATE_NS = 1_000_000_000
+
+
+class PlayState(Enum):
+    """What the player does."""
+
+    PLAYING = "playing"
+    PAUSED = "paused"
+    ENDED = "ended"
+
+
+@dataclass(frozen=True)
+class Jump:
+    """The place in the recording changes at once: by a start, a loop or a seek."""
+
+    to_ns: int
+    latched: tuple[BagMessage, ...]
+    """What late joiners were to know at that place, oldest first."""
+
+
+class Player:
+    """Gives the messages of a bag one by one as their time comes.
+
+    Args:
+        source: an open bag.
+        options: what to play of it.
+        make_feed: how messages are read.
+
+    Raises:
+        UnknownNameError, InvalidValueError: there is nothing of what was asked for.
+    """
+
+    def __init__(
+        self, source: Source, options: PlayOptions, make_feed: MakeFeed = DirectFeed
+    ) -> None:
+        self.options = options
+        self._source = source
+        self._make_feed = make_feed
+        self.names = options.choose(topic.name for topic in source.topics)
+        self.topics = tuple(t for t in source.topics if t.name in self.names)
+        self.begin_ns, self.end_ns = _range(source, options)
+        self._head = Playhead(options.rate)
+        self._feed: Feed | None = None
+        self._ended = False
+        self.passes = 0
+        """How often the beginning was played; 0 before :meth:`start`."""
+        self._jump: Jump | None = None
+
+    # -- where it is -----------------------------------------------------------
+
+    @property
+    def state(self) -> PlayState:
+        if self._ended:
+            return PlayState.ENDED
+        return PlayState.PLAYING if self._head.moves else PlayState.PAUSED
+
+    @property
+    def rate(self) -> float:
+        return self._head.rate
+
+    def position_ns(self, now_ns: int) -> int:
+        """The place in the recording."""
+        return max(self.begin_ns, min(self.end_ns, self._head.at(now_ns)))
+
+    def due_ns(self) -> int | None:
+        """When :meth:`take` has something to do; None until something is changed."""
+        if self._feed is None or self._ended or not self._head.moves:
+            return None
+        message = self._feed.peek()
+        place_ns = self._pass_end_ns if message is None else message.stamp_ns
+        return self._head.due_ns(place_ns)
+
+    # -- playing ---------------------------------------------------------------
+
+    def start(self, now_ns: int) -> None:
+        """Begin, or begin again."""
+        self._go_to(now_ns, self.begin_ns)
+        self.passes += 1
+        self._ended = False
+        self._head.moves = not self.options.paused
+
+    def take(self, now_ns: int) -> BagMessage | None:
+        """The next message if its time has come.
+
+        At the end it starts over, with a :class:`Jump`, or ends.
+        """
+        due_ns = self.due_ns()
+        if due_ns is None or due_ns > now_ns:
+            return None
+        assert self._feed is not None, "without a feed nothing is due"
+        message = self._feed.pop()
+        place_ns = self._pass_end_ns if message is None else message.stamp_ns
+        if now_ns - due_ns > _MAX_LATE_NS:
+            self._head.place(now_ns, place_ns)
+        if message is None:
+            self._end_pass(due_ns)
+        return message
+
+    def step(self, now_ns: int) -> BagMessage | None:
+        """Pause, and give the next message at once; None at the end."""
+        self.pause(now_ns)
+        if self._feed is None or self._ended:
+            return None
+        message = self._feed.pop()
+        if message is None:
+            self._end_pass(now_ns)
+            if self.state is PlayState.ENDED:
+                return None
+            message = self._feed.pop()
+        if message is not None:
+            self._head.place(now_ns, message.stamp_ns)
+        return message
+
+    def pause(self, now_ns: int) -> None:
+        self._head.set_moving(now_ns, moves=False)
+
+    def resume(self, now_ns: int) -> None:
+        self._head.set_moving(now_ns, moves=True)
+
+    def set_rate(self, now_ns: int, rate: float) -> None:
+        """Play at ``rate`` times real time.
+
+        Raises:
+            InvalidValueError: no rate.
+        """
+        self._head.set_rate(now_ns, rate)
+
+    def seek(self, now_ns: int, bag_ns: int) -> int:
+        """Go to a place of the recording (the nearest that is played); returns it."""
+        place_ns = max(self.begin_ns, min(self.end_ns, bag_ns))
+        self._go_to(now_ns, place_ns)
+        self._ended = False
+        return place_ns
+
+    def pop_jump(self) -> Jump | None:
+        """The last jump, once: it comes before the next message."""
+        jump, self._jump = self._jump, None
+        return jump
+
+    def close(self) -> None:
+        """Stop reading; twice is harmless."""
+        self._close_feed()
+
+    # -- inside ----------------------------------------------------------------
+
+    @property
+    def _pass_end_ns(self) -> int:
+        return max(self.end_ns, self.begin_ns + _SHORTEST_PASS_NS)
+
+    def _end_pass(self, now_ns: int) -> None:
+        if not self.options.loop:
+            self._head.place(now_ns, self.end_ns)
+            self._ended = True
+            return
+        self._go_to(now_ns, self.begin_ns)
+        self.passes += 1
+
+    def _go_to(self, now_ns: int, bag_ns: int) -> None:
+        self._close_feed()
+        self._head.place(now_ns, bag_ns)
+        latched = latched_before(self._source, self.topics, bag_ns)
+        self._jump = Jump(bag_ns, tuple(latched))
+        messages = self._source.messages(
+            self.names, start_ns=bag_ns, end_ns=self.end_ns
+        )
+        self._feed = self._make_feed(messages)
+
+    def _close_feed(self) -> None:
+        if self._feed is not None:
+            self._feed.close()
+            self._feed = None
+
+
+def _range(source: Source, options: PlayOptions) -> tuple[int, int]:
+    """First and last stamp to play."""
+    length_s = (source.end_ns - source.start_ns) / 1e9
+    begin_ns = source.start_ns + round(options.start_offset_s * 1e9)
+    if begin_ns > source.end_ns:
+        raise InvalidValueError(
+            f"start offset {options.start_offset_s:g} s: the bag is only "
+            f"{length_s:.3f} s long"
+        )
+    if options.duration_s is None:
+        return begin_ns, source.end_ns
+    return begin_ns, min(source.end_ns, begin_ns + round(options.duration_s * 1e9))
