@@ -4,8 +4,6 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-import yaml
-
 from navette.errors import InvalidValueError, UnknownNameError
 
 MOST_BYTES = 4 * 1024 * 1024  # of text on standard input
@@ -17,20 +15,19 @@ def filled(message_class: Any, text: str) -> Any:
     Raises:
         InvalidValueError: not a YAML mapping, or a field or value does not fit.
     """
+    import yaml
+
     from navette.companions.rosidl_runtime_py import set_message_fields
 
     message = message_class()
     try:
         fields = yaml.safe_load(text)
     except yaml.YAMLError as error:
-        raise InvalidValueError(f"{text!r} is not YAML: {_reason(error)}") from None
+        reason = getattr(error, "problem", None) or str(error)
+        raise InvalidValueError(f"{text!r} is not YAML: {reason}") from None
     if fields is not None:
         set_message_fields(message, fields)
     return message
-
-
-def _reason(error: yaml.YAMLError) -> str:
-    return getattr(error, "problem", None) or str(error)
 
 
 def from_stdin() -> str:

@@ -1,0 +1,70 @@
+"""The command: look everywhere, print what was found."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from navette.cli.doctor.findings import Finding, Level, count
+from navette.cli.output import show, show_json
+from navette.cli.session import FAILED, connect
+
+if TYPE_CHECKING:
+    from navette.cli.doctor.snapshot import Snapshot
+
+
+def doctor(
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Only what wants a look.")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="One JSON value, for programs.")
+    ] = False,
+) -> None:
+    """Find what is wrong here, and say what to do about it.
+
+    ✓ well, · to know, ! to look at, ✗ a problem. Exit code 1 if there is a problem.
+    """
+    from navette.cli.doctor import report
+
+    findings = list(_findings())
+    if as_json:
+        show_json(report.as_json(findings))
+    else:
+        lines = report.report_lines(findings, everything=not quiet)
+        for line in (*lines, *([""] if lines else []), report.summary(findings)):
+            show(line)
+    if count(findings, Level.PROBLEM):
+        raise typer.Exit(FAILED)
+
+
+def _findings() -> Iterator[Finding]:
+    from navette.cli.doctor.look import look
+    from navette.cli.doctor.machine import check_machine
+    from navette.cli.doctor.network import NETWORK, check_network, look_at_network
+    from navette.errors import NetworkError
+
+    # Before anything joins: a program that finds no router serves as one itself.
+    network = look_at_network()
+    try:
+        with connect() as here:
+            domain, seen = here.context.get_domain_id(), look(here)
+    except NetworkError as error:
+        yield from check_network(network, None)
+        yield Finding(Level.PROBLEM, NETWORK, "joining", str(error))
+    else:
+        yield from check_network(network, domain)
+        yield from _check_running(seen)
+    yield from check_machine()
+
+
+def _check_running(seen: "Snapshot") -> Iterator[Finding]:
+    from navette.cli.doctor.graph_checks import (
+        check_nodes,
+        check_services,
+        check_topics,
+    )
+    from navette.cli.doctor.state_checks import check_stages, check_time
+
+    for check in (check_nodes, check_topics, check_services, check_time, check_stages):
+        yield from check(seen)

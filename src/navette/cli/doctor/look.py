@@ -1,0 +1,136 @@
+"""Looking at what runs for a moment: the graph, its answers, heartbeats and clock."""
+
+from typing import TYPE_CHECKING, Any
+
+from navette.cli.asking import Question, ask_all, node_names
+from navette.cli.doctor.snapshot import Heartbeat, Snapshot
+from navette.cli.session import endpoints, service_endpoints, wait_for
+from navette.transports import Endpoint, EndpointKind
+
+if TYPE_CHECKING:
+    from navette.runtime import Node
+
+ANSWER_S = 1.0
+HEARTBEAT_S = 1.2  # over two periods of a stage's status
+
+_STATUS = "diagnostic_msgs/msg/DiagnosticStatus"
+_GET = "rcl_interfaces/srv/GetParameters"
+_SANE_AGE_S = 3600.0  # older than that, a stamp is of another clock
+
+
+def look(here: "Node") -> Snapshot:
+    """Ask and listen; about as long as the slowest node needs, 1.2 s at most."""
+    nodes = node_names(here, hidden=True)
+    topics = endpoints(here)
+    services = service_endpoints(here)
+    listening = _Listening(here, topics)
+    sim_time = _ask_for_sim_time(here, services)
+    wait_for(here, listening.is_settled, HEARTBEAT_S if topics else 0.0)
+    return Snapshot(
+        nodes=tuple(nodes),
+        endpoints=tuple(topics),
+        services=tuple(services),
+        sim_time=sim_time,
+        clock_ticks=listening.clock_ns is not None,
+        heartbeats=tuple(listening.heartbeats()),
+    )
+
+
+def _ask_for_sim_time(here: "Node", services: list[Endpoint]) -> dict[str, bool | None]:
+    """Every node that serves parameters is asked: that tells whether it lives, too."""
+    served = {
+        end.node_full_name
+        for end in services
+        if end.type_name == _GET and end.kind is EndpointKind.SERVICE
+    }
+    names = sorted(served)
+    questions = [
+        Question(f"{name}/get_parameters", _GET, {"names": ["use_sim_time"]})
+        for name in names
+    ]
+    answers = ask_all(here, questions, ANSWER_S)
+    return {
+        name: None if response is None else any(v.bool_value for v in response.values)
+        for name, (response, _) in zip(names, answers, strict=True)
+    }
+
+
+class _Listening:
+    """Hears /clock and every status topic."""
+
+    def __init__(self, here: "Node", topics: list[Endpoint]) -> None:
+        self._here = here
+        #: The newest time that /clock told.
+        self.clock_ns: int | None = None
+        self._has_clock = False
+        self._last: dict[str, tuple[Any, int]] = {}
+        self._count: dict[str, int] = {}
+        for end in topics:
+            if end.kind is not EndpointKind.PUBLISHER:
+                continue
+            if end.topic == "/clock" and not self._has_clock:
+                self._hear_clock()
+            elif _is_heartbeat(end) and end.topic not in self._count:
+                self._hear_status(end)
+
+    def is_settled(self) -> bool:
+        """Whether longer listening would tell nothing new."""
+        waits_for_clock = self._has_clock and self.clock_ns is None
+        return not waits_for_clock and all(map(self._is_alive, self._count))
+
+    def heartbeats(self) -> list[Heartbeat]:
+        beats = []
+        for topic in sorted(self._count):
+            if topic not in self._last:
+                beats.append(Heartbeat(topic))
+                continue
+            status, _ = self._last[topic]
+            level = status.level[0]
+            age_s = self._age_s(topic)
+            beats.append(Heartbeat(topic, status.message, level, age_s))
+        return beats
+
+    def _hear_clock(self) -> None:
+        from navette.msgs.rosgraph_msgs.msg import Clock
+        from navette.runtime import QoSProfile, ReliabilityPolicy
+        from navette.runtime.time import stamp_to_ns
+
+        def hear(message: Any) -> None:
+            self.clock_ns = stamp_to_ns(message.clock)
+
+        self._has_clock = True
+        qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._here.create_subscription(Clock, "/clock", hear, qos)
+
+    def _hear_status(self, end: Endpoint) -> None:
+        from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+        from navette.runtime import QoSProfile
+
+        def hear(message: Any, info: Any) -> None:
+            self._last[end.topic] = message, info["source_timestamp"]
+            self._count[end.topic] += 1
+
+        self._count[end.topic] = 0
+        qos = QoSProfile.from_endpoint_qos(end.qos)
+        self._here.create_subscription(DiagnosticStatus, end.topic, hear, qos)
+
+    def _is_alive(self, topic: str) -> bool:
+        age_s = self._age_s(topic)
+        return age_s is not None and age_s < HEARTBEAT_S
+
+    def _age_s(self, topic: str) -> float | None:
+        """By the clock that the sender's stamp is of; unknown: one beat tells nothing
+        (it may have been kept for late joiners), two tell that it lives."""
+        if topic not in self._last:
+            return None
+        stamp_ns = self._last[topic][1]
+        clocks = [self._here.get_clock().now_ns, self.clock_ns]
+        ages = [(now - stamp_ns) / 1e9 for now in clocks if now is not None]
+        sane = [age for age in ages if abs(age) < _SANE_AGE_S]
+        if sane:
+            return max(0.0, min(sane))
+        return 0.0 if self._count[topic] > 1 else None
+
+
+def _is_heartbeat(end: Endpoint) -> bool:
+    return end.topic.endswith("/status") and end.type_name == _STATUS

@@ -1,0 +1,141 @@
+"""Checks of this machine: versions, optional parts, ports, what was left running."""
+
+import ctypes
+import importlib.metadata
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from navette._version import __version__
+from navette.cli.doctor.findings import Finding, Level
+from navette.cli.doctor.ports import Process, answers, listener, processes
+
+MACHINE = "This machine"
+OLDEST_PYTHON = (3, 11)
+VIEW_PORT = 8765
+
+_GL_LIBRARIES = {"EGL": "libEGL.so.1", "OSMesa": "libOSMesa.so.8"}
+# Who takes over the children of what has ended.
+_INITS = {"systemd", "init", "launchd", "tini", "dumb-init", "docker-init"}
+_BROWSERS = ("xdg-open", "open", "firefox", "chromium", "google-chrome")
+
+
+def check_machine() -> Iterator[Finding]:
+    """Everything that does not need the network."""
+    yield _versions()
+    yield from _optional_parts()
+    yield _live_view()
+    yield from left_running(processes(), os.getpid())
+
+
+def _versions() -> Finding:
+    python = platform.python_version()
+    zenoh = _version_of("eclipse-zenoh")
+    data = {
+        "navette": __version__,
+        "python": python,
+        "zenoh": zenoh,
+        "platform": platform.platform(),
+        "processors": os.cpu_count(),
+    }
+    text = (
+        f"Navette {__version__}, Python {python}, Zenoh {zenoh or 'missing'},"
+        f" {platform.system()} {platform.machine()}, {os.cpu_count()} processors"
+    )
+    if sys.version_info < OLDEST_PYTHON:
+        oldest = ".".join(map(str, OLDEST_PYTHON))
+        advice = f"Navette needs Python {oldest} or newer"
+        return Finding(Level.PROBLEM, MACHINE, "versions", text, advice, data)
+    if zenoh is None:
+        advice = "pip install eclipse-zenoh, to meet programs of other processes"
+        return Finding(Level.PROBLEM, MACHINE, "versions", text, advice, data)
+    return Finding(Level.GOOD, MACHINE, "versions", text, data=data)
+
+
+def _version_of(distribution: str) -> str | None:
+    try:
+        return importlib.metadata.version(distribution)
+    except importlib.metadata.PackageNotFoundError:
+        return None
+
+
+def _optional_parts() -> Iterator[Finding]:
+    """What Navette uses where it is there; nothing of it is needed."""
+    from navette.interop import installed_rclpy
+
+    browser = next((name for name in _BROWSERS if shutil.which(name)), None)
+    library = next((n for n, file in _GL_LIBRARIES.items() if _loads(file)), None)
+    ros = installed_rclpy()
+    for what, found, with_it, without in (
+        ("browser", browser, f"{browser}", "none; the live view opens from elsewhere"),
+        ("OpenGL", library, f"{library}", "none; cameras are ray cast, without it"),
+        ("ROS 2", ros, f"{ros}", "none; its programs run on Navette"),
+    ):
+        level = Level.GOOD if found else Level.NOTE
+        text = with_it if found else without
+        yield Finding(
+            level, MACHINE, what, text, data={"found": str(found) if found else None}
+        )
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
+def _live_view() -> Finding:
+    """Who is on the live view's port?"""
+    what = f"port {VIEW_PORT}"
+    if not answers("127.0.0.1", VIEW_PORT):
+        return Finding(Level.NOTE, MACHINE, what, "free: no live view runs")
+    who = listener(VIEW_PORT)
+    if who is None:
+        return Finding(Level.NOTE, MACHINE, what, "in use")
+    data = {"pid": who.pid, "command": who.command}
+    text = f"in use by {who.command} (process {who.pid})"
+    if is_navette(who):
+        url = f"http://127.0.0.1:{VIEW_PORT}"
+        text = f"live view at {url}, of {who.command} (process {who.pid})"
+        return Finding(Level.GOOD, MACHINE, what, text, data=data)
+    advice = "give the live view another: navette demo --port 8766"
+    return Finding(Level.WARNING, MACHINE, what, text, advice, data)
+
+
+def left_running(every: list[Process], here: int) -> Iterator[Finding]:
+    """Navette programs whose parent is gone: nobody will end them.
+
+    Args:
+        every: all processes.
+        here: the id of the process that asks.
+    """
+    by_id = {process.pid: process for process in every}
+    for process in every:
+        if process.pid == here or not is_navette(process):
+            continue
+        parent = by_id.get(process.parent)
+        if parent is None or parent.command.partition(" ")[0] in _INITS:
+            yield Finding(
+                Level.WARNING,
+                MACHINE,
+                f"process {process.pid}",
+                f"{process.command} runs without the terminal or program that"
+                " started it",
+                f"if nobody needs it: kill {process.pid}",
+                {"pid": process.pid, "command": process.command},
+            )
+
+
+def is_navette(process: Process) -> bool:
+    """Whether it is the command ``navette``, or Python with the module of that name."""
+    words = process.words[:3]
+    names = [Path(word).name for word in words]
+    is_python = bool(names) and names[0].startswith("python")
+    return names[:1] == ["navette"] or (
+        is_python and (names[1:2] == ["navette"] or words[1:3] == ("-m", "navette"))
+    )

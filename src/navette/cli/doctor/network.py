@@ -1,0 +1,177 @@
+"""Checks of the way to the others: transport, router, domain."""
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from navette.cli.doctor.findings import Finding, Level, plural
+from navette.cli.doctor.ports import Process, answers, listener
+
+NETWORK = "Network"
+
+_LOCAL = {"127.0.0.1", "localhost", "[::1]", "::1"}
+_PROBED = {"tcp", "tls", "ws"}  # what a TCP connection tells about
+
+
+@dataclass(frozen=True)
+class Router:
+    """Where the router is looked for.
+
+    Args:
+        endpoint: Zenoh's, as tcp/127.0.0.1:7447.
+        answers: whether anybody accepts connections; None: cannot be told.
+        process: who that is, if it is here and can be seen.
+    """
+
+    endpoint: str
+    answers: bool | None = None
+    process: Process | None = None
+
+    @property
+    def is_here(self) -> bool:
+        return _address(self.endpoint)[0] in _LOCAL
+
+
+@dataclass(frozen=True)
+class Network:
+    """What there is before one joins.
+
+    Args:
+        transport: what NAVETTE_TRANSPORT says.
+        routers: one per endpoint.
+        nodes: by domain; None: no router told.
+        session_file: of ZENOH_SESSION_CONFIG_URI.
+        middleware: RMW_IMPLEMENTATION, for ROS 2's programs.
+    """
+
+    transport: str = ""
+    routers: tuple[Router, ...] = ()
+    nodes: Mapping[int, int] | None = field(default_factory=dict)
+    session_file: str = ""
+    middleware: str = ""
+
+
+def look_at_network() -> Network:
+    """Try the router's endpoints and ask it who is there."""
+    from navette.transports.zenoh import Settings
+    from navette.transports.zenoh.config import router_endpoints
+    from navette.transports.zenoh.survey import nodes_by_domain
+
+    settings = Settings.from_environment()
+    return Network(
+        os.environ.get("NAVETTE_TRANSPORT", ""),
+        tuple(_router(endpoint) for endpoint in router_endpoints(settings)),
+        nodes_by_domain(settings),
+        os.environ.get("ZENOH_SESSION_CONFIG_URI", ""),
+        os.environ.get("RMW_IMPLEMENTATION", ""),
+    )
+
+
+def _router(endpoint: str) -> Router:
+    protocol = endpoint.partition("/")[0]
+    host, port = _address(endpoint)
+    if protocol not in _PROBED or port is None:
+        return Router(endpoint)
+    if not answers(host.strip("[]"), port):
+        return Router(endpoint, answers=False)
+    return Router(endpoint, True, listener(port) if host in _LOCAL else None)
+
+
+def _address(endpoint: str) -> tuple[str, int | None]:
+    """Host and port of ``tcp/host:port?metadata#config``."""
+    address = endpoint.partition("/")[2].partition("?")[0].partition("#")[0]
+    host, _, port = address.rpartition(":")
+    return host, int(port) if port.isdecimal() else None
+
+
+def check_network(network: Network, domain: int | None) -> Iterator[Finding]:
+    """Does this terminal reach the others?
+
+    Args:
+        domain: this terminal's; None if nothing could be joined.
+    """
+    if network.transport == "inprocess":
+        yield Finding(
+            Level.PROBLEM,
+            NETWORK,
+            "transport",
+            "NAVETTE_TRANSPORT=inprocess: programs started here stay alone",
+            "unset NAVETTE_TRANSPORT",
+        )
+    if network.session_file:
+        text = f"settings of {network.session_file} (ZENOH_SESSION_CONFIG_URI)"
+        yield Finding(Level.NOTE, NETWORK, "Zenoh", text)
+    for router in network.routers:
+        yield _router_finding(router, speaks=network.nodes is not None)
+    if domain is not None:
+        yield from _domain_findings(network.nodes or {}, domain)
+    if network.middleware and network.middleware != "rmw_zenoh_cpp":
+        yield Finding(
+            Level.WARNING,
+            NETWORK,
+            "ROS 2",
+            f"its programs started here speak {network.middleware} and do not meet"
+            " Navette's",
+            "export RMW_IMPLEMENTATION=rmw_zenoh_cpp",
+        )
+
+
+def _router_finding(router: Router, *, speaks: bool) -> Finding:
+    who = router.process
+    data = {
+        "endpoint": router.endpoint,
+        "answers": router.answers,
+        "pid": who.pid if who else None,
+    }
+    by = f", served by {who.command} (process {who.pid})" if who else ""
+    if router.answers is None:
+        text = f"{router.endpoint}, which cannot be tried from here"
+        return Finding(Level.NOTE, NETWORK, "router", text, data=data)
+    if router.answers and speaks:
+        return Finding(
+            Level.GOOD, NETWORK, "router", f"{router.endpoint}{by}", data=data
+        )
+    if router.answers:
+        return Finding(
+            Level.PROBLEM,
+            NETWORK,
+            "router",
+            f"{router.endpoint} answers{by}, but not as a Zenoh router for us",
+            "if it is another program, choose another port everywhere:"
+            " export NAVETTE_ROUTER=tcp/127.0.0.1:7448",
+            data,
+        )
+    if router.is_here:
+        text = f"{router.endpoint} is free: the first program that starts serves"
+        return Finding(Level.NOTE, NETWORK, "router", text, data=data)
+    return Finding(
+        Level.PROBLEM,
+        NETWORK,
+        "router",
+        f"{router.endpoint} does not answer",
+        "is that machine on, its Navette started with NAVETTE_ROUTER on that address,"
+        " and no firewall between?",
+        data,
+    )
+
+
+def _domain_findings(nodes: Mapping[int, int], domain: int) -> Iterator[Finding]:
+    """Is it in another domain that the nodes are?"""
+    elsewhere = {d: n for d, n in sorted(nodes.items()) if d != domain}
+    others = ", ".join(f"{plural(n, 'node')} in {d}" for d, n in elsewhere.items())
+    here = nodes.get(domain, 0)
+    text = f"{domain} (ROS_DOMAIN_ID)"
+    data = {"domain": domain, "nodes": dict(nodes)}
+    if not elsewhere:
+        yield Finding(Level.GOOD, NETWORK, "domain", text, data=data)
+    elif here:
+        yield Finding(Level.NOTE, NETWORK, "domain", f"{text}; {others}", data=data)
+    else:
+        yield Finding(
+            Level.WARNING,
+            NETWORK,
+            "domain",
+            f"{text} is empty; {others}",
+            f"to see them: export ROS_DOMAIN_ID={next(iter(elsewhere))}",
+            data,
+        )

@@ -1,0 +1,91 @@
+"""Which program listens on a port, as far as the system tells without rights.
+
+Linux only (proc(5), tcp(7)): elsewhere the port is known to be in use, not by whom.
+"""
+
+import contextlib
+import socket
+from pathlib import Path
+from typing import NamedTuple
+
+_PROC = Path("/proc")
+_LISTEN = "0A"
+
+
+class Process(NamedTuple):
+    """A running program: id, that of its parent, and its command line."""
+
+    pid: int
+    parent: int
+    words: tuple[str, ...]
+
+    @property
+    def command(self) -> str:
+        """The command as a person knows it, without interpreter and folders."""
+        words = list(self.words)
+        if words and Path(words[0]).name.startswith("python"):
+            words = words[1:]
+        if words[:1] == ["-m"]:
+            words = words[1:]
+        return " ".join([Path(words[0]).name, *words[1:]]) if words else "?"
+
+
+def answers(host: str, port: int, timeout_s: float = 0.2) -> bool:
+    """Whether somebody accepts TCP connections there."""
+    try:
+        with socket.create_connection((host, port), timeout_s):
+            return True
+    except OSError:
+        return False
+
+
+def listener(port: int) -> Process | None:
+    """The program that listens on a TCP port here; None if that cannot be told."""
+    sockets = _listening_sockets(port)
+    if not sockets:
+        return None
+    for process in processes():
+        if sockets & _sockets_of(process.pid):
+            return process
+    return None
+
+
+def processes() -> list[Process]:
+    """All that can be seen, by id; empty where there is no /proc."""
+    found = []
+    for folder in _PROC.glob("[0-9]*"):
+        # A process may end while one looks.
+        with contextlib.suppress(OSError, ValueError):
+            words = (folder / "cmdline").read_bytes().decode(errors="replace")
+            parent = (folder / "stat").read_text(errors="replace")
+            found.append(
+                Process(
+                    pid=int(folder.name),
+                    parent=int(parent.rpartition(")")[2].split()[1]),
+                    words=tuple(words.rstrip("\0").split("\0")),
+                )
+            )
+    return sorted(found)
+
+
+def _listening_sockets(port: int) -> set[str]:
+    """Inodes of the sockets that listen on a port."""
+    found = set()
+    for table in ("tcp", "tcp6"):
+        with contextlib.suppress(OSError):
+            for line in (_PROC / "net" / table).read_text().splitlines()[1:]:
+                fields = line.split()
+                if fields[3] == _LISTEN and int(fields[1].split(":")[1], 16) == port:
+                    found.add(fields[9])
+    return found
+
+
+def _sockets_of(pid: int) -> set[str]:
+    found = set()
+    with contextlib.suppress(OSError):
+        for link in (_PROC / str(pid) / "fd").iterdir():
+            with contextlib.suppress(OSError):
+                target = str(link.readlink())
+                if target.startswith("socket:["):
+                    found.add(target[8:-1])
+    return found

@@ -1,0 +1,70 @@
+"""The doctor's report, for people and for programs."""
+
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from typing import Any
+
+from navette.cli.doctor.findings import Finding, Level, count, plural
+from navette.cli.output import styled
+
+_COLOURS = {
+    Level.GOOD: "green",
+    Level.NOTE: None,
+    Level.WARNING: "yellow",
+    Level.PROBLEM: "red",
+}
+
+
+def report_lines(findings: Sequence[Finding], *, everything: bool) -> list[str]:
+    """Under headings: a mark, the thing, what is, and in the next line what to do.
+
+    Args:
+        everything: also what is well; else only what wants a look.
+    """
+    shown = [
+        each
+        for each in findings
+        if everything or each.level in (Level.WARNING, Level.PROBLEM)
+    ]
+    width = max((len(each.what) for each in shown if len(each.what) <= 18), default=0)
+    lines: list[str] = []
+    for section, group in groupby(shown, key=lambda each: each.section):
+        lines += (
+            ["", styled(section, bold=True)] if lines else [styled(section, bold=True)]
+        )
+        for each in group:
+            lines += _finding_lines(each, width)
+    return lines
+
+
+def _finding_lines(finding: Finding, width: int) -> Iterable[str]:
+    mark = styled(finding.level.value, fg=_COLOURS[finding.level], bold=True)
+    text = finding.text
+    if finding.level is Level.NOTE:
+        text = styled(text, dim=True)
+    yield f"  {mark} {finding.what.ljust(width)}  {text}"
+    if finding.advice:
+        yield f"    {' ' * width}  {styled('→', fg='cyan')} {finding.advice}"
+
+
+def summary(findings: Sequence[Finding]) -> str:
+    """The end of the report in a line."""
+    problems = count(findings, Level.PROBLEM)
+    warnings = count(findings, Level.WARNING)
+    if not problems and not warnings:
+        return styled("no problems", fg="green", bold=True)
+    parts = []
+    if problems:
+        parts.append(styled(plural(problems, "problem"), fg="red", bold=True))
+    if warnings:
+        text = f"{plural(warnings, 'thing')} to look at"
+        parts.append(styled(text, fg="yellow", bold=True))
+    return ", ".join(parts)
+
+
+def as_json(findings: Sequence[Finding]) -> dict[str, Any]:
+    return {
+        "problems": count(findings, Level.PROBLEM),
+        "warnings": count(findings, Level.WARNING),
+        "findings": [each.as_dict() for each in findings],
+    }

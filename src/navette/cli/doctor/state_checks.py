@@ -1,0 +1,69 @@
+"""Checks of what runs: does time pass, and are the stages alive?"""
+
+from collections.abc import Iterator
+
+from navette.cli.doctor.findings import Finding, Level, listed, plural
+from navette.cli.doctor.snapshot import Heartbeat, Snapshot
+
+TIME = "Time"
+STAGES = "Stages"
+
+STALE_AFTER_S = 2.0  # four heartbeats: where control stops the robot, too
+
+
+def check_time(seen: Snapshot) -> Iterator[Finding]:
+    """Does somebody tick for those who live in simulated time?"""
+    waiting = [name for name, simulated in seen.sim_time.items() if simulated]
+    clocks = sorted({e.node_full_name for e in seen.publishers("/clock")})
+    if len(clocks) > 1:
+        yield Finding(
+            Level.PROBLEM,
+            TIME,
+            "/clock",
+            f"is published by {listed(clocks)}: time jumps to and fro",
+            "keep one: a simulator, or a bag played with --clock",
+        )
+    if waiting and not clocks:
+        yield Finding(
+            Level.PROBLEM,
+            TIME,
+            "/clock",
+            f"nobody publishes it, and {plural(len(waiting), 'node')} with"
+            f" use_sim_time ({listed(waiting)}) stay at time zero",
+            "start a simulator or navette bag play --clock; or navette param set"
+            f" {sorted(waiting)[0]} use_sim_time false",
+        )
+    elif waiting and not seen.clock_ticks:
+        yield Finding(
+            Level.WARNING,
+            TIME,
+            "/clock",
+            f"does not tick; {listed(waiting)} with use_sim_time stand still",
+            f"{listed(clocks)} is paused, or hangs",
+        )
+    elif seen.nodes:
+        whose = f"simulated, by {listed(clocks)}" if clocks else "the system's"
+        yield Finding(Level.GOOD, TIME, "clock", whose)
+
+
+def check_stages(seen: Snapshot) -> Iterator[Finding]:
+    """Are the stages' heartbeats fresh, and do they say that all is well?"""
+    for beat in seen.heartbeats:
+        yield _heartbeat(beat, seen)
+
+
+def _heartbeat(beat: Heartbeat, seen: Snapshot) -> Finding:
+    who = listed({e.node_full_name for e in seen.publishers(beat.topic)})
+    data = {"state": beat.state, "age_s": beat.age_s}
+    if beat.age_s is None or beat.age_s > STALE_AFTER_S:
+        age = "silent" if beat.age_s is None else f"silent for {beat.age_s:.1f} s"
+        return Finding(
+            Level.PROBLEM,
+            STAGES,
+            beat.topic,
+            f"{age}, last state {beat.state or 'unknown'}",
+            f"{who} hangs or is stopped; the robot stops where it listens to this",
+            data,
+        )
+    level = Level.GOOD if beat.level == 0 else Level.WARNING
+    return Finding(level, STAGES, beat.topic, beat.state or "no state", data=data)
