@@ -1,8 +1,9 @@
 """What every transport must do for services; each implementation runs the suite."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import pytest
+from transport_benches import PAIRS, InProcessPair, Pair
 
 from navette.errors import InvalidValueError
 from navette.msgs.example_interfaces.srv import AddTwoInts
@@ -11,24 +12,22 @@ from navette.transports import (
     Endpoint,
     EndpointKind,
     EndpointQos,
-    InProcessTransport,
     ReliabilityPolicy,
     Reply,
     Request,
     ServicePort,
-    Transport,
     TransportObserver,
 )
 
-TRANSPORTS: dict[str, Callable[[], Transport]] = {"in-process": InProcessTransport}
 TYPE = "example_interfaces/srv/AddTwoInts"
 
 
 class Bench:
-    """Opens ports on a transport and notes what arrives."""
+    """Opens servers at one end, clients at the other, notes what arrives."""
 
-    def __init__(self, transport: Transport) -> None:
-        self.transport = transport
+    def __init__(self, pair: Pair) -> None:
+        self.pair = pair
+        self.settle = pair.settle
         self._count = 0
 
     def _endpoint(
@@ -44,21 +43,32 @@ class Bench:
     ) -> tuple[list[Request], ServicePort]:
         requests: list[Request] = []
         endpoint = self._endpoint(EndpointKind.SERVICE, name, type_name, qos)
-        return requests, self.transport.serve(endpoint, requests.append)
+        port = self.pair.near.serve(endpoint, requests.append)
+        self.settle()
+        return requests, port
 
     def client(
         self, name: str = "/s", type_name: str = TYPE, qos: EndpointQos | None = None
     ) -> tuple[list[Reply], ClientPort]:
         replies: list[Reply] = []
         endpoint = self._endpoint(EndpointKind.CLIENT, name, type_name, qos)
-        return replies, self.transport.connect(endpoint, replies.append)
+        port = self.pair.far.connect(endpoint, replies.append)
+        self.settle()
+        return replies, port
 
 
-@pytest.fixture(params=list(TRANSPORTS))
+@pytest.fixture(params=list(PAIRS))
 def bench(request: pytest.FixtureRequest) -> Iterator[Bench]:
-    transport = TRANSPORTS[request.param]()
-    yield Bench(transport)
-    transport.close()
+    pair = PAIRS[request.param]()
+    yield Bench(pair)
+    pair.close()
+
+
+@pytest.fixture
+def local_bench() -> Iterator[Bench]:
+    pair = InProcessPair()
+    yield Bench(pair)
+    pair.close()
 
 
 def test_a_reply_goes_back_to_the_client_that_asked(bench: Bench) -> None:
@@ -67,9 +77,11 @@ def test_a_reply_goes_back_to_the_client_that_asked(bench: Bench) -> None:
     second, port_2 = bench.client()
     port_1.request(AddTwoInts.Request(a=1), 100, 7)
     port_2.request(AddTwoInts.Request(a=2), 200, 7)
+    bench.settle()
     assert [(r.message.a, r.source_ns) for r in requests] == [(1, 100), (2, 200)]
     for request in reversed(requests):
         server.reply(request.id, AddTwoInts.Response(sum=request.message.a))
+    bench.settle()
     assert [(r.message.sum, r.sequence) for r in first] == [(1, 7)]
     assert [(r.message.sum, r.sequence) for r in second] == [(2, 7)]
 
@@ -80,9 +92,11 @@ def test_what_is_edited_later_is_not_seen(bench: Bench) -> None:
     asked = AddTwoInts.Request(a=1)
     client.request(asked, 0, 1)
     asked.a = 99
+    bench.settle()
     answer = AddTwoInts.Response(sum=requests[0].message.a)
     server.reply(requests[0].id, answer)
     answer.sum = 99
+    bench.settle()
     assert replies[0].message.sum == 1
 
 
@@ -90,7 +104,9 @@ def test_a_failure_is_told(bench: Bench) -> None:
     requests, server = bench.server()
     replies, client = bench.client()
     client.request(AddTwoInts.Request(), 0, 3)
+    bench.settle()
     server.fail(requests[0].id, "ValueError: no")
+    bench.settle()
     assert replies == [Reply(None, 3, "ValueError: no")]
 
 
@@ -100,9 +116,11 @@ def test_servers_are_counted_as_they_come_and_go(bench: Bench) -> None:
     client.request(AddTwoInts.Request(), 0, 1)  # heard by nobody
     requests, server = bench.server()
     bench.server("/other")
+    bench.settle()
     assert client.server_count == 1
     server.close()
     server.close()
+    bench.settle()
     assert (client.server_count, requests) == (0, [])
 
 
@@ -111,26 +129,27 @@ def test_a_client_that_left_is_no_error(bench: Bench) -> None:
     replies, client = bench.client()
     client.request(AddTwoInts.Request(), 0, 1)
     client.close()
+    bench.settle()
     server.reply(requests[0].id, AddTwoInts.Response())
+    bench.settle()
     server.fail(requests[0].id, "too late")
+    bench.settle()
     assert replies == []
 
 
-def test_another_type_is_refused_and_leaves_nothing(bench: Bench) -> None:
-    bench.server()
+def test_another_type_is_refused_and_leaves_nothing(local_bench: Bench) -> None:
+    local_bench.server()
     with pytest.raises(InvalidValueError, match=r"AddTwoInts \(/n1\); node /n2 .*Se"):
-        bench.client(type_name="std_srvs/srv/SetBool")
+        local_bench.client(type_name="std_srvs/srv/SetBool")
     with pytest.raises(InvalidValueError, match=r"/n3 wants to serve it as std_srvs"):
-        bench.server(type_name="std_srvs/srv/SetBool")
-    assert [e.node_name for e in bench.transport.service_endpoints()] == ["n1"]
+        local_bench.server(type_name="std_srvs/srv/SetBool")
+    assert [e.node_name for e in local_bench.pair.service_endpoints()] == ["n1"]
 
 
 def test_a_service_may_have_the_name_of_a_topic(bench: Bench) -> None:
     bench.server("/same")
-    assert bench.transport.endpoints() == []
-    assert [e.kind for e in bench.transport.service_endpoints()] == [
-        EndpointKind.SERVICE
-    ]
+    assert bench.pair.endpoints() == []
+    assert [e.kind for e in bench.pair.service_endpoints()] == [EndpointKind.SERVICE]
 
 
 def test_qos_that_falls_short_keeps_them_apart(bench: Bench) -> None:
@@ -138,18 +157,19 @@ def test_qos_that_falls_short_keeps_them_apart(bench: Bench) -> None:
     requests, _ = bench.server()
     _, client = bench.client(qos=best_effort)
     client.request(AddTwoInts.Request(), 0, 1)
+    bench.settle()
     assert (client.server_count, requests) == (0, [])
 
 
-def test_changes_are_reported(bench: Bench) -> None:
+def test_changes_are_reported(local_bench: Bench) -> None:
     changes: list[int] = []
 
     class Observer(TransportObserver):
         def graph_changed(self) -> None:
-            changes.append(len(bench.transport.service_endpoints()))
+            changes.append(len(local_bench.pair.service_endpoints()))
 
-    bench.transport.observe(Observer())
-    _, server = bench.server()
-    bench.client()
+    local_bench.pair.observe(Observer())
+    _, server = local_bench.server()
+    local_bench.client()
     server.close()
     assert changes == [1, 2, 1]

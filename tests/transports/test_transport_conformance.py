@@ -1,9 +1,10 @@
 """What every transport must do; each implementation runs the same suite."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from transport_benches import PAIRS, InProcessPair, Pair, message_of
 
 from navette.errors import InvalidValueError
 from navette.msgs.nav_msgs.msg import OccupancyGrid
@@ -14,27 +15,24 @@ from navette.transports import (
     EndpointKind,
     EndpointQos,
     HistoryPolicy,
-    InProcessTransport,
     Item,
     PublisherPort,
     QoSPolicyKind,
     ReliabilityPolicy,
     SubscriptionPort,
-    Transport,
     TransportObserver,
 )
-
-TRANSPORTS: dict[str, Callable[[], Transport]] = {"in-process": InProcessTransport}
 
 LATCHED = EndpointQos(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class Bench:
-    """Opens ports on a transport and notes what arrives."""
+    """Opens publishers at one end, subscriptions at the other, notes what arrives."""
 
-    def __init__(self, transport: Transport) -> None:
-        self.transport = transport
+    def __init__(self, pair: Pair) -> None:
+        self.pair = pair
+        self.settle = pair.settle
         self._count = 0
 
     def _endpoint(
@@ -54,7 +52,9 @@ class Bench:
     ) -> PublisherPort:
         kind = EndpointKind.PUBLISHER
         endpoint = self._endpoint(kind, topic, type_name, qos or EndpointQos())
-        return self.transport.advertise(endpoint, cls)
+        port = self.pair.near.advertise(endpoint, cls)
+        self.settle()
+        return port
 
     def subscription(
         self,
@@ -68,19 +68,27 @@ class Bench:
         items: list[Item] = []
         kind = EndpointKind.SUBSCRIPTION
         endpoint = self._endpoint(kind, topic, type_name, qos or EndpointQos())
-        port = self.transport.subscribe(endpoint, cls, items.append, shared=shared)
+        port = self.pair.far.subscribe(endpoint, cls, items.append, shared=shared)
+        self.settle()
         return items, port
 
 
-@pytest.fixture(params=list(TRANSPORTS))
+@pytest.fixture(params=list(PAIRS))
 def bench(request: pytest.FixtureRequest) -> Iterator[Bench]:
-    transport = TRANSPORTS[request.param]()
-    yield Bench(transport)
-    transport.close()
+    pair = PAIRS[request.param]()
+    yield Bench(pair)
+    pair.close()
+
+
+@pytest.fixture
+def local_bench() -> Iterator[Bench]:
+    pair = InProcessPair()
+    yield Bench(pair)
+    pair.close()
 
 
 def texts(items: list[Item]) -> list[str]:
-    return [item[0].data for item in items]
+    return [message_of(item).data for item in items]
 
 
 def test_samples_arrive_in_order_with_stamp_and_sequence(bench: Bench) -> None:
@@ -88,6 +96,7 @@ def test_samples_arrive_in_order_with_stamp_and_sequence(bench: Bench) -> None:
     publisher = bench.publisher()
     for number in (1, 2, 3):
         publisher.send(String(data=f"m{number}"), 100 * number, number)
+    bench.settle()
     assert texts(items) == ["m1", "m2", "m3"]
     assert [(item[1], item[3]) for item in items] == [(100, 1), (200, 2), (300, 3)]
 
@@ -97,6 +106,7 @@ def test_every_subscription_of_the_topic_gets_it_and_no_other(bench: Bench) -> N
     second, _ = bench.subscription()
     other, _ = bench.subscription("/other")
     bench.publisher().send(String(data="x"), 0, 1)
+    bench.settle()
     assert (texts(first), texts(second), other) == (["x"], ["x"], [])
 
 
@@ -106,6 +116,7 @@ def test_what_the_publisher_edits_later_is_not_seen(bench: Bench) -> None:
     message = String(data="before")
     bench.publisher().send(message, 0, 1)
     message.data = "after"
+    bench.settle()
     assert (texts(copied), texts(shared)) == (["before"], ["before"])
 
 
@@ -114,7 +125,8 @@ def test_what_a_subscriber_edits_is_not_seen_by_others(bench: Bench) -> None:
     second, _ = bench.subscription()
     shared, _ = bench.subscription(shared=True)
     bench.publisher().send(String(data="x"), 0, 1)
-    first[0][0].data = "mine"
+    bench.settle()
+    message_of(first[0]).data = "mine"
     assert (texts(second), texts(shared)) == (["x"], ["x"])
 
 
@@ -128,8 +140,9 @@ def test_arrays_are_not_shared_between_copies(bench: Bench) -> None:
     grid = OccupancyGrid(data=[1, 2, 3])
     bench.publisher(**kind).send(grid, 0, 1)
     grid.data[0] = 9
-    first[0][0].data[1] = 9
-    assert list(second[0][0].data) == [1, 2, 3]
+    bench.settle()
+    message_of(first[0]).data[1] = 9
+    assert list(message_of(second[0]).data) == [1, 2, 3]
 
 
 def test_late_joiner_gets_the_last_depth_samples(bench: Bench) -> None:
@@ -141,6 +154,7 @@ def test_late_joiner_gets_the_last_depth_samples(bench: Bench) -> None:
     newest, _ = bench.subscription(qos=one_only)
     shared, _ = bench.subscription(qos=LATCHED, shared=True)
     volatile, _ = bench.subscription()
+    bench.settle()
     assert texts(all_kept) == ["m3", "m4", "m5"]
     assert texts(shared) == ["m3", "m4", "m5"]
     assert texts(newest) == ["m5"]
@@ -153,7 +167,8 @@ def test_latched_samples_are_copies(bench: Bench) -> None:
     publisher.send(message, 0, 1)
     message.data = "after"
     first, _ = bench.subscription(qos=LATCHED)
-    first[0][0].data = "mine"
+    bench.settle()
+    message_of(first[0]).data = "mine"
     second, _ = bench.subscription(qos=LATCHED)
     assert texts(second) == ["before"]
 
@@ -166,6 +181,7 @@ def test_keep_all_keeps_all(bench: Bench) -> None:
     for number in range(100):
         publisher.send(String(data=str(number)), 0, number + 1)
     items, _ = bench.subscription(qos=qos)
+    bench.settle()
     assert len(items) == 100
 
 
@@ -191,10 +207,11 @@ def test_incompatible_qos_is_reported_and_does_not_match(
         ) -> None:
             reports.append((publisher.node_name, subscription.node_name, policies))
 
-    bench.transport.observe(Observer())
+    bench.pair.observe(Observer())
     publisher = bench.publisher(qos=offered)
     items, port = bench.subscription(qos=requested)
     publisher.send(String(data="x"), 0, 1)
+    bench.settle()
     assert items == []
     assert (publisher.matched_count, port.matched_count) == (0, 0)
     assert reports == [("n1", "n2", (kind,))]
@@ -204,13 +221,16 @@ def test_reliable_offer_satisfies_best_effort_request(bench: Bench) -> None:
     publisher = bench.publisher()
     items, _ = bench.subscription(qos=BEST_EFFORT)
     publisher.send(String(data="x"), 0, 1)
+    bench.settle()
     assert texts(items) == ["x"]
 
 
-def test_another_type_on_the_topic_is_an_error_that_names_both(bench: Bench) -> None:
-    bench.publisher()
+def test_another_type_on_the_topic_is_an_error_that_names_both(
+    local_bench: Bench,
+) -> None:
+    local_bench.publisher()
     with pytest.raises(InvalidValueError, match=r"/t carries std_msgs/msg/String.*n1"):
-        bench.subscription(cls=Float64, type_name="std_msgs/msg/Float64")
+        local_bench.subscription(cls=Float64, type_name="std_msgs/msg/Float64")
 
 
 def test_the_type_is_free_again_when_all_have_left(bench: Bench) -> None:
@@ -218,7 +238,8 @@ def test_the_type_is_free_again_when_all_have_left(bench: Bench) -> None:
     items, _ = bench.subscription(cls=Float64, type_name="std_msgs/msg/Float64")
     publisher = bench.publisher(cls=Float64, type_name="std_msgs/msg/Float64")
     publisher.send(Float64(data=1.5), 0, 1)
-    assert items[0][0].data == 1.5
+    bench.settle()
+    assert message_of(items[0]).data == 1.5
 
 
 def test_closed_ports_neither_give_nor_get(bench: Bench) -> None:
@@ -230,11 +251,12 @@ def test_closed_ports_neither_give_nor_get(bench: Bench) -> None:
     publisher.send(String(data="a"), 0, 1)
     publisher.close()
     publisher.send(String(data="b"), 0, 2)
+    bench.settle()
     assert (gone, texts(stays)) == ([], ["a"])
     assert (publisher.matched_count, stays_port.matched_count) == (0, 0)
 
 
-def test_graph_lists_endpoints_and_tells_of_changes(bench: Bench) -> None:
+def test_graph_lists_endpoints_and_tells_of_changes(local_bench: Bench) -> None:
     events: list[str] = []
 
     class Observer(TransportObserver):
@@ -247,17 +269,17 @@ def test_graph_lists_endpoints_and_tells_of_changes(bench: Bench) -> None:
         def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
             events.append(f"{publisher.node_name}|{subscription.node_name}")
 
-    bench.transport.observe(Observer())
-    publisher = bench.publisher()
-    _, port = bench.subscription()
-    names = [(e.node_name, e.kind, e.topic) for e in bench.transport.endpoints()]
+    local_bench.pair.observe(Observer())
+    publisher = local_bench.publisher()
+    _, port = local_bench.subscription()
+    names = [(e.node_name, e.kind, e.topic) for e in local_bench.pair.endpoints()]
     assert names == [
         ("n1", EndpointKind.PUBLISHER, "/t"),
         ("n2", EndpointKind.SUBSCRIPTION, "/t"),
     ]
     port.close()
     publisher.close()
-    assert bench.transport.endpoints() == []
+    assert local_bench.pair.endpoints() == []
     assert events == ["changed", "n1>n2", "changed", "n1|n2", "changed", "changed"]
 
 

@@ -182,10 +182,11 @@ class ZenohClient(ClientPort):
         def on_reply(reply: zenoh.Reply) -> None:
             nonlocal answered
             answered = True
-            self._sink(self._reply(reply, sequence))
+            if self._session is not None:
+                self._sink(self._reply(reply, sequence))
 
         def on_end() -> None:
-            if not answered:
+            if not answered and self._session is not None:
                 self._sink(Reply(None, sequence, "the server went away"))
 
         is_result = self.matches.endpoint.topic.endswith("/_action/get_result")

@@ -1,0 +1,149 @@
+"""What the conformance suites run on: pairs of ends that exchange samples."""
+
+import itertools
+import os
+import socket
+import threading
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+
+from navette.runtime.clock import Stopwatch
+from navette.transports import (
+    Encoded,
+    Endpoint,
+    InProcessTransport,
+    Item,
+    NodeInfo,
+    Transport,
+    TransportObserver,
+)
+from navette.transports.zenoh import Settings, ZenohTransport
+
+LIMIT_S = 20.0
+
+
+def until(condition: Callable[[], bool], what: str = "the condition") -> None:
+    """Wait until it holds; fail after a limit that is never reached but by a fault."""
+    watch, pause = Stopwatch(), threading.Event()
+    while not condition():
+        assert watch.elapsed_s < LIMIT_S, f"{what} did not come about"
+        pause.wait(0.001)
+
+
+def free_endpoint() -> str:
+    """A TCP endpoint on the loopback interface that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+def zenoh_environment(router: str, **more: str) -> dict[str, str]:
+    """Of a process that is to join the network whose router is at ``router``."""
+    kept = {k: v for k, v in os.environ.items() if k != "PYTEST_CURRENT_TEST"}
+    return {**kept, "NAVETTE_TRANSPORT": "zenoh", "NAVETTE_ROUTER": router, **more}
+
+
+def message_of(item: Item) -> Any:
+    """The message of a delivered sample, decoded if it came as bytes."""
+    message = item[0]
+    return message.decode() if isinstance(message, Encoded) else message
+
+
+class Pair(ABC):
+    """Two ends of a network; in process they are one."""
+
+    near: Transport
+    far: Transport
+
+    @abstractmethod
+    def settle(self) -> None:
+        """Wait until all that was done so far has had its effect on both ends."""
+
+    def observe(self, observer: TransportObserver) -> None:
+        """Report what the near end sees."""
+        self.near.observe(observer)
+
+    def endpoints(self) -> list[Endpoint]:
+        return self.near.endpoints()
+
+    def service_endpoints(self) -> list[Endpoint]:
+        return self.near.service_endpoints()
+
+    @abstractmethod
+    def close(self) -> None: ...
+
+
+class InProcessPair(Pair):
+    """One transport: everything happens at once."""
+
+    def __init__(self) -> None:
+        self.near = self.far = InProcessTransport()
+
+    def settle(self) -> None:
+        return
+
+    def close(self) -> None:
+        self.near.close()
+
+
+class ZenohPair(Pair):
+    """Two sessions, one of which brings the router along."""
+
+    def __init__(self, **settings: Any) -> None:
+        chosen = Settings(router=(free_endpoint(),), **settings)
+        self.near = self.near_zenoh = ZenohTransport(7, lambda: 5, chosen)
+        self.far = self.far_zenoh = ZenohTransport(7, lambda: 6, chosen)
+        self._count = itertools.count(1)
+        self._pongs: list[int] = []
+        near, far = self.near_zenoh.session.zenoh, self.far_zenoh.session.zenoh
+        self._ping = near.declare_publisher("fence/ping")
+        self._pong = far.declare_publisher("fence/pong")
+        far.declare_subscriber("fence/ping", _direct(self._on_ping))
+        near.declare_subscriber("fence/pong", _direct(self._on_pong))
+
+    def settle(self) -> None:
+        # Each link keeps the order of what it carries: what comes behind a fence has
+        # seen all that was before it, tokens apart from samples.
+        number = next(self._count)
+        fences = NodeInfo(f"near_{number}", "/fence"), NodeInfo(f"far_{number}", "/f")
+        self.near.announce(fences[0])
+        self.far.announce(fences[1])
+        until(lambda: fences[0] in self.far.remote_nodes(), "the near end's token")
+        until(lambda: fences[1] in self.near.remote_nodes(), "the far end's token")
+        for _ in range(2):
+            ping = next(self._count)
+
+            def has_come_back(wanted: int = ping) -> bool:
+                self._ping.put(str(wanted))
+                return wanted in self._pongs
+
+            until(has_come_back, "the fence")
+
+    def endpoints(self) -> list[Endpoint]:
+        return [*self.far.endpoints(), *self.near.endpoints()]
+
+    def service_endpoints(self) -> list[Endpoint]:
+        return [*self.far.service_endpoints(), *self.near.service_endpoints()]
+
+    def close(self) -> None:
+        self.far.close()
+        self.near.close()
+
+    def _on_ping(self, sample: zenoh.Sample) -> None:
+        self._pong.put(sample.payload)
+
+    def _on_pong(self, sample: zenoh.Sample) -> None:
+        self._pongs.append(int(sample.payload.to_string()))
+
+
+def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:
+    return zenoh.handlers.Callback(callback, indirect=False)
+
+
+PAIRS: dict[str, Callable[[], Pair]] = {
+    "in-process": InProcessPair,
+    "zenoh": ZenohPair,
+}
