@@ -17,7 +17,7 @@ NodeParameters = list[tuple[str, dict[str, Any]]]
 """(node pattern such as ``/ns/node`` or ``/**``, flat name → value), in file order."""
 
 
-class _Loader(yaml.SafeLoader):
+class RosLoader(yaml.SafeLoader):
     """Plain scalars as ROS 2 reads them: ``1e5`` is a double, dates are strings.
 
     Keys are text whatever they look like: a parameter may be named ``y``.
@@ -30,7 +30,7 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-_Loader.yaml_implicit_resolvers = {}
+RosLoader.yaml_implicit_resolvers = {}
 for _tag, _pattern, _starts in (
     ("bool", r"(?:y|Y|yes|Yes|YES|n|N|no|No|NO|[tT]rue|TRUE|[fF]alse|FALSE"
      r"|on|On|ON|off|Off|OFF)\Z", "yYnNtTfFoO"),
@@ -39,17 +39,17 @@ for _tag, _pattern, _starts in (
      r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z", "-+0123456789."),
     ("null", r"(?:~|null|Null|NULL|)\Z", ["~", "n", "N", ""]),
 ):  # fmt: skip
-    _Loader.add_implicit_resolver(
+    RosLoader.add_implicit_resolver(
         f"tag:yaml.org,2002:{_tag}", re.compile(_pattern), list(_starts)
     )
-_Loader.add_constructor(
+RosLoader.add_constructor(
     "tag:yaml.org,2002:bool",
     lambda loader, node: str(node.value).lower() in ("y", "yes", "true", "on"),
 )
-_Loader.add_constructor(
+RosLoader.add_constructor(
     "tag:yaml.org,2002:int", lambda loader, node: _integer(str(node.value))
 )
-_Loader.add_constructor(
+RosLoader.add_constructor(
     "tag:yaml.org,2002:float",
     lambda loader, node: float(str(node.value).lower().replace(".inf", "inf")
                                .replace(".nan", "nan")),
@@ -69,7 +69,7 @@ def parse_value(text: str) -> Any:
         ParameterError: a YAML mapping or nothing, which no parameter can be.
     """
     try:
-        value = yaml.load(text, Loader=_Loader)
+        value = yaml.load(text, Loader=RosLoader)
     except yaml.YAMLError:
         return text
     if value is None:
@@ -98,7 +98,7 @@ def read_parameter_file(path: Path | str) -> NodeParameters:
 def parse_parameters(text: str, origin: Path | str = "parameters") -> NodeParameters:
     """As :func:`read_parameter_file`, from the text itself."""
     try:
-        document = yaml.load(text, Loader=_Loader)
+        document = yaml.load(text, Loader=RosLoader)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         reason = getattr(error, "problem", None) or str(error)
@@ -181,7 +181,7 @@ def _leaf(name: str, value: Any, origin: str) -> Any:
 
 
 class _Dumper(yaml.SafeDumper):
-    """Quotes text that either YAML or :class:`_Loader` takes for something else."""
+    """Quotes text that either YAML or :class:`RosLoader` takes for something else."""
 
     def ignore_aliases(self, data: Any) -> bool:
         return True
@@ -191,7 +191,7 @@ _Dumper.yaml_implicit_resolvers = {
     start: [*_Dumper.yaml_implicit_resolvers.get(start, ()), *own]
     for start, own in {
         **dict.fromkeys(_Dumper.yaml_implicit_resolvers, ()),
-        **_Loader.yaml_implicit_resolvers,
+        **RosLoader.yaml_implicit_resolvers,
     }.items()
 }
 
