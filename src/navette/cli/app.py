@@ -10,8 +10,10 @@ import typer
 from navette._version import __version__
 from navette.cli.action import action
 from navette.cli.arguments import join_pairs, parse_goal, parse_speed, spread_lists
+from navette.cli.doctor import doctor
 from navette.cli.launch import launch
 from navette.cli.lifecycle import lifecycle
+from navette.cli.modules import down, logs, ps, restart, up
 from navette.cli.node import node
 from navette.cli.param import param
 from navette.cli.pkg import pkg
@@ -196,6 +198,9 @@ app.add_typer(action)
 app.add_typer(lifecycle)
 app.add_typer(topic)
 app.command()(launch)
+app.command()(doctor)
+for command in (up, down, restart, ps, logs):
+    app.command()(command)
 
 
 def main() -> None:

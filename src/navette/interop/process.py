@@ -22,6 +22,7 @@ from navette.interop.program import (
     Program,
     run,
 )
+from navette.interop.readiness import tell_when_ready
 from navette.interop.sleeping import sleeping_lets_others_run
 from navette.runtime.clock import Stopwatch
 from navette.runtime.context import Scope, current_scope, new_graph
@@ -39,6 +40,7 @@ _argv: contextvars.ContextVar[list[str]] = contextvars.ContextVar("navette_argv"
 def run_alone(program: Program) -> int:
     """Run in the main thread; Ctrl-C raises in it as Python does."""
     argv, sys.argv = sys.argv, program.argv
+    tell_when_ready([current_scope.get()])
     try:
         # SIGTERM ends a program as ROS 2's does: its contexts are shut down.
         with (
@@ -61,6 +63,7 @@ def run_together(programs: Sequence[Program]) -> int:
     """
     graph = new_graph()
     running = [RunningProgram(program, graph) for program in programs]
+    tell_when_ready([each.scope for each in running])
     wishes: list[_End] = []
     with ExitStack() as stack:
         stack.enter_context(program_threads())
@@ -94,7 +97,7 @@ class RunningProgram:
     ) -> None:
         self.program = program
         self.exit_code: int | None = None
-        self._scope = Scope(graph)
+        self.scope = Scope(graph)
         self._on_end = on_end
         # A daemon: one that never ends must not keep the process.
         self._thread = threading.Thread(
@@ -121,16 +124,16 @@ class RunningProgram:
         ctypes.pythonapi.PyThreadState_SetAsyncExc(
             ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt)
         )
-        for context in tuple(self._scope.contexts):
+        for context in tuple(self.scope.contexts):
             context.loop.wake()
 
     def shut_down(self) -> None:
         """Shut its contexts down, as SIGTERM does: its spins end, ``ok()`` is False."""
-        for context in tuple(self._scope.contexts):
+        for context in tuple(self.scope.contexts):
             context.try_shutdown()
 
     def _run(self) -> None:
-        current_scope.set(self._scope)
+        current_scope.set(self.scope)
         _argv.set(self.program.argv)
         try:
             with _main_thread_event_loop():

@@ -71,3 +71,22 @@ def _existing(path: Path) -> Path:
     if not path.is_file():
         raise InvalidValueError(f"{path}: no such file")
     return path
+
+
+def find_sources(words: Sequence[str]) -> list[Path]:
+    """The files and folders that a program is made of, where they can be told.
+
+    A package's folder, a script, the folder of a module here; nothing for what is
+    installed.
+    """
+    place, colon, attribute = words[0].rpartition(":")
+    target = place if colon and attribute.isidentifier() else words[0]
+    if Path(target).is_file():
+        return [Path(target)]
+    if colon:
+        top = Path.cwd() / target.split(".")[0]
+        return [path for path in (top, top.with_suffix(".py")) if path.exists()]
+    if len(words) < 2 or words[1].startswith("-"):
+        return []
+    folder = find_package(target).python_path
+    return [] if folder is None else [folder]

@@ -1,0 +1,322 @@
+"""``navette up``, ``down``, ``ps``, ``logs``, ``restart``: modules of a project."""
+
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from navette.cli.output import note, show, show_json
+
+if TYPE_CHECKING:
+    from navette.modules.client import Client
+    from navette.modules.log_book import LogReader
+    from navette.modules.project import Project
+    from navette.modules.reading import ProjectFile
+    from navette.modules.session import ProcessView
+    from navette.modules.usage import Usage
+
+_FAILED = 1
+_INTERRUPTED = 130
+_DOWN_S = 60.0
+_SAMPLE_S = 0.15
+_LOOK_S = 0.1
+
+Words = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[MODULE]... [NAME:=VALUE]...",
+        help="Modules, all if none is named, and values for the file's arguments.",
+    ),
+]
+Modules = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="[MODULE]...", help="All of the project, if none is named."),
+]
+File = Annotated[
+    Path | None,
+    typer.Option(
+        "--file",
+        "-f",
+        metavar="FILE",
+        help="The project's file; by default navette.yaml here or in a folder above, "
+        "or the built-in modules sim, robot and viewer.",
+    ),
+]
+Timeout = Annotated[
+    float, typer.Option(metavar="S", help="How long to wait until all are ready.")
+]
+Watch = Annotated[
+    bool,
+    typer.Option(
+        "--watch",
+        "-w",
+        help="Stay, show the output, and restart a module when its files change.",
+    ),
+]
+
+
+def up(
+    words: Words = None,
+    file: File = None,
+    attach: Annotated[
+        bool,
+        typer.Option(
+            "--attach", "-a", help="Stay and show the output; Ctrl-C ends the modules."
+        ),
+    ] = False,
+    watch: Watch = False,
+    timeout: Timeout = 60.0,
+) -> None:
+    """Start modules, each of its nodes a process that is kept running.
+
+    Ends as soon as all are ready; the modules stay until navette down. Exit code 1:
+    a process ended or was not ready in time.
+    """
+    project, content, names = _read(words or [], file)
+    specs = content.specs(names or content.names)
+    client = _client(project)
+    client.up(specs)
+    _watch_start(client, [spec.name for spec in specs], timeout, stay=attach or watch)
+    if watch:
+        _watch_files(client, words or [], file)
+    elif attach:
+        _follow_until_interrupted(client, names or content.names)
+
+
+def restart(
+    words: Words = None,
+    file: File = None,
+    watch: Watch = False,
+    timeout: Timeout = 60.0,
+) -> None:
+    """End modules and start them anew, as the project's file says now."""
+    project, content, names = _read(words or [], file)
+    client = _client(project)
+    chosen = names or [each["module"] for each in client.status()] or content.names
+    known = [name for name in chosen if name in content.modules]
+    specs = [spec for spec in content.specs(known or chosen) if spec.name in chosen]
+    client.restart(specs)
+    _watch_start(client, chosen, timeout, stay=watch)
+    if watch:
+        _watch_files(client, words or [], file)
+
+
+def down(modules: Modules = None, file: File = None) -> None:
+    """End modules: those that need others first, all if none is named."""
+    client = _client(_project(file))
+    client.down(modules or None)
+    _watch_end(client, modules or None)
+
+
+def ps(
+    file: File = None,
+    all_projects: Annotated[
+        bool, typer.Option("--all", "-a", help="Of all folders, not only this one.")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print a JSON list of processes.")
+    ] = False,
+) -> None:
+    """List the modules' processes: state, pid, since when, use, restarts, reason."""
+    from dataclasses import asdict
+
+    from navette.cli.modules_view import show_processes
+    from navette.modules.session import views
+
+    clients = _all_clients() if all_projects else [_client(_project(file))]
+    everything = []
+    for client in clients:
+        found = views(client.status())
+        usage = _usage(found)
+        if as_json:
+            everything += [
+                {
+                    **asdict(view),
+                    "state": view.state.value,
+                    "folder": str(client.project.folder),
+                    "cpu": usage[view.pid][0] if view.pid in usage else None,
+                    "memory_bytes": usage[view.pid][1].memory_bytes
+                    if view.pid in usage
+                    else None,
+                }
+                for view in found
+            ]
+            continue
+        if all_projects and found:
+            show(f"{client.project.folder}")
+        if found:
+            show_processes(found, usage)
+        elif not all_projects:
+            _nothing_is_up(client)
+    if as_json:
+        show_json(everything)
+
+
+def logs(
+    modules: Modules = None,
+    file: Annotated[
+        Path | None, typer.Option("--file", metavar="FILE", help="The project's file.")
+    ] = None,
+    follow: Annotated[
+        bool, typer.Option("--follow", "-f", help="Go on as more is written.")
+    ] = False,
+    lines: Annotated[
+        int, typer.Option("--lines", "-n", min=0, help="The last so many; 0: all.")
+    ] = 100,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="A line of JSON for each.")
+    ] = False,
+) -> None:
+    """Print what the modules' processes wrote: all in one, in the order of writing."""
+    from navette.cli.modules_view import LogView
+
+    project = _project(file)
+    view = LogView(as_json=as_json)
+    reader = _reader(project, modules or [])
+    try:
+        view.show(reader.last(lines or None))
+        pause = threading.Event()
+        while follow:
+            pause.wait(_LOOK_S)
+            view.show(reader.new())
+    except KeyboardInterrupt:
+        pass  # the way to end it
+    finally:
+        reader.close()
+
+
+# -- inside ----------------------------------------------------------------------------
+
+
+def _project(file: Path | None) -> "Project":
+    from navette.modules.project import find_project
+
+    return find_project(Path.cwd(), file)
+
+
+def _read(
+    words: Sequence[str], file: Path | None
+) -> "tuple[Project, ProjectFile, list[str]]":
+    """The project, its file, and the names of modules among the words."""
+    from navette.bringup import parse_launch_arguments
+    from navette.modules.reading import read_project
+
+    project = _project(file)
+    arguments = parse_launch_arguments(word for word in words if ":=" in word)
+    names = list(dict.fromkeys(word for word in words if ":=" not in word))
+    return project, read_project(project, arguments), names
+
+
+def _client(project: "Project") -> "Client":
+    from navette.modules.client import Client
+
+    return Client(project)
+
+
+def _all_clients() -> "list[Client]":
+    from navette.modules.client import known_projects
+
+    return [_client(project) for project in known_projects()]
+
+
+def _watch_start(
+    client: "Client", names: Sequence[str], timeout_s: float, *, stay: bool
+) -> None:
+    from navette.cli.modules_view import Progress, show_trouble
+    from navette.modules.session import last_words, until_settled
+
+    found = Progress().show(until_settled(client, names, timeout_s))
+    troubled = [view for view in found if view.is_in_trouble]
+    for view in troubled:
+        show_trouble(view, last_words(client.project, view))
+    late = [view.label for view in found if not view.is_settled and not troubled]
+    if late:
+        note(f"not ready after {timeout_s:g} s: {', '.join(late)}")
+    if (troubled or late) and not stay:
+        raise typer.Exit(_FAILED)
+
+
+def _watch_end(client: "Client", names: Sequence[str] | None) -> None:
+    from navette.cli.modules_view import Progress
+    from navette.modules.session import until_down
+
+    left = Progress().show(until_down(client, names, _DOWN_S))
+    if any(view.pid for view in left):
+        note(f"still there: {', '.join(v.label for v in left if v.pid)}")
+        raise typer.Exit(_FAILED)
+
+
+def _follow_until_interrupted(client: "Client", names: Sequence[str]) -> None:
+    from navette.cli.modules_view import LogView
+
+    reader, view, pause = _reader(client.project, names), LogView(), threading.Event()
+    try:
+        view.show(reader.last(None)[-50:])
+        while True:
+            pause.wait(_LOOK_S)
+            view.show(reader.new())
+    except KeyboardInterrupt:
+        client.down(names)
+        _watch_end(client, names)
+        raise typer.Exit(_INTERRUPTED) from None
+    finally:
+        reader.close()
+
+
+def _watch_files(client: "Client", words: Sequence[str], file: Path | None) -> None:
+    """Show the log and restart modules as their files change, until Ctrl-C."""
+    from navette.cli.modules_view import LogView
+    from navette.cli.modules_watch import ChangeWatch
+
+    watch = ChangeWatch(client, lambda: _read(words, file))
+    reader, view, pause = _reader(client.project, []), LogView(), threading.Event()
+    note(f"watching {watch.described}; Ctrl-C ends the watching, not the modules")
+    try:
+        reader.last(0)
+        while True:
+            pause.wait(_LOOK_S)
+            view.show(reader.new())
+            watch.look()
+    except KeyboardInterrupt:
+        pass  # the way to end it
+    finally:
+        reader.close()
+
+
+def _reader(project: "Project", modules: Sequence[str]) -> "LogReader":
+    from navette.modules.log_book import LogReader
+
+    wanted = set(modules)
+    return LogReader(
+        project.state,
+        lambda line: not wanted or line.module in wanted or line.label in wanted,
+    )
+
+
+def _usage(found: "Sequence[ProcessView]") -> "dict[int, tuple[float, Usage]]":
+    """Process id → share of a processor over a moment, and use."""
+    from navette.modules.usage import usage_of
+
+    pids = [view.pid for view in found if view.pid]
+    before = usage_of(pids)
+    if not before:
+        return {}
+    threading.Event().wait(_SAMPLE_S)
+    return {
+        pid: ((now.cpu_s - before.get(pid, now).cpu_s) / _SAMPLE_S, now)
+        for pid, now in usage_of(pids).items()
+    }
+
+
+def _nothing_is_up(client: "Client") -> None:
+    from navette.modules.client import died
+
+    show(f"nothing is up in {client.project.folder}")
+    pid = died(client.project)
+    if pid is not None:
+        note(f"its supervisor (pid {pid}) was killed, and its processes were ended")
+    elsewhere = [other.project.folder for other in _all_clients() if other.status()]
+    if elsewhere:
+        note(f"elsewhere: {', '.join(map(str, elsewhere))} (navette ps --all)")

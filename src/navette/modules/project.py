@@ -1,0 +1,116 @@
+"""Which project one stands in, and where its supervisor keeps what it knows.
+
+A project is a folder: that of the ``navette.yaml`` found in this folder or above.
+"""
+
+import fcntl
+import hashlib
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from navette.errors import FileFormatError
+
+FILE_NAME = "navette.yaml"
+WHO_NAME = "supervisor.json"
+STATE_VARIABLE = "NAVETTE_STATE_DIR"
+_PRIVATE = 0o700
+
+
+@dataclass(frozen=True)
+class Project:
+    """A folder with modules; ``file`` None: the built-in ones."""
+
+    folder: Path
+    file: Path | None = None
+
+    @property
+    def state(self) -> Path:
+        """The folder of its supervisor: log, lock, who it is."""
+        digest = hashlib.sha256(str(self.folder).encode()).hexdigest()[:10]
+        return state_root() / f"{self.folder.name or 'root'}-{digest}"
+
+    @property
+    def is_supervised(self) -> bool:
+        """Whether a supervisor lives, or its guard still ends what it left."""
+        return is_locked(self.state)
+
+
+def find_project(start: Path, file: Path | None = None) -> Project:
+    """The project of a folder.
+
+    Without any ``navette.yaml``: the nearest folder above whose built-in modules run,
+    or this one.
+
+    Raises:
+        FileFormatError: the file that was asked for is not there.
+    """
+    if file is not None:
+        if not file.is_file():
+            raise FileFormatError(file, "no such file")
+        return Project(file.resolve().parent, file.resolve())
+    start = start.resolve()
+    for folder in (start, *start.parents):
+        if (folder / FILE_NAME).is_file():
+            return Project(folder, folder / FILE_NAME)
+    for folder in (start, *start.parents):
+        if Project(folder).is_supervised:
+            return Project(folder)
+    return Project(start)
+
+
+def state_root() -> Path:
+    """``NAVETTE_STATE_DIR``, or navette's folder where programs keep their state."""
+    given = os.environ.get(STATE_VARIABLE)
+    if given:
+        return Path(given).expanduser()
+    home = os.environ.get("XDG_STATE_HOME") or "~/.local/state"
+    return Path(home).expanduser() / "navette"
+
+
+def socket_path(state: Path) -> Path:
+    """The supervisor's socket. Not in ``state``: its path could be too long for one.
+
+    Raises:
+        FileFormatError: the folder for it belongs to somebody else.
+    """
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    base = Path(runtime) if runtime else Path(tempfile.gettempdir())
+    folder = base / f"navette-{os.getuid()}"
+    folder.mkdir(mode=_PRIVATE, exist_ok=True)
+    found = folder.lstat()
+    if found.st_uid != os.getuid() or found.st_mode & 0o077:
+        raise FileFormatError(folder, "not this user's alone; remove it")
+    digest = hashlib.sha256(str(state).encode()).hexdigest()[:20]
+    return folder / f"{digest}.sock"
+
+
+def make_private(folder: Path) -> None:
+    """Make a folder that only this user can look into."""
+    folder.mkdir(mode=_PRIVATE, parents=True, exist_ok=True)
+
+
+def lock_of(state: Path) -> Path:
+    return state / "lock"
+
+
+def is_locked(state: Path) -> bool:
+    """Whether somebody holds the lock; the kernel lets it go with the last holder."""
+    try:
+        descriptor = os.open(lock_of(state), os.O_RDWR)
+    except FileNotFoundError:
+        return False
+    try:
+        return not try_lock(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def try_lock(descriptor: int) -> bool:
+    """Take the lock if nobody has it."""
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True

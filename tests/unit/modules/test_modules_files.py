@@ -1,0 +1,89 @@
+"""The log book, and what tells that files changed."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from navette.modules import log_book
+from navette.modules.log_book import LogBook, LogLine, LogReader
+from navette.modules.watching import FileWatch
+
+
+def everything(line: LogLine) -> bool:
+    return True
+
+
+def texts(lines: list[LogLine]) -> list[str]:
+    return [line.text for line in lines]
+
+
+def test_lines_are_read_in_their_order_and_as_they_come(tmp_path: Path) -> None:
+    reader = LogReader(tmp_path, lambda line: line.module == "a")
+    assert reader.last(None) == []
+    book = LogBook(tmp_path, lambda: 7)
+    book.write("a", "x", ["one", "two"])
+    book.write("b", "b", ["other"])
+    assert texts(reader.last(1)) == ["two"]
+    book.write("a", "x", ["three"], event=True)
+    assert reader.new() == [LogLine(7, "a", "x", "three", True)]
+    assert reader.new() == []
+    assert reader.last(0) == []
+    reader.close()
+    book.close()
+    book.write("a", "x", ["after the end"])
+    assert LogLine(0, "b", "b", "").label == "b"
+
+
+def test_old_lines_are_let_go_and_none_is_missed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(log_book, "_MOST_BYTES", 1000)
+    book, reader = LogBook(tmp_path, lambda: 0), LogReader(tmp_path, everything)
+    found = []
+    for number in range(100):
+        book.write("a", "x", [str(number)])
+        found += texts(reader.new())
+    assert found == [str(number) for number in range(100)]
+    assert sum(file.stat().st_size for file in tmp_path.iterdir()) < 2500
+    late = LogReader(tmp_path, everything)
+    assert texts(late.last(3)) == ["97", "98", "99"]
+    late.close()
+    reader.close()
+    book.close()
+
+
+def test_half_a_line_is_no_line(tmp_path: Path) -> None:
+    (tmp_path / log_book.FILE_NAME).write_bytes(b'{"t": 1, "mod\n[1]\n\xff\n')
+    reader = LogReader(tmp_path, everything)
+    assert reader.last(None) == []
+    reader.close()
+
+
+def test_changes_are_seen(tmp_path: Path) -> None:
+    folder = tmp_path / "package"
+    (folder / "__pycache__").mkdir(parents=True)
+    node = folder / "node.py"
+    node.write_text("1")
+    watch = FileWatch([folder, tmp_path / "single.yaml"])
+    assert watch.count == 1
+    assert watch.changed() == []
+    os.utime(node, ns=(1, 1))
+    assert watch.changed() == [node]
+    (folder / "__pycache__" / "node.pyc").touch()
+    (folder / "notes.txt").touch()
+    (folder / ".hidden.py").touch()
+    assert watch.changed() == []
+    (tmp_path / "single.yaml").touch()
+    node.unlink()
+    assert watch.changed() == [node, tmp_path / "single.yaml"]
+    assert watch.changed() == []
+
+
+def test_no_more_files_than_can_be_looked_at(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("navette.modules.watching._MOST_FILES", 3)
+    for number in range(9):
+        (tmp_path / f"{number}.py").touch()
+    assert FileWatch([tmp_path, tmp_path / "nowhere"]).count == 3
