@@ -7,6 +7,7 @@ it takes four times as long per message.
 
 import struct
 import zlib
+from collections.abc import Callable
 from typing import IO, Any
 
 import zstandard
@@ -26,6 +27,7 @@ from mcap.records import (
 )
 
 MAGIC = b"\x89MCAP0\r\n"
+COMPRESSIONS = ("zstd", "lz4", "none")
 # Opcode, content length; channel, sequence, log time, publish time (ns).
 _MESSAGE = struct.Struct("<BQHIQQ")
 _MESSAGE_HEAD = _MESSAGE.size - 9
@@ -38,15 +40,26 @@ class McapFile:
     """Writes to ``stream``; nothing of it depends on anything but what is added.
 
     Messages gather in a chunk until :meth:`end_chunk`.
+
+    Args:
+        compression: of the chunks, one of :data:`COMPRESSIONS`.
     """
 
-    def __init__(self, stream: IO[bytes], *, profile: str, library: str) -> None:
+    def __init__(
+        self,
+        stream: IO[bytes],
+        *,
+        profile: str,
+        library: str,
+        compression: str = "zstd",
+    ) -> None:
         self._stream = stream
         self._position = 0
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
         self._sequences: list[int] = [0]
-        self._compressor = zstandard.ZstdCompressor()
+        self._compression = "" if compression == "none" else compression
+        self._compress = _compressor(compression)
         self._chunk_indexes: list[ChunkIndex] = []
         self._parts: list[bytes] = []
         self._index: dict[int, list[int]] = {}
@@ -57,6 +70,11 @@ class McapFile:
     @property
     def message_count(self) -> int:
         return sum(self._sequences)
+
+    @property
+    def size(self) -> int:
+        """Bytes written, and those of the chunk so far, which may become fewer."""
+        return self._position + self.chunk_size
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Gives the schema's number for :meth:`add_channel`."""
@@ -100,10 +118,10 @@ class McapFile:
         if not self._index:
             return
         content = b"".join(self._parts)
-        packed = self._compressor.compress(content)
+        packed = self._compress(content)
         stamps = [stamp for index in self._index.values() for stamp in index[::2]]
         chunk = Chunk(
-            compression="zstd",
+            compression=self._compression,
             data=packed,
             message_start_time=min(stamps),
             message_end_time=max(stamps),
@@ -201,6 +219,17 @@ class McapFile:
     def _write(self, data: bytes) -> None:
         self._stream.write(data)
         self._position += len(data)
+
+
+def _compressor(kind: str) -> Callable[[bytes], bytes]:
+    if kind == "zstd":
+        packer = zstandard.ZstdCompressor()
+        return packer.compress
+    if kind == "lz4":
+        import lz4.frame
+
+        return lz4.frame.compress  # type: ignore[no-any-return]
+    return bytes
 
 
 def _record(record: McapRecord) -> bytes:

@@ -13,8 +13,8 @@ lost with the process, so flush often.
 from contextlib import suppress
 from pathlib import Path
 
-from navette.bags.mcap_file import MAGIC, McapFile
-from navette.errors import FileFormatError
+from navette.bags.mcap_file import COMPRESSIONS, MAGIC, McapFile
+from navette.errors import FileFormatError, InvalidValueError
 
 _CHUNK_BYTES = 256 * 1024
 # Larger than any chunk: a chunk and its index reach the system in one piece.
@@ -25,7 +25,11 @@ _LIBRARY = "navette"
 class BagWriter:
     """Writes one ``.mcap`` file; an existing bag is replaced.
 
+    Args:
+        compression: of the chunks: ``zstd``, ``lz4`` or ``none``.
+
     Raises:
+        InvalidValueError: another compression.
         FileFormatError: the file cannot be made, or is there and is something else
             than a bag; names path and reason.
 
@@ -33,7 +37,12 @@ class BagWriter:
     :meth:`abandon`.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, compression: str = "zstd") -> None:
+        if compression not in COMPRESSIONS:
+            raise InvalidValueError(
+                f"compression {compression!r} of .mcap; "
+                f"known: {', '.join(COMPRESSIONS)}"
+            )
         self.path = path
         try:
             if _is_something_else(path):
@@ -42,8 +51,10 @@ class BagWriter:
         except OSError as error:
             reason = error.strerror or str(error)
             raise FileFormatError(path, f"cannot be written: {reason}") from error
-        self._mcap = McapFile(self._file, profile="ros2", library=_LIBRARY)
-        self._schemas: dict[str, int] = {}
+        self._mcap = McapFile(
+            self._file, profile="ros2", library=_LIBRARY, compression=compression
+        )
+        self._schemas: dict[tuple[str, str], int] = {}
 
     def add_channel(
         self,
@@ -53,6 +64,7 @@ class BagWriter:
         *,
         type_hash: str = "",
         qos: str = "",
+        encoding: str = "cdr",
     ) -> int:
         """Announce a topic; gives the channel's number for :meth:`write`.
 
@@ -60,13 +72,14 @@ class BagWriter:
             definition: ros2msg text of the type and all types it holds.
             type_hash: ``RIHS01_…``.
             qos: what its publishers offer, see :func:`navette.bags.qos_text`.
+            encoding: of the messages, where they are not ROS 2's.
         """
-        schema = self._schemas.get(type_name)
+        schema = self._schemas.get((type_name, definition))
         if schema is None:
             schema = self._mcap.add_schema(type_name, "ros2msg", definition.encode())
-            self._schemas[type_name] = schema
+            self._schemas[type_name, definition] = schema
         metadata = {"offered_qos_profiles": qos, "topic_type_hash": type_hash}
-        return self._mcap.add_channel(topic, "cdr", schema, metadata)
+        return self._mcap.add_channel(topic, encoding, schema, metadata)
 
     def write(self, channel: int, stamp_ns: int, payload: bytes) -> None:
         """Append a message: CDR with its 4-byte header, and when it was heard."""
@@ -78,6 +91,11 @@ class BagWriter:
     def message_count(self) -> int:
         """Messages written so far."""
         return self._mcap.message_count
+
+    @property
+    def size(self) -> int:
+        """Bytes of finished chunks, and of messages that wait for theirs."""
+        return self._mcap.size
 
     def flush(self) -> None:
         """Finish the chunk and hand it to the system: it outlives this process."""

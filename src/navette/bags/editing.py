@@ -1,0 +1,171 @@
+"""Makes a recording from others: convert, filter, merge, cut, recover."""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import CodeType
+from typing import Any
+
+from navette.bags.bag import BagMessage, BagReader, BagTopic, OnDamage
+from navette.bags.folder_reader import FolderReader, Metadata
+from navette.bags.message_types import Decoder
+from navette.bags.opening import open_bag
+from navette.bags.writing import TopicWriter, completed
+from navette.errors import FileFormatError, InvalidValueError, NavetteError
+
+Progress = Callable[[BagMessage], None]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Which messages go into the new recording; with nothing said, all.
+
+    A topic is taken if it is named, matches the pattern or has one of the types (with
+    none of the three: every topic), unless it is excluded.
+    """
+
+    topics: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
+    regex: str = ""
+    exclude: str = ""
+    start_ns: int | None = None
+    end_ns: int | None = None
+    """The last stamp that is taken."""
+    expression: str = ""
+    """Python over ``topic`` (name), ``t`` (s), ``m`` (message)."""
+
+    def takes(self, topic: BagTopic) -> bool:
+        """Whether the topic is taken at all."""
+        if self.exclude and _search(self.exclude, topic.name):
+            return False
+        if not (self.topics or self.types or self.regex):
+            return True
+        return (
+            topic.name in self.topics
+            or topic.type_name in self.types
+            or topic.type_name.replace("/msg/", "/") in self.types
+            or (bool(self.regex) and _search(self.regex, topic.name))
+        )
+
+
+def _search(pattern: str, text: str) -> bool:
+    try:
+        return re.search(pattern, text) is not None
+    except re.error as error:
+        raise InvalidValueError(
+            f"{pattern!r} is no regular expression: {error}"
+        ) from None
+
+
+class _Expression:
+    """A condition that the user writes in Python, as ``rosbag filter`` takes it."""
+
+    def __init__(self, text: str) -> None:
+        try:
+            self._code: CodeType = compile(text, "<expression>", "eval")
+        except (SyntaxError, ValueError) as error:
+            raise InvalidValueError(f"expression {text!r}: {error}") from None
+        self._text = text
+        self._decoders: dict[BagTopic, Decoder] = {}
+
+    def __call__(self, message: BagMessage) -> bool:
+        names = _Names(self, message)
+        try:
+            # The user's own condition, from the command line.
+            return bool(eval(self._code, {"__builtins__": __builtins__}, names))
+        except NavetteError:
+            raise
+        except Exception as error:  # whatever the user's expression raises
+            raise InvalidValueError(
+                f"expression {self._text!r}, {message.topic.name} at "
+                f"{message.stamp_ns} ns: {type(error).__name__}: {error}"
+            ) from error
+
+    def decode(self, message: BagMessage) -> Any:
+        """The message as an object."""
+        decoder = self._decoders.get(message.topic)
+        if decoder is None:
+            decoder = self._decoders[message.topic] = Decoder(message.topic)
+        return decoder(message.data)
+
+
+class _Names(dict[str, Any]):
+    """Decodes the message only where the expression asks for it."""
+
+    def __init__(self, expression: _Expression, message: BagMessage) -> None:
+        super().__init__(topic=message.topic.name, t=message.stamp_ns / 1e9)
+        self._expression = expression
+        self._message = message
+
+    def __missing__(self, name: str) -> Any:
+        if name != "m":
+            raise KeyError(name)
+        return self._expression.decode(self._message)
+
+
+def join(paths: Sequence[Path]) -> BagReader:
+    """Several recordings as one, in the order of time.
+
+    Raises:
+        FileFormatError: one of them cannot be read.
+    """
+    if len(paths) == 1:
+        return open_bag(paths[0])
+    readers: list[BagReader] = []
+    try:
+        for path in paths:
+            readers.append(open_bag(path))
+    except FileFormatError:
+        for reader in readers:
+            reader.close()
+        raise
+    return FolderReader(paths[0], readers, Metadata())
+
+
+def copy(
+    reader: BagReader,
+    writer: TopicWriter,
+    choice: Choice | None = None,
+    *,
+    on_message: Progress | None = None,
+    on_damage: OnDamage | None = None,
+) -> int:
+    """Write what is chosen; gives the number of messages.
+
+    The writer is closed, or abandoned where this fails.
+
+    Raises:
+        FileFormatError: a part cannot be read (without ``on_damage``) or written.
+        InvalidValueError: a pattern or an expression is wrong.
+    """
+    choice = choice or Choice()
+    try:
+        for message in _chosen(reader, choice, on_message, on_damage):
+            writer.write(message)
+    except BaseException:
+        writer.abandon()
+        raise
+    writer.close()
+    return writer.message_count
+
+
+def _chosen(
+    reader: BagReader,
+    choice: Choice,
+    on_message: Progress | None,
+    on_damage: OnDamage | None,
+) -> Iterator[BagMessage]:
+    expression = _Expression(choice.expression) if choice.expression else None
+    taken = {t: completed(t) for t in reader.topics if choice.takes(t)}
+    for message in reader.messages(
+        {topic.name for topic in taken},
+        start_ns=choice.start_ns,
+        end_ns=choice.end_ns,
+        on_damage=on_damage,
+    ):
+        if on_message is not None:
+            on_message(message)
+        topic = taken.get(message.topic)
+        if topic is not None and (expression is None or expression(message)):
+            yield message._replace(topic=topic)

@@ -1,0 +1,283 @@
+"""Writes ``.db3`` and ``.bag`` through ``rosbags``, whose formats these are."""
+
+import sqlite3
+import struct
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from navette.bags.bag import BagMessage, BagTopic
+from navette.errors import FileFormatError, InvalidValueError
+from navette.msgs.definition_sections import read_definition
+
+_HEADER = "std_msgs/msg/Header"
+
+
+def store_of(topic: BagTopic, path: Path) -> Any:
+    """The type store of ``rosbags`` that holds a topic's type.
+
+    Raises:
+        FileFormatError: the definition is missing or broken.
+    """
+    from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
+
+    if not topic.definition:
+        raise FileFormatError(
+            path,
+            f"{topic.name}: nobody defines {topic.type_name}, and this file must",
+        )
+    read_definition(topic.type_name, topic.definition)  # refuses what is hostile
+    store = get_typestore(Stores.EMPTY)
+    try:
+        store.register(get_types_from_msg(topic.definition, topic.type_name))
+    except (TypesysError, KeyError, ValueError, RecursionError) as error:
+        raise FileFormatError(
+            path, f"{topic.name}: definition of {topic.type_name}: {error}"
+        ) from error
+    return store
+
+
+class Db3Writer:
+    """Writes rosbag2's SQLite, schema 4.
+
+    Args:
+        path: a name that ends in ``.db3`` gives that file alone; another one a folder
+            with ``metadata.yaml``.
+        compression: ``none``, or ``zstd`` of the whole file (in a folder only).
+    """
+
+    def __init__(self, path: Path, *, compression: str = "none") -> None:
+        from rosbags.rosbag2 import StoragePlugin, Writer
+        from rosbags.rosbag2.enums import CompressionFormat, CompressionMode
+
+        self.path = path
+        self.message_count = 0
+        is_file = path.suffix == ".db3"
+        if compression not in ("none", "zstd") or (is_file and compression != "none"):
+            raise InvalidValueError(
+                f"compression {compression!r} of SQLite; known: none, and zstd in a "
+                "folder (a name without .db3)"
+            )
+        self._channels: dict[BagTopic, Any] = {}
+        try:
+            # Made beside its place: what is there is whole, or is not there.
+            self._temporary = TemporaryDirectory(prefix=".navette-", dir=path.parent)
+            folder = Path(self._temporary.name) / path.stem
+            self._writer = Writer(
+                folder, version=8, storage_plugin=StoragePlugin.SQLITE3
+            )
+            if compression == "zstd":
+                self._writer.set_compression(
+                    CompressionMode.FILE, CompressionFormat.ZSTD
+                )
+            self._writer.open()
+        except OSError as error:
+            raise FileFormatError(path, f"cannot be written: {error}") from error
+        self._made = folder / f"{folder.name}.db3" if is_file else folder
+
+    def write(self, message: BagMessage) -> None:
+        """Append a message.
+
+        Raises:
+            FileFormatError: its type has no definition, or the disk is full.
+        """
+        channel = self._channels.get(message.topic)
+        if channel is None:
+            channel = self._channels[message.topic] = self._add(message.topic)
+        try:
+            self._writer.write(channel, message.stamp_ns, message.data)
+        except sqlite3.Error as error:
+            raise FileFormatError(self.path, f"cannot be written: {error}") from error
+        self.message_count += 1
+
+    def add_topic(self, topic: BagTopic) -> None:
+        """Announce a topic, also one without messages."""
+        if topic not in self._channels:
+            self._channels[topic] = self._add(topic)
+
+    def _add(self, topic: BagTopic) -> Any:
+        from rosbags.rosbag2 import WriterError
+
+        store = store_of(topic, self.path)
+        try:
+            return self._writer.add_connection(
+                topic.name,
+                topic.type_name,
+                msgdef=topic.definition,
+                rihs01=topic.type_hash or store.hash_rihs01(topic.type_name),
+                serialization_format=topic.encoding,
+                offered_qos_profiles=[_qos(each) for each in topic.qos],
+            )
+        except WriterError as error:
+            raise FileFormatError(self.path, f"{topic.name}: {error}") from error
+
+    def close(self) -> None:
+        """Finish the file and put it into its place."""
+        try:
+            self._writer.close()
+            self._made.replace(self.path)
+        except (sqlite3.Error, OSError) as error:
+            raise FileFormatError(self.path, f"cannot be written: {error}") from error
+        finally:
+            self._temporary.cleanup()
+
+    def abandon(self) -> None:
+        """Leave nothing behind."""
+        with suppress(sqlite3.Error, OSError):
+            self._writer.abort()
+        self._temporary.cleanup()
+
+
+def _qos(offer: Any) -> Any:
+    from rosbags.interfaces import (
+        Qos,
+        QosDurability,
+        QosHistory,
+        QosLiveliness,
+        QosReliability,
+        QosTime,
+    )
+
+    times = [divmod(ns, 1_000_000_000) for ns in (offer.deadline_ns, offer.lifespan_ns)]
+    return Qos(
+        QosHistory[offer.history.upper()],
+        offer.depth,
+        QosReliability[offer.reliability.upper()],
+        QosDurability[offer.durability.upper()],
+        QosTime(*times[0]),
+        QosTime(*times[1]),
+        QosLiveliness[offer.liveliness.upper()],
+        QosTime(*divmod(offer.lease_ns, 1_000_000_000)),
+        avoid_ros_namespace_conventions=False,
+    )
+
+
+class Ros1Writer:
+    """Writes a ROS 1 bag, version 2.0; types get ROS 1's words again.
+
+    Args:
+        compression: ``none``, ``lz4`` or ``bz2``.
+    """
+
+    def __init__(self, path: Path, *, compression: str = "none") -> None:
+        from rosbags.rosbag1 import Writer
+
+        self.path = path
+        self.message_count = 0
+        if compression not in ("none", "lz4", "bz2"):
+            raise InvalidValueError(
+                f"compression {compression!r} of .bag; known: none, lz4, bz2"
+            )
+        self._part = path.with_name(f".{path.name}.part")
+        self._channels: dict[BagTopic, tuple[Any, Callable[..., Any]]] = {}
+        try:
+            self._part.unlink(missing_ok=True)
+            self._writer = Writer(self._part)
+            if compression != "none":
+                self._writer.set_compression(
+                    Writer.CompressionFormat[compression.upper()]
+                )
+            self._writer.open()
+        except OSError as error:
+            raise FileFormatError(path, f"cannot be written: {error}") from error
+
+    def write(self, message: BagMessage) -> None:
+        """Append a message.
+
+        Raises:
+            FileFormatError: type or stamp cannot be had in ROS 1, or the disk is full.
+        """
+        from rosbags.serde import SerdeError
+
+        self.add_topic(message.topic)
+        channel, convert = self._channels[message.topic]
+        try:
+            data = convert(message.data, message.topic.type_name)
+            self._writer.write(channel, message.stamp_ns, data)
+        except OSError as error:
+            raise FileFormatError(self.path, f"cannot be written: {error}") from error
+        except (SerdeError, struct.error, ValueError, IndexError, TypeError) as error:
+            raise FileFormatError(
+                self.path,
+                f"{message.topic.name} at {message.stamp_ns} ns: message or stamp "
+                f"cannot be had in ROS 1: {error}",
+            ) from error
+        self.message_count += 1
+
+    def add_topic(self, topic: BagTopic) -> None:
+        """Announce a topic, also one without messages."""
+        if topic not in self._channels:
+            self._channels[topic] = self._add(topic)
+
+    def _add(self, topic: BagTopic) -> tuple[Any, Callable[..., Any]]:
+        if topic.encoding != "cdr":
+            raise FileFormatError(
+                self.path, f"{topic.name}: {topic.encoding} messages are not ROS's"
+            )
+        source = store_of(topic, self.path)
+        channel = self._writer.add_connection(
+            topic.name,
+            topic.type_name,
+            typestore=_ros1_store(source),
+            callerid="/navette",
+            latching=int(topic.latched),
+        )
+        return channel, source.cdr_to_ros1
+
+    def close(self) -> None:
+        """Finish the file and put it into its place."""
+        try:
+            self._writer.close()
+            self._part.replace(self.path)
+        except OSError as error:
+            raise FileFormatError(self.path, f"cannot be written: {error}") from error
+
+    def abandon(self) -> None:
+        """Leave nothing behind."""
+        with suppress(OSError):
+            self._writer.close()
+        self._part.unlink(missing_ok=True)
+
+
+def _ros1_store(source: Any) -> Any:
+    """The same types in ROS 1's words.
+
+    ROS 1 tells types apart by a checksum over their text: where it has the type, and
+    on the wire it is the same, its own text has to be used (``D``, not ``d``).
+    """
+    from rosbags.typesys import Stores, get_typestore
+
+    noetic = get_typestore(Stores.ROS1_NOETIC)
+    fields = dict(source.fielddefs)
+    for name in fields:
+        if name == _HEADER or _is_alike(source.fielddefs, noetic.fielddefs, name):
+            fields[name] = noetic.fielddefs[name]
+    store = get_typestore(Stores.EMPTY)
+    store.register(fields)
+    return store
+
+
+def _is_alike(ours: Any, theirs: Any, name: str) -> bool:
+    """Whether both mean the same by a name, up to names of fields."""
+    if name == _HEADER:
+        return True
+    if name not in ours or name not in theirs:
+        return False
+    mine = [kind for _, kind in ours[name][1]]
+    other = [kind for _, kind in theirs[name][1]]
+    return mine == other and all(
+        _is_alike(ours, theirs, each) for kind in mine for each in _names_in(kind)
+    )
+
+
+def _names_in(kind: Any) -> list[str]:
+    """Types of messages that a field's type refers to, as ``rosbags`` describes it."""
+    from rosbags.interfaces import Nodetype
+
+    if kind[0] == Nodetype.NAME:
+        return [kind[1]]
+    if kind[0] in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+        return _names_in(kind[1][0])
+    return []

@@ -1,0 +1,150 @@
+"""Writes a recording in any of the formats that are read."""
+
+import shutil
+from pathlib import Path
+from typing import Protocol
+
+from navette.bags.bag import BagMessage, BagTopic
+from navette.bags.mcap_file import COMPRESSIONS
+from navette.bags.opening import is_bag
+from navette.bags.qos import qos_text
+from navette.bags.rosbags_writers import Db3Writer, Ros1Writer
+from navette.bags.writer import BagWriter
+from navette.errors import FileFormatError, InvalidValueError, UnknownNameError
+from navette.msgs import definition_text, type_hash
+
+STORAGES = ("mcap", "sqlite3", "rosbag1")
+_BY_SUFFIX = {".mcap": "mcap", ".db3": "sqlite3", ".bag": "rosbag1"}
+
+
+class TopicWriter(Protocol):
+    """A recording that is being written."""
+
+    path: Path
+
+    @property
+    def message_count(self) -> int:
+        """Messages written so far."""
+
+    def add_topic(self, topic: BagTopic) -> None:
+        """Announce a topic, also one without messages."""
+
+    def write(self, message: BagMessage) -> None:
+        """Append a message; its topic is announced if it was not yet."""
+
+    def close(self) -> None:
+        """Finish the file."""
+
+    def abandon(self) -> None:
+        """Give up."""
+
+
+class McapWriter:
+    """Writes ``.mcap`` with ROS 2's profile."""
+
+    def __init__(self, path: Path, *, compression: str = "zstd") -> None:
+        self.path = path
+        self._writer = BagWriter(path, compression=compression)
+        self._channels: dict[BagTopic, int] = {}
+
+    @property
+    def message_count(self) -> int:
+        return self._writer.message_count
+
+    def add_topic(self, topic: BagTopic) -> None:
+        if topic not in self._channels:
+            self._channels[topic] = self._writer.add_channel(
+                topic.name,
+                topic.type_name,
+                topic.definition,
+                type_hash=topic.type_hash,
+                qos=qos_text(topic.qos),
+                encoding=topic.encoding,
+            )
+
+    def write(self, message: BagMessage) -> None:
+        self.add_topic(message.topic)
+        try:
+            self._writer.write(
+                self._channels[message.topic], message.stamp_ns, message.data
+            )
+        except OSError as error:
+            raise FileFormatError(
+                self.path, f"cannot be written: {error.strerror}"
+            ) from error
+
+    def close(self) -> None:
+        try:
+            self._writer.close()
+        except OSError as error:
+            self._writer.abandon()
+            raise FileFormatError(
+                self.path, f"cannot be written: {error.strerror}"
+            ) from error
+
+    def abandon(self) -> None:
+        self._writer.abandon()
+
+
+def storage_of(path: Path, storage: str = "") -> str:
+    """The format by which a file is written: as said, or as its name says.
+
+    Raises:
+        InvalidValueError: neither says it.
+    """
+    if storage:
+        if storage not in STORAGES:
+            known = ", ".join(STORAGES)
+            raise InvalidValueError(f"storage {storage!r}; known: {known}")
+        return storage
+    found = _BY_SUFFIX.get(path.suffix)
+    if found is None:
+        raise InvalidValueError(
+            f"{path}: a name that ends in .mcap, .db3 or .bag says the format, "
+            f"or --storage: {', '.join(STORAGES)}"
+        )
+    return found
+
+
+def open_writer(
+    path: Path, *, storage: str = "", compression: str = "", overwrite: bool = False
+) -> TopicWriter:
+    """A new recording.
+
+    Args:
+        storage: ``mcap``, ``sqlite3`` or ``rosbag1``; by default as the name says.
+        compression: ``none``, ``zstd``, ``lz4``, ``bz2``, as far as the format has it;
+            by default zstd for ``.mcap`` and none for others.
+
+    Raises:
+        FileFormatError: it exists already, or cannot be made.
+        InvalidValueError: a storage or compression that is not known.
+    """
+    storage = storage_of(path, storage)
+    if path.exists():
+        if not overwrite:
+            raise FileFormatError(path, "exists already; --overwrite replaces it")
+        if not is_bag(path):
+            raise FileFormatError(path, "exists and is no bag; it is not replaced")
+        if path.is_dir():
+            shutil.rmtree(path)
+    if not path.absolute().parent.is_dir():
+        raise FileFormatError(path, "cannot be written: no such folder")
+    if storage == "mcap":
+        return McapWriter(path, compression=compression or COMPRESSIONS[0])
+    if storage == "sqlite3":
+        return Db3Writer(path, compression=compression or "none")
+    return Ros1Writer(path, compression=compression or "none")
+
+
+def completed(topic: BagTopic) -> BagTopic:
+    """With the definition that Navette knows, where the recording has none."""
+    if topic.definition or topic.encoding != "cdr":
+        return topic
+    try:
+        text, known = definition_text(topic.type_name), type_hash(topic.type_name)
+    except UnknownNameError:
+        return topic
+    return BagTopic(
+        topic.name, topic.type_name, text, topic.type_hash or known, topic.qos
+    )
