@@ -15,19 +15,28 @@ def filled(message_class: Any, text: str) -> Any:
     Raises:
         InvalidValueError: not a YAML mapping, or a field or value does not fit.
     """
-    import yaml
-
     from navette.companions.rosidl_runtime_py import set_message_fields
 
     message = message_class()
-    try:
-        fields = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        reason = getattr(error, "problem", None) or str(error)
-        raise InvalidValueError(f"{text!r} is not YAML: {reason}") from None
+    fields = from_yaml(text)
     if fields is not None:
         set_message_fields(message, fields)
     return message
+
+
+def from_yaml(text: str) -> Any:
+    """What a piece of YAML says.
+
+    Raises:
+        InvalidValueError: it is no YAML.
+    """
+    import yaml
+
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        reason = getattr(error, "problem", None) or str(error)
+        raise InvalidValueError(f"{text!r} is not YAML: {reason}") from None
 
 
 def from_stdin() -> str:

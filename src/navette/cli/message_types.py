@@ -3,9 +3,10 @@
 from typing import Any
 
 from navette import msgs
+from navette.cli.nearest import did_you_mean
 from navette.cli.output import note
 from navette.cli.peer_definitions import fetch_definition
-from navette.cli.session import endpoints, fail, unknown_topic, wait_for
+from navette.cli.session import endpoints, fail, wait_for
 from navette.errors import FileFormatError, UnknownNameError
 from navette.runtime import Node
 from navette.transports import Endpoint, EndpointKind
@@ -25,8 +26,8 @@ def topic_class(
         _check_type(name, msgs.type_name(cls), endpoints(node, name))
         return cls
     if not endpoints(node, name):
-        known = (each.topic for each in endpoints(node))
-        note(f"{unknown_topic(name, known)} (waiting; Ctrl-C ends it)")
+        near = did_you_mean(name, (each.topic for each in endpoints(node)))
+        note(f"waiting for {name}, which nobody publishes yet{near}")
         if not wait_for(node, lambda: bool(endpoints(node, name)), timeout_s):
             fail(f"nobody published {name} in {timeout_s:g} s")
     found = endpoints(node, name)

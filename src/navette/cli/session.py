@@ -9,11 +9,10 @@
             fail("nothing came")
 """
 
-import difflib
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Never
 
@@ -82,6 +81,20 @@ def wait_for(
     return holds
 
 
+def follow_clock(node: "Node") -> None:
+    """Let the node's clock tell simulated time, that of ``/clock``."""
+    from navette.runtime import Parameter
+
+    node.set_parameters([Parameter("use_sim_time", value=True)])
+
+
+def is_simulated(node: "Node") -> bool:
+    """Whether somebody publishes ``/clock``."""
+    from navette.transports import EndpointKind
+
+    return bool(endpoints(node, "/clock", kind=EndpointKind.PUBLISHER))
+
+
 def endpoints(
     node: "Node", topic: str | None = None, *, kind: "EndpointKind | None" = None
 ) -> "list[Endpoint]":
@@ -103,13 +116,6 @@ def service_endpoints(
 def is_hidden(name: str) -> bool:
     """Whether a topic's, service's or node's name is for machines, as ROS 2 says."""
     return any(token.startswith("_") for token in name.split("/"))
-
-
-def unknown_topic(name: str, known: Iterable[str]) -> str:
-    """That nobody has the topic, and which ones look like it."""
-    alike = difflib.get_close_matches(name, sorted(set(known)), n=3)
-    hint = f"; did you mean {' or '.join(alike)}?" if alike else ""
-    return f"nobody publishes or subscribes to {name}{hint}"
 
 
 def fail(message: str) -> Never:

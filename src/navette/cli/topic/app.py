@@ -2,15 +2,19 @@
 
 import typer
 
-from navette.cli.topic import listening, looking
+from navette.cli.topic import echo_verb, look_verbs, measure_verbs, pub_verb
 
 topic = typer.Typer(
     name="topic",
     help="Look into topics: list, info, echo, hz, bw, delay; and publish.",
     no_args_is_help=True,
 )
-topic.command("list")(looking.list_)
-topic.command()(looking.info)
-topic.command()(listening.echo)
-topic.command("type")(looking.type_)
-topic.command()(looking.find)
+topic.command("list")(look_verbs.list_)
+topic.command()(look_verbs.info)
+topic.command()(echo_verb.echo)
+topic.command()(measure_verbs.hz)
+topic.command()(measure_verbs.bw)
+topic.command()(measure_verbs.delay)
+topic.command()(pub_verb.pub)
+topic.command("type")(look_verbs.type_)
+topic.command()(look_verbs.find)

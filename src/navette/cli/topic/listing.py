@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
+from navette.cli.nearest import did_you_mean
 from navette.cli.output import aligned, is_terminal, styled
-from navette.cli.session import endpoints, fail, is_hidden, unknown_topic
+from navette.cli.session import endpoints, fail, is_hidden
 from navette.runtime import Node
 from navette.runtime.topic_endpoint_info import TopicEndpointInfo
 from navette.transports import (
@@ -67,7 +68,8 @@ def topic(node: Node, name: str) -> Topic:
     full_name = node.resolve_topic_name(name)
     found = endpoints(node, full_name)
     if not found:
-        fail(unknown_topic(full_name, (each.topic for each in endpoints(node))))
+        near = did_you_mean(full_name, (each.topic for each in endpoints(node)))
+        fail(f"nobody publishes or subscribes to {full_name}{near}")
     return _topic(full_name, found)
 
 

@@ -4,21 +4,17 @@ from typing import Annotated
 
 import typer
 
+from navette.cli.completing import complete_messages
 from navette.cli.session import connect
 from navette.cli.topic import qos_options
-from navette.cli.topic.options import TopicName
+from navette.cli.topic.options import Filter, TopicName
 
 TypeName = Annotated[
     str | None,
-    typer.Argument(metavar="[TYPE]", help="Its type; by default what is published."),
-]
-Filter = Annotated[
-    str | None,
-    typer.Option(
-        "--filter",
-        metavar="EXPR",
-        help="Only messages for which this holds, as in 'm.data > 3' or"
-        " 'any(r < 0.5 for r in m.ranges)'.",
+    typer.Argument(
+        metavar="[TYPE]",
+        help="Its type; by default what is published.",
+        autocompletion=complete_messages,
     ),
 ]
 

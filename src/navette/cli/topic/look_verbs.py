@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from navette.cli.completing import complete_messages
 from navette.cli.output import note, show, show_json
 from navette.cli.session import connect, fail
 from navette.cli.topic.options import Hidden, Json, TopicName
@@ -68,7 +69,12 @@ def type_(topic: TopicName) -> None:
 
 def find(
     type_name: Annotated[
-        str, typer.Argument(metavar="TYPE", help="A message type: pkg/msg/Name.")
+        str,
+        typer.Argument(
+            metavar="TYPE",
+            help="A message type: pkg/msg/Name.",
+            autocompletion=complete_messages,
+        ),
     ],
     count_topics: Annotated[
         bool, typer.Option("--count-topics", "-c", "--count", help="Only how many.")

@@ -1,0 +1,151 @@
+"""Listens to topics and prints what a meter makes of it, every second."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from navette.cli.message_types import topic_class
+from navette.cli.output import aligned, is_terminal, note, show, styled
+from navette.cli.session import fail, wait_for
+from navette.cli.topic.filtering import message_filter
+from navette.cli.topic.meters import Meter, RateMeter, Spread
+from navette.msgs import type_name
+from navette.msgs.registry import get_message_spec
+from navette.runtime import Clock, Node, QoSProfile, ReliabilityPolicy
+from navette.runtime.time import ClockType
+
+PERIOD_S = 1.0
+# Nothing is asked for twice, and a burst does not count as a slower topic.
+_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+_HEADER = "std_msgs/msg/Header"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasureOptions:
+    """What to measure, and how much of it to say."""
+
+    topics: list[str]
+    make_meter: Callable[[], Meter]
+    #: What the meter needs of a message (of its bytes, where ``raw``).
+    value: Callable[[Any], int] = lambda _: 0
+    raw: bool = True
+    needs_header: bool = False
+    filter: str | None = None
+    count: int | None = None
+    as_json: bool = False
+
+
+def measure(node: Node, options: MeasureOptions) -> None:
+    """Print figures every second, until it was often enough."""
+    meters: dict[str, Meter] = {}
+    for name in options.topics:
+        meter = options.make_meter()
+        _listen(node, name, meter, options)
+        meters[node.resolve_topic_name(name)] = meter
+    report = Report(node, meters, options)
+    # Of the wall: simulated time may stand.
+    clock = Clock(clock_type=ClockType.STEADY_TIME, context=node.context)
+    node.create_timer(PERIOD_S, report.print, clock=clock)
+    wait_for(node, lambda: report.is_full)
+
+
+class Report:
+    """Prints the figures of one topic, or a table of those of several."""
+
+    def __init__(
+        self, node: Node, meters: dict[str, Meter], options: MeasureOptions
+    ) -> None:
+        self._node = node
+        self._meters = meters
+        self._options = options
+        self._count = 0
+        self._lines_above = 0
+        self._said_silent = False
+
+    @property
+    def is_full(self) -> bool:
+        return self._options.count is not None and self._count >= self._options.count
+
+    def print(self) -> None:
+        """The figures of what came since the last time, or that nothing came."""
+        if self.is_full:
+            return
+        now_ns = self._node.get_clock().now_ns
+        found = {
+            topic: (meter, figures)
+            for topic, meter in self._meters.items()
+            if (figures := meter.figures(now_ns)) is not None
+        }
+        if not found:
+            if not self._said_silent:
+                note("no new messages")
+            self._said_silent = True
+            return
+        self._said_silent = False
+        self._count += 1
+        if self._options.as_json:
+            for topic, (meter, figures) in found.items():
+                show(json.dumps({"topic": topic, **meter.to_json(figures)}))
+        elif len(self._meters) == 1:
+            ((meter, figures),) = found.values()
+            show(_emphasised(meter.text(figures)))
+        else:
+            self._print_table(found)
+
+    def _print_table(self, found: dict[str, tuple[Meter, Spread]]) -> None:
+        head = ("topic", "rate", "min_delta", "max_delta", "std_dev", "window")
+        rows = [
+            (
+                topic,
+                f"{RateMeter.rate_hz(figures):.3f}",
+                f"{figures.min:.3f}",
+                f"{figures.max:.3f}",
+                f"{figures.std_dev:.5f}",
+                str(figures.window),
+            )
+            for topic, (_, figures) in found.items()
+        ]
+        first, *lines = aligned([head, *rows], gap=3)
+        width = max(map(len, (first, *lines)))
+        text = "\n".join([styled(first, dim=True), "=" * width, *lines, ""])
+        if is_terminal() and self._lines_above:
+            text = f"\x1b[{self._lines_above}F\x1b[J{text}"
+        self._lines_above = len(lines) + 3
+        show(text)
+
+
+def _listen(node: Node, name: str, meter: Meter, options: MeasureOptions) -> None:
+    keep = message_filter(options.filter)
+    cls = topic_class(node, name)
+    topic = node.resolve_topic_name(name)
+    if options.needs_header and not _has_header(type_name(cls)):
+        fail(f"{topic}: {type_name(cls)} has no header, so no stamp to measure from")
+
+    def receive(message: Any, info: dict[str, int]) -> None:
+        if not options.raw and not keep(message):
+            return
+        now_ns = _arrival_ns(node, info)
+        # Simulated time is zero until it has begun.
+        if now_ns and not meter.add(now_ns, options.value(message)):
+            note("time has reset, resetting counters")
+
+    node.create_subscription(
+        cls, topic, receive, _QOS, raw=options.raw, shared=not options.raw
+    )
+
+
+def _arrival_ns(node: Node, info: dict[str, int]) -> int:
+    if node.get_parameter("use_sim_time").value:
+        return node.get_clock().now_ns
+    return info["received_timestamp"]
+
+
+def _has_header(name: str) -> bool:
+    fields = get_message_spec(name).fields
+    return any(f.name == "header" and f.type.base == _HEADER for f in fields)
+
+
+def _emphasised(text: str) -> str:
+    first, _, rest = text.partition("\n")
+    return f"{styled(first, bold=True)}\n{styled(rest, dim=True)}"

@@ -1,0 +1,138 @@
+"""Publishes a message as a person typed it, once or at a rate."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from navette.cli.filling import from_yaml
+from navette.cli.message_types import topic_class
+from navette.cli.output import is_terminal, show
+from navette.cli.session import fail, follow_clock, is_simulated, wait_for
+from navette.cli.topic.qos_choice import wished_profile
+from navette.cli.topic.qos_options import QosWishes
+from navette.companions.rosidl_runtime_py import set_message_fields
+from navette.errors import InvalidValueError
+from navette.msgs import type_name
+from navette.msgs.interface import Field
+from navette.msgs.registry import get_message_spec
+from navette.msgs.values import shortened
+from navette.runtime import Clock, Node, Publisher
+from navette.runtime.time import ClockType
+
+_LONGEST_ON_TERMINAL = 2000
+_CLOCK_TIMEOUT_S = 2.0
+
+Stamp = Callable[[Any], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PublishOptions:
+    """What to publish, and how often."""
+
+    topic: str
+    type_name: str
+    values: str = "{}"
+    rate_hz: float = 1.0
+    times: int = 0  # 0: until Ctrl-C
+    print_each: int = 1  # 0: none
+    wait_for: int | None = None
+    max_wait_s: float | None = None
+    keep_alive_s: float = 0.1
+    wall_time: bool = False
+    qos: QosWishes = field(default_factory=QosWishes)
+
+    @property
+    def subscriptions_wanted(self) -> int:
+        """As in ROS 2: a message that is sent once should have a hearer."""
+        return int(self.times > 0) if self.wait_for is None else self.wait_for
+
+
+def publish(node: Node, options: PublishOptions) -> None:
+    """Publish until it was often enough."""
+    if options.max_wait_s is not None and not options.subscriptions_wanted:
+        raise InvalidValueError(
+            "--max-wait-time-secs: nothing is waited for without"
+            " --wait-matching-subscriptions, --once or --times"
+        )
+    cls = topic_class(node, options.topic, options.type_name)
+    message, stamps = filled_message(cls, options.values)
+    profile = wished_profile(options.qos, "default")
+    publisher = node.create_publisher(cls, options.topic, profile)
+    _wait_for_subscriptions(node, publisher, options)
+    if stamps and not options.wall_time and is_simulated(node):
+        follow_clock(node)
+        wait_for(node, lambda: node.get_clock().now_ns > 0, _CLOCK_TIMEOUT_S)
+    show("publisher: beginning loop")
+    count = 0
+
+    def send() -> None:
+        nonlocal count
+        if options.times and count >= options.times:
+            return
+        now = node.get_clock().now().to_msg()
+        for stamp in stamps:
+            stamp(now)
+        count += 1
+        if options.print_each and count % options.print_each == 0:
+            show(f"publishing #{count}: {_shown(message)}\n")
+        publisher.publish(message)
+
+    send()
+    clock = Clock(clock_type=ClockType.STEADY_TIME, context=node.context)
+    node.create_timer(1.0 / options.rate_hz, send, clock=clock)
+    wait_for(node, lambda: bool(options.times) and count >= options.times)
+    # Time to reach the wire, and for who hears late to take it.
+    wait_for(node, lambda: False, options.keep_alive_s)
+
+
+def filled_message(cls: Any, text: str) -> tuple[Any, list[Stamp]]:
+    """The message, and what to call with the time before it is sent.
+
+    Raises:
+        InvalidValueError: not YAML, or a field or value does not fit.
+    """
+    values = from_yaml(text)
+    fields = get_message_spec(type_name(cls)).fields
+    if values is not None and not isinstance(values, dict):
+        values = {_only_field(type_name(cls), fields, values): values}
+    message = cls()
+    stamps: list[Stamp] = set_message_fields(
+        message, values or {}, expand_header_auto=True, expand_time_now=True
+    )
+    return message, stamps
+
+
+def _only_field(name: str, fields: tuple[Field, ...], value: Any) -> str:
+    """A value alone means the field of a message that has one, as with rostopic."""
+    if len(fields) != 1:
+        listed = ", ".join(each.name for each in fields) or "none"
+        raise InvalidValueError(
+            f"{shortened(value)}: wanted fields of {name} by name, as in "
+            f"'{{{fields[0].name if fields else ''}: …}}'; it has {listed}"
+        )
+    return fields[0].name
+
+
+def _wait_for_subscriptions(
+    node: Node, publisher: Publisher[Any], options: PublishOptions
+) -> None:
+    wanted = options.subscriptions_wanted
+
+    def enough() -> bool:
+        return publisher.get_subscription_count() >= wanted
+
+    left_s = options.max_wait_s
+    while not enough():
+        show(f"Waiting for at least {wanted} matching subscription(s)...")
+        pause_s = 1.0 if left_s is None else min(1.0, left_s)
+        if not wait_for(node, enough, pause_s) and left_s is not None:
+            left_s -= pause_s
+            if left_s <= 0:
+                fail(
+                    f"{publisher.get_subscription_count()} of {wanted} subscriptions "
+                    f"to {publisher.topic_name} came in {options.max_wait_s:g} s"
+                )
+
+
+def _shown(message: Any) -> str:
+    return shortened(message, _LONGEST_ON_TERMINAL) if is_terminal() else repr(message)

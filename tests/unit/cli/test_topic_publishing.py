@@ -1,0 +1,176 @@
+"""navette topic pub: partial YAML, stamps, rates, waiting; in virtual time."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import typer
+from topic_world import navette, program, shared_graph
+
+from navette.cli.session import connect
+from navette.cli.topic.publishing import PublishOptions, filled_message, publish
+from navette.errors import InvalidValueError, UnknownNameError
+from navette.msgs.geometry_msgs.msg import PointStamped, Twist
+from navette.msgs.std_msgs.msg import Empty, String
+from navette.runtime import Context, Executor, Node, VirtualClock
+from navette.runtime.time import ns_to_stamp
+
+
+@pytest.fixture
+def listener() -> Iterator[Node]:
+    with Context(clock=VirtualClock()) as context:
+        node = Node("listener", context=context, start_parameter_services=False)
+        Executor(context=context).add_node(node)
+        yield node
+
+
+def hear(listener: Node, kind: type, topic: str) -> list[tuple[float, Any]]:
+    """(time in s, message) of all that comes."""
+    heard: list[tuple[float, Any]] = []
+    clock = listener.get_clock()
+    listener.create_subscription(
+        kind, topic, lambda m: heard.append((clock.now_ns / 1e9, m)), 10
+    )
+    return heard
+
+
+def pub(listener: Node, topic: str, type_name: str, **options: Any) -> None:
+    with connect(listener.context) as node:
+        publish(node, PublishOptions(topic=topic, type_name=type_name, **options))
+
+
+def test_partial_yaml_at_a_rate_as_ros2_prints_it(
+    listener: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    heard = hear(listener, Twist, "cmd_vel")
+    pub(
+        listener, "cmd_vel", "geometry_msgs/msg/Twist",
+        values="{linear: {x: 2.0}, angular: {z: 1.8}}", rate_hz=2.0, times=3,
+    )  # fmt: skip
+    assert [time for time, _ in heard] == [0.0, 0.5, 1.0]
+    assert heard[-1][1].linear.x == 2.0
+    assert heard[-1][1].angular.z == 1.8
+    assert heard[-1][1].linear.y == 0.0
+    lines = capsys.readouterr().out.split("\n")
+    assert lines[0] == "publisher: beginning loop"
+    assert lines[1] == f"publishing #1: {heard[0][1]!r}"
+    assert lines[2:4] == ["", f"publishing #2: {heard[0][1]!r}"]
+
+
+def test_every_nth_is_printed(
+    listener: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    hear(listener, String, "chatter")
+    pub(listener, "chatter", "std_msgs/String", times=4, print_each=2)
+    assert [
+        line.partition(":")[0] for line in capsys.readouterr().out.splitlines() if line
+    ] == ["publisher", "publishing #2", "publishing #4"]
+    pub(listener, "chatter", "std_msgs/String", times=2, print_each=0)
+    assert capsys.readouterr().out == "publisher: beginning loop\n"
+
+
+def test_headers_and_times_are_stamped_when_sent(listener: Node) -> None:
+    heard = hear(listener, PointStamped, "goal")
+    values = "{header: auto, point: {x: 1.0}}"
+    pub(listener, "goal", "geometry_msgs/PointStamped", values=values, times=2)
+    assert [m.header.stamp for _, m in heard] == [ns_to_stamp(0), ns_to_stamp(10**9)]
+
+    message, stamps = filled_message(
+        PointStamped, "{header: {stamp: now, frame_id: map}}"
+    )
+    for stamp in stamps:
+        stamp(ns_to_stamp(7))
+    assert message.header.stamp.nanosec == 7
+    assert message.header.frame_id == "map"
+
+
+def test_a_value_alone_is_the_field_of_a_message_that_has_one() -> None:
+    assert filled_message(String, "hello")[0] == String(data="hello")
+    assert filled_message(String, "5")[0] == String(data="5")
+    assert filled_message(Empty, "")[0] == Empty()
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "reason"),
+    [
+        (Twist, "{linear: {w: 1}}", "has no field 'w'; its fields: x, y, z"),
+        (Twist, "{linear: {x: far}}", "'far'"),
+        (Twist, "1.0", "wanted fields of geometry_msgs/msg/Twist by name"),
+        (Twist, "[1, 2]", "it has linear, angular"),
+        (Empty, "1", "it has none"),
+        (Twist, "{linear: [", "is not YAML"),
+        (String, "!!python/object/apply:os.system ['true']", "is not YAML"),
+    ],
+)
+def test_what_does_not_fit_is_refused(kind: Any, text: str, reason: str) -> None:
+    with pytest.raises(InvalidValueError, match=reason):
+        filled_message(kind, text)
+
+
+def test_it_waits_for_who_hears_it(
+    listener: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    heard: list[Any] = []
+    timer = listener.create_timer(2.5, lambda: join())
+
+    def join() -> None:
+        timer.cancel()
+        heard.extend([None])
+        listener.create_subscription(String, "chatter", heard.append, 10)
+
+    pub(listener, "chatter", "std_msgs/String", values="{data: hi}", times=1)
+    assert heard == [None, String(data="hi")]
+    out = capsys.readouterr().out.splitlines()
+    assert out.count("Waiting for at least 1 matching subscription(s)...") == 3
+
+
+def test_waiting_for_hearers_ends(
+    listener: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        pub(listener, "chatter", "std_msgs/String", wait_for=2, max_wait_s=1.5)
+    assert ended.value.exit_code == 1
+    shown = capsys.readouterr()
+    assert shown.err.endswith("0 of 2 subscriptions to /chatter came in 1.5 s\n")
+    assert shown.out.count("Waiting") == 2
+    with pytest.raises(InvalidValueError, match="nothing is waited for"):
+        pub(listener, "chatter", "std_msgs/String", max_wait_s=1.5)
+
+
+def test_a_topic_of_another_type_and_an_unknown_type_are_refused(
+    listener: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    hear(listener, String, "chatter")
+    with pytest.raises(typer.Exit):
+        pub(listener, "chatter", "std_msgs/Bool", times=1)
+    assert "/chatter is of type std_msgs/msg/String" in capsys.readouterr().err
+    with pytest.raises((typer.Exit, UnknownNameError)):
+        pub(listener, "other", "no_such_msgs/msg/Thing", times=1)
+    assert "no_such_msgs" in capsys.readouterr().err
+
+
+def test_the_command() -> None:
+    with shared_graph(), program("listener") as listener:
+        heard: list[String] = []
+        listener.create_subscription(String, "chatter", heard.append, 10)
+        shown = navette(
+            "topic", "pub", "-1", "--keep-alive", "0", "/chatter",
+            "std_msgs/msg/String", "{data: Hello}",
+        )  # fmt: skip
+        listener.executor.spin_once(0.1)
+    assert shown.exit_code == 0, shown.output
+    assert heard == [String(data="Hello")]
+    assert shown.stdout == (
+        "publisher: beginning loop\n"
+        "publishing #1: std_msgs.msg.String(data='Hello')\n\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [(["-1", "-t", "3"], "wanted one of them"), (["-r", "0"], "above 0")],
+)
+def test_wrong_options_are_refused(options: list[str], reason: str) -> None:
+    shown = navette("topic", "pub", "/x", "std_msgs/msg/String", *options)
+    assert isinstance(shown.exception, InvalidValueError)
+    assert reason in str(shown.exception)
