@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from navette.control.node import ControlNode
 from navette.costmap.node import CostmapNode
 from navette.localization.distance.node import OdomIntegratorNode
+from navette.localization.ekf.node import EkfNode
 from navette.mapping.node import MapMemoryNode
 from navette.missions.node import MissionNode
 from navette.planning.node import PlannerNode
@@ -17,6 +18,7 @@ FLOW = ("sim", "localization", "costmap", "mapping", "planning", "control", "mis
 NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("sim", SimNode),
     ("odom_integrator", OdomIntegratorNode),
+    ("ekf", EkfNode),
     ("costmap", CostmapNode),
     ("map_memory", MapMemoryNode),
     ("planner", PlannerNode),

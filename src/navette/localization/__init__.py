@@ -1,6 +1,25 @@
 """Where the robot is, and how far it has come."""
 
-from navette.localization.distance.odometer import Odometer, Step
-from navette.localization.distance.params import DistanceParams
+from navette.localization.distance import DistanceParams, Odometer, Step
+from navette.localization.ekf import (
+    EkfParams,
+    Estimate,
+    Fused,
+    Measurement,
+    OrderedEkf,
+    PlanarEkf,
+)
 
-__all__ = ["DistanceParams", "Odometer", "Step"]
+__all__ = [
+    # how far
+    "DistanceParams",
+    "Odometer",
+    "Step",
+    # where
+    "EkfParams",
+    "Estimate",
+    "Fused",
+    "Measurement",
+    "OrderedEkf",
+    "PlanarEkf",
+]

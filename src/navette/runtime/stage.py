@@ -1,7 +1,7 @@
 """The base of every stage's node: topics and parameters declared as data."""
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -76,6 +76,8 @@ class StageNode(Node):
     PARAMS: ClassVar[type[Params]] = Params
     INPUTS: ClassVar[tuple[Input, ...]] = ()
     OUTPUTS: ClassVar[tuple[Output, ...]] = ()
+    #: Parameters that are read at the start only; setting one later is refused.
+    FIXED_AT_START: ClassVar[Collection[str]] = ()
 
     params: Any
 
@@ -163,6 +165,10 @@ class StageNode(Node):
                 )
 
     def _check_params(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name in self.FIXED_AT_START:
+                reason = f"parameter {parameter.name!r} is read at the start only"
+                return SetParametersResult(successful=False, reason=reason)
         try:
             self._changed(parameters)
         except ParameterError as error:

@@ -6,7 +6,6 @@ from typing import Any
 
 from navette.geometry import Pose2, Transform3
 from navette.msgs.geometry_msgs.msg import Twist
-from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.tf2_msgs.msg import TFMessage
@@ -36,6 +35,7 @@ class SimNode(StageNode):
     """
 
     PARAMS = SimParams
+    FIXED_AT_START = FIXED_AT_START
     INPUTS = (
         Input(
             topic="/cmd_vel",
@@ -135,7 +135,6 @@ class SimNode(StageNode):
         self._base_T_child = self.frames.fixed_pose(self._child_frame)
         self._contacts_told = 0
         self._sleepers: list[tuple[Timer, tuple[str, ...]]] = []
-        self.add_on_set_parameters_callback(self._refuse_fixed)
         self._publish_latched()
         self._create_timers()
         self._forget_graph = self.context.graph.on_change(self._wake_and_rest)
@@ -164,13 +163,6 @@ class SimNode(StageNode):
 
     def on_params_changed(self, old: SimParams) -> None:
         self.simulator.change_params(self.params)
-
-    def _refuse_fixed(self, parameters: list[Any]) -> SetParametersResult:
-        for parameter in parameters:
-            if parameter.name in FIXED_AT_START:
-                reason = f"parameter {parameter.name!r} is read at the start only"
-                return SetParametersResult(successful=False, reason=reason)
-        return SetParametersResult(successful=True)
 
     def _advance(self) -> int:
         """Bring physics to the present; the stamp of its state."""

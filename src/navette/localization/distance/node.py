@@ -13,19 +13,18 @@ from navette.localization.distance.params import DistanceParams
 from navette.msgs.geometry_msgs.msg import TwistStamped
 from navette.msgs.gnss_driver.msg import Gps
 from navette.msgs.nav_msgs.msg import Odometry
-from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.msgs.sensor_msgs.msg import NavSatFix, NavSatStatus
 from navette.msgs.std_msgs.msg import Float64
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 
 _PERIOD_S = 0.1
-_FIXED_AT_START = ("topic", "topic_type")
 
 
 class OdomIntegratorNode(StageNode):
     """Sums the distance travelled, by position or by velocity."""
 
     PARAMS = DistanceParams
+    FIXED_AT_START = ("topic", "topic_type")
     INPUTS: ClassVar = (
         Input(
             topic="/gnss_driver/odometry",
@@ -50,7 +49,6 @@ class OdomIntegratorNode(StageNode):
     def __init__(self, node_name: str = "odom_integrator", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._odometer = Odometer(self.params.max_gap_ns)
-        self.add_on_set_parameters_callback(_refuse_fixed)
         self.create_timer(_PERIOD_S, self.on_timer)
 
     def inputs(self) -> tuple[Input, ...]:
@@ -112,11 +110,3 @@ def _velocity(msg: Any) -> tuple[float, float, float]:
         return v.x, v.y, v.z
     linear = (msg.twist.twist if isinstance(msg, Odometry) else msg.twist).linear
     return linear.x, linear.y, linear.z
-
-
-def _refuse_fixed(parameters: list[Any]) -> SetParametersResult:
-    for parameter in parameters:
-        if parameter.name in _FIXED_AT_START:
-            reason = f"parameter {parameter.name!r} is read at the start only"
-            return SetParametersResult(successful=False, reason=reason)
-    return SetParametersResult(successful=True)
