@@ -106,8 +106,7 @@ def restart(
 def down(modules: Modules = None, file: File = None) -> None:
     """End modules: those that need others first, all if none is named."""
     client = _client(_project(file))
-    client.down(modules or None)
-    _watch_end(client, modules or None)
+    _end(client, modules or None)
 
 
 def ps(
@@ -238,11 +237,13 @@ def _watch_start(
         raise typer.Exit(_FAILED)
 
 
-def _watch_end(client: "Client", names: Sequence[str] | None) -> None:
+def _end(client: "Client", names: Sequence[str] | None) -> None:
     from navette.cli.modules_view import Progress
-    from navette.modules.session import until_down
+    from navette.modules.session import until_down, views
 
-    left = Progress().show(until_down(client, names, _DOWN_S))
+    found = views(client.down(names))
+    first = [view for view in found if names is None or view.module in names]
+    left = Progress().show(until_down(client, names, _DOWN_S, first))
     if any(view.pid for view in left):
         note(f"still there: {', '.join(v.label for v in left if v.pid)}")
         raise typer.Exit(_FAILED)
@@ -258,8 +259,7 @@ def _follow_until_interrupted(client: "Client", names: Sequence[str]) -> None:
             pause.wait(_LOOK_S)
             view.show(reader.new())
     except KeyboardInterrupt:
-        client.down(names)
-        _watch_end(client, names)
+        _end(client, names)
         raise typer.Exit(_INTERRUPTED) from None
     finally:
         reader.close()

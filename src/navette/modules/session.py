@@ -77,11 +77,18 @@ def until_settled(
 
 
 def until_down(
-    client: Client, modules: Sequence[str] | None, timeout_s: float
+    client: Client,
+    modules: Sequence[str] | None,
+    timeout_s: float,
+    first: Sequence[ProcessView] = (),
 ) -> Iterator[list[ProcessView]]:
-    """The processes of some modules (None: all) until all of these have ended."""
+    """The processes of some modules (None: all) until all of these have ended.
+
+    Args:
+        first: what there was of them; it may be gone by now.
+    """
     pause, left_s = threading.Event(), timeout_s
-    seen: dict[str, ProcessView] = {}
+    seen = {view.label: view for view in first}
     while True:
         here = [
             view
