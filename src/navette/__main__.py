@@ -1,0 +1,5 @@
+"""``python -m navette`` is ``navette``."""
+
+from navette.cli import main
+
+main()

@@ -1,0 +1,38 @@
+"""Says where the simulated robot is, and what becomes of its goal: a line of JSON each.
+
+Run as a program: the tests read its output.
+"""
+
+import json
+import sys
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticStatus
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+
+class Track(Node):
+    def __init__(self) -> None:
+        super().__init__("track")
+        self.create_subscription(Odometry, "/ground_truth", self.on_truth, 1)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.create_subscription(
+            DiagnosticStatus, "/planner/status", self.on_status, latched
+        )
+
+    def on_truth(self, message: Odometry) -> None:
+        position, speed = message.pose.pose.position, message.twist.twist.linear.x
+        self.say(x=position.x, y=position.y, speed=speed)
+
+    def on_status(self, message: DiagnosticStatus) -> None:
+        self.say(planner=message.message)
+
+    def say(self, **what: object) -> None:
+        now = self.get_clock().now().nanoseconds / 1e9
+        print(json.dumps({"time": now, **what}), flush=True)  # noqa: T201
+
+
+rclpy.init(args=sys.argv)
+rclpy.spin(Track())

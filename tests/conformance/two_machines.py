@@ -1,0 +1,144 @@
+"""Two machines on this one: network namespaces, and a wire between them that can fail.
+
+Each namespace has a TUN device; a thread carries the IP packets from one to the other,
+late, not at all (a share of them, by a seed), or none while the wire is cut.
+"""
+
+import fcntl
+import heapq
+import os
+import select
+import struct
+import subprocess
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from types import TracebackType
+
+import numpy as np
+
+ROBOT, LAPTOP = "10.77.0.1", "10.77.0.2"
+
+_TUNSETIFF, _IFF_TUN, _IFF_NO_PI = 0x400454CA, 0x0001, 0x1000
+_MTU = 1500
+
+
+def why_not() -> str:
+    """Why two machines cannot be made here; empty where they can."""
+    try:
+        with Machines():
+            return ""
+    except (OSError, subprocess.CalledProcessError) as error:
+        return f"network namespaces are not permitted here: {error}"
+
+
+def _now() -> float:
+    return time.monotonic()  # noqa: TID251 - packets are late in real time
+
+
+class Wire:
+    """Carries packets between two TUN devices, as well or as badly as it is told."""
+
+    def __init__(self, ends: tuple[int, int], *, seed: int = 0) -> None:
+        self.delay_s = 0.0
+        self.loss = 0.0
+        self.is_cut = False
+        self.carried = self.lost = 0
+        self._ends = ends
+        self._rng = np.random.default_rng(seed)
+        self._stop_read, self._stop_write = os.pipe()
+        self._thread = threading.Thread(target=self._carry, name="wire")
+        self._thread.start()
+
+    def close(self) -> None:
+        os.write(self._stop_write, b"x")
+        self._thread.join()
+        os.close(self._stop_read)
+        os.close(self._stop_write)
+
+    def _carry(self) -> None:
+        waiting: list[tuple[float, int, int, bytes]] = []
+        number = 0
+        while True:
+            now = _now()
+            while waiting and waiting[0][0] <= now:
+                _, _, end, packet = heapq.heappop(waiting)
+                os.write(end, packet)
+            timeout = waiting[0][0] - now if waiting else None
+            ready, _, _ = select.select([*self._ends, self._stop_read], [], [], timeout)
+            if self._stop_read in ready:
+                return
+            now = _now()
+            for end in ready:
+                packet = os.read(end, _MTU + 100)
+                if self.is_cut or self._rng.random() < self.loss:
+                    self.lost += 1
+                    continue
+                self.carried += 1
+                number += 1
+                other = self._ends[1 - self._ends.index(end)]
+                heapq.heappush(waiting, (now + self.delay_s, number, other, packet))
+
+
+class Machines:
+    """A robot and a laptop with a wire between them; ``with`` makes and ends them."""
+
+    def __init__(self, *, seed: int = 0) -> None:
+        self._seed = seed
+        self._names: list[str] = []
+        self._devices: list[int] = []
+
+    def __enter__(self) -> "Machines":
+        try:
+            tag = f"{os.getpid() % 100_000}"
+            self.robot = self._make(f"nvr{tag}", ROBOT)
+            self.laptop = self._make(f"nvl{tag}", LAPTOP)
+        except BaseException:
+            self._end()
+            raise
+        self.wire = Wire((self._devices[0], self._devices[1]), seed=self._seed)
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.wire.close()
+        self._end()
+
+    def start(
+        self, machine: str, words: Sequence[str], *, env: Mapping[str, str], log: str
+    ) -> subprocess.Popen[bytes]:
+        """A program on a machine, its output in a file; who starts it ends it."""
+        with open(log, "wb") as file:  # noqa: PTH123
+            return subprocess.Popen(
+                ["ip", "netns", "exec", machine, *words],
+                env={**os.environ, **env},
+                stdout=file,
+                stderr=subprocess.STDOUT,
+            )
+
+    def _make(self, name: str, address: str) -> str:
+        device = os.open("/dev/net/tun", os.O_RDWR)
+        self._devices.append(device)
+        request = struct.pack("16sH", name.encode(), _IFF_TUN | _IFF_NO_PI)
+        fcntl.ioctl(device, _TUNSETIFF, request)
+        _ip("netns", "add", name)
+        self._names.append(name)
+        _ip("link", "set", name, "netns", name)
+        _ip("-n", name, "link", "set", "lo", "up")
+        _ip("-n", name, "address", "add", f"{address}/24", "dev", name)
+        _ip("-n", name, "link", "set", name, "mtu", str(_MTU), "up")
+        return name
+
+    def _end(self) -> None:
+        for device in self._devices:
+            os.close(device)
+        for name in self._names:
+            _ip("netns", "delete", name)
+
+
+def _ip(*words: str) -> None:
+    subprocess.run(["ip", *words], check=True, capture_output=True)
