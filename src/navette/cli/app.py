@@ -9,7 +9,14 @@ import typer
 
 from navette._version import __version__
 from navette.cli.action import action
-from navette.cli.arguments import join_pairs, parse_goal, parse_speed, spread_lists
+from navette.cli.arguments import (
+    fill_values,
+    join_pairs,
+    parse_goal,
+    parse_speed,
+    spread_lists,
+)
+from navette.cli.bag import bag
 from navette.cli.doctor import doctor
 from navette.cli.launch import launch
 from navette.cli.lifecycle import lifecycle
@@ -197,6 +204,7 @@ app.add_typer(service)
 app.add_typer(action)
 app.add_typer(lifecycle)
 app.add_typer(topic)
+app.add_typer(bag)
 app.command()(launch)
 app.command()(doctor)
 for command in (up, down, restart, ps, logs):
@@ -207,7 +215,7 @@ def main() -> None:
     """Entry point of the ``navette`` command."""
     arguments = sys.argv[1:]
     if arguments[:1] != ["run"]:
-        arguments = spread_lists(join_pairs(arguments))
+        arguments = fill_values(spread_lists(join_pairs(arguments)))
     try:
         app(args=arguments)
     except NavetteError as error:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from navette.errors import InvalidValueError
 
 PAIR_OPTIONS = ("--goal",)
-LIST_OPTIONS = ("--dependencies",)
+LIST_OPTIONS = ("--dependencies", "--topics", "--remap")
+OPTIONAL_VALUES = {"--clock": "40"}
 
 
 def join_pairs(arguments: Sequence[str]) -> list[str]:
@@ -26,6 +27,19 @@ def join_pairs(arguments: Sequence[str]) -> list[str]:
         if word in PAIR_OPTIONS and len(rest) >= 2 and all(map(_is_number, rest[:2])):
             joined.append(f"{rest.pop(0)} {rest.pop(0)}")
     return joined
+
+
+def fill_values(arguments: Sequence[str]) -> list[str]:
+    """Make ``--clock`` without a number ``--clock 40``.
+
+    Why: ROS 2's command takes it so, and Typer takes options with a value or without.
+    """
+    filled: list[str] = []
+    for word, following in zip(arguments, [*arguments[1:], ""], strict=True):
+        filled.append(word)
+        if word in OPTIONAL_VALUES and not _is_number(following):
+            filled.append(OPTIONAL_VALUES[word])
+    return filled
 
 
 def spread_lists(arguments: Sequence[str]) -> list[str]:

@@ -1,6 +1,7 @@
 """Playing bags: which message when, and to whom."""
 
 from navette.bags.play.feed import DirectFeed, PrefetchingFeed
+from navette.bags.play.merged import MergedSource, TolerantSource
 from navette.bags.play.options import PlayOptions
 from navette.bags.play.player import Jump, Player, PlayState
 from navette.bags.play.source import Source
@@ -11,6 +12,8 @@ __all__ = [
     "PlayState",
     "Jump",
     "Source",
+    "MergedSource",
+    "TolerantSource",
     "DirectFeed",
     "PrefetchingFeed",
 ]

@@ -9,6 +9,7 @@ Services under the node's name, as rosbag2's player has them: pause, resume,
 toggle_paused, is_paused, set_rate, get_rate, play_next, seek, stop.
 """
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -275,10 +276,11 @@ class PlayerNode(Node):
     def _open_topic(self, topic: BagTopic) -> Publisher[Any] | None:
         """None, and a warning, for what nobody can say."""
         try:
-            message_type = _type_of(topic)
-            return self.create_publisher(
-                message_type, topic.name, _profile(joint_offer(topic))
-            )
+            name = _valid_name(topic.name)
+            if name.lstrip("/") != topic.name.lstrip("/"):
+                self.get_logger().warning(f"{topic.name} is played as {name}")
+            profile = _profile(joint_offer(topic))
+            return self.create_publisher(_type_of(topic), name, profile)
         except NavetteError as error:
             self.get_logger().warning(f"{topic.name} is not played: {error}")
             return None
@@ -296,6 +298,12 @@ class _Without:
         self.topics = tuple(t for t in source.topics if t.name != name)
         self.start_ns, self.end_ns = source.start_ns, source.end_ns
         self.messages = source.messages
+
+
+def _valid_name(name: str) -> str:
+    """ROS 1 took more signs in names, and names without a slash as global ones."""
+    parts = (re.sub(r"[^A-Za-z0-9_]", "_", part) for part in name.split("/") if part)
+    return "".join(f"/_{p}" if p[0].isdigit() else f"/{p}" for p in parts)
 
 
 def _type_of(topic: BagTopic) -> type:

@@ -54,10 +54,11 @@ class PlayOptions:
             InvalidValueError: nothing is left to play.
         """
         known = list(dict.fromkeys(names))
-        wanted = [f"/{name.lstrip('/')}" for name in self.topics]
-        for name in wanted:
-            if name not in known:
+        by_full_name = {_full(name): name for name in known}
+        for name in self.topics:
+            if _full(name) not in by_full_name:
                 raise UnknownNameError.of("topic", name, known)
+        wanted = [by_full_name[_full(name)] for name in self.topics]
         chosen = tuple(n for n in known if self._takes(n, wanted))
         if not chosen:
             raise InvalidValueError(
@@ -72,6 +73,10 @@ class PlayOptions:
             return True
         matches = bool(self.regex) and re.search(self.regex, name) is not None
         return name in wanted or matches
+
+
+def _full(name: str) -> str:
+    return f"/{name.lstrip('/')}"
 
 
 def check_rate(rate: float) -> float:

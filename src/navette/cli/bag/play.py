@@ -1,0 +1,220 @@
+"""``navette bag play``: recordings as if they happened now."""
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from navette.bags.play import PlayOptions
+    from navette.bags.play.node import PlayerNode
+    from navette.launch.playback import Playback
+
+FAILED = 1
+INTERRUPTED = 130
+_BACK_NS = 5_000_000_000
+_FASTER = 1.1
+
+Files = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="FILE...",
+        help=".mcap, .bag or .db3 files, or rosbag2 folders; several play as one.",
+    ),
+]
+Loop = Annotated[bool, typer.Option("-l", "--loop", help="Start over at the end.")]
+Paused = Annotated[
+    bool, typer.Option("-p", "--pause", "--start-paused", help="Stand at the start.")
+]
+Rate = Annotated[
+    float, typer.Option("-r", "--rate", metavar="X", help="Times real time.")
+]
+Start = Annotated[
+    float,
+    typer.Option("-s", "--start-offset", metavar="S", help="Seconds to leave out."),
+]
+Length = Annotated[
+    float | None,
+    typer.Option("-u", "--duration", metavar="S", help="Seconds to play."),
+]
+Topics = Annotated[
+    list[str] | None,
+    typer.Option("--topics", metavar="TOPIC...", help="Play these topics only."),
+]
+Regex = Annotated[
+    str,
+    typer.Option("-e", "--regex", metavar="REGEX", help="Play topics that match."),
+]
+Exclude = Annotated[
+    str,
+    typer.Option("-x", "--exclude", metavar="REGEX", help="Leave out what matches."),
+]
+Remap = Annotated[
+    list[str] | None,
+    typer.Option("-m", "--remap", metavar="FROM:=TO...", help="Other names."),
+]
+Clock = Annotated[
+    float | None,
+    typer.Option(
+        metavar="[HZ]", help="Tell the recording's time on /clock, 40 times a second."
+    ),
+]
+With = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--with",
+        metavar="'PROGRAM [ARGS]'",
+        help="Run a program in the same process, as navette run does; it is ended"
+        " when the bag is.",
+    ),
+]
+View = Annotated[
+    bool,
+    typer.Option("--view", help="Open the live view; play, pause and seek there."),
+]
+Port = Annotated[
+    int, typer.Option(min=0, max=65535, help="Port of the live view on 127.0.0.1.")
+]
+
+
+def play(
+    files: Files,
+    loop: Loop = False,
+    paused: Paused = False,
+    rate: Rate = 1.0,
+    start_offset: Start = 0.0,
+    duration: Length = None,
+    topics: Topics = None,
+    regex: Regex = "",
+    exclude: Exclude = "",
+    remap: Remap = None,
+    clock: Clock = None,
+    programs: With = None,
+    view: View = False,
+    port: Port = 8765,
+) -> None:
+    """Play recordings: the same messages at the same times, to whoever listens.
+
+    Keys: space pauses and goes on, s (or →) gives the next message, ← goes 5 s back,
+    ↑ and ↓ change the rate, q ends.
+    """
+    from navette.bags.play import PlayOptions
+
+    options = PlayOptions(
+        rate=rate,
+        loop=loop,
+        paused=paused,
+        start_offset_s=start_offset,
+        duration_s=duration,
+        topics=tuple(topics or ()),
+        regex=regex,
+        exclude=exclude,
+    )
+
+    def run() -> int:
+        return _play(files, options, tuple(remap or ()), clock, port if view else None)
+
+    raise typer.Exit(_play_with(programs, run) if programs else run())
+
+
+def _play(
+    files: list[Path],
+    options: "PlayOptions",
+    remap: tuple[str, ...],
+    clock_rate_hz: float | None,
+    port: int | None,
+) -> int:
+    from navette.cli.bag.play_screen import PlayScreen
+    from navette.cli.keys import listening_to_keys
+    from navette.errors import CallbackError
+    from navette.launch.playback import Playback
+
+    with ExitStack() as stack:
+        stack.enter_context(_terminate_as_interrupt())
+        playback = Playback(
+            files, options, remap=remap, clock_rate_hz=clock_rate_hz, view_port=port
+        )
+        stack.callback(playback.close)
+        screen = PlayScreen(playback.progress)
+        screen.show_head(files, len(playback.player.player.names), playback.url)
+        word = "played"
+        try:
+            keys = stack.enter_context(listening_to_keys(_keyboard(playback)))
+            with screen.watching(keys=keys):
+                playback.run()
+        except KeyboardInterrupt:
+            word = "interrupted"
+        except CallbackError as error:
+            screen.report_failure(f"stopped: {error}")
+            return FAILED
+        screen.report(word)
+    return INTERRUPTED if word == "interrupted" else 0
+
+
+def _keyboard(playback: "Playback") -> Callable[[str], None]:
+    def on_key(key: str) -> None:
+        if key == "q":
+            playback.stop()
+        elif key in _ACTIONS:
+            playback.do(_ACTIONS[key])
+
+    return on_key
+
+
+def _multiply_rate(player: "PlayerNode", factor: float) -> None:
+    from navette.bags.play.options import MAX_RATE, MIN_RATE
+
+    rate = round(player.player.rate * factor, 3)
+    player.set_rate(min(MAX_RATE, max(MIN_RATE, rate)))
+
+
+_ACTIONS: dict[str, Callable[["PlayerNode"], object]] = {
+    " ": lambda player: player.toggle_paused(),
+    "s": lambda player: player.step(),
+    "right": lambda player: player.step(),
+    "left": lambda player: player.seek_by(-_BACK_NS),
+    "up": lambda player: _multiply_rate(player, _FASTER),
+    "down": lambda player: _multiply_rate(player, 1 / _FASTER),
+}
+
+
+def _play_with(words: list[str], run: Callable[[], int]) -> int:
+    """The bag and the programs, a thread each; the end of the bag ends them all."""
+    import shlex
+
+    from navette.interop import install
+    from navette.interop.process import run_together
+    from navette.interop.program import Program
+    from navette.interop.targets import read_programs
+    from navette.packages import activate
+
+    def play_and_end() -> int:
+        code = run()
+        signal.raise_signal(signal.SIGTERM)
+        return code
+
+    install(instead_of_ros=True)
+    activate()
+    programs = [p for each in words for p in read_programs(shlex.split(each))]
+    return run_together([*programs, Program("navette bag play", (), play_and_end)])
+
+
+@contextmanager
+def _terminate_as_interrupt() -> Iterator[None]:
+    """SIGTERM ends it as cleanly as Ctrl-C does; only a main thread can."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def interrupt(signum: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,120 @@
+"""What the terminal shows of a bag that plays; on stderr, so that stdout is data."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rich.console import Console, RenderableType
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from navette.bags.play import PlayState
+from navette.bags.play.node import PlayProgress
+
+_REFRESH_HZ = 12
+_WIDTH = 32
+_BESIDE_BAR = 62  # columns that the figures beside the bar may take
+_FIRST_DATE_NS = 10**17  # before (1973) it is seconds of a simulation, not a date
+_SIGNS = {
+    PlayState.PLAYING: ("▶", "bold green"),
+    PlayState.PAUSED: ("⏸", "bold yellow"),
+    PlayState.ENDED: ("■", "dim"),
+}
+_KEYS = (
+    ("space", "pause"),
+    ("s", "step"),
+    ("←", "back"),
+    ("↑↓", "rate"),
+    ("q", "quit"),
+)
+
+
+class PlayScreen:
+    """A line on what is played and, on a terminal, one live line on how it goes."""
+
+    def __init__(self, progress: Callable[[], PlayProgress]) -> None:
+        self._progress = progress
+        self._console = Console(stderr=True, highlight=False)
+
+    def show_head(self, paths: list[Path], topics: int, url: str | None) -> None:
+        """What is played, and where to look at it."""
+        progress = self._progress()
+        length_s = (progress.end_ns - progress.begin_ns) / 1e9
+        head = Text("Playing", style="bold cyan")
+        head += Text(f"  {' '.join(p.name for p in paths)}", style="bold")
+        head += Text(f" · {length_s:.1f} s · {topics} topic{'s' * (topics != 1)}")
+        if progress.begin_ns > _FIRST_DATE_NS:
+            head += Text(f" · {_date(progress.begin_ns)}", style="dim")
+        self._console.print(head, soft_wrap=True)
+        if url is not None:
+            line = Text("live view  ", style="dim")
+            line += Text(url, style="underline bright_blue")
+            self._console.print(line, soft_wrap=True)
+
+    @contextmanager
+    def watching(self, *, keys: bool) -> Iterator[None]:
+        """Show how it goes until the block ends."""
+        if not self._console.is_terminal:
+            yield
+            return
+        if keys:
+            self._console.print(_key_line(), soft_wrap=True)
+        with Live(
+            get_renderable=self._line,
+            console=self._console,
+            refresh_per_second=_REFRESH_HZ,
+            transient=True,
+        ):
+            yield
+
+    def report(self, word: str) -> None:
+        """The end, in a line."""
+        progress = self._progress()
+        place_s = (progress.position_ns - progress.begin_ns) / 1e9
+        passes = f", pass {progress.passes}" if progress.passes > 1 else ""
+        messages = f"{progress.published} message{'s' * (progress.published != 1)}"
+        line = Text(f"{word}: ", style="bold")
+        line += Text(f"{messages}, {place_s:.1f} s{passes}")
+        self._console.print(line, soft_wrap=True)
+
+    def report_failure(self, text: str) -> None:
+        """What went wrong, in one line."""
+        self._console.print(Text(text, style="bold red"), soft_wrap=True)
+
+    def _line(self) -> RenderableType:
+        progress = self._progress()
+        sign, style = _SIGNS[progress.state]
+        place_s = (progress.position_ns - progress.begin_ns) / 1e9
+        length_s = (progress.end_ns - progress.begin_ns) / 1e9
+        width = len(f"{length_s:.1f}")
+        line = Table.grid(padding=(0, 2))
+        for _ in range(6):
+            line.add_column(no_wrap=True)  # a narrow terminal shortens, one line stays
+        line.add_row(
+            Text(f"{sign} {progress.state.value:<7}", style=style),
+            Text(f"{place_s:>{width}.1f} / {length_s:.1f} s"),
+            self._bar(place_s / length_s if length_s else 1.0, style),
+            Text(f"×{progress.rate:.3g}", style="cyan"),
+            Text(f"{progress.published} messages", style="dim"),
+            Text(f"pass {progress.passes}" if progress.passes > 1 else "", style="dim"),
+        )
+        return line
+
+    def _bar(self, share: float, style: str) -> Text:
+        width = max(0, min(_WIDTH, self._console.width - _BESIDE_BAR))
+        done = round(width * share)
+        return Text("━" * done, style=style) + Text("─" * (width - done), style="dim")
+
+
+def _key_line() -> Text:
+    line = Text()
+    for key, meaning in _KEYS:
+        line += Text(f"{key} ", style="bold") + Text(f"{meaning}   ", style="dim")
+    return line
+
+
+def _date(stamp_ns: int) -> str:
+    moment = datetime.fromtimestamp(stamp_ns // 10**9, UTC).astimezone()
+    return f"{moment:%Y-%m-%d %H:%M:%S}"

@@ -1,0 +1,201 @@
+"""``navette bag play`` as a person has it: a terminal, keys, an end."""
+
+import os
+import pty
+import re
+import select
+import signal
+import subprocess
+import sys
+import termios
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from navette.bags import BagWriter
+from navette.cli.arguments import fill_values
+from navette.cli.keys import split_keys
+from navette.msgs import definition_text, serialize
+from navette.msgs.std_msgs.msg import String
+from navette.runtime import Stopwatch
+
+S = 1_000_000_000
+LONGEST_S = 30.0
+
+
+def write_bag(path: Path, count: int = 601, period_s: float = 0.1) -> Path:
+    writer = BagWriter(path)
+    kind = "std_msgs/msg/String"
+    channel = writer.add_channel("/chatter", kind, definition_text(kind))
+    for i in range(count):
+        data = serialize(String(data=f"{i}"))
+        writer.write(channel, round((100 + i * period_s) * S), data)
+    writer.close()
+    return path
+
+
+@pytest.fixture
+def bag(tmp_path: Path) -> Path:
+    return write_bag(tmp_path / "talk.mcap")
+
+
+def command(*words: object) -> list[str]:
+    return [sys.executable, "-m", "navette.cli", "bag", "play", *map(str, words)]
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "NAVETTE_TRANSPORT": "inprocess", "TERM": "xterm"}
+
+
+# The first terminal that a session's leader opens is the one that controls it.
+_ON_TERMINAL = """
+import os, sys
+terminal = os.open(sys.argv[1], os.O_RDWR)
+for descriptor in range(3):
+    os.dup2(terminal, descriptor)
+os.execv(sys.argv[2], sys.argv[2:])
+"""
+
+
+class Terminal:
+    """A command on a terminal of its own, as a shell's foreground job."""
+
+    def __init__(self, *words: object) -> None:
+        self.descriptor, self._inner = pty.openpty()
+        termios.tcsetwinsize(self._inner, (40, 140))
+        self.before = self.settings
+        self._unread = ""
+        name = os.ttyname(self._inner)
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", _ON_TERMINAL, name, *command(*words)],
+            env=environment(),
+            start_new_session=True,
+        )
+
+    def press(self, keys: bytes) -> None:
+        os.write(self.descriptor, keys)
+
+    def wait_for(self, pattern: str) -> re.Match[str]:
+        """Read until it is shown, after what was found before."""
+        watch = Stopwatch()
+        while (found := re.search(pattern, self._unread)) is None:
+            left_s = max(0.0, LONGEST_S - watch.elapsed_s)
+            ready, _, _ = select.select([self.descriptor], [], [], left_s)
+            assert ready, f"{pattern!r} was not shown: {self._unread[-300:]!r}"
+            self._unread += os.read(self.descriptor, 65536).decode(errors="replace")
+        self._unread = self._unread[found.end() :]
+        return found
+
+    def wait_for_end(self) -> int:
+        return self.process.wait(LONGEST_S)
+
+    @property
+    def settings(self) -> object:
+        return termios.tcgetattr(self._inner)
+
+    def close(self) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        os.close(self.descriptor)
+        os.close(self._inner)
+
+
+@pytest.fixture
+def terminal(bag: Path) -> Iterator[Terminal]:
+    shown = Terminal(bag, "--pause")
+    yield shown
+    shown.close()
+
+
+@pytest.mark.slow
+def test_keys_on_a_real_terminal(terminal: Terminal) -> None:
+    terminal.wait_for("paused.* 0.0 / 60.0 s")
+    assert terminal.settings != terminal.before  # keys come without Enter
+    terminal.press(b"s")
+    terminal.wait_for("1 messages")
+    terminal.press(b"\x1b[C")
+    terminal.wait_for(" 0.1 / 60.0 s.*2 messages")
+    terminal.press(b"\x1b[A\x1b[A")
+    terminal.wait_for("×1.21")
+    terminal.press(b"\x1bOB")
+    terminal.wait_for("×1.1\x1b")
+    terminal.press(b" ")
+    terminal.wait_for("playing")
+    terminal.wait_for(" 0.[3-9] / 60.0 s")
+    terminal.press(b" ")
+    terminal.wait_for("paused")
+    terminal.press(b"\x1b[D")
+    terminal.wait_for(" 0.0 / 60.0 s")
+    terminal.press(b"q")
+    terminal.wait_for(r"played: .*messages, 0.0 s")
+    assert terminal.wait_for_end() == 0
+    assert terminal.settings == terminal.before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("end", ["Ctrl-C", "SIGTERM"])
+def test_the_terminal_is_put_back(terminal: Terminal, end: str) -> None:
+    terminal.wait_for("paused.* 0.0 / 60.0 s")
+    if end == "Ctrl-C":
+        terminal.press(b"\x03")
+    else:
+        terminal.process.send_signal(signal.SIGTERM)
+    terminal.wait_for("interrupted")
+    assert terminal.wait_for_end() == 130
+    assert terminal.settings == terminal.before
+
+
+@pytest.mark.slow
+def test_piped_it_is_plain(bag: Path) -> None:
+    done = subprocess.run(
+        command(bag, "-r", "1000", "-s", "1", "-u", "10"),
+        env=environment(),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=LONGEST_S,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "")
+    assert done.stderr.splitlines() == [
+        "Playing  talk.mcap · 10.0 s · 1 topic",
+        "played: 101 messages, 10.0 s",
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--topics", "/scan"], "unknown topic '/scan'; known: /chatter"),
+        (["-r", "0"], "rate 0.0: wanted"),
+        (["-s", "99"], "start offset 99 s: the bag is only 60.000 s long"),
+    ],
+)
+def test_mistakes_are_named(bag: Path, words: list[str], said: str) -> None:
+    done = subprocess.run(
+        command(bag, *words),
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=LONGEST_S,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert said in done.stderr
+
+
+def test_keys_are_told_apart() -> None:
+    assert split_keys("s \x1b[A\x1bOBq") == ["s", " ", "up", "down", "q"]
+    assert split_keys("\x1b[C\x1b[D\x1b") == ["right", "left", "escape"]
+    assert split_keys("\x1b[1;5A\x1b[3~x") == ["up", "x"]
+    assert split_keys("") == []
+    assert split_keys("\x1b[") == ["escape", "["]
+
+
+def test_the_clock_needs_no_number() -> None:
+    assert fill_values(["--clock", "a.mcap"]) == ["--clock", "40", "a.mcap"]
+    assert fill_values(["--clock", "100"]) == ["--clock", "100"]
+    assert fill_values(["a", "--clock"]) == ["a", "--clock", "40"]
