@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 from navette import runtime
 from navette.errors import CallbackError, NavetteError
 from navette.launch.overrides import check_reached
+from navette.packages import find_package
+from navette.packages.executables import BUILT_IN
 from navette.runtime import Context, Node, PacedClock, TimeSource
 from navette.runtime.overrides import ParameterOverrides
 
@@ -57,6 +59,32 @@ def sim() -> None:
         _profile(resolved, "sim"),
         PacedClock(given.speed),
     )
+
+
+@_program
+def odom_integrator() -> None:
+    """The distance travelled."""
+    from navette.localization.distance.node import OdomIntegratorNode
+
+    text = "positions or velocities → /odom_integrator/distance"
+    _parse(_parser("odom_integrator", text))
+    config = find_package(BUILT_IN).share / "localization/config/odom_integrator.yaml"
+    of_all = ParameterOverrides()
+    of_all.add_file(config)
+    _run(
+        lambda context: OdomIntegratorNode(context=context),
+        _under_any_name(of_all, "odom_integrator"),
+    )
+
+
+@_program
+def ekf() -> None:
+    """Where the robot is, by what its sensors say."""
+    from navette.localization.ekf.node import EkfNode
+
+    text = "odometry, IMU, GNSS, as parameters say → /odom/filtered, /tf"
+    _parse(_parser("ekf", text))
+    _run(lambda context: EkfNode(context=context), ParameterOverrides())
 
 
 @_program
@@ -184,9 +212,15 @@ def _resolve(given: Any) -> "ResolvedScene":
 
 
 def _profile(resolved: "ResolvedScene", name: str) -> ParameterOverrides:
-    """What the robot asks of this node, whatever name it is given in the end."""
-    of_all, own = ParameterOverrides(), ParameterOverrides()
+    """What the robot asks of this node."""
+    of_all = ParameterOverrides()
     resolved.override_parameters(of_all)
+    return _under_any_name(of_all, name)
+
+
+def _under_any_name(of_all: ParameterOverrides, name: str) -> ParameterOverrides:
+    """What is there for this node, whatever name it is given in the end."""
+    own = ParameterOverrides()
     for parameter, override in of_all.for_node(f"/{name}").items():
         own.add("/**", {parameter: override.value}, override.origin)
     return own

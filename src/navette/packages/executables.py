@@ -20,6 +20,8 @@ _STAGES = {
     name: ("navette.launch.stages", name)
     for name in (
         "sim",
+        "odom_integrator",
+        "ekf",
         "costmap",
         "map_memory",
         "planner",

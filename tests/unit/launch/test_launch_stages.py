@@ -62,6 +62,16 @@ def test_a_stage_has_its_robots_parameters_and_then_its_own() -> None:
     graph.close()
 
 
+@pytest.mark.slow
+def test_the_odom_integrator_finds_its_configuration_under_any_name() -> None:
+    graph = new_graph()
+    words = "odom_integrator --ros-args -r __node:=trip -p odom_type:=vel"
+    with running(graph, *words.split()):
+        values = parameters(graph, "/trip", "odom_type", "topic")
+    assert values == ["vel", "/gnss_driver/odometry"]
+    graph.close()
+
+
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
@@ -69,6 +79,8 @@ def test_a_stage_has_its_robots_parameters_and_then_its_own() -> None:
         ("planner --ros-args -p clearence:=1", "unknown parameter 'clearence'"),
         ("costmap --ros-args -p use_sim_time:=3", "is INTEGER, wanted BOOL"),
         ("sim --speed 0", "real-time factor 0.0"),
+        ("odom_integrator --ros-args -p odom_type:=speed", "one of pos, gps, vel"),
+        ("ekf", "wanted the topic of at least one of odom0"),
         ("missions --goal 1 nan", "'goals': nan is not allowed"),
     ],
 )
