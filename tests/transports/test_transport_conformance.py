@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import PAIRS, InProcessPair, Pair, message_of
+from transport_benches import PAIRS, InProcessPair, Pair, message_of, until
 
 from navette.errors import InvalidValueError
 from navette.msgs.nav_msgs.msg import OccupancyGrid
@@ -154,6 +154,7 @@ def test_late_joiner_gets_the_last_depth_samples(bench: Bench) -> None:
     newest, _ = bench.subscription(qos=one_only)
     shared, _ = bench.subscription(qos=LATCHED, shared=True)
     volatile, _ = bench.subscription()
+    until(lambda: (len(all_kept), len(shared), len(newest)) == (3, 3, 1), "the past")
     bench.settle()
     assert texts(all_kept) == ["m3", "m4", "m5"]
     assert texts(shared) == ["m3", "m4", "m5"]
@@ -167,10 +168,10 @@ def test_latched_samples_are_copies(bench: Bench) -> None:
     publisher.send(message, 0, 1)
     message.data = "after"
     first, _ = bench.subscription(qos=LATCHED)
-    bench.settle()
+    until(lambda: len(first) == 1, "the past")
     message_of(first[0]).data = "mine"
     second, _ = bench.subscription(qos=LATCHED)
-    assert texts(second) == ["before"]
+    until(lambda: texts(second) == ["before"], "the past")
 
 
 def test_keep_all_keeps_all(bench: Bench) -> None:
