@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 _FAILED = 1
 _INTERRUPTED = 130
 _DOWN_S = 60.0
-_SAMPLE_S = 0.15
 _LOOK_S = 0.1
 
 Words = Annotated[
@@ -119,29 +118,17 @@ def ps(
     ] = False,
 ) -> None:
     """List the modules' processes: state, pid, since when, use, restarts, reason."""
-    from dataclasses import asdict
-
-    from navette.cli.modules_view import show_processes
+    from navette.cli.modules_view import as_record, show_processes
     from navette.modules.session import views
 
     clients = _all_clients() if all_projects else [_client(_project(file))]
-    everything = []
+    everything: list[dict[str, object]] = []
     for client in clients:
         found = views(client.status())
         usage = _usage(found)
         if as_json:
-            everything += [
-                {
-                    **asdict(view),
-                    "state": view.state.value,
-                    "folder": str(client.project.folder),
-                    "cpu": usage[view.pid][0] if view.pid in usage else None,
-                    "memory_bytes": usage[view.pid][1].memory_bytes
-                    if view.pid in usage
-                    else None,
-                }
-                for view in found
-            ]
+            folder = str(client.project.folder)
+            everything += [as_record(view, folder, usage) for view in found]
             continue
         if all_projects and found:
             show(f"{client.project.folder}")
@@ -223,13 +210,14 @@ def _all_clients() -> "list[Client]":
 def _watch_start(
     client: "Client", names: Sequence[str], timeout_s: float, *, stay: bool
 ) -> None:
-    from navette.cli.modules_view import Progress, show_trouble
+    from navette.cli.modules_view import Progress, show_addresses, show_trouble
     from navette.modules.session import last_words, until_settled
 
     found = Progress().show(until_settled(client, names, timeout_s))
     troubled = [view for view in found if view.is_in_trouble]
     for view in troubled:
         show_trouble(view, last_words(client.project, view))
+    show_addresses(last_words(client.project, view) for view in found)
     late = [view.label for view in found if not view.is_settled and not troubled]
     if late:
         note(f"not ready after {timeout_s:g} s: {', '.join(late)}")
@@ -295,19 +283,11 @@ def _reader(project: "Project", modules: Sequence[str]) -> "LogReader":
     )
 
 
-def _usage(found: "Sequence[ProcessView]") -> "dict[int, tuple[float, Usage]]":
-    """Process id → share of a processor over a moment, and use."""
+def _usage(found: "Sequence[ProcessView]") -> "dict[int, Usage]":
+    """Process id → what it uses."""
     from navette.modules.usage import usage_of
 
-    pids = [view.pid for view in found if view.pid]
-    before = usage_of(pids)
-    if not before:
-        return {}
-    threading.Event().wait(_SAMPLE_S)
-    return {
-        pid: ((now.cpu_s - before.get(pid, now).cpu_s) / _SAMPLE_S, now)
-        for pid, now in usage_of(pids).items()
-    }
+    return usage_of(view.pid for view in found if view.pid)
 
 
 def _nothing_is_up(client: "Client") -> None:

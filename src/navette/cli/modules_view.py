@@ -1,8 +1,9 @@
 """How modules and what they say look: for people on a terminal, and piped."""
 
 import json
+import re
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from datetime import datetime
 from typing import TYPE_CHECKING
@@ -32,7 +33,11 @@ _MARKS = {
     State.FAILED: ("✗", "bold red"),
 }
 _LABEL_STYLES = ("cyan", "green", "magenta", "yellow", "blue", "bright_cyan")
-_LEVELS = (("[FATAL]", "bold red"), ("[ERROR]", "red"), ("[WARN]", "yellow"))
+_LEVELS = {"FATAL": "bold red", "ERROR": "red", "WARN": "yellow", "DEBUG": "dim"}
+# How ROS 2 programs log; time and name stand before the line already.
+_ROS_LINE = re.compile(
+    r"\[(?P<level>[A-Z]+)\] \[\d+\.\d+\] \[(?P<name>[^\]]*)\]: (?P<text>.*)"
+)
 
 
 def console() -> Console:
@@ -93,14 +98,18 @@ def show_trouble(view: ProcessView, words: Sequence[str]) -> None:
         out.print(Text(f"  {word}"))
 
 
+def show_addresses(words: Iterable[Sequence[str]]) -> None:
+    """Where to look at what was started, if a process said so."""
+    for line in (line for lines in words for line in lines if "http://" in line):
+        console().print(Text(plain_message(line), style="bright_blue"))
+
+
 # -- ps ------------------------------------------------------------------------------
 
 _HEADS = ("MODULE", "PROCESS", "STATE", "PID", "SINCE", "CPU", "MEMORY", "RESTARTS")
 
 
-def show_processes(
-    found: Sequence[ProcessView], usage: dict[int, tuple[float, "Usage"]]
-) -> None:
+def show_processes(found: Sequence[ProcessView], usage: "Mapping[int, Usage]") -> None:
     """The table of ``navette ps``."""
     rows = [_row(view, usage) for view in found]
     if not is_terminal():
@@ -127,8 +136,9 @@ def show_processes(
     console().print(table)
 
 
-def _row(view: ProcessView, usage: dict[int, tuple[float, "Usage"]]) -> tuple[str, ...]:
-    share, used = usage.get(view.pid or 0, (None, None))
+def _row(view: ProcessView, usage: "Mapping[int, Usage]") -> tuple[str, ...]:
+    used = usage.get(view.pid or 0)
+    share = None if used is None else _share(view, used)
     return (
         view.module,
         view.name,
@@ -140,6 +150,25 @@ def _row(view: ProcessView, usage: dict[int, tuple[float, "Usage"]]) -> tuple[st
         str(view.restarts or ""),
         view.reason if view.state is not State.RUNNING else "",
     )
+
+
+def _share(view: ProcessView, used: "Usage") -> float:
+    """Of a processor, over its whole run."""
+    return used.cpu_s / max(view.seconds, 0.1)
+
+
+def as_record(
+    view: ProcessView, folder: str, usage: "Mapping[int, Usage]"
+) -> dict[str, object]:
+    """A process of ``navette ps --json``."""
+    used = usage.get(view.pid or 0)
+    return {
+        **asdict(view),
+        "state": view.state.value,
+        "folder": folder,
+        "cpu": None if used is None else round(_share(view, used), 4),
+        "memory_bytes": None if used is None else used.memory_bytes,
+    }
 
 
 def duration(seconds: float) -> str:
@@ -164,6 +193,8 @@ class LogView:
 
     def show(self, lines: Iterable["LogLine"]) -> None:
         """Print lines, at once."""
+        lines = list(lines)
+        self._width = max([self._width, *(len(line.label) for line in lines)])
         for line in lines:
             if self._as_json:
                 sys.stdout.write(json.dumps(asdict(line)) + "\n")
@@ -179,7 +210,6 @@ class LogView:
 
     def _styled(self, line: "LogLine") -> Text:
         label = line.label
-        self._width = max(self._width, len(label))
         style = self._styles.setdefault(
             label, _LABEL_STYLES[len(self._styles) % len(_LABEL_STYLES)]
         )
@@ -190,6 +220,16 @@ class LogView:
         if line.event:
             text.append(line.text, style="dim italic")
         else:
-            level = next((s for word, s in _LEVELS if word in line.text[:40]), "")
-            text.append(Text.from_ansi(line.text, style=level))
+            level = _ROS_LINE.match(line.text)
+            style = _LEVELS.get(level["level"], "") if level else ""
+            text.append(Text.from_ansi(plain_message(line.text), style=style))
         return text
+
+
+def plain_message(line: str) -> str:
+    """A line of ROS 2's log without what stands before the message."""
+    found = _ROS_LINE.fullmatch(line)
+    if found is None:
+        return line
+    level = found["level"]
+    return found["text"] if level == "INFO" else f"{level}: {found['text']}"

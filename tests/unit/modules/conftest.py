@@ -59,6 +59,7 @@ class Bench:
 def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
     monkeypatch.setenv("NAVETTE_STATE_DIR", str(tmp_path / "state"))
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
+    monkeypatch.setenv("NAVETTE_TRANSPORT", "inprocess")
     (tmp_path / "run").mkdir()
     folder = tmp_path / "project"
     folder.mkdir()
