@@ -44,13 +44,6 @@ class ChunkedReader:
     def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
         raise NotImplementedError
 
-    def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
-        """Stamps by channel; overridden where an index has them."""
-        found: dict[int, list[int]] = {}
-        for entry in self._entries(chunk, self._read_chunk(chunk)):
-            found.setdefault(entry.channel, []).append(entry.stamp_ns)
-        return found
-
     def close(self) -> None:
         """Close the file; twice is harmless."""
         raise NotImplementedError
@@ -68,6 +61,26 @@ class ChunkedReader:
 
     # -- what all of them do -----------------------------------------------------
 
+    def topic_of(self, channel: int) -> BagTopic | None:
+        """The topic of a channel; None if nobody named it."""
+        return self._topic_of.get(channel)
+
+    def entries(self, chunk: Chunk) -> list[Entry]:
+        """The messages of a chunk, as they lie.
+
+        Raises:
+            FileFormatError: it is damaged.
+        """
+        return self._entries(chunk, self._read_chunk(chunk))
+
+    def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
+        """Stamps by channel as an index has them; None where there is none.
+
+        Raises:
+            FileFormatError: the index is damaged.
+        """
+        raise NotImplementedError
+
     @property
     def files(self) -> tuple[Path, ...]:
         return (self.path,)
@@ -79,6 +92,18 @@ class ChunkedReader:
     @property
     def end_ns(self) -> int:
         return max((chunk.end_ns for chunk in self._filled()), default=0)
+
+    def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
+        try:
+            indexed = self.index_of(chunk)
+        except FileFormatError:
+            indexed = None  # the messages themselves may be sound
+        if indexed is not None:
+            return indexed
+        found: dict[int, list[int]] = {}
+        for entry in self.entries(chunk):
+            found.setdefault(entry.channel, []).append(entry.stamp_ns)
+        return found
 
     def _filled(self) -> Iterator[Chunk]:
         """Chunks that hold messages; others have no times."""

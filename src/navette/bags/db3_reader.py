@@ -114,6 +114,20 @@ class Db3Reader:
             on_damage(Damage(self.path, 0, reason))
             yield from self._salvage(wanted, start_ns, end_ns, last, on_damage)
 
+    def integrity(self) -> Iterator[str]:
+        """What SQLite finds wrong with the database."""
+        try:
+            for (line,) in self._database.execute("PRAGMA integrity_check(20)"):
+                if line != "ok":
+                    yield str(line)
+            query = "SELECT count(*) FROM messages WHERE topic_id NOT IN"
+            count = self._database.execute(f"{query} (SELECT id FROM topics)")
+            (unknown,) = count.fetchone()
+            if unknown:
+                yield f"{unknown} messages of a topic that is not there"
+        except sqlite3.Error as error:
+            yield str(error)
+
     # -- opening -------------------------------------------------------------------
 
     def _read_head(self) -> None:

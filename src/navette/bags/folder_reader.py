@@ -116,6 +116,15 @@ class FolderReader:
         return topic
 
     @property
+    def readers(self) -> Sequence[BagReader]:
+        """Of the files, by their first stamps."""
+        return self._readers
+
+    def topic_of(self, topic: BagTopic) -> BagTopic:
+        """The topic of the whole for that of a file."""
+        return self._topic_of[topic]
+
+    @property
     def files(self) -> tuple[Path, ...]:
         return tuple(path for reader in self._readers for path in reader.files)
 

@@ -1,5 +1,6 @@
 """What is where in an MCAP file: by its summary, or by going through its records."""
 
+import re
 import zlib
 from dataclasses import dataclass, field
 from typing import Any
@@ -26,6 +27,13 @@ from navette.errors import DecodeError, FileFormatError
 _FOOTER_SIZE = HEAD.size + 20
 _LARGEST_SUMMARY = 1 << 30
 _BARE_BYTES = 1 << 20
+_BLOCK = 1 << 20
+_MOST_PROBLEMS = 100
+# Opcodes of the specification; those from 0x80 on are anybody's own.
+_OPCODES = frozenset(range(1, 0x10)) | frozenset(range(0x80, 0x100))
+_COMPRESSION = re.compile(rb"\x04\0\0\0zstd|\x03\0\0\0lz4")
+# From a chunk's first byte to that: opcode, length, times, size, checksum.
+_TO_COMPRESSION = 9 + 28
 
 
 @dataclass
@@ -145,24 +153,58 @@ def _note(index: McapIndex, opcode: int, content: bytes) -> None:
 
 
 def scan(file: RecordFile) -> McapIndex:
-    """The index by going from record to record, up to the first that is broken.
+    """The index by going from record to record.
 
-    Chunks are unpacked only where they hold what is not known yet.
+    Chunks are unpacked only where they hold what is not known yet. Behind a broken
+    record it goes on at the next chunk that can be found.
     """
     index = McapIndex(counts={})
+    walk = _Walk(file, index)
+    position: int | None = len(MAGIC)
     try:
         position = _read_header(file, index)
-        walk = _Walk(file, index)
-        while position < file.size:
+    except FileFormatError as error:
+        index.problems.append(f"the header cannot be read ({error.reason})")
+    while position is not None and position < file.size:
+        try:
             head = file.head(position)
             if head.opcode in (Opcode.DATA_END, Opcode.FOOTER):
                 break
+            if head.opcode not in _OPCODES:
+                raise file.error(position, f"record of kind {head.opcode}")
             walk.visit(head)
             position = head.end
-    except (FileFormatError, DecodeError) as error:
-        reason = error.reason if isinstance(error, FileFormatError) else str(error)
-        index.problems.append(f"the data ends early ({reason})")
+        except (FileFormatError, DecodeError) as error:
+            reason = error.reason if isinstance(error, FileFormatError) else str(error)
+            position = _next_chunk(file, position + 1)
+            where = "the rest is lost" if position is None else f"on at {position}"
+            index.problems.append(f"broken record ({reason}); {where}")
+            if len(index.problems) > _MOST_PROBLEMS:
+                index.problems.append("too much is broken; given up")
+                break
     return index
+
+
+def _next_chunk(file: RecordFile, start: int) -> int | None:
+    """Where the next sound chunk head is, by the name of its compression."""
+    position = start
+    while position < file.size:
+        block = file.read(position, min(_BLOCK, file.size - position))
+        for found in _COMPRESSION.finditer(block):
+            candidate = position + found.start() - _TO_COMPRESSION
+            if candidate < start:
+                continue
+            try:
+                head = file.head(candidate)
+                if head.opcode == Opcode.CHUNK:
+                    chunk_head(file, head)
+                    return candidate
+            except FileFormatError:
+                continue
+        if position + len(block) >= file.size:
+            break
+        position += len(block) - 8  # a name may lie across
+    return None
 
 
 class _Walk:

@@ -75,15 +75,23 @@ class McapReader(ChunkedReader):
     def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
         return message_entries(self.path, chunk, data)
 
-    def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
-        if not chunk.bare:
-            try:
-                found = read_message_indexes(self._file, chunk.position + chunk.length)
-            except DecodeError:
-                found = {}
-            if found:
-                return found
-        return super()._stamps_of(chunk)
+    @property
+    def is_indexed(self) -> bool:
+        """Whether the file was opened by its summary."""
+        return self.index.from_summary
+
+    def walked(self) -> McapIndex:
+        """What is found by going through the records instead."""
+        return scan(self._file)
+
+    def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
+        if chunk.bare:
+            return None
+        after = chunk.position + chunk.length
+        try:
+            return read_message_indexes(self._file, after) or None
+        except DecodeError as error:
+            raise self._file.error(after, str(error)) from error
 
 
 def _topic(

@@ -1,5 +1,6 @@
 """What is where in a ROS 1 bag: by its index, or by going through its records."""
 
+import re
 import struct
 from collections import Counter
 from dataclasses import dataclass, field
@@ -23,6 +24,10 @@ from navette.bags.ros1_records import (
 from navette.errors import DecodeError, FileFormatError
 
 _MOST_RECORDS = 10_000_000
+_MOST_PROBLEMS = 100
+_BLOCK = 1 << 20
+_OP_CHUNK = re.compile(rb"\x04\0\0\0op=\x05")
+_LONGEST_HEADER = 64
 
 
 class Connection(NamedTuple):
@@ -134,23 +139,54 @@ def _chunk_of_info(
 
 
 def scan(file: BagFile) -> BagIndex:
-    """The index by going from record to record, up to the first that is broken.
+    """The index by going from record to record.
 
     The last chunk of a recording that was killed has no length yet: its records are
-    met as if they were outside of any chunk.
+    met as if they were outside of any chunk. Behind a broken record it goes on at the
+    next chunk that can be found.
     """
     index = BagIndex()
     walk = _Walk(file, index)
-    position = len(MAGIC)
-    try:
-        while position < file.size:
+    position: int | None = len(MAGIC)
+    while position is not None and position < file.size:
+        try:
             record = file.record(position)
             walk.visit(record)
             position = record.end
-    except (FileFormatError, DecodeError) as error:
-        reason = error.reason if isinstance(error, FileFormatError) else str(error)
-        index.problems.append(f"the data ends early ({reason})")
+        except (FileFormatError, DecodeError) as error:
+            reason = error.reason if isinstance(error, FileFormatError) else str(error)
+            position = _next_chunk(file, position + 1)
+            where = "the rest is lost" if position is None else f"on at {position}"
+            index.problems.append(f"broken record ({reason}); {where}")
+            if len(index.problems) > _MOST_PROBLEMS:
+                index.problems.append("too much is broken; given up")
+                break
     return index
+
+
+def _next_chunk(file: BagFile, start: int) -> int | None:
+    """Where the next sound chunk begins, by the field that says it is one."""
+    position = start
+    while position < file.size:
+        block = file.read(position, min(_BLOCK, file.size - position))
+        for found in _OP_CHUNK.finditer(block):
+            # The field may be any of the header's three.
+            at = position + found.start()
+            for candidate in range(at - 4, max(start, at - _LONGEST_HEADER) - 1, -1):
+                if _is_chunk(file, candidate):
+                    return candidate
+        if position + len(block) >= file.size:
+            break
+        position += len(block) - 8  # a field may lie across
+    return None
+
+
+def _is_chunk(file: BagFile, position: int) -> bool:
+    try:
+        record = file.record(position, wanted=Op.CHUNK)
+    except FileFormatError:
+        return False
+    return b"compression" in record.fields and b"size" in record.fields
 
 
 class _Walk:

@@ -83,16 +83,20 @@ class Ros1Reader(ChunkedReader):
     def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
         return message_entries(self.path, chunk, data)
 
-    def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
-        if not chunk.bare:
-            found = self._stamps_of_index(chunk)
-            if found:
-                return found
-        return super()._stamps_of(chunk)
+    @property
+    def is_indexed(self) -> bool:
+        """Whether the file was opened by its index."""
+        return self.index.from_index
 
-    def _stamps_of_index(self, chunk: Chunk) -> dict[int, list[int]]:
-        """From the index records that follow the chunk; {} if they are not there."""
+    def walked(self) -> BagIndex:
+        """What is found by going through the records instead."""
+        return scan(self._file)
+
+    def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
+        """From the index records that follow the chunk."""
         found: dict[int, list[int]] = {}
+        if chunk.bare:
+            return None
         position = chunk.position + chunk.length
         try:
             while position < self.size:
@@ -107,6 +111,6 @@ class Ros1Reader(ChunkedReader):
                 ]
                 found.setdefault(uint32(record.fields, b"conn"), []).extend(stamps)
                 position = record.end
-        except (FileFormatError, DecodeError, struct.error):
-            return {}
-        return found
+        except (DecodeError, struct.error) as error:
+            raise self._file.error(position, str(error)) from error
+        return found or None

@@ -26,7 +26,7 @@ def load_definition_text(name: str, text: str) -> None:
     source = f"definition of {name}"
     specs = read_definition(name, text, source)
     for spec in specs:
-        if _differs(spec):
+        if differs(spec):
             raise FileFormatError(source, f"{spec.name} is known with other fields")
     _add(specs, source)
 
@@ -44,7 +44,7 @@ def load_private_definition(name: str, text: str) -> str:
     """
     source = f"definition of {name}"
     specs = read_definition(name, text, source)
-    differing = {spec.name for spec in specs if _differs(spec)}
+    differing = {spec.name for spec in specs if differs(spec)}
     # What refers to a private type is not the public type of its own name, either.
     while True:
         more = {
@@ -72,7 +72,8 @@ def _is_known(spec: Spec) -> bool:
     return all(_known_fields(part.name) is not None for part in messages_of(spec))
 
 
-def _differs(spec: Spec) -> bool:
+def differs(spec: Spec) -> bool:
+    """Whether the name is known with other fields."""
     for part in messages_of(spec):
         known = _known_fields(part.name)
         if known is not None and known != _fields(part):

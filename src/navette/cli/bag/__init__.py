@@ -1,4 +1,4 @@
-"""``navette bag …``: recordings."""
+"""``navette bag …``: record, look into, repair and rework recordings."""
 
 from navette.cli.bag.app import bag
 

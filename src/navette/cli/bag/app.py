@@ -2,16 +2,20 @@
 
 import typer
 
+from navette.cli.bag import edit_verbs, look_verbs
 from navette.cli.bag.play import play
 
 bag = typer.Typer(
     name="bag",
-    help="Recordings: play them to whoever listens.",
+    help="Recordings (.mcap, .bag, .db3): play, look into, check, repair, rework them.",
     no_args_is_help=True,
 )
 bag.command()(play)
-
-
-@bag.callback()
-def _verbs() -> None:
-    """Recordings."""
+bag.command()(look_verbs.info)
+bag.command("list")(look_verbs.list_)
+bag.command()(look_verbs.check)
+bag.command()(edit_verbs.recover)
+bag.command()(edit_verbs.convert)
+bag.command("filter")(edit_verbs.filter_)
+bag.command()(edit_verbs.cut)
+bag.command()(edit_verbs.merge)

@@ -1,0 +1,246 @@
+"""Says what is wrong with a recording."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+from navette.bags.bag import BagReader, BagTopic, Damage
+from navette.bags.chunked_reader import ChunkedReader
+from navette.bags.chunks import Chunk, Entry
+from navette.bags.db3_reader import Db3Reader
+from navette.bags.folder_reader import FolderReader
+from navette.bags.mcap_reader import McapReader
+from navette.bags.message_types import Decoder
+from navette.bags.opening import open_bag
+from navette.bags.ros1_reader import Ros1Reader
+from navette.errors import FileFormatError, NavetteError
+
+_MOST = 20
+OnBytes = Callable[[int], None]
+
+
+class Severity(Enum):
+    """What a finding means for who reads the recording."""
+
+    ERROR = "error"
+    """Messages are lost, or a reader may refuse the file."""
+    WARNING = "warning"
+    """All messages are there, but something about them is odd."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that is wrong."""
+
+    severity: Severity
+    text: str
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """What was found, and what could be read."""
+
+    path: Path
+    findings: tuple[Finding, ...]
+    messages: int
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether there are no errors."""
+        return all(f.severity is not Severity.ERROR for f in self.findings)
+
+
+class _Findings:
+    """Collects; of many alike, the first and how many more."""
+
+    def __init__(self) -> None:
+        self.found: list[Finding] = []
+        self._more: Counter[str] = Counter()
+
+    def error(self, kind: str, text: str) -> None:
+        self._add(Severity.ERROR, kind, text)
+
+    def warning(self, kind: str, text: str) -> None:
+        self._add(Severity.WARNING, kind, text)
+
+    def _add(self, severity: Severity, kind: str, text: str) -> None:
+        self._more[kind] += 1
+        if self._more[kind] <= _MOST:
+            self.found.append(Finding(severity, text))
+
+    def finished(self) -> tuple[Finding, ...]:
+        more = [
+            Finding(Severity.WARNING, f"{count - _MOST} more of the kind: {kind}")
+            for kind, count in self._more.items()
+            if count > _MOST
+        ]
+        return (*self.found, *more)
+
+
+def check_bag(
+    path: Path | str, *, decode: bool = False, on_bytes: OnBytes | None = None
+) -> CheckReport:
+    """Read all of a recording and compare it with what it says of itself.
+
+    Args:
+        decode: also read every message as its type.
+        on_bytes: told how many bytes were gone through since it was last told.
+    """
+    findings = _Findings()
+    path = Path(path)
+    try:
+        reader = open_bag(path)
+    except FileFormatError as error:
+        return CheckReport(path, (Finding(Severity.ERROR, error.reason),), 0)
+    with reader:
+        for problem in reader.problems:
+            findings.error("problem", problem)
+        counted = _check(reader, findings, on_bytes or _ignore)
+        for text in out_of_order(reader):
+            findings.warning("order", text)
+        _check_counts(reader, counted, findings)
+        if decode:
+            _check_messages(reader, findings)
+    return CheckReport(path, findings.finished(), sum(counted.values()))
+
+
+def _ignore(count: int) -> None:
+    """Nobody watches."""
+
+
+def _check(
+    reader: BagReader, findings: _Findings, on_bytes: OnBytes
+) -> Counter[BagTopic]:
+    if isinstance(reader, FolderReader):
+        counted: Counter[BagTopic] = Counter()
+        for each in reader.readers:
+            found = _check(each, findings, on_bytes)
+            for topic, count in found.items():
+                counted[reader.topic_of(topic)] += count
+        return counted
+    if isinstance(reader, ChunkedReader):
+        return _check_chunks(reader, findings, on_bytes)
+    if isinstance(reader, Db3Reader):
+        for problem in reader.integrity():
+            findings.error("database", f"{reader.path.name}: {problem}")
+    return _count(reader, findings)
+
+
+def _count(reader: BagReader, findings: _Findings) -> Counter[BagTopic]:
+    def damaged(damage: Damage) -> None:
+        findings.error("data", f"{damage.path.name}: {damage.reason}")
+
+    return Counter(m.topic for m in reader.messages(on_damage=damaged))
+
+
+def _check_counts(
+    reader: BagReader, counted: Counter[BagTopic], findings: _Findings
+) -> None:
+    for topic, said in reader.counts().items():
+        if said != counted[topic]:
+            findings.error(
+                "counts",
+                f"{topic.name}: {counted[topic]} messages, the file says {said}",
+            )
+
+
+def _check_chunks(
+    reader: ChunkedReader, findings: _Findings, on_bytes: OnBytes
+) -> Counter[BagTopic]:
+    counted: Counter[BagTopic] = Counter()
+    if isinstance(reader, McapReader | Ros1Reader):
+        _check_index(reader, findings)
+    for chunk in reader.chunks:
+        try:
+            entries = reader.entries(chunk)
+        except FileFormatError as error:
+            findings.error("chunk", error.reason)
+            continue
+        _check_chunk(reader, chunk, entries, findings)
+        for entry in entries:
+            topic = reader.topic_of(entry.channel)
+            if topic is not None:
+                counted[topic] += 1
+        on_bytes(chunk.length)
+    return counted
+
+
+def _check_chunk(
+    reader: ChunkedReader, chunk: Chunk, entries: list[Entry], findings: _Findings
+) -> None:
+    where = f"byte {chunk.position}: chunk"
+    unknown = {e.channel for e in entries if reader.topic_of(e.channel) is None}
+    for channel in sorted(unknown):
+        findings.error(
+            "channel", f"{where}: messages of channel {channel}, never named"
+        )
+    if entries:
+        first = min(entry.stamp_ns for entry in entries)
+        last = max(entry.stamp_ns for entry in entries)
+        if (first, last) != (chunk.start_ns, chunk.end_ns):
+            findings.error(
+                "times",
+                f"{where}: stamps {first}…{last}, its head says "
+                f"{chunk.start_ns}…{chunk.end_ns}",
+            )
+    try:
+        indexed = reader.index_of(chunk)
+    except FileFormatError as error:
+        findings.error("index", error.reason)
+        return
+    if indexed is None:
+        return
+    there = Counter((entry.channel, entry.stamp_ns) for entry in entries)
+    said = Counter((c, stamp) for c, stamps in indexed.items() for stamp in stamps)
+    if there != said:
+        missing, wrong = (there - said).total(), (said - there).total()
+        findings.error(
+            "index", f"{where}: its index lacks {missing} messages, {wrong} are wrong"
+        )
+
+
+def _check_index(reader: McapReader | Ros1Reader, findings: _Findings) -> None:
+    """Whether index and records tell of the same chunks."""
+    if not reader.is_indexed:
+        return
+    walked = reader.walked()
+    for problem in walked.problems:
+        findings.error("records", problem)
+    named = {chunk.position for chunk in reader.chunks}
+    there = {chunk.position for chunk in walked.chunks}
+    for position in sorted(there - named):
+        findings.error("index", f"byte {position}: a chunk that the index lacks")
+    for position in sorted(named - there):
+        findings.error("index", f"byte {position}: the index names a chunk, it is none")
+
+
+def _check_messages(reader: BagReader, findings: _Findings) -> None:
+    decoders: dict[BagTopic, Decoder | None] = {}
+    for message in reader.messages(on_damage=lambda damage: None):
+        topic = message.topic
+        try:
+            if topic not in decoders:
+                decoders[topic] = None
+                decoders[topic] = Decoder(topic)
+            decoder = decoders[topic]
+            if decoder is not None:
+                decoder(message.data)
+        except NavetteError as error:
+            findings.error(
+                f"{topic.name} unreadable",
+                f"{topic.name} at {message.stamp_ns} ns: {error}",
+            )
+
+
+def out_of_order(reader: BagReader) -> Iterator[str]:
+    """Topics whose stamps go back in the order in which they were written."""
+    last: dict[BagTopic, int] = {}
+    back: Counter[BagTopic] = Counter()
+    for topic, stamp in reader.stamps():
+        if stamp < last.get(topic, stamp):
+            back[topic] += 1
+        last[topic] = stamp
+    for topic, count in back.items():
+        yield f"{topic.name}: time goes back {count} times in the order of the file"

@@ -1,0 +1,175 @@
+"""What is in a recording, in figures."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from navette.bags.bag import BagReader, BagTopic
+from navette.errors import NavetteError
+from navette.msgs import get_interface, type_hash
+from navette.msgs.definition_sections import read_definition
+
+_BATCH = 65536
+
+
+@dataclass(frozen=True)
+class TopicSummary:
+    """One topic in figures."""
+
+    topic: BagTopic
+    count: int
+    rate_hz: float | None
+    """Median rate; None with fewer than two messages (or all at one time)."""
+    longest_gap_s: float | None
+    """Longest time between two messages."""
+    gap_start_s: float | None
+    """When that gap began, in seconds since the recording's first message."""
+    known: bool
+    """Whether the type is installed, with the same fields."""
+
+    def to_json(self) -> dict[str, Any]:
+        return {
+            "name": self.topic.name,
+            "type": self.topic.type_name,
+            "type_hash": self.topic.type_hash,
+            "type_installed": self.known,
+            "encoding": self.topic.encoding,
+            "messages": self.count,
+            "rate_hz": self.rate_hz,
+            "longest_gap_s": self.longest_gap_s,
+            "longest_gap_start_s": self.gap_start_s,
+            "qos": [vars(each) for each in self.topic.qos],
+        }
+
+
+@dataclass(frozen=True)
+class BagSummary:
+    """A recording in figures; stamps in nanoseconds, sizes in bytes."""
+
+    path: Path
+    storage: str
+    version: str
+    files: tuple[Path, ...]
+    size: int
+    start_ns: int
+    end_ns: int
+    messages: int
+    compression: dict[str, int]
+    topics: tuple[TopicSummary, ...]
+    problems: tuple[str, ...]
+
+    @property
+    def duration_s(self) -> float:
+        return (self.end_ns - self.start_ns) / 1e9
+
+    def to_json(self) -> dict[str, Any]:
+        return {
+            "path": str(self.path),
+            "storage": self.storage,
+            "version": self.version,
+            "files": [str(path) for path in self.files],
+            "size": self.size,
+            "duration_s": self.duration_s,
+            "start_ns": self.start_ns,
+            "end_ns": self.end_ns,
+            "messages": self.messages,
+            "compression": self.compression,
+            "topics": [each.to_json() for each in self.topics],
+            "problems": list(self.problems),
+        }
+
+
+def summarise(
+    reader: BagReader, on_stamps: Callable[[int], None] | None = None
+) -> BagSummary:
+    """The figures of an open recording; reads stamps, not messages.
+
+    Args:
+        on_stamps: told how many stamps were read since it was last told.
+    """
+    stamps = _stamps_by_topic(reader, on_stamps)
+    counts = reader.counts()
+    topics = tuple(
+        _summarise_topic(topic, counts[topic], stamps.get(topic), reader.start_ns)
+        for topic in sorted(reader.topics, key=lambda t: (t.name, t.type_name))
+    )
+    return BagSummary(
+        path=reader.path,
+        storage=reader.storage,
+        version=reader.version,
+        files=reader.files,
+        size=reader.size,
+        start_ns=reader.start_ns,
+        end_ns=reader.end_ns,
+        messages=sum(counts.values()),
+        compression=dict(reader.compression),
+        topics=topics,
+        problems=reader.problems,
+    )
+
+
+def _stamps_by_topic(
+    reader: BagReader, on_stamps: Callable[[int], None] | None
+) -> dict[BagTopic, list[np.ndarray[Any, np.dtype[np.int64]]]]:
+    """Eight bytes a message: the stamps of 100 million messages fit into memory."""
+    pending: dict[BagTopic, list[int]] = {}
+    found: dict[BagTopic, list[np.ndarray[Any, np.dtype[np.int64]]]] = {}
+    number = 0
+    for number, (topic, stamp) in enumerate(reader.stamps(), start=1):
+        batch = pending.setdefault(topic, [])
+        batch.append(stamp)
+        if len(batch) == _BATCH:
+            found.setdefault(topic, []).append(_array(batch))
+            batch.clear()
+        if on_stamps is not None and number % _BATCH == 0:
+            on_stamps(_BATCH)
+    for topic, batch in pending.items():
+        found.setdefault(topic, []).append(_array(batch))
+    return found
+
+
+def _array(stamps: list[int]) -> np.ndarray[Any, np.dtype[np.int64]]:
+    # A stamp beyond int64 is damage; clipping keeps the others.
+    return np.array([min(stamp, 2**63 - 1) for stamp in stamps], np.int64)
+
+
+def _summarise_topic(
+    topic: BagTopic,
+    count: int,
+    parts: list[np.ndarray[Any, np.dtype[np.int64]]] | None,
+    start_ns: int,
+) -> TopicSummary:
+    rate = gap = gap_start = None
+    if parts and sum(map(len, parts)) > 1:
+        stamps = np.sort(np.concatenate(parts))
+        steps = np.diff(stamps)
+        longest = int(np.argmax(steps))
+        gap = float(steps[longest]) / 1e9
+        gap_start = float(stamps[longest] - start_ns) / 1e9
+        middle = float(np.median(steps))
+        if middle > 0:
+            rate = 1e9 / middle
+    return TopicSummary(topic, count, rate, gap, gap_start, is_installed(topic))
+
+
+def is_installed(topic: BagTopic) -> bool:
+    """Whether Navette has the type as it was recorded."""
+    try:
+        get_interface(topic.type_name)
+        if topic.type_hash.startswith("RIHS01_"):
+            return topic.type_hash == type_hash(topic.type_name)
+        if not topic.definition:
+            return True
+        return _same_fields(topic)
+    except NavetteError:
+        return False
+
+
+def _same_fields(topic: BagTopic) -> bool:
+    from navette.msgs.foreign import differs
+
+    specs = read_definition(topic.type_name, topic.definition)
+    return not any(differs(spec) for spec in specs)

@@ -1,0 +1,151 @@
+"""A recording's figures for people."""
+
+from collections import Counter
+
+from rich.console import Console
+from rich.text import Text
+
+from navette.bags.qos import OfferedQos
+from navette.bags.summary import BagSummary, TopicSummary
+from navette.cli.bag.tables import Table, new_table, open_console, show_table
+from navette.cli.bag.text import (
+    count_text,
+    duration_text,
+    gap_text,
+    rate_text,
+    size_text,
+    stamp_text,
+)
+from navette.errors import UnknownNameError
+
+_FORMATS = {"mcap": "MCAP", "rosbag1": "ROS 1 bag", "sqlite3": "rosbag2 SQLite"}
+# A gap is worth a look when so many messages are missing in it.
+_GAP_MESSAGES = 5
+
+
+def show_info(summary: BagSummary, *, verbose: bool = False) -> None:
+    """As ``rosbag info`` and ``ros2 bag info`` lay it out."""
+    console = open_console()
+    for name, value in _head(summary).items():
+        console.print(Text(f"{name + ':':<13}", style="dim") + Text(value))
+    if verbose and len(summary.files) > 1:
+        for path in summary.files:
+            console.print(Text(f"{'':<13}{path.name}", style="dim"))
+    for problem in summary.problems:
+        console.print(Text(f"{'damaged:':<13}", style="bold yellow") + Text(problem))
+    if not summary.topics:
+        return
+    console.print()
+    show_table(console, _table(summary))
+    if verbose:
+        _show_details(console, summary)
+    if any(not each.known for each in summary.topics):
+        console.print(
+            Text(
+                "* not installed, or of another release; read all the same", style="dim"
+            )
+        )
+
+
+def value_of(summary: BagSummary, key: str) -> str:
+    """One figure, as plain text.
+
+    Raises:
+        UnknownNameError: lists the names there are.
+    """
+    values = {name: str(value) for name, value in summary.to_json().items()}
+    values |= {
+        "duration": f"{summary.duration_s:.9f}",
+        "start": f"{summary.start_ns / 1e9:.9f}",
+        "end": f"{summary.end_ns / 1e9:.9f}",
+        "compression": _compression(summary),
+        "topics": "\n".join(each.topic.name for each in summary.topics),
+        "types": "\n".join(sorted({each.topic.type_name for each in summary.topics})),
+        "problems": "\n".join(summary.problems),
+        "files": "\n".join(map(str, summary.files)),
+    }
+    if key not in values:
+        raise UnknownNameError.of("key", key, sorted(values))
+    return values[key]
+
+
+def _head(summary: BagSummary) -> dict[str, str]:
+    files = f" in {len(summary.files)} files" if len(summary.files) > 1 else ""
+    return {
+        "path": str(summary.path),
+        "format": f"{_FORMATS[summary.storage]} {summary.version}",
+        "duration": duration_text(summary.duration_s),
+        "start": stamp_text(summary.start_ns),
+        "end": stamp_text(summary.end_ns),
+        "size": size_text(summary.size) + files,
+        "messages": count_text(summary.messages),
+        "compression": _compression(summary),
+    }
+
+
+def _compression(summary: BagSummary) -> str:
+    kinds = summary.compression
+    if summary.storage == "sqlite3":
+        return ", ".join(kinds) or "none"
+    chunks = sum(kinds.values())
+    return (
+        ", ".join(
+            f"{kind} [{count}/{chunks} chunks]" for kind, count in sorted(kinds.items())
+        )
+        or "none [no chunks]"
+    )
+
+
+def _table(summary: BagSummary) -> Table:
+    table = new_table("topic", "type", ">messages", ">rate", ">longest gap", "qos")
+    for each in summary.topics:
+        table.add_row(
+            Text(each.topic.name, style="cyan"),
+            Text(each.topic.type_name + ("" if each.known else " *")),
+            Text(count_text(each.count), style="" if each.count else "dim"),
+            rate_text(each.rate_hz),
+            _gap(each),
+            Text(_qos(each.topic.qos), style="dim"),
+        )
+    return table
+
+
+def _gap(each: TopicSummary) -> Text:
+    """Marked where a regular topic fell silent."""
+    text = gap_text(each.longest_gap_s)
+    silent = (
+        each.longest_gap_s is not None
+        and each.rate_hz is not None
+        and each.count > 2 * _GAP_MESSAGES
+        and each.longest_gap_s * each.rate_hz > _GAP_MESSAGES
+    )
+    if not silent or each.gap_start_s is None:
+        return Text(text)
+    return Text(f"{text} at {each.gap_start_s:.1f} s", style="yellow")
+
+
+def _qos(offers: tuple[OfferedQos, ...]) -> str:
+    """What differs from what publishers offer by default."""
+    words = []
+    if any(each.reliability == "best_effort" for each in offers):
+        words.append("best effort")
+    if any(each.durability == "transient_local" for each in offers):
+        words.append("latched")
+    return ", ".join(words)
+
+
+def _show_details(console: Console, summary: BagSummary) -> None:
+    hashes = Counter(
+        (each.topic.type_name, each.topic.type_hash) for each in summary.topics
+    )
+    console.print()
+    for (name, type_hash), _ in sorted(hashes.items()):
+        console.print(Text(f"{name}  ") + Text(type_hash or "no hash", style="dim"))
+    console.print()
+    for each in summary.topics:
+        for offer in each.topic.qos:
+            text = f"{offer.reliability}, {offer.durability}, {offer.history}"
+            console.print(
+                Text(f"{each.topic.name}  ", style="cyan")
+                + Text(f"{text} {offer.depth}", style="dim")
+            )

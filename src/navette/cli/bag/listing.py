@@ -1,0 +1,101 @@
+"""Recordings in a folder."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from navette.bags import open_bag
+from navette.bags.opening import is_bag
+from navette.cli.bag.text import count_text, duration_text, size_text, stamp_text
+from navette.errors import FileFormatError
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A recording at a glance; ``problem`` says why nothing more is known."""
+
+    path: Path
+    size: int = 0
+    start_ns: int = 0
+    end_ns: int = 0
+    messages: int = 0
+    topics: int = 0
+    problem: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        return {
+            "path": str(self.path),
+            "size": self.size,
+            "start_ns": self.start_ns,
+            "end_ns": self.end_ns,
+            "duration_s": (self.end_ns - self.start_ns) / 1e9,
+            "messages": self.messages,
+            "topics": self.topics,
+            "problem": self.problem,
+        }
+
+
+def find(folder: Path, *, recursive: bool = False) -> list[Listed]:
+    """All recordings in a folder (or the one that it is), by name.
+
+    Raises:
+        FileFormatError: no such folder.
+    """
+    if not folder.exists():
+        raise FileFormatError(folder, "no such folder")
+    return [_look(path) for path in sorted(_bags(folder, recursive=recursive))]
+
+
+def _bags(folder: Path, *, recursive: bool) -> Iterator[Path]:
+    if is_bag(folder):
+        yield folder
+        return
+    for path in folder.iterdir():
+        if is_bag(path):
+            yield path
+        elif recursive and path.is_dir() and not path.is_symlink():
+            yield from _bags(path, recursive=True)
+
+
+def _look(path: Path) -> Listed:
+    try:
+        with open_bag(path) as reader:
+            return Listed(
+                path,
+                reader.size,
+                reader.start_ns,
+                reader.end_ns,
+                sum(reader.counts().values()),
+                len(reader.topics),
+                "; ".join(reader.problems),
+            )
+    except FileFormatError as error:
+        return Listed(path, problem=error.reason)
+
+
+def show_list(found: list[Listed]) -> None:
+    """One line each."""
+    console = Console(highlight=False, soft_wrap=True)
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for name in ("bag", "start"):
+        table.add_column(name, header_style="dim", no_wrap=True)
+    for name in ("duration", "size", "messages", "topics"):
+        table.add_column(name, justify="right", header_style="dim", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    for each in found:
+        duration = (each.end_ns - each.start_ns) / 1e9
+        table.add_row(
+            Text(str(each.path), style="cyan"),
+            stamp_text(each.start_ns).partition(" (")[0],
+            duration_text(duration).partition(" (")[0],
+            size_text(each.size),
+            count_text(each.messages),
+            str(each.topics),
+            Text(each.problem, style="yellow"),
+        )
+    console.print(table)

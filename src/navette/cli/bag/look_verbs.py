@@ -1,0 +1,107 @@
+"""``navette bag info|list|check``: commands that only look."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from navette.cli.bag.options import Bags, Json
+from navette.cli.output import note, show, show_json
+from navette.cli.session import FAILED
+
+
+def info(
+    bags: Bags,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="With hashes, QoS and files.")
+    ] = False,
+    key: Annotated[
+        str,
+        typer.Option(
+            "--key",
+            "-k",
+            metavar="NAME",
+            help="Print only this: path, duration, start, end, size, messages, …",
+        ),
+    ] = "",
+    topic_name: Annotated[
+        bool, typer.Option("--topic-name", "-t", help="Print only names of topics.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Say what is in a recording: time, size, and each topic's type, count and rate."""
+    from navette.bags import open_bag
+    from navette.bags.summary import summarise
+    from navette.cli.bag import info_text
+    from navette.cli.bag.progress import progress
+
+    summaries = []
+    for path in bags:
+        with open_bag(path) as reader, progress("reading stamps", None) as advance:
+            summaries.append(summarise(reader, advance))
+    if as_json:
+        found = [each.to_json() for each in summaries]
+        show_json(found[0] if len(found) == 1 else found)
+        return
+    for number, summary in enumerate(summaries):
+        if key:
+            show(info_text.value_of(summary, key))
+        elif topic_name:
+            for each in summary.topics:
+                show(each.topic.name)
+        else:
+            if number:
+                show()
+            info_text.show_info(summary, verbose=verbose)
+
+
+def list_(
+    folder: Annotated[
+        Path, typer.Argument(metavar="[FOLDER]", help="Where to look; by default here.")
+    ] = Path(),
+    recursive: Annotated[
+        bool, typer.Option("--recursive", "-r", help="Look into folders below, too.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """List the recordings in a folder, with time, length and size."""
+    from navette.cli.bag import listing
+
+    found = listing.find(folder, recursive=recursive)
+    if as_json:
+        show_json([each.to_json() for each in found])
+    elif found:
+        listing.show_list(found)
+    else:
+        note(f"no recordings in {folder}")
+
+
+def check(
+    bags: Bags,
+    decode: Annotated[
+        bool, typer.Option("--decode", help="Also read every message as its type.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Say what is wrong with a recording; exits 0 if it is sound.
+
+    Goes through all of it: beginning and end, index, lengths and checksums of chunks,
+    counts, and stamps that go back.
+    """
+    from navette.bags.checking import check_bag
+    from navette.cli.bag import report
+    from navette.cli.bag.progress import progress
+
+    reports = []
+    for path in bags:
+        size = report.size_of(path)
+        with progress(f"checking {path.name}", size, as_bytes=True) as advance:
+            reports.append(check_bag(path, decode=decode, on_bytes=advance))
+    if as_json:
+        found = [report.to_json(each) for each in reports]
+        show_json(found[0] if len(found) == 1 else found)
+    else:
+        for each in reports:
+            report.show_report(each)
+    if not all(each.is_sound for each in reports):
+        raise typer.Exit(FAILED)

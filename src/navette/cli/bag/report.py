@@ -1,0 +1,54 @@
+"""What is wrong with a recording, for people and programs."""
+
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.text import Text
+
+from navette.bags.checking import CheckReport, Severity
+from navette.cli.bag.text import count_text
+
+_STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow"}
+
+
+def size_of(path: Path) -> int | None:
+    """Bytes of a file or of a folder's files."""
+    if path.is_file():
+        return path.stat().st_size
+    if path.is_dir():
+        return sum(each.stat().st_size for each in path.iterdir() if each.is_file())
+    return None
+
+
+def show_report(report: CheckReport) -> None:
+    """A line for each finding, and what comes of them."""
+    console = Console(highlight=False, soft_wrap=True)
+    for finding in report.findings:
+        console.print(
+            Text(f"{finding.severity.value:<8}", style=_STYLES[finding.severity])
+            + Text(finding.text)
+        )
+    count = f"{count_text(report.messages)} messages"
+    if report.is_sound:
+        verdict = Text("sound", style="bold green") + Text(f": {count} read")
+    elif report.messages:
+        hint = f"navette bag recover {report.path} -o …"
+        verdict = Text("damaged", style="bold red")
+        verdict += Text(f": {count} can be read; {hint} saves them")
+    else:
+        verdict = Text("damaged", style="bold red") + Text(": nothing can be read")
+    console.print(Text(f"{report.path}: ") + verdict)
+
+
+def to_json(report: CheckReport) -> dict[str, Any]:
+    """The same for programs."""
+    return {
+        "path": str(report.path),
+        "sound": report.is_sound,
+        "messages": report.messages,
+        "findings": [
+            {"severity": each.severity.value, "text": each.text}
+            for each in report.findings
+        ],
+    }

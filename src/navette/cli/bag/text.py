@@ -1,0 +1,61 @@
+"""How figures of recordings are said to people."""
+
+from datetime import UTC, datetime
+
+_UNITS = ("B", "kB", "MB", "GB", "TB")
+_EPOCH_FROM_S = 10**8
+"""Stamps below are a robot's own time since its start, not a date."""
+
+
+def size_text(size: int) -> str:
+    """``3.7 MB``; powers of 1000, as disks are sold."""
+    value, unit = float(size), 0
+    while value >= 999.95 and unit < len(_UNITS) - 1:
+        value, unit = value / 1000, unit + 1
+    return f"{value:.1f} {_UNITS[unit]}" if unit else f"{size} B"
+
+
+def duration_text(seconds: float) -> str:
+    """``12:20 (740.55 s)``; short ones in seconds alone."""
+    plain = f"{seconds:.2f} s"
+    if seconds < 60:
+        return plain
+    hours, rest = divmod(int(seconds), 3600)
+    minutes, whole = divmod(rest, 60)
+    clock = f"{hours}:{minutes:02}:{whole:02}" if hours else f"{minutes}:{whole:02}"
+    return f"{clock} ({plain})"
+
+
+def stamp_text(stamp_ns: int) -> str:
+    """A date with the seconds since 1970, or the seconds of a robot's own time."""
+    seconds = stamp_ns / 1e9
+    if abs(seconds) < _EPOCH_FROM_S:
+        return f"{seconds:.3f} s"
+    try:
+        date = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S.%f")
+    except (ValueError, OverflowError, OSError):
+        return f"{seconds:.3f}"
+    return f"{date[:-3]} UTC ({seconds:.3f})"
+
+
+def gap_text(seconds: float | None) -> str:
+    """A time between two messages."""
+    if seconds is None:
+        return ""
+    if seconds < 1:
+        return f"{seconds * 1e3:.3g} ms"
+    return f"{seconds:.3g} s" if seconds < 1000 else f"{seconds:.0f} s"
+
+
+def rate_text(rate_hz: float | None) -> str:
+    """``10.0 Hz``; very slow ones by their period."""
+    if rate_hz is None:
+        return ""
+    if rate_hz < 0.1:
+        return f"every {1 / rate_hz:.3g} s"
+    return f"{rate_hz:.3g} Hz" if rate_hz < 100 else f"{rate_hz:.0f} Hz"
+
+
+def count_text(count: int) -> str:
+    """``12 765``: digits in groups of three, by thin spaces."""
+    return f"{count:,}".replace(",", "\u202f")
