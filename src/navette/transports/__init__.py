@@ -12,6 +12,7 @@ from navette.transports.base import (
     TransportObserver,
 )
 from navette.transports.encoded import Encoded
+from navette.transports.expiring import Expiring
 from navette.transports.inprocess import InProcessTransport
 from navette.transports.qos import (
     INFINITE_NS,
@@ -40,6 +41,7 @@ __all__ = [
     "Endpoint",
     "EndpointKind",
     "EndpointQos",
+    "Expiring",
     "HistoryPolicy",
     "INFINITE_NS",
     "InProcessTransport",

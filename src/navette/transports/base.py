@@ -23,7 +23,8 @@ from navette.transports.service_ports import (
 Item = tuple[Any, int, int, int]
 """One delivered sample: message, source stamp (ns), received stamp (ns), sequence.
 
-A message that came as bytes is an :class:`~navette.transports.encoded.Encoded`.
+A message that came as bytes is an :class:`~navette.transports.encoded.Encoded`, one of
+a publisher with a lifespan an :class:`~navette.transports.expiring.Expiring`.
 """
 
 Sink = Callable[[Item], None]

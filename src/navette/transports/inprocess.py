@@ -17,12 +17,13 @@ from navette.transports.base import (
     TransportObserver,
 )
 from navette.transports.encoded import Encoded
+from navette.transports.expiring import Expiring
 from navette.transports.inprocess_services import (
     InProcessClient,
     InProcessService,
     ServiceTable,
 )
-from navette.transports.qos import incompatible_policies
+from navette.transports.qos import INFINITE_NS, incompatible_policies
 from navette.transports.service_ports import ReplySink, RequestSink
 
 
@@ -74,10 +75,10 @@ class InProcessPublisher(PublisherPort):
             return
         wanted = subscription.endpoint.qos.queue_length
         for item in list(self._history)[-wanted if wanted else 0 :]:
-            if subscription.shared or item[0].__class__ is Encoded:
+            if subscription.shared:
                 subscription.sink(item)
             else:
-                subscription.sink((copy_message(item[0]), *item[1:]))
+                subscription.sink((_copied(item[0]), *item[1:]))
 
     @property
     def matched_count(self) -> int:
@@ -85,6 +86,42 @@ class InProcessPublisher(PublisherPort):
 
     def close(self) -> None:
         self._transport.remove_publisher(self)
+
+
+class _PublisherWithLifespan(InProcessPublisher):
+    """Each sample tells until when it may be taken."""
+
+    __slots__ = ()
+
+    def send(self, message: Any, source_ns: int, sequence: int) -> None:
+        expires_ns = source_ns + self.endpoint.qos.lifespan_ns
+        for sink in self._sinks:
+            content = Expiring(_copied(message), expires_ns)
+            sink((content, source_ns, source_ns, sequence))
+        if self._shared_sinks or self._history is not None:
+            content = Expiring(_copied(message), expires_ns)
+            item = (content, source_ns, source_ns, sequence)
+            if self._history is not None:
+                self._history.append(item)
+            for sink in self._shared_sinks:
+                sink(item)
+
+
+def _copied(message: Any) -> Any:
+    """A receiver's own; bytes do not change, so all may share them."""
+    if message.__class__ is Encoded:
+        return message
+    if message.__class__ is Expiring:
+        return Expiring(_copied(message.message), message.expires_ns)
+    return copy_message(message)
+
+
+def _publisher(
+    endpoint: Endpoint, transport: "InProcessTransport"
+) -> InProcessPublisher:
+    if endpoint.qos.lifespan_ns < INFINITE_NS:
+        return _PublisherWithLifespan(endpoint, transport)
+    return InProcessPublisher(endpoint, transport)
 
 
 class InProcessSubscription(SubscriptionPort):
@@ -149,7 +186,7 @@ class InProcessTransport(Transport):
     def advertise(self, endpoint: Endpoint, message_class: type) -> InProcessPublisher:
         with self._lock:
             topic = self._topic_for(endpoint)
-            publisher = InProcessPublisher(endpoint, self)
+            publisher = _publisher(endpoint, self)
             topic.publishers.append(publisher)
             publisher.relink(topic.matches(publisher))
             self._report_matches(

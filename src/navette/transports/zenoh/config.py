@@ -1,11 +1,13 @@
 """Zenoh configurations: of a peer, of the router, of a client that only asks."""
 
 import json
+from pathlib import Path
 from typing import Any
 
 import zenoh
 
 from navette.errors import InvalidValueError
+from navette.transports.zenoh.security import Security
 from navette.transports.zenoh.settings import Settings
 
 # As in rmw_zenoh's default configurations, but for the retries: the router is in one
@@ -41,7 +43,7 @@ _COMMON: dict[str, Any] = {
 
 def peer_config(settings: Settings) -> zenoh.Config:
     """Of the session that does the work."""
-    config = _base(settings.session_file)
+    config = _base(settings, settings.session_file)
     config.insert_json5("mode", '"peer"')
     if settings.session_file is None or "router" in settings.explicit:
         config.insert_json5("connect/endpoints", json.dumps(settings.router))
@@ -62,7 +64,7 @@ def client_config(settings: Settings) -> zenoh.Config:
 
 def router_config(settings: Settings) -> zenoh.Config:
     """Of the router, at the endpoints where the others look for it."""
-    config = _base(settings.router_file or settings.session_file)
+    config = _base(settings, settings.router_file or settings.session_file)
     config.insert_json5("mode", '"router"')
     if settings.router_file is None:
         config.insert_json5("listen/endpoints", json.dumps(router_endpoints(settings)))
@@ -78,10 +80,29 @@ def router_endpoints(settings: Settings) -> list[str]:
     return list(found.get("peer", [])) if isinstance(found, dict) else list(found)
 
 
-def _base(path: Any) -> zenoh.Config:
+def _base(settings: Settings, path: Path | None) -> zenoh.Config:
+    config = _read(path)
+    if settings.security is not None:
+        security = Security(settings.security)
+        if security.is_encrypted:
+            _refuse_plain((*settings.router, *settings.listen))
+        security.apply(config)
+    return config
+
+
+def _read(path: Path | None) -> zenoh.Config:
     if path is None:
         return zenoh.Config.from_json5(json.dumps(_COMMON))
     try:
         return zenoh.Config.from_file(str(path))
     except zenoh.ZError as error:
         raise InvalidValueError(f"Zenoh configuration {path}: {error}") from error
+
+
+def _refuse_plain(endpoints: tuple[str, ...]) -> None:
+    for endpoint in endpoints:
+        if not endpoint.startswith("tls/"):
+            raise InvalidValueError(
+                f"endpoint {endpoint}: NAVETTE_SECURITY has certificates, so every "
+                "endpoint (NAVETTE_ROUTER, NAVETTE_LISTEN) must begin with tls/"
+            )

@@ -9,6 +9,8 @@ from navette.errors import InvalidValueError
 
 DEFAULT_ROUTER = "tcp/127.0.0.1:7447"
 DEFAULT_LISTEN = "tcp/127.0.0.1:0"
+SECURE_ROUTER = "tls/127.0.0.1:7447"
+SECURE_LISTEN = "tls/127.0.0.1:0"
 DEFAULT_MAX_MESSAGE_BYTES = 128 * 1024 * 1024
 
 
@@ -25,6 +27,7 @@ class Settings:
         explicit: which of ``router`` and ``listen`` were asked for: they win over
             what a file says.
         max_message_bytes: longer messages of others are rejected.
+        security: credentials that every link is asked for; None: none.
     """
 
     router: tuple[str, ...] = (DEFAULT_ROUTER,)
@@ -33,14 +36,15 @@ class Settings:
     router_file: Path | None = None
     explicit: frozenset[str] = frozenset()
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
+    security: Path | None = None
 
     @classmethod
     def from_environment(
         cls, environment: Mapping[str, str] = os.environ
     ) -> "Settings":
         """Read ``NAVETTE_ROUTER``, ``NAVETTE_LISTEN`` (several apart by commas),
-        ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_ROUTER_CONFIG_URI`` and
-        ``NAVETTE_MAX_MESSAGE_BYTES``.
+        ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_ROUTER_CONFIG_URI``,
+        ``NAVETTE_SECURITY`` and ``NAVETTE_MAX_MESSAGE_BYTES``.
 
         Raises:
             InvalidValueError: names variable, value and what is allowed.
@@ -48,9 +52,13 @@ class Settings:
         router = _endpoints(environment, "NAVETTE_ROUTER")
         listen = _endpoints(environment, "NAVETTE_LISTEN")
         asked = {"router": router, "listen": listen}
+        folder = environment.get("NAVETTE_SECURITY", "")
+        # Without certificates (passwords or rules only) links stay as they are.
+        secure = bool(folder) and (Path(folder) / "cert.pem").is_file()
         return cls(
-            router=router or (DEFAULT_ROUTER,),
-            listen=listen or (DEFAULT_LISTEN,),
+            router=router or (SECURE_ROUTER if secure else DEFAULT_ROUTER,),
+            listen=listen or (SECURE_LISTEN if secure else DEFAULT_LISTEN,),
+            security=Path(folder) if folder else None,
             session_file=_file(environment, "ZENOH_SESSION_CONFIG_URI"),
             router_file=_file(environment, "ZENOH_ROUTER_CONFIG_URI"),
             explicit=frozenset(name for name, value in asked.items() if value),

@@ -32,6 +32,7 @@ class ZenohSubscription(SubscriptionPort):
     __slots__ = (
         "_closed",
         "_complaints",
+        "_is_open",
         "_last",
         "_longest",
         "_message_class",
@@ -63,6 +64,8 @@ class ZenohSubscription(SubscriptionPort):
         self._closed = closed
         #: Newest sequence number of each publisher, by gid.
         self._last: dict[bytes, int] = {}
+        # Samples may come before the declaration returns.
+        self._is_open = True
         self._subscriber: Any = _declare(
             session, key, matches.endpoint.qos, self._on_sample
         )
@@ -72,16 +75,16 @@ class ZenohSubscription(SubscriptionPort):
         return len(self.matches.remotes)
 
     def close(self) -> None:
-        if self._subscriber is None:
+        if not self._is_open:
             return
-        subscriber, self._subscriber = self._subscriber, None
+        self._is_open = False
         self._closed(self)
-        subscriber.undeclare()
+        self._subscriber.undeclare()
 
     # -- on Zenoh's threads ------------------------------------------------------
 
     def _on_sample(self, sample: zenoh.Sample) -> None:
-        if self._subscriber is None and self._last:  # closed
+        if not self._is_open:
             return
         try:
             item = self._checked(sample)
