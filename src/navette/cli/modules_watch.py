@@ -48,11 +48,12 @@ class ChangeWatch:
         if self._project_watch.changed():
             self._reread()
             return
-        for name, watch in self._watches.items():
-            changed = watch.changed()
-            if changed:
-                note(f"{_named(changed)}: restarting {name}")
-                self._client.restart([self._specs[name]])
+        changes = {name: watch.changed() for name, watch in self._watches.items()}
+        names = [name for name, paths in changes.items() if paths]
+        if names:
+            paths = sorted({path for found in changes.values() for path in found})
+            note(f"{_named(paths)}: restarting {', '.join(names)}")
+            self._client.restart([self._specs[name] for name in names])
 
     def _reread(self) -> None:
         try:

@@ -8,6 +8,8 @@ from typing import Any
 from navette.modules.log_book import LogBook
 from navette.modules.specs import ALIVE, ProcessSpec, State
 from navette.processes import (
+    INTERRUPT,
+    TERMINATE,
     ChildProcess,
     Ending,
     Keeper,
@@ -138,7 +140,8 @@ class Supervised:
         self.reason = describe_exit(code)
         if self._ending is not None:
             self._ending.cancel()
-            self._say(f"stopped ({self.reason})" if code else "stopped")
+            usual = code in (0, -INTERRUPT, -TERMINATE)
+            self._say("stopped" if usual else f"stopped ({self.reason})")
             self._set(State.STOPPED)
         elif self.spec.restart.wants(code):
             self._restart_later(ran_s)
