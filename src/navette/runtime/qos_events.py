@@ -74,7 +74,10 @@ class EventCallbacks:
         liveliness: see the subclasses.
         incompatible_qos: called with :class:`QoSIncompatibleInfo`; without it (and
             with ``use_default_callbacks``) a warning is logged.
-        incompatible_type: never called: a topic of another type is an exception here.
+        incompatible_type: a remote endpoint means another type by the topic's name;
+            called with :class:`IncompatibleTypeInfo`; without it (and with
+            ``use_default_callbacks``) a warning is logged. In process another type on
+            a topic is an exception.
         matched: called with :class:`QoSMatchedInfo`.
     """
 

@@ -9,6 +9,7 @@ from navette.runtime.liveliness import Lease, LivelinessView, has_lease
 from navette.runtime.log import Logger
 from navette.runtime.qos_events import (
     EventCallbacks,
+    IncompatibleTypeInfo,
     QoSCountInfo,
     QoSIncompatibleInfo,
     QoSMatchedInfo,
@@ -37,6 +38,7 @@ class EndpointWatch:
         self._logger = logger
         self._call_soon = call_soon
         self._incompatible = 0
+        self._other_types = 0
         self._missed = 0
         self._match = QoSMatchedInfo()
         self._deadline: Watchdog | None = None
@@ -45,6 +47,7 @@ class EndpointWatch:
         graph = context.graph
         self._undo = [
             graph.on_incompatible(self._on_incompatible),
+            graph.on_incompatible_type(self._on_incompatible_type),
             graph.on_match(self._on_match),
         ]
         self._watch_deadline(context)
@@ -141,6 +144,17 @@ class EndpointWatch:
         elif self._callbacks.use_default_callbacks:
             self._logger.warning(self._warning(publisher, subscription, policies))
 
+    def _on_incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
+        if self._endpoint != local:
+            return
+        self._other_types += 1
+        callback = self._callbacks.incompatible_type
+        if callback is not None:
+            info = IncompatibleTypeInfo(self._other_types, 1)
+            self._tell(callback, info, "incompatible_type")
+        elif self._callbacks.use_default_callbacks:
+            self._logger.warning(_type_warning(local, remote))
+
     def _on_match(self, publisher: Endpoint, subscription: Endpoint, up: bool) -> None:
         if self._endpoint not in (publisher, subscription):
             return
@@ -172,6 +186,17 @@ class EndpointWatch:
             f"{other.kind.name.lower()} of {other.node_full_name}; {effect}. "
             f"Policies: {names}"
         )
+
+
+def _type_warning(local: Endpoint, remote: Endpoint) -> str:
+    if local.type_name == remote.type_name:
+        other = f"another definition of {remote.type_name} ({remote.type_hash})"
+    else:
+        other = f"{remote.type_name}, not {local.type_name}"
+    return (
+        f"topic {local.topic}: the {remote.kind.name.lower()} of "
+        f"{remote.node_full_name} has {other}; they will exchange no messages"
+    )
 
 
 def _shown(endpoint: Endpoint, kind: QoSPolicyKind) -> str:

@@ -27,14 +27,15 @@ class TopicEndpointInfo:
         self.endpoint_type = TopicEndpointTypeEnum(endpoint.kind.value)
         self.endpoint_gid = list(endpoint.gid)
         self.qos_profile = QoSProfile.from_endpoint_qos(endpoint.qos)
+        self._type_hash = endpoint.type_hash
 
     @property
     def topic_type_hash(self) -> TypeHash:
         """Unknown where nothing here defines the type."""
         try:
-            return TypeHash.parse(type_hash(self.topic_type))
-        except UnknownNameError:
-            return TypeHash()
+            return TypeHash.parse(self._type_hash or type_hash(self.topic_type))
+        except (UnknownNameError, ValueError):
+            return TypeHash()  # or announced by a release that knew no hashes
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TopicEndpointInfo):
