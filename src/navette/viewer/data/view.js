@@ -83,7 +83,8 @@ const view = {
   follow(follows) { this.follows = follows; this.onFollow?.(follows); this.invalidate(); },
   /** Everything that is known, in the middle. */
   fit() {
-    const box = this.layers.get("/map")?.box() ?? [-6, -6, 6, 6];
+    const cloud = [...this.layers.values()].find((layer) => layer instanceof CloudLayer);
+    const box = this.layers.get("/map")?.box() ?? cloud?.box() ?? [-6, -6, 6, 6];
     const { clientWidth: width, clientHeight: height } = this.canvas;
     this.follow(false);
     this.centre = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
