@@ -1,0 +1,193 @@
+"""Several processes on one network: they meet, and outlive each other."""
+
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import Any
+
+import pytest
+from transport_benches import LIMIT_S, free_endpoint, until, zenoh_environment
+
+from navette import Context, Node
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.std_msgs.msg import String
+from navette.runtime import Executor
+from navette.runtime.exceptions import ServiceFailedError
+
+TALKER = """
+import sys, navette
+from navette.msgs.std_msgs.msg import String
+navette.init(args=[])
+node = navette.Node(sys.argv[1])
+publisher = node.create_publisher(String, "chatter", 100)
+count = 0
+def talk():
+    global count
+    count += 1
+    publisher.publish(String(data=f"{sys.argv[1]} {count}"))
+node.create_timer(0.01, talk)
+print("ready", flush=True)
+navette.spin(node)
+"""
+
+SERVER = """
+import navette
+from navette.msgs.example_interfaces.srv import AddTwoInts
+navette.init(args=[])
+node = navette.Node("adder")
+def add(request, response):
+    if request.a < 0:
+        node.get_logger().info("asked")
+        print("asked", flush=True)
+        navette.spin_until_future_complete(node, navette.Future())
+    response.sum = request.a + request.b
+    return response
+node.create_service(AddTwoInts, "add", add)
+print("ready", flush=True)
+navette.spin(node)
+"""
+
+SILENT = """
+import navette
+navette.init(args=[])
+node = navette.Node("first")
+print("ready", flush=True)
+navette.spin(node)
+"""
+
+
+class Child:
+    """A process that says ``ready``; killed at the end, if it has not ended before."""
+
+    def __init__(self, program: str, router: str, *args: str) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", program, *args],
+            env=zenoh_environment(router),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.lines: list[str] = []
+        self._ended: tuple[int, str] | None = None
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+        until(lambda: "ready" in self.lines, "the child's start")
+
+    def end(self, signum: int = signal.SIGKILL) -> tuple[int, str]:
+        """Exit code and what it said on stderr."""
+        if self._ended is None:
+            self._process.send_signal(signum)
+            code = self._process.wait(LIMIT_S)
+            self._reader.join()
+            assert self._process.stderr is not None
+            self._ended = code, self._process.stderr.read()
+            self._process.stderr.close()
+        return self._ended
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        with self._process.stdout as output:
+            self.lines.extend(line.strip() for line in output)
+
+
+class Network:
+    """A network of its own: children, and contexts of this process."""
+
+    def __init__(self, stack: ExitStack, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.router = free_endpoint()
+        self._stack = stack
+        monkeypatch.setenv("NAVETTE_ROUTER", self.router)
+
+    def child(self, program: str, *args: str) -> Child:
+        child = Child(program, self.router, *args)
+        self._stack.callback(child.end)
+        return child
+
+    def node(self, name: str) -> tuple[Node, Executor]:
+        context = self._stack.enter_context(Context(transport="zenoh"))
+        node = Node(name, context=context)
+        executor = Executor(context=context)
+        executor.add_node(node)
+        return node, executor
+
+
+@pytest.fixture
+def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
+    with ExitStack() as stack:
+        yield Network(stack, monkeypatch)
+
+
+def listen(node: Node) -> list[str]:
+    heard: list[str] = []
+    node.create_subscription(String, "chatter", lambda m: heard.append(m.data), 100)
+    return heard
+
+
+def spin_until(executor: Executor, condition: Any, what: str) -> None:
+    def look() -> bool:
+        executor.spin_once(timeout_sec=0.01)
+        return bool(condition())
+
+    until(look, what)
+
+
+@pytest.mark.slow
+def test_two_processes_meet_with_nothing_prepared(network: Network) -> None:
+    network.child(TALKER, "talker")
+    node, executor = network.node("listener")
+    # The graph is complete at once: nobody waited for anything.
+    assert "talker" in node.get_node_names()
+    assert ("/chatter", ["std_msgs/msg/String"]) in node.get_topic_names_and_types()
+    heard = listen(node)
+    spin_until(executor, lambda: len(heard) >= 20, "20 messages")
+    numbers = [int(text.split()[1]) for text in heard]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+@pytest.mark.slow
+def test_another_takes_over_when_the_router_is_killed(network: Network) -> None:
+    first = network.child(SILENT)
+    network.child(TALKER, "talker")
+    node, executor = network.node("listener")
+    heard = listen(node)
+    spin_until(executor, lambda: len(heard) >= 5, "messages")
+    assert first.end()[0] == -signal.SIGKILL
+    until(lambda: "first" not in node.get_node_names(), "the loss of its token")
+    network.child(TALKER, "late")
+    spin_until(executor, lambda: any("late" in text for text in heard), "the newcomer")
+    spin_until(executor, lambda: len(heard) >= 50, "more messages")
+    numbers = [int(t.split()[1]) for t in heard if t.startswith("talker")]
+    # Those who live did not notice.
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+@pytest.mark.slow
+def test_a_service_of_another_process_answers_and_its_death_is_named(
+    network: Network,
+) -> None:
+    server = network.child(SERVER)
+    node, executor = network.node("caller")
+    client = node.create_client(AddTwoInts, "add")
+    assert client.service_is_ready()
+    assert client.call(AddTwoInts.Request(a=2, b=3), timeout_sec=LIMIT_S).sum == 5
+    future = client.call_async(AddTwoInts.Request(a=-1))
+    until(lambda: "asked" in server.lines, "the request")
+    server.end()
+    spin_until(executor, future.done, "the failure")
+    with pytest.raises(ServiceFailedError, match="/add failed: the server went away"):
+        future.result()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
+def test_a_process_that_is_interrupted_ends_at_once(
+    network: Network, signum: int
+) -> None:
+    child = network.child(TALKER, "talker")
+    code, errors = child.end(signum)
+    # As Python ends on a Ctrl-C, and ROS 2 on SIGTERM; nothing hangs or crashes.
+    assert code == (-signal.SIGINT if signum == signal.SIGINT else 0)
+    assert "panicked" not in errors
