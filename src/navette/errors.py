@@ -10,10 +10,13 @@ NavetteError
 ├── DecodeError (ValueError)            bytes that are not what they claim to be
 ├── TransformError                      a transform that cannot be given
 ├── NetworkError (ConnectionError)      the network cannot be joined or reached
-└── CallbackError (RuntimeError)        a callback raised: node, topic, stamp
+├── MissingPartError (ImportError)      an optional package is not installed
+└── CallbackError (RuntimeError)        a callback raised: node, topic, stamp; also of
+                                        the original's class
 """
 
 from pathlib import Path
+from typing import Any
 
 
 class NavetteError(Exception):
@@ -71,8 +74,17 @@ class NetworkError(NavetteError, ConnectionError):
     """The network cannot be joined, or what was there is gone."""
 
 
+class MissingPartError(NavetteError, ImportError):
+    """An optional package is not installed; says how to."""
+
+
 class CallbackError(NavetteError, RuntimeError):
-    """A callback raised; the original exception is the ``__cause__``."""
+    """A callback raised; the original exception is ``original`` and the ``__cause__``.
+
+    The one that a spin raises is an instance of the original's class as well, and has
+    its attributes: around a spin, a program's own ``except ValueError`` catches what
+    its callback raised, as it does on ROS 2.
+    """
 
     def __init__(self, node: str, source: str, stamp_ns: int, cause: object) -> None:
         super().__init__(
@@ -82,3 +94,44 @@ class CallbackError(NavetteError, RuntimeError):
         self.node = node
         self.source = source
         self.stamp_ns = stamp_ns
+        self.original = cause
+
+    @classmethod
+    def of(
+        cls, node: str, source: str, stamp_ns: int, cause: Exception
+    ) -> "CallbackError":
+        """One that is of the class of ``cause`` too, where Python allows it."""
+        error = _blank(_joint_class(type(cause)))
+        CallbackError.__init__(error, node, source, stamp_ns, cause)
+        return error
+
+    def __str__(self) -> str:
+        # Not the original class's: a KeyError would show it in quotes.
+        return str(self.args[0])
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "original" or name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.original, name)
+
+
+def _joint_class(kind: type[Exception]) -> type[CallbackError]:
+    if issubclass(CallbackError, kind):
+        return CallbackError
+    try:
+        return type(CallbackError.__name__, (CallbackError, kind), {})
+    except TypeError:  # it may not be derived from
+        return CallbackError
+
+
+def _blank(kind: type[CallbackError]) -> CallbackError:
+    """An instance without ``__init__``: the original's class may want arguments."""
+    for base in kind.__mro__:
+        if base.__module__ == "builtins":
+            make: Any = base.__new__
+            try:
+                blank: CallbackError = make(kind)
+            except TypeError:  # of another layout
+                continue
+            return blank
+    raise AssertionError("some built-in exception makes instances of its subclasses")

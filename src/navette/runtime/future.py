@@ -1,5 +1,6 @@
 """Futures and tasks on the deterministic loop."""
 
+import sys
 import threading
 from collections.abc import Callable, Coroutine, Generator
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -29,9 +30,13 @@ class Future(Generic[T]):
         self._loop: EventLoop | None = None
         self._set_executor(executor)
 
-    def __await__(self) -> Generator["Future[T]", None, T | None]:
+    def __await__(self) -> Generator[Any, None, T | None]:
         if not self._done:
-            yield self
+            waiter = _asyncio_waiter(self)
+            if waiter is None:
+                yield self
+            else:
+                yield from waiter
         return self.result()
 
     def cancel(self) -> None:
@@ -103,6 +108,41 @@ class Future(Generic[T]):
         self._loop = getattr(executor, "loop", executor)
 
 
+class _Stepping(threading.local):
+    """How many of our tasks take a step in this thread, one inside another."""
+
+    depth = 0
+
+
+_stepping = _Stepping()
+
+
+def _asyncio_waiter(future: Future[Any]) -> Any:
+    """What an asyncio task waits on until ``future`` is done; None outside of one.
+
+    Such a program spins in one asyncio task and awaits our futures in another.
+    """
+    asyncio = sys.modules.get("asyncio")
+    if asyncio is None or _stepping.depth:
+        return None
+    try:
+        loop = asyncio.get_running_loop()
+    except RuntimeError:
+        return None
+    waiter = loop.create_future()
+
+    def finish() -> None:
+        if not waiter.done():
+            waiter.set_result(None)
+
+    def tell(_: object) -> None:
+        if not loop.is_closed():
+            loop.call_soon_threadsafe(finish)
+
+    future.add_done_callback(tell)
+    return waiter
+
+
 class Task(Future[T]):
     """A coroutine (or function) that the loop runs to its end, step by step.
 
@@ -168,7 +208,11 @@ class Task(Future[T]):
                 self.set_result(result)
                 return
             self._coroutine = result
-        awaited = self._coroutine.send(None)
+        _stepping.depth += 1
+        try:
+            awaited = self._coroutine.send(None)
+        finally:
+            _stepping.depth -= 1
         if isinstance(awaited, Future):
             awaited.add_done_callback(self._resume)
         elif awaited is None:

@@ -9,7 +9,7 @@ import heapq
 import threading
 from collections import deque
 from collections.abc import Callable, Coroutine
-from typing import Any
+from typing import Any, NoReturn
 
 from navette.errors import CallbackError
 from navette.runtime.callback_groups import CallbackGroup, ReentrantCallbackGroup
@@ -100,6 +100,7 @@ class EventLoop:
         self._lock = threading.Lock()
         self._turn = threading.Condition()
         self._others = 0  # threads that wait while another one drives
+        self._claims = 0  # threads that are to run an event before the next is taken
 
     # -- adding events ---------------------------------------------------------
 
@@ -260,7 +261,8 @@ class EventLoop:
         None if there is none until ``until_ns``, or ``stop`` asks for the end.
         """
         while not self._closed and not stop():
-            if not self._take_turn():
+            if self._claims or not self._take_turn():
+                self._let_claims_go_first()
                 if until_ns is not None and self.clock.now_ns >= until_ns:
                     return None
                 continue
@@ -280,17 +282,33 @@ class EventLoop:
         Raises:
             CallbackError: as :meth:`run`.
         """
-        self.ready.appendleft(entity)
         if self.in_driver_thread:
+            self.ready.appendleft(entity)
             self._run_nested(self.clock.now_ns, None, 1, None, calling=False)
-            return
-        while not self._closed:
-            if self._take_turn():
-                try:
-                    self._run(self.clock.now_ns, None, 1, None)
-                finally:
-                    self._give_turn()
-                return
+        elif self._claim_turn():
+            try:
+                self.ready.appendleft(entity)
+                self._run(self.clock.now_ns, None, 1, None)
+            finally:
+                self._give_turn()
+
+    def _claim_turn(self) -> bool:
+        """Become the driver before any :meth:`take`; False once closed."""
+        with self._turn:
+            self._claims += 1
+        self.wake()
+        with self._turn:
+            while self._driver is not None and not self._closed:
+                self._turn.wait(_TURN_S)
+            self._claims -= 1
+            if not self._closed:
+                self._driver = threading.get_ident()
+            return not self._closed
+
+    def _let_claims_go_first(self) -> None:
+        with self._turn:
+            if self._claims:
+                self._turn.wait(_TURN_S)
 
     def _next_ready(self) -> Entity | None:
         ready = self.ready
@@ -414,7 +432,7 @@ class EventLoop:
             try:
                 result = entity.run()
             except Exception as error:
-                raise self._error(entity.origin(), error) from error
+                self._raise(entity.origin(), error)
             if result is not None and isinstance(result, Coroutine):
                 self._start(entity, result)
         return count
@@ -451,7 +469,7 @@ class EventLoop:
         task.group = entity.group
 
         def fail(error: Exception) -> None:
-            raise self._error((node, source), error) from error
+            self._raise((node, source), error)
 
         task.on_error = fail
         task()
@@ -460,9 +478,10 @@ class EventLoop:
             group.hold()
             task.add_done_callback(lambda _: group.release())
 
-    def _error(self, origin: tuple[str, str], error: Exception) -> Exception:
+    def _raise(self, origin: tuple[str, str], error: Exception) -> NoReturn:
         # A nested run or a coroutine's step has named the culprit already.
         if isinstance(error, CallbackError):
-            return error
+            raise error
         node, source = origin
-        return CallbackError(node or "(none)", source, self.clock.now_ns, error)
+        named = CallbackError.of(node or "(none)", source, self.clock.now_ns, error)
+        raise named from error

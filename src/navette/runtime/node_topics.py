@@ -5,6 +5,7 @@ from typing import Any, TypeVar
 
 from navette.errors import NavetteError
 from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.context import Context
 from navette.runtime.log import Logger
 from navette.runtime.names import NodeRemapper
@@ -115,12 +116,14 @@ class NodeTopics:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
         shared: bool = False,
     ) -> Subscription[MsgT]:
         """Call ``callback(msg)`` or ``callback(msg, info)`` for every sample.
 
         Args:
             raw: give the serialised bytes.
+            content_filter_options: queue only samples that pass.
             shared: give the one object that all shared subscriptions get, uncopied:
                 look, do not alter.
         """
@@ -150,6 +153,8 @@ class NodeTopics:
         self._entities.append(subscription)
         sink = watch.watched(subscription.receive)
         try:
+            if content_filter_options is not None:
+                subscription.set_content_filter(*content_filter_options)
             for transport in self._context.graph.transports:
                 port = transport.subscribe(
                     endpoint, msg_type, sink, shared=shared or raw

@@ -1,13 +1,14 @@
 """Subscriptions: a queue of the newest samples and a callback."""
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum
 from types import TracebackType
 from typing import Any, Generic, TypedDict, TypeVar
 
 from navette.msgs import serialize
 from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.loop import Entity, EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.signatures import takes_arguments
@@ -15,6 +16,7 @@ from navette.transports import (
     INFINITE_NS,
     Encoded,
     Endpoint,
+    Expiring,
     Item,
     SubscriptionPort,
 )
@@ -42,7 +44,8 @@ class Subscription(Entity, Generic[MsgT]):
 
     __slots__ = (
         "_callback",
-        "_depth",
+        "_filter",
+        "_filter_options",
         "_informed",
         "_loop",
         "_on_destroy",
@@ -50,6 +53,7 @@ class Subscription(Entity, Generic[MsgT]):
         "_queue",
         "_ready",
         "_received",
+        "_room",
         "endpoint",
         "msg_type",
         "ports",
@@ -78,7 +82,10 @@ class Subscription(Entity, Generic[MsgT]):
         self.raw = raw
         self.shared = shared
         self.ports: list[SubscriptionPort] = []
-        self._depth = endpoint.qos.queue_length or INFINITE_NS
+        #: How many samples may wait; 0 where each has to be looked at first.
+        self._room = endpoint.qos.queue_length or INFINITE_NS
+        self._filter: Callable[[Any], bool] | None = None
+        self._filter_options = ContentFilterOptions("", [])
         self._queue: deque[Item] = deque(maxlen=endpoint.qos.queue_length)
         self._loop = loop
         self._ready = loop.ready
@@ -108,20 +115,63 @@ class Subscription(Entity, Generic[MsgT]):
         """How many publishers are heard."""
         return sum(port.matched_count for port in self.ports)
 
+    # -- content filter --------------------------------------------------------
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """Whether a content filter is set."""
+        return self._filter is not None
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """The filter that is set; an empty expression is none."""
+        return self._filter_options
+
+    def set_content_filter(
+        self, filter_expression: str, expression_parameters: Sequence[str] = ()
+    ) -> None:
+        """Queue only samples for which the expression holds; empty: all.
+
+        Raises:
+            ContentFilterError: the expression or a parameter cannot be used.
+        """
+        parameters = list(expression_parameters)
+        wanted: Callable[[Any], bool] | None = None
+        if filter_expression:
+            from navette.runtime.filter_expression import compile_filter
+
+            wanted = compile_filter(filter_expression, parameters, self.msg_type)
+        self._filter_options = ContentFilterOptions(filter_expression, parameters)
+        self._filter = wanted
+        self._room = 0 if wanted else self._queue.maxlen or INFINITE_NS
+
+    def _passes(self, message: Any, wanted: Callable[[Any], bool]) -> bool:
+        message = self._unwrapped(message)
+        return message is not None and wanted(message)
+
+    # -- inside ----------------------------------------------------------------
+
     def receive(self, item: Item) -> None:
         """Queue a sample (the transport's sink); a full queue loses its oldest."""
         queue = self._queue
-        if len(queue) < self._depth:
+        if len(queue) < self._room:
             queue.append(item)
             self._ready.append(self)
             if self._loop.waiting:
                 self._loop.wake()
-        else:
-            queue.append(item)  # and the oldest falls out, in one step
-            if self._loop.is_driven_elsewhere:
-                # Its thread may have taken a sample just before: then the queue was
-                # not full, and this one needs an event. One too many is harmless.
-                self._ready.append(self)
+        elif self._filter is None or self._passes(item[0], self._filter):
+            self._receive_slowly(item)
+
+    def _receive_slowly(self, item: Item) -> None:
+        """Into a queue that is full, or behind a filter."""
+        queue = self._queue
+        is_full = len(queue) == queue.maxlen
+        queue.append(item)  # and the oldest falls out of a full one, in one step
+        # Another thread that drives may have taken a sample just before: then the
+        # queue was not full, and this one needs an event. One too many is harmless.
+        if not is_full or self._loop.is_driven_elsewhere:
+            self._ready.append(self)
+            if self._loop.waiting:
+                self._loop.wake()
 
     def run(self) -> Any:
         """Call back with the oldest sample of the queue."""
@@ -130,8 +180,9 @@ class Subscription(Entity, Generic[MsgT]):
             return None
         if self._plain:
             message = queue.popleft()[0]
-            if message.__class__ is Encoded:
-                message = message.decode()
+            kind = message.__class__
+            if kind is Encoded or kind is Expiring:
+                message = self._unwrapped(message)
                 if message is None:
                     return None
             return self._callback(message)
@@ -140,9 +191,7 @@ class Subscription(Entity, Generic[MsgT]):
     def take(self) -> MsgT | None:
         """The oldest sample of the queue, without a callback; None if it is empty."""
         while self._queue:
-            message = self._queue.popleft()[0]
-            if message.__class__ is Encoded:
-                message = message.decode()
+            message = self._unwrapped(self._queue.popleft()[0])
             if message is not None:
                 taken: MsgT = message
                 return taken
@@ -169,8 +218,18 @@ class Subscription(Entity, Generic[MsgT]):
     ) -> None:
         self.destroy()
 
+    def _unwrapped(self, message: Any) -> Any:
+        """The message itself; None if it expired or is not what it should be."""
+        if message.__class__ is Expiring:
+            message = message.at(self._loop.clock.now_ns)
+        return message.decode() if message.__class__ is Encoded else message
+
     def _run_with_info(self, item: Item) -> Any:
         message, source_ns, received_ns, sequence = item
+        if message.__class__ is Expiring:
+            message = message.at(self._loop.clock.now_ns)
+            if message is None:
+                return None
         if message.__class__ is Encoded:
             message = message.data if self.raw else message.decode()
             if message is None:

@@ -1,10 +1,11 @@
 """The event loop: order, nesting, threads, coroutines, errors."""
 
+import asyncio
 import threading
 
 import pytest
 
-from navette.errors import CallbackError
+from navette.errors import CallbackError, MessageError
 from navette.runtime import Context, Executor, Future, Node, VirtualClock
 from navette.runtime.callback_groups import (
     MutuallyExclusiveCallbackGroup,
@@ -137,6 +138,77 @@ def test_error_inside_a_nested_run_is_wrapped_once(loop: EventLoop) -> None:
     with pytest.raises(CallbackError) as caught:
         loop.run()
     assert caught.value.source == "inner source"
+    assert isinstance(caught.value.__cause__, ValueError)
+    assert not isinstance(caught.value.__cause__, CallbackError)
+
+
+class _DemandingError(UnicodeError):
+    """An exception of a program that cannot be made without arguments."""
+
+    def __new__(cls, code: int) -> "_DemandingError":
+        return super().__new__(cls)
+
+    def __init__(self, code: int) -> None:
+        super().__init__(f"code {code}")
+        self.code = code
+
+
+class _FinalError(Exception):
+    """One that may not be derived from."""
+
+    def __init_subclass__(cls, *, allowed: bool) -> None:
+        """Wants an argument that nobody gives."""
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        ValueError("bad"),
+        KeyError("k"),
+        FileNotFoundError(2, "gone", "/nowhere"),
+        UnicodeDecodeError("utf-8", b"x", 0, 1, "why"),
+        MessageError("field"),
+        RuntimeError("plain"),
+        Exception("any"),
+        _DemandingError(7),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_a_programs_own_except_catches_what_its_callback_raised(
+    loop: EventLoop, error: Exception
+) -> None:
+    def bad() -> None:
+        raise error
+
+    loop.call_at(5, bad, "a source", "/a_node")
+    with pytest.raises(type(error)) as caught:
+        loop.run()
+    assert isinstance(caught.value, CallbackError)
+    assert caught.value.original is caught.value.__cause__ is error
+    text = str(caught.value)
+    assert text.startswith("node /a_node: callback of a source raised at 0.000 s: ")
+    assert text.endswith(f"{type(error).__name__}: {error}")
+
+
+def test_attributes_are_the_originals(loop: EventLoop) -> None:
+    def bad() -> None:
+        raise _DemandingError(7)
+
+    loop.call_at(5, bad)
+    with pytest.raises(_DemandingError) as caught:
+        loop.run()
+    assert caught.value.code == 7
+    assert not hasattr(caught.value, "colour")
+
+
+def test_what_may_not_be_derived_from_is_the_cause(loop: EventLoop) -> None:
+    def bad() -> None:
+        raise _FinalError("end")
+
+    loop.call_at(5, bad)
+    with pytest.raises(CallbackError) as caught:
+        loop.run()
+    assert isinstance(caught.value.__cause__, _FinalError)
 
 
 def test_call_from_another_thread_wakes_a_waiting_loop() -> None:
@@ -337,3 +409,35 @@ def test_future_rules(loop: EventLoop) -> None:
     failed.set_exception(ValueError("no"))
     with pytest.raises(ValueError, match="no"):
         failed.result()
+
+
+def test_futures_are_awaited_by_asyncio_while_another_task_spins() -> None:
+    """As the asyncio client of the ROS 2 examples does."""
+    loop = EventLoop(VirtualClock())
+    future: Future[str] = Future(executor=loop)
+    never: Future[str] = Future(executor=loop)
+    loop.call_at(5, lambda: future.set_result("done"))
+
+    async def spin() -> None:
+        while not future.done():
+            loop.run(limit=1)
+            await asyncio.sleep(0)
+        await asyncio.sleep(0)
+        loop.run()
+
+    async def awaited_by_ours() -> str | None:
+        return await future
+
+    async def main() -> list[str | None]:
+        given_up = asyncio.ensure_future(wait_for(never))
+        task = loop.create_task(awaited_by_ours())
+        found, _ = await asyncio.gather(wait_for(future), spin())
+        given_up.cancel()
+        never.set_result("too late")
+        loop.run()
+        return [found, task.result(), await wait_for(future)]
+
+    async def wait_for(each: Future[str]) -> str | None:
+        return await each
+
+    assert asyncio.run(main()) == ["done"] * 3

@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from navette.msgs import serialize
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import (
     DurabilityPolicy,
@@ -224,3 +225,62 @@ def test_names_of_older_programs() -> None:
     )
     assert "best_effort" in ReliabilityPolicy.short_keys()
     assert not any("rmw" in key for key in LivelinessPolicy.short_keys())
+
+
+def aging(graph: GraphHarness, **qos: Any) -> Any:
+    node = graph.add(Node("talker", context=graph.context))
+    profile = QoSProfile(depth=5, lifespan=Duration(seconds=1), **qos)
+    return node.create_publisher(String, "news", profile)
+
+
+def test_late_joiners_get_no_expired_samples(graph: GraphHarness) -> None:
+    latched = DurabilityPolicy.TRANSIENT_LOCAL
+    publisher = aging(graph, durability=latched)
+    publisher.publish(String(data="old"))
+    graph.run_for(0.6)
+    publisher.publish(String(data="young"))
+    graph.run_for(0.6)
+    node = graph.add(Node("late", context=graph.context))
+    heard: list[str] = []
+    read: list[str] = []
+    qos = QoSProfile(depth=5, durability=latched)
+    node.create_subscription(String, "news", lambda m: heard.append(m.data), qos)
+    node.create_subscription(
+        String, "news", lambda m, _: read.append(m.data), qos, shared=True
+    )
+    graph.run_for(0.1)
+    assert heard == read == ["young"]
+
+
+def test_what_expires_in_the_queue_is_dropped(graph: GraphHarness) -> None:
+    publisher = aging(graph)
+    node = Node("slow", context=graph.context)  # in no executor: its events wait
+    heard: list[str] = []
+    raw: list[bytes] = []
+    node.create_subscription(String, "news", lambda m: heard.append(m.data), 10)
+    node.create_subscription(String, "news", raw.append, 10, raw=True)
+    taken = node.create_subscription(String, "news", print, 10)
+    message = String(data="old")
+    publisher.publish(message)
+    graph.run_for(0.9)
+    message.data = "young"  # and the one under way stays as it was
+    publisher.publish(message)
+    graph.run_for(0.2)
+    assert taken.take() == String(data="young")
+    assert taken.take() is None
+    graph.add(node)
+    graph.run_for(0.1)
+    assert heard == ["young"]
+    assert len(raw) == 1
+
+
+def test_a_lifespan_is_also_that_of_bytes(graph: GraphHarness) -> None:
+    publisher = aging(graph, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publisher.publish(serialize(String(data="bytes")))
+    probe = graph.collect("/news", String, latched=True)
+    graph.run_for(0.1)
+    assert probe.last.data == "bytes"
+    graph.run_for(1.0)
+    late = graph.collect("/news", String, latched=True)
+    graph.run_for(0.1)
+    assert late.count == 0

@@ -21,6 +21,7 @@ from navette.runtime.executor import (
     Executor,
     MultiThreadedExecutor,
     SingleThreadedExecutor,
+    TimeoutObject,
     await_or_execute,
 )
 from navette.runtime.future import Future, Task
@@ -51,6 +52,7 @@ __all__ = [
     "Subscription",
     "Task",
     "TimeoutException",
+    "TimeoutObject",
     "Timer",
     "TimerInfo",
     "Waitable",
