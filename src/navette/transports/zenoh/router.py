@@ -54,6 +54,11 @@ class RouterRole:
                 return None
             if self._stop.wait(0.0 if self.is_serving else _LOOK_S):
                 return None
+        _log.warning(
+            "%s is taken, but who listens there does not let this process in: another "
+            "program, a wrong certificate or password, or links with and without TLS",
+            ", ".join(router_endpoints(self._settings)),
+        )
         return None
 
     def watch(self, session: zenoh.Session) -> None:

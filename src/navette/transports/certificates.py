@@ -1,0 +1,170 @@
+"""Makes what mutual TLS needs: an authority, and a certificate per robot or person.
+
+X.509 version 3 (RFC 5280) with P-256 keys; both key usages, because every process
+listens and connects.
+"""
+
+import datetime
+import ipaddress
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from navette.errors import InvalidValueError, MissingPartError
+
+if TYPE_CHECKING:
+    from cryptography import x509
+    from cryptography.hazmat.primitives.asymmetric import ec
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
+
+
+def create_keys(
+    folder: Path, names: Sequence[str], *, now: datetime.datetime, days: int = 365
+) -> list[Path]:
+    """A folder of keys for each name below ``folder``; the authority is made once.
+
+    Each gets ``ca.pem``, ``cert.pem`` and ``key.pem``, as ``NAVETTE_SECURITY`` wants
+    them. ``ca.key`` signs further ones: keep it where no robot goes.
+
+    Args:
+        now: from when they are valid (with a zone).
+        days: and for how long.
+
+    Raises:
+        InvalidValueError: a name cannot be one, or has its keys already.
+        MissingPartError: the ``cryptography`` package is not installed.
+    """
+    for name in names:
+        if not _NAME.fullmatch(name):
+            raise InvalidValueError(
+                f"name {name!r}: wanted letters, digits, '-', '_' and '.', 63 at most"
+            )
+        if (folder / name).exists():
+            raise InvalidValueError(f"{folder / name} is there already")
+    authority = _Authority.of(folder, now, days)
+    return [authority.issue(name, now, days) for name in names]
+
+
+class _Authority:
+    """Signs; its key and certificate are files of the folder."""
+
+    def __init__(
+        self,
+        folder: Path,
+        key: "ec.EllipticCurvePrivateKey",
+        certificate: "x509.Certificate",
+    ) -> None:
+        self._folder = folder
+        self._key = key
+        self._certificate = certificate
+
+    @classmethod
+    def of(cls, folder: Path, now: datetime.datetime, days: int) -> "_Authority":
+        """The folder's own, made if there is none."""
+        try:
+            from cryptography import x509
+            from cryptography.hazmat.primitives import hashes, serialization
+            from cryptography.hazmat.primitives.asymmetric import ec
+        except ImportError as error:
+            raise MissingPartError(
+                "making keys needs the package cryptography: "
+                "pip install 'navette[security]'"
+            ) from error
+        if (folder / "ca.key").is_file():
+            data = (folder / "ca.key").read_bytes()
+            key = serialization.load_pem_private_key(data, None)
+            if not isinstance(key, ec.EllipticCurvePrivateKey):
+                raise InvalidValueError(f"{folder / 'ca.key'} is no elliptic-curve key")
+            text = (folder / "ca.pem").read_bytes()
+            return cls(folder, key, x509.load_pem_x509_certificate(text))
+        folder.mkdir(parents=True, exist_ok=True)
+        made = ec.generate_private_key(ec.SECP256R1())
+        name = _name("navette authority")
+        certificate = (
+            _begin(name, name, made, now, days)
+            .add_extension(x509.BasicConstraints(ca=True, path_length=0), critical=True)
+            .sign(made, hashes.SHA256())
+        )
+        _write_key(folder / "ca.key", made)
+        (folder / "ca.pem").write_bytes(_pem(certificate))
+        return cls(folder, made, certificate)
+
+    def issue(self, name: str, now: datetime.datetime, days: int) -> Path:
+        """A key and its certificate for one name."""
+        from cryptography import x509
+        from cryptography.hazmat.primitives import hashes
+        from cryptography.hazmat.primitives.asymmetric import ec
+        from cryptography.x509.oid import ExtendedKeyUsageOID as Usage
+
+        key = ec.generate_private_key(ec.SECP256R1())
+        names = [
+            x509.DNSName(name),
+            x509.DNSName("localhost"),
+            x509.IPAddress(ipaddress.ip_address("127.0.0.1")),
+        ]
+        certificate = (
+            _begin(_name(name), self._certificate.subject, key, now, days)
+            .add_extension(x509.BasicConstraints(ca=False, path_length=None), True)
+            .add_extension(x509.SubjectAlternativeName(names), critical=False)
+            .add_extension(
+                x509.ExtendedKeyUsage([Usage.SERVER_AUTH, Usage.CLIENT_AUTH]), False
+            )
+            .sign(self._key, hashes.SHA256())
+        )
+        folder = self._folder / name
+        folder.mkdir()
+        _write_key(folder / "key.pem", key)
+        (folder / "cert.pem").write_bytes(_pem(certificate))
+        (folder / "ca.pem").write_bytes(_pem(self._certificate))
+        return folder
+
+
+def _name(text: str) -> "x509.Name":
+    from cryptography import x509
+
+    return x509.Name([x509.NameAttribute(x509.NameOID.COMMON_NAME, text)])
+
+
+def _begin(
+    subject: "x509.Name",
+    issuer: "x509.Name",
+    key: "ec.EllipticCurvePrivateKey",
+    now: datetime.datetime,
+    days: int,
+) -> "x509.CertificateBuilder":
+    from cryptography import x509
+
+    # Clocks of robots are late now and then.
+    early = now - datetime.timedelta(hours=1)
+    return (
+        x509.CertificateBuilder()
+        .subject_name(subject)
+        .issuer_name(issuer)
+        .public_key(key.public_key())
+        .serial_number(x509.random_serial_number())
+        .not_valid_before(early)
+        .not_valid_after(now + datetime.timedelta(days=days))
+    )
+
+
+def _pem(certificate: "x509.Certificate") -> bytes:
+    from cryptography.hazmat.primitives import serialization
+
+    return certificate.public_bytes(serialization.Encoding.PEM)
+
+
+def _write_key(path: Path, key: "ec.EllipticCurvePrivateKey") -> None:
+    """For the owner's eyes only, from the first byte on."""
+    from cryptography.hazmat.primitives import serialization
+
+    text = key.private_bytes(
+        serialization.Encoding.PEM,
+        serialization.PrivateFormat.PKCS8,
+        serialization.NoEncryption(),
+    )
+    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    with os.fdopen(handle, "wb") as file:
+        file.write(text)

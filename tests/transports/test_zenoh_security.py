@@ -1,0 +1,225 @@
+"""Who gets in, and who does not: certificates, passwords, access rules."""
+
+import datetime
+import json
+import logging
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from transport_benches import free_endpoint, until
+
+from navette.errors import FileFormatError, InvalidValueError
+from navette.msgs.std_msgs.msg import String
+from navette.runtime import Context, Executor, Node, SystemClock
+from navette.transports.certificates import create_keys
+from navette.transports.zenoh.security import Security
+from navette.transports.zenoh.settings import Settings
+
+NOW = datetime.datetime.fromtimestamp(SystemClock().now_ns / 1e9, datetime.UTC)
+
+
+class Machine:
+    """A node that talks and listens on /chatter, on a network of its own settings."""
+
+    def __init__(self, name: str) -> None:
+        self.context = Context(transport="zenoh")
+        self.context.init(args=[], initialize_logging=False)
+        self.node = Node(name, context=self.context)
+        self.publisher = self.node.create_publisher(String, "/chatter", 10)
+        self.heard: list[str] = []
+        self.node.create_subscription(String, "/chatter", self.hear, 10)
+        self.executor = Executor(context=self.context)
+        self.executor.add_node(self.node)
+
+    def hear(self, message: String) -> None:
+        self.heard.append(message.data)
+
+    def sees(self, other: "Machine") -> bool:
+        self.executor.spin_once(timeout_sec=0.0)
+        name = other.node.get_fully_qualified_name()
+        return name in {info.full_name for info in self.context.graph.nodes()}
+
+
+@pytest.fixture
+def network(monkeypatch: pytest.MonkeyPatch) -> Iterator["Network"]:
+    with ExitStack() as stack:
+        yield Network(monkeypatch, stack)
+
+
+class Network:
+    """Machines that look for their router at one free port."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, stack: ExitStack) -> None:
+        self._address = free_endpoint().partition("/")[2]
+        self._monkeypatch = monkeypatch
+        self._stack = stack
+
+    def join(self, name: str, folder: Path | None, *, protocol: str) -> Machine:
+        self._monkeypatch.setenv("NAVETTE_ROUTER", f"{protocol}/{self._address}")
+        self._monkeypatch.setenv("NAVETTE_LISTEN", f"{protocol}/127.0.0.1:0")
+        self._monkeypatch.setenv("NAVETTE_SECURITY", str(folder or ""))
+        machine = Machine(name)
+        self._stack.callback(machine.context.try_shutdown)
+        return machine
+
+
+def talk(speaker: Machine, listener: Machine) -> None:
+    """Until what one says is heard by the other."""
+
+    def check() -> bool:
+        speaker.publisher.publish(String(data=speaker.node.get_name()))
+        listener.executor.spin_once(timeout_sec=0.001)
+        return speaker.node.get_name() in listener.heard
+
+    until(check, f"{listener.node.get_name()} hears {speaker.node.get_name()}")
+
+
+def assert_apart(outsider: Machine, insider: Machine, other: Machine) -> None:
+    """The outsider neither sees nor hears, while the other two go on talking."""
+    outsider.publisher.publish(String(data=outsider.node.get_name()))
+    insider.heard.clear()
+    other.heard.clear()
+    talk(insider, other)
+    talk(other, insider)
+    outsider.executor.spin_once(timeout_sec=0.0)
+    assert not outsider.sees(insider)
+    assert not insider.sees(outsider)
+    assert set(outsider.heard) <= {outsider.node.get_name()}
+    assert outsider.node.get_name() not in insider.heard + other.heard
+
+
+@pytest.mark.slow
+def test_machines_with_certificates_of_one_authority_meet_and_no_others(
+    network: Network, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot, laptop = create_keys(tmp_path / "ours", ["robot", "laptop"], now=NOW)
+    (stranger,) = create_keys(tmp_path / "theirs", ["robot"], now=NOW)
+    a = network.join("robot", robot, protocol="tls")
+    b = network.join("laptop", laptop, protocol="tls")
+    talk(a, b)
+    talk(b, a)
+    with caplog.at_level(logging.WARNING, logger="navette"):
+        c = network.join("stranger", stranger, protocol="tls")
+    assert "does not let this process in" in caplog.text
+    assert_apart(c, a, b)
+    caplog.clear()
+    with caplog.at_level(logging.WARNING, logger="navette"):
+        d = network.join("plain", None, protocol="tcp")
+    assert "does not let this process in" in caplog.text
+    assert_apart(d, a, b)
+
+
+@pytest.mark.slow
+def test_an_outdated_certificate_gets_in_nowhere(
+    network: Network, tmp_path: Path
+) -> None:
+    folder = tmp_path / "ours"
+    robot, laptop = create_keys(folder, ["robot", "laptop"], now=NOW)
+    long_ago = NOW - datetime.timedelta(days=30)
+    (old,) = create_keys(folder, ["old"], now=long_ago, days=7)
+    a = network.join("robot", robot, protocol="tls")
+    b = network.join("laptop", laptop, protocol="tls")
+    talk(a, b)
+    assert_apart(network.join("old", old, protocol="tls"), a, b)
+
+
+def login(folder: Path, name: str, password: str, users: str) -> Path:
+    folder.mkdir()
+    (folder / "login").write_text(f"{name}:{password}\n")
+    (folder / "users").write_text(users)
+    return folder
+
+
+@pytest.mark.slow
+def test_a_wrong_password_gets_in_nowhere(network: Network, tmp_path: Path) -> None:
+    users = "robot:steel\nlaptop:paper\n"
+    robot = login(tmp_path / "a", "robot", "steel", users)
+    laptop = login(tmp_path / "b", "laptop", "paper", users)
+    guess = login(tmp_path / "c", "laptop", "glass", users)
+    a = network.join("robot", robot, protocol="tcp")
+    b = network.join("laptop", laptop, protocol="tcp")
+    talk(a, b)
+    talk(b, a)
+    assert_apart(network.join("guess", guess, protocol="tcp"), a, b)
+    assert_apart(network.join("nobody", None, protocol="tcp"), a, b)
+
+
+ONLY_LISTEN = {
+    "enabled": True,
+    "default_permission": "allow",
+    "rules": [
+        {
+            "id": "chatter",
+            "permission": "deny",
+            "messages": ["put"],
+            "flows": ["ingress"],
+            "key_exprs": ["*/chatter/**"],
+        }
+    ],
+    "subjects": [{"id": "guests", "cert_common_names": ["guest"]}],
+    "policies": [{"rules": ["chatter"], "subjects": ["guests"]}],
+}
+
+
+@pytest.mark.slow
+def test_access_rules_say_what_a_guest_may_not(
+    network: Network, tmp_path: Path
+) -> None:
+    robot, laptop, guest = create_keys(
+        tmp_path / "keys", ["robot", "laptop", "guest"], now=NOW
+    )
+    for folder in (robot, laptop):
+        (folder / "access.json5").write_text(json.dumps(ONLY_LISTEN))
+    a = network.join("robot", robot, protocol="tls")
+    b = network.join("laptop", laptop, protocol="tls")
+    c = network.join("guest", guest, protocol="tls")
+    talk(a, c)  # it hears
+    for _ in range(20):
+        c.publisher.publish(String(data="guest"))
+        a.heard.clear()
+        talk(b, a)
+        assert "guest" not in a.heard
+
+
+def test_every_link_is_encrypted_or_it_is_an_error(tmp_path: Path) -> None:
+    (robot,) = create_keys(tmp_path / "keys", ["robot"], now=NOW)
+    settings = Settings.from_environment({"NAVETTE_SECURITY": str(robot)})
+    assert settings.router == ("tls/127.0.0.1:7447",)
+    assert settings.listen == ("tls/127.0.0.1:0",)
+
+
+def test_a_plain_endpoint_beside_certificates_is_refused(
+    network: Network, tmp_path: Path
+) -> None:
+    (robot,) = create_keys(tmp_path / "keys", ["robot"], now=NOW)
+    with pytest.raises(InvalidValueError, match="must begin with tls/"):
+        network.join("robot", robot, protocol="tcp")
+
+
+def test_a_folder_that_lacks_something_is_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(InvalidValueError, match="no folder"):
+        Security(tmp_path / "none")
+    with pytest.raises(InvalidValueError, match="nothing in"):
+        Security(tmp_path)
+    (robot,) = create_keys(tmp_path / "keys", ["robot"], now=NOW)
+    (robot / "key.pem").unlink()
+    with pytest.raises(FileFormatError, match=r"key\.pem: missing"):
+        Security(robot)
+    login(tmp_path / "login", "nocolon", "", "")
+    with pytest.raises(FileFormatError, match="name:password"):
+        Security(tmp_path / "login").describe()
+
+
+def test_keys_are_made_once_and_for_their_owner_only(tmp_path: Path) -> None:
+    first = create_keys(tmp_path / "keys", ["robot"], now=NOW)[0]
+    second = create_keys(tmp_path / "keys", ["laptop"], now=NOW)[0]
+    assert (first / "ca.pem").read_bytes() == (second / "ca.pem").read_bytes()
+    assert (first / "key.pem").stat().st_mode & 0o077 == 0
+    assert (tmp_path / "keys" / "ca.key").stat().st_mode & 0o077 == 0
+    assert Security(first).describe() == ["TLS with certificates on both sides"]
+    with pytest.raises(InvalidValueError, match="is there already"):
+        create_keys(tmp_path / "keys", ["robot"], now=NOW)
+    with pytest.raises(InvalidValueError, match="wanted letters"):
+        create_keys(tmp_path / "keys", ["../x"], now=NOW)
