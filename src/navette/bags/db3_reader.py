@@ -21,6 +21,8 @@ from navette.errors import DecodeError, FileFormatError
 MAGIC = b"SQLite format 3\0"
 _SMALLEST_ROW = 8  # bytes that a row takes at least; bounds how many there can be
 _LOG_SUFFIX = "-wal"
+# A message of SQLite that holds bytes of a broken database may be no UTF-8.
+_ERRORS = (sqlite3.Error, UnicodeDecodeError, OverflowError)
 _DATA = "SELECT data FROM messages WHERE id = ?"
 
 
@@ -51,7 +53,7 @@ class Db3Reader:
         try:
             self.size = path.stat().st_size
             self._read_head()
-        except (sqlite3.Error, FileFormatError) as error:
+        except (*_ERRORS, FileFormatError) as error:
             self.close()
             if isinstance(error, FileFormatError):
                 raise
@@ -107,7 +109,7 @@ class Db3Reader:
                     message = self._message(row, data, on_damage)
                     if message is not None:
                         yield message
-        except (sqlite3.Error, OverflowError) as error:
+        except _ERRORS as error:
             reason = f"damaged after the message at {last[1]} ns: {error}"
             if on_damage is None:
                 raise FileFormatError(self.path, reason) from error
@@ -125,7 +127,7 @@ class Db3Reader:
             (unknown,) = count.fetchone()
             if unknown:
                 yield f"{unknown} messages of a topic that is not there"
-        except sqlite3.Error as error:
+        except _ERRORS as error:
             yield str(error)
 
     # -- opening -------------------------------------------------------------------
@@ -286,14 +288,14 @@ class Db3Reader:
         """Rows up to the first that cannot be read."""
         try:
             yield from self._database.execute(query)
-        except sqlite3.Error as error:
+        except _ERRORS as error:
             self._problems.append(f"cannot be read to the end: {error}")
 
     def _attempt(self, query: str, number: int) -> Any:
         """One row; None where it is not there or cannot be read."""
         try:
             return self._database.execute(query, (number,)).fetchone()
-        except sqlite3.Error:
+        except _ERRORS:
             return None
 
     def __enter__(self) -> Self:
@@ -316,24 +318,29 @@ def _connect(path: Path, problems: list[str]) -> sqlite3.Connection:
                 raise FileFormatError(path, "is no SQLite database")
     except OSError as error:
         raise FileFormatError(path, f"cannot be opened: {error.strerror}") from error
-    uri = f"file:{quote(str(path.absolute()))}"
+    uri = f"file:{quote(str(path.absolute()))}?mode=ro"
     log = path.with_name(path.name + _LOG_SUFFIX)
     if log.exists() and log.stat().st_size:
         try:
-            return _configured(sqlite3.connect(f"{uri}?mode=ro", uri=True))
-        except sqlite3.Error as error:
+            return _open(uri)
+        except _ERRORS as error:
             problems.append(f"{log.name} cannot be read: {error}")
     try:
-        return _configured(sqlite3.connect(f"{uri}?mode=ro&immutable=1", uri=True))
-    except sqlite3.Error as error:
+        return _open(f"{uri}&immutable=1")
+    except _ERRORS as error:
         raise FileFormatError(path, f"cannot be opened: {error}") from error
 
 
-def _configured(database: sqlite3.Connection) -> sqlite3.Connection:
-    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
-    database.text_factory = _text
-    database.execute("PRAGMA trusted_schema = OFF")
-    database.execute("SELECT count(*) FROM sqlite_master").fetchone()
+def _open(uri: str) -> sqlite3.Connection:
+    database = sqlite3.connect(uri, uri=True)
+    try:
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
+        database.text_factory = _text
+        database.execute("PRAGMA trusted_schema = OFF")
+        database.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    except BaseException:
+        database.close()
+        raise
     return database
 
 

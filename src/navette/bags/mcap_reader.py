@@ -11,7 +11,7 @@ from navette.bags.definitions import idl_to_msg, ros2_name
 from navette.bags.mcap_index import McapIndex, read_index, read_message_indexes, scan
 from navette.bags.mcap_records import RecordFile, message_entries, read_chunk
 from navette.bags.qos import parse_qos
-from navette.bags.ros1_messages import Ros1Type
+from navette.bags.ros1_messages import ros1_type
 from navette.errors import DecodeError, FileFormatError, NavetteError
 
 
@@ -104,7 +104,7 @@ def _topic(
     kind = schema.encoding if schema is not None else ""
     encoding = channel.message_encoding
     if encoding == "ros1" and kind == "ros1msg":
-        ros1 = Ros1Type(name, text)
+        ros1 = ros1_type(name, text)
         topic = BagTopic(channel.topic, ros1.type_name, ros1.definition, qos=qos)
         return topic, ros1.to_cdr
     if kind == "ros2idl":

@@ -5,7 +5,7 @@ The bytes are turned by ``rosbags``, from a definition that was read and bounded
 """
 
 import struct
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from navette.errors import DecodeError
@@ -45,10 +45,24 @@ class Ros1Type:
             DecodeError: the bytes are no message of this type.
         """
         from rosbags.serde import SerdeError
+        from rosbags.typesys import TypesysError
 
         try:
             return bytes(self._store.ros1_to_cdr(data, self.type_name))
-        except (SerdeError, struct.error, ValueError, IndexError, TypeError) as error:
+        except (
+            *(SerdeError, TypesysError, struct.error),
+            *(ValueError, LookupError, TypeError, OverflowError),
+        ) as error:
             raise DecodeError(
                 f"{len(data)} bytes are no ROS 1 {self.type_name}: {error}"
             ) from error
+
+
+@lru_cache(maxsize=256)
+def ros1_type(name: str, text: str) -> Ros1Type:
+    """The type of a name and a definition; made once, which takes milliseconds.
+
+    Raises:
+        FileFormatError: the definition cannot be read.
+    """
+    return Ros1Type(name, text)

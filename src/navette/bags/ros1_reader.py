@@ -9,7 +9,7 @@ from navette.bags.chunked_reader import ChunkedReader
 from navette.bags.chunks import Chunk, Entry
 from navette.bags.qos import OfferedQos
 from navette.bags.ros1_index import BagIndex, read_index, scan
-from navette.bags.ros1_messages import Ros1Type
+from navette.bags.ros1_messages import ros1_type
 from navette.bags.ros1_records import (
     BagFile,
     Op,
@@ -57,22 +57,19 @@ class Ros1Reader(ChunkedReader):
 
     def _take(self, index: BagIndex) -> None:
         problems = list(index.problems)
-        types: dict[tuple[str, str], Ros1Type] = {}
         for number, connection in sorted(index.connections.items()):
-            key = connection.type_name, connection.definition
             try:
-                if key not in types:
-                    types[key] = Ros1Type(*key)
+                ros1 = ros1_type(connection.type_name, connection.definition)
             except NavetteError as error:
                 problems.append(f"topic {connection.topic}: {error}")
                 continue
             topic = BagTopic(
                 connection.topic,
-                types[key].type_name,
-                types[key].definition,
+                ros1.type_name,
+                ros1.definition,
                 qos=_LATCHED if connection.latching else (),
             )
-            self._add_channel(number, topic, types[key].to_cdr)
+            self._add_channel(number, topic, ros1.to_cdr)
         self.chunks = index.chunks
         self.problems = tuple(problems)
         self._set_counts(index.counts)

@@ -4,6 +4,7 @@ import typer
 
 from navette.cli.bag import edit_verbs, look_verbs
 from navette.cli.bag.play import play
+from navette.cli.bag.replay import replay
 
 bag = typer.Typer(
     name="bag",
@@ -11,6 +12,7 @@ bag = typer.Typer(
     no_args_is_help=True,
 )
 bag.command()(play)
+bag.command()(replay)
 bag.command()(look_verbs.info)
 bag.command("list")(look_verbs.list_)
 bag.command()(look_verbs.check)

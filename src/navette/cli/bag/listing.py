@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from navette.bags import open_bag
 from navette.bags.opening import is_bag
+from navette.cli.bag.tables import new_table, open_console, show_table
 from navette.cli.bag.text import count_text, duration_text, size_text, stamp_text
 from navette.errors import FileFormatError
 
@@ -80,13 +79,7 @@ def _look(path: Path) -> Listed:
 
 def show_list(found: list[Listed]) -> None:
     """One line each."""
-    console = Console(highlight=False, soft_wrap=True)
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for name in ("bag", "start"):
-        table.add_column(name, header_style="dim", no_wrap=True)
-    for name in ("duration", "size", "messages", "topics"):
-        table.add_column(name, justify="right", header_style="dim", no_wrap=True)
-    table.add_column("", no_wrap=True)
+    table = new_table("bag", "start", ">duration", ">size", ">messages", ">topics", "")
     for each in found:
         duration = (each.end_ns - each.start_ns) / 1e9
         table.add_row(
@@ -98,4 +91,4 @@ def show_list(found: list[Listed]) -> None:
             str(each.topics),
             Text(each.problem, style="yellow"),
         )
-    console.print(table)
+    show_table(open_console(), table)

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.text import Text
 
 from navette.bags.checking import CheckReport, Severity
+from navette.cli.bag.tables import open_console
 from navette.cli.bag.text import count_text
 
 _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow"}
@@ -23,7 +23,7 @@ def size_of(path: Path) -> int | None:
 
 def show_report(report: CheckReport) -> None:
     """A line for each finding, and what comes of them."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = open_console()
     for finding in report.findings:
         console.print(
             Text(f"{finding.severity.value:<8}", style=_STYLES[finding.severity])
