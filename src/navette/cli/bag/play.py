@@ -129,7 +129,7 @@ def _play(
     port: int | None,
 ) -> int:
     from navette.cli.bag.play_screen import PlayScreen
-    from navette.cli.keys import listening_to_keys
+    from navette.cli.keyboard import listening_to_keys
     from navette.errors import CallbackError
     from navette.launch.playback import Playback
 
