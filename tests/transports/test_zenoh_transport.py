@@ -1,0 +1,396 @@
+"""What only the network has: others that err, come, go, or mean another type."""
+
+import logging
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from transport_benches import LIMIT_S, ZenohPair, message_of, until
+
+from navette import Context, Node
+from navette.errors import InvalidValueError, NetworkError
+from navette.msgs import serialize, type_hash
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.std_msgs.msg import Float64, String
+from navette.runtime import Executor
+from navette.transports import (
+    Encoded,
+    Endpoint,
+    EndpointKind,
+    EndpointQos,
+    Item,
+    NodeInfo,
+    Reply,
+    Request,
+    TransportObserver,
+)
+from navette.transports.zenoh import Settings, ZenohTransport
+from navette.transports.zenoh import publisher as publisher_module
+from navette.transports.zenoh.attachment import Attachment
+from navette.transports.zenoh.graph import MOST_TOKENS_OF_A_SESSION
+from navette.transports.zenoh.keys import data_key
+from navette.transports.zenoh.tokens import gid_of
+
+KEY = data_key(7, "/t", "std_msgs/msg/String", type_hash("std_msgs/msg/String"))
+MAX_BYTES = 1000
+
+
+@pytest.fixture
+def pair() -> Iterator[ZenohPair]:
+    pair = ZenohPair(max_message_bytes=MAX_BYTES)
+    yield pair
+    pair.close()
+
+
+def endpoint(
+    kind: EndpointKind,
+    *,
+    node: str = "n",
+    topic: str = "/t",
+    type_name: str = "std_msgs/msg/String",
+    qos: EndpointQos | None = None,
+) -> Endpoint:
+    return Endpoint(kind, topic, type_name, qos or EndpointQos(), node, "/", b"")
+
+
+def subscribe(transport: ZenohTransport, **of: Any) -> tuple[list[Item], Any]:
+    items: list[Item] = []
+    end = endpoint(EndpointKind.SUBSCRIPTION, **of)
+    return items, transport.subscribe(end, String, items.append, shared=False)
+
+
+def advertise(transport: ZenohTransport, **of: Any) -> Any:
+    return transport.advertise(endpoint(EndpointKind.PUBLISHER, **of), String)
+
+
+def texts(items: list[Item]) -> list[str]:
+    return [message_of(item).data for item in items]
+
+
+class Notes(TransportObserver):
+    """Writes down what it is told."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, str, str]] = []
+
+    def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        self.told.append(("matched", publisher.node_name, subscription.node_name))
+
+    def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        self.told.append(("unmatched", publisher.node_name, subscription.node_name))
+
+    def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
+        self.told.append(("other type", local.node_name, remote.node_name))
+
+
+def test_nodes_and_endpoints_come_and_go_with_their_tokens(pair: ZenohPair) -> None:
+    notes = Notes()
+    pair.near.observe(notes)
+    node = NodeInfo("talker", "/ns", "/enclave")
+    pair.far.announce(node)
+    publisher = advertise(pair.far_zenoh, node="talker")
+    _, port = subscribe(pair.near_zenoh, node="ear")
+    pair.settle()
+    assert node in pair.near.remote_nodes()
+    (seen,) = pair.near.endpoints()
+    assert (seen.kind, seen.topic, seen.node_name) == (
+        EndpointKind.PUBLISHER,
+        "/t",
+        "talker",
+    )
+    assert seen.type_hash == type_hash("std_msgs/msg/String")
+    assert (port.matched_count, publisher.matched_count) == (1, 1)
+    publisher.close()
+    pair.far.withdraw(node)
+    pair.settle()
+    assert pair.near.endpoints() == []
+    assert node not in pair.near.remote_nodes()
+    assert notes.told == [("matched", "talker", "ear"), ("unmatched", "talker", "ear")]
+
+
+def test_a_session_that_ends_takes_everything_along(pair: ZenohPair) -> None:
+    notes = Notes()
+    pair.near.observe(notes)
+    pair.far.announce(NodeInfo("talker", "/"))
+    advertise(pair.far_zenoh, node="talker")
+    _, port = subscribe(pair.near_zenoh, node="ear")
+    pair.settle()
+    pair.far_zenoh.session.close()
+    until(lambda: not pair.near.endpoints() and not pair.near.remote_nodes())
+    assert port.matched_count == 0
+    assert notes.told[-1] == ("unmatched", "talker", "ear")
+
+
+def test_gids_are_the_same_at_both_ends(pair: ZenohPair) -> None:
+    made = endpoint(EndpointKind.PUBLISHER)
+    gid = pair.far.gid_for(made)
+    assert gid is not None
+    pair.far.advertise(
+        Endpoint(made.kind, "/t", made.type_name, made.qos, "n", "/", gid), String
+    )
+    pair.settle()
+    assert [e.gid for e in pair.near.endpoints()] == [gid]
+
+
+def test_a_type_of_another_name_or_hash_is_told_and_does_not_meet(
+    pair: ZenohPair,
+) -> None:
+    notes = Notes()
+    pair.near.observe(notes)
+    items, port = subscribe(pair.near_zenoh, node="ear")
+    far = pair.far_zenoh
+    wrong = endpoint(
+        EndpointKind.PUBLISHER, node="wrong", type_name="std_msgs/msg/Float64"
+    )
+    far.advertise(wrong, Float64).send(Float64(data=1.0), 0, 1)
+    token = pair.far_zenoh._token_of(endpoint(EndpointKind.PUBLISHER, node="older"))
+    other = token.key().replace("RIHS01_df", "RIHS01_00")
+    keep = far.session.zenoh.liveliness().declare_token(other)
+    pair.settle()
+    assert notes.told == [
+        ("other type", "ear", "wrong"),
+        ("other type", "ear", "older"),
+    ]
+    assert (items, port.matched_count) == ([], 0)
+    assert keep
+
+
+def test_one_serialisation_a_message_and_none_for_nobody(
+    pair: ZenohPair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls: list[Any] = []
+
+    def counted(message: Any) -> bytes:
+        calls.append(message)
+        return serialize(message)
+
+    monkeypatch.setattr(publisher_module, "serialize", counted)
+    publisher = advertise(pair.near_zenoh)
+    publisher.send(String(data="unheard"), 0, 1)
+    assert calls == []
+    first, _ = subscribe(pair.far_zenoh)
+    second, _ = subscribe(pair.far_zenoh)
+    pair.settle()
+    publisher.send(String(data="heard"), 0, 2)
+    pair.settle()
+    assert (texts(first), texts(second), len(calls)) == (["heard"], ["heard"], 1)
+
+
+def test_raw_bytes_are_not_decoded(pair: ZenohPair) -> None:
+    items, _ = subscribe(pair.far_zenoh)
+    publisher = advertise(pair.near_zenoh)
+    pair.settle()
+    publisher.send(String(data="x"), 0, 1)
+    pair.settle()
+    ((message, *_),) = items
+    assert isinstance(message, Encoded)
+    assert message.data == serialize(String(data="x"))
+
+
+def send_raw(
+    pair: ZenohPair, payload: bytes, attachment: bytes | None, key: str = KEY
+) -> None:
+    pair.far_zenoh.session.zenoh.put(key, payload, attachment=attachment)
+
+
+def good(sequence: int, gid: bytes = bytes(16)) -> bytes:
+    return Attachment(sequence, 0, gid).encode()
+
+
+def test_what_is_malformed_is_dropped_and_told_once(
+    pair: ZenohPair, caplog: pytest.LogCaptureFixture
+) -> None:
+    items, _ = subscribe(pair.near_zenoh)
+    publisher = advertise(pair.far_zenoh)
+    pair.settle()
+    hello = serialize(String(data="hello"))
+    with caplog.at_level(logging.WARNING):
+        for _ in range(3):
+            send_raw(pair, hello, None)
+            send_raw(pair, hello, b"short")
+            send_raw(pair, b"", good(1))
+            send_raw(pair, b"\x07\x07\x00\x00" + hello[4:], good(1))
+            send_raw(pair, bytes(MAX_BYTES + 1), good(1))
+        publisher.send(String(data="fine"), 0, 1)
+        pair.settle()
+    assert texts(items) == ["fine"]
+    warnings = [r.getMessage() for r in caplog.records]
+    assert len([w for w in warnings if "message ignored" in w]) == 1
+
+
+def test_a_payload_of_another_shape_is_found_where_it_is_taken(
+    pair: ZenohPair, caplog: pytest.LogCaptureFixture
+) -> None:
+    items, _ = subscribe(pair.near_zenoh)
+    pair.settle()
+    for sequence in (1, 2):
+        send_raw(pair, b"\x00\x01\x00\x00" + bytes([255] * 40), good(sequence))
+    pair.settle()
+    with caplog.at_level(logging.WARNING):
+        assert [message_of(item) for item in items] == [None, None]
+    assert len([r for r in caplog.records if "message ignored" in r.getMessage()]) == 1
+
+
+def test_nothing_is_delivered_twice_or_out_of_order(pair: ZenohPair) -> None:
+    items, _ = subscribe(pair.near_zenoh)
+    pair.settle()
+    one, other = bytes(16), bytes([1] * 16)
+    for gid, sequence in [(one, 1), (one, 2), (one, 2), (one, 1), (other, 1), (one, 5)]:
+        send_raw(pair, serialize(String(data=f"{sequence}")), good(sequence, gid))
+    pair.settle()
+    assert texts(items) == ["1", "2", "1", "5"]
+
+
+def test_a_publisher_whose_qos_falls_short_is_not_heard_by_the_back_door(
+    pair: ZenohPair,
+) -> None:
+    latched = EndpointQos.latched()
+    items, port = subscribe(pair.near_zenoh, qos=latched)
+    advertise(pair.far_zenoh)
+    pair.settle()
+    (seen,) = pair.near.endpoints()
+    send_raw(pair, serialize(String(data="x")), good(1, seen.gid))
+    pair.settle()
+    assert (items, port.matched_count) == ([], 0)
+
+
+def test_hostile_tokens_are_ignored_and_told_once(
+    pair: ZenohPair, caplog: pytest.LogCaptureFixture
+) -> None:
+    liveliness = pair.far_zenoh.session.zenoh.liveliness()
+    hostile = ["@ros2_lv/7/x", "@ros2_lv/7/a/b/c/MP/d/e/f/g/h/i/j", "@ros2_lv/7/a/%%"]
+    with caplog.at_level(logging.WARNING):
+        keep = [liveliness.declare_token(key) for key in hostile]
+        keep.append(liveliness.declare_token("@ros2_lv/7/" + "a" * 5000))
+        pair.settle()
+    assert pair.near.endpoints() == []
+    assert len(caplog.records) >= 1
+    assert all("token ignored" in r.getMessage() for r in caplog.records)
+    assert keep
+
+
+def test_a_session_cannot_fill_the_graph(pair: ZenohPair) -> None:
+    graph = pair.near_zenoh.session.graph
+    for number in range(MOST_TOKENS_OF_A_SESSION + 10):
+        graph.on_token(f"@ros2_lv/7/abc/{number}/{number}/NN/%/%/n", alive=True)
+    assert len(graph.nodes()) == MOST_TOKENS_OF_A_SESSION
+
+
+def serve(transport: ZenohTransport) -> tuple[list[Request], Any]:
+    requests: list[Request] = []
+    type_name = "example_interfaces/srv/AddTwoInts"
+    end = endpoint(EndpointKind.SERVICE, topic="/s", type_name=type_name)
+    return requests, transport.serve(end, requests.append)
+
+
+def connect(transport: ZenohTransport) -> tuple[list[Reply], Any]:
+    replies: list[Reply] = []
+    type_name = "example_interfaces/srv/AddTwoInts"
+    end = endpoint(EndpointKind.CLIENT, topic="/s", type_name=type_name)
+    return replies, transport.connect(end, replies.append)
+
+
+def test_a_malformed_request_gets_an_error_and_not_to_the_server(
+    pair: ZenohPair,
+) -> None:
+    requests, _ = serve(pair.near_zenoh)
+    pair.settle()
+    name = "example_interfaces/srv/AddTwoInts"
+    key = data_key(7, "/s", name, type_hash(name))
+    zenoh = pair.far_zenoh.session.zenoh
+    for payload, attachment in [
+        (None, good(1)),
+        (b"\x00\x01\x00\x00", None),
+        (b"\x00\x01\x00\x00", good(1)),
+        (bytes(MAX_BYTES + 1), good(1)),
+    ]:
+        (reply,) = zenoh.get(
+            key, payload=payload, attachment=attachment, timeout=LIMIT_S
+        )
+        assert reply.err is not None
+    assert requests == []
+
+
+def test_a_server_that_closes_says_so_to_those_who_wait(pair: ZenohPair) -> None:
+    requests, server = serve(pair.near_zenoh)
+    replies, client = connect(pair.far_zenoh)
+    pair.settle()
+    client.request(AddTwoInts.Request(), 0, 4)
+    until(lambda: len(requests) == 1, "the request")
+    server.close()
+    until(lambda: len(replies) == 1, "the failure")
+    assert replies == [Reply(None, 4, "the server was closed")]
+
+
+def test_domains_do_not_see_each_other(pair: ZenohPair) -> None:
+    elsewhere = ZenohTransport(8, lambda: 0, pair.near_zenoh.session.settings)
+    items, port = subscribe(elsewhere)
+    publisher = advertise(pair.near_zenoh)
+    pair.settle()
+    publisher.send(String(data="x"), 0, 1)
+    pair.settle()
+    assert (elsewhere.endpoints(), elsewhere.remote_nodes(), items) == ([], [], [])
+    assert (port.matched_count, publisher.matched_count) == (0, 0)
+    elsewhere.close()
+
+
+def test_closing_twice_is_harmless_and_leaves_no_thread(pair: ZenohPair) -> None:
+    import threading
+
+    before = set(threading.enumerate())
+    transport = ZenohTransport(7, lambda: 0, pair.near_zenoh.session.settings)
+    transport.announce(NodeInfo("n", "/"))
+    port = advertise(transport)
+    transport.close()
+    port.close()
+    transport.close()
+    assert set(threading.enumerate()) == before
+
+
+def test_a_network_that_cannot_be_joined_is_a_named_error() -> None:
+    with pytest.raises(NetworkError, match="cannot join the network"):
+        ZenohTransport(0, lambda: 0, Settings(router=("nonsense/1:1",), listen=("x",)))
+
+
+def test_the_environment_is_checked() -> None:
+    with pytest.raises(InvalidValueError, match=r"NAVETTE_ROUTER: 'localhost'.*tcp/"):
+        Settings.from_environment({"NAVETTE_ROUTER": "localhost"})
+    with pytest.raises(InvalidValueError, match="no file /nowhere"):
+        Settings.from_environment({"ZENOH_SESSION_CONFIG_URI": "/nowhere"})
+    with pytest.raises(InvalidValueError, match="NAVETTE_MAX_MESSAGE_BYTES 'x'"):
+        Settings.from_environment({"NAVETTE_MAX_MESSAGE_BYTES": "x"})
+    found = Settings.from_environment({"NAVETTE_LISTEN": "tcp/[::]:0, udp/1.2.3.4:5"})
+    assert found.listen == ("tcp/[::]:0", "udp/1.2.3.4:5")
+
+
+def test_within_one_context_nothing_comes_back_over_the_network(
+    pair: ZenohPair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NAVETTE_ROUTER", pair.near_zenoh.session.settings.router[0])
+    with Context(transport="zenoh") as context:
+        node = Node("both", context=context)
+        executor = Executor(context=context)
+        executor.add_node(node)
+        heard: list[str] = []
+        node.create_subscription(String, "t", lambda m: heard.append(m.data), 10)
+        publisher = node.create_publisher(String, "t", 10)
+        remote, _ = subscribe(pair.near_zenoh)
+        # (a context of domain 0, the pair of domain 7: nobody remote listens)
+        assert publisher.get_subscription_count() == 1
+        publisher.publish(String(data="once"))
+        executor.spin_once(timeout_sec=0)
+        executor.spin_once(timeout_sec=0)
+        assert (heard, remote) == (["once"], [])
+
+
+def test_gids_of_the_graph_are_those_of_the_wire(
+    pair: ZenohPair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NAVETTE_ROUTER", pair.near_zenoh.session.settings.router[0])
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    with Context(transport="zenoh") as context:
+        node = Node("here", context=context)
+        publisher = node.create_publisher(String, "t", 10)
+        gids = [publisher.endpoint.gid]
+        until(lambda: [e.gid for e in pair.near.endpoints() if e.topic == "/t"] == gids)
+        assert gid_of("") not in gids
