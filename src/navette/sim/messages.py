@@ -88,16 +88,26 @@ def odometry_message(
 
 
 def scan_message(scan: Scan, stamp_ns: int, frame: str, period_s: float) -> LaserScan:
+    """With the precision that the message has (32 bits).
+
+    So who reads it in this process reads the same numbers as who reads it from a bag
+    or in another process.
+    """
+    angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
     return LaserScan(
         header=header(stamp_ns, frame),
-        angle_min=scan.angle_min,
-        angle_max=scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1),
-        angle_increment=scan.angle_increment,
-        scan_time=period_s,
-        range_min=scan.range_min,
-        range_max=scan.range_max,
+        angle_min=_single(scan.angle_min),
+        angle_max=_single(angle_max),
+        angle_increment=_single(scan.angle_increment),
+        scan_time=_single(period_s),
+        range_min=_single(scan.range_min),
+        range_max=_single(scan.range_max),
         ranges=scan.ranges,
     )
+
+
+def _single(value: float) -> float:
+    return float(np.float32(value))
 
 
 def imu_message(
