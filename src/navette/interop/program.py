@@ -37,7 +37,7 @@ class Program:
 def script(path: Path, arguments: tuple[str, ...] = ()) -> Program:
     """A Python file, run as ``__main__``."""
     return Program(
-        str(path), arguments, lambda: _run_file(path), _search_path(path.resolve())
+        str(path), arguments, lambda: _run_file(path), search_path(path.resolve())
     )
 
 
@@ -60,8 +60,8 @@ def file_entry_point(
     return Program(
         f"{path}:{attribute}",
         arguments,
-        lambda: _run_attribute(_load_file(path, path.stem), attribute),
-        _search_path(path.resolve()),
+        lambda: _run_attribute(load_file(path, path.stem), attribute),
+        search_path(path.resolve()),
     )
 
 
@@ -94,7 +94,7 @@ def _exit_code(value: object) -> int:
     return FAILED
 
 
-def _search_path(file: Path) -> tuple[Path, ...]:
+def search_path(file: Path) -> tuple[Path, ...]:
     """The file's folder and, if that is a Python package, where it is imported from."""
     root = file.parent
     while (root / "__init__.py").is_file():
@@ -109,7 +109,8 @@ def _run_file(path: Path) -> None:
     _execute(path, module)
 
 
-def _load_file(path: Path, name: str) -> ModuleType:
+def load_file(path: Path, name: str) -> ModuleType:
+    """A Python file as the module of that name."""
     module = sys.modules[name] = _new_module(path, name)
     _execute(path, module)
     return module

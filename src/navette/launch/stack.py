@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from navette.control.node import ControlNode
 from navette.costmap.node import CostmapNode
+from navette.errors import UnknownNameError
 from navette.localization.distance.node import OdomIntegratorNode
 from navette.localization.ekf.node import EkfNode
 from navette.mapping.node import MapMemoryNode
@@ -25,6 +26,18 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("control", ControlNode),
     ("missions", MissionNode),
 )
+
+
+def node_class(name: str) -> type[StageNode]:
+    """The class of a stage that lives on topics alone, by its node's name.
+
+    Raises:
+        UnknownNameError: there is none; lists those there are.
+    """
+    known = {each: kind for each, kind in NODE_CLASSES if kind is not SimNode}
+    if name not in known:
+        raise UnknownNameError.of("stage", name, list(known))
+    return known[name]
 
 
 @dataclass(frozen=True)

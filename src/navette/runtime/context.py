@@ -250,13 +250,16 @@ class Scope:
     Args:
         graph: where the contexts meet those of other programs in the process; None:
             each has a graph of its own.
+        default: the context used where none is given; None: one is made.
     """
 
-    def __init__(self, graph: Graph | None = None) -> None:
+    def __init__(
+        self, graph: Graph | None = None, default: Context | None = None
+    ) -> None:
         self.graph = graph
         #: Those still in use, in no particular order.
         self.contexts: WeakSet[Context] = WeakSet()
-        self._default: Context | None = None
+        self._default = default
         self._lock = threading.Lock()
 
     def default_context(self) -> Context:

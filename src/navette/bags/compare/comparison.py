@@ -1,0 +1,202 @@
+"""Two recordings, message by message.
+
+Messages of a topic belong together by their stamps. Both files are read once, in the
+order of stamps, and only what still waits for its partner is held.
+"""
+
+import heapq
+from collections import deque
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from navette.bags.bag import BagMessage, BagTopic
+from navette.bags.compare.fields import FieldDifference, message_differences
+from navette.bags.compare.tolerance import Tolerances
+from navette.bags.play.source import Source
+from navette.errors import DecodeError, InvalidValueError, NavetteError
+from navette.msgs import deserialize, fields, get_interface, register_definition
+
+
+@dataclass
+class FieldSummary:
+    """A field over all messages of a topic; the example is the worst one."""
+
+    path: str
+    messages: int = 0
+    first_ns: int = 0
+    worst: FieldDifference | None = None
+
+    def add(self, stamp_ns: int, difference: FieldDifference) -> None:
+        if not self.messages:
+            self.first_ns = stamp_ns
+        self.messages += 1
+        if self.worst is None or _size(difference) > _size(self.worst):
+            self.worst = difference
+
+
+@dataclass
+class TopicComparison:
+    """What came of one topic."""
+
+    name: str
+    type_name: str
+    compared: int = 0
+    differing: int = 0
+    missing: int = 0
+    """Expected, and not there."""
+    extra: int = 0
+    """There, and not expected."""
+    problem: str = ""
+    """Why nothing could be compared."""
+    fields: dict[str, FieldSummary] = field(default_factory=dict)
+
+    @property
+    def same(self) -> bool:
+        return not (self.differing or self.missing or self.extra or self.problem)
+
+
+@dataclass
+class Comparison:
+    """What came of all topics."""
+
+    topics: list[TopicComparison]
+    unexpected: tuple[str, ...] = ()
+    """Topics that only the other recording has; not counted as a difference."""
+
+    @property
+    def same(self) -> bool:
+        return all(topic.same for topic in self.topics)
+
+
+def compare(
+    expected: Source,
+    got: Source,
+    *,
+    topics: Collection[str] | None = None,
+    tolerances: Tolerances | None = None,
+    time_tolerance_ns: int = 0,
+    start_ns: int | None = None,
+    end_ns: int | None = None,
+) -> Comparison:
+    """How ``got`` differs from what was ``expected``.
+
+    Args:
+        topics: names to compare; all that are expected if None.
+        tolerances: how far numbers may be apart; exactly equal by default.
+        time_tolerance_ns: how far stamps of messages that belong together may be
+            apart.
+        start_ns, end_ns: first and last stamp to look at; all if None.
+
+    Raises:
+        InvalidValueError: there is nothing to compare.
+        FileFormatError: a recording is damaged.
+    """
+    wanted = {t.name: t for t in expected.topics if topics is None or t.name in topics}
+    if not wanted:
+        raise InvalidValueError(
+            "nothing to compare: expected are "
+            f"{', '.join(t.name for t in expected.topics) or 'no topics'}; compared "
+            f"would be {', '.join(sorted(topics or ())) or 'none'}"
+        )
+    there = {t.name: t for t in got.topics}
+    found = {
+        name: _TopicPairs(topic, there.get(name), tolerances or Tolerances())
+        for name, topic in wanted.items()
+    }
+    sides = (
+        _side(number, source.messages(wanted, start_ns=start_ns, end_ns=end_ns))
+        for number, source in enumerate((expected, got))
+    )
+    for stamp_ns, side, message in heapq.merge(*sides, key=lambda item: item[:2]):
+        pairs = found[message.topic.name]
+        pairs.expire(stamp_ns - time_tolerance_ns)
+        pairs.take(side, message)
+    for pairs in found.values():
+        pairs.expire(None)
+    unexpected = tuple(
+        name
+        for name in there
+        if name not in wanted and (topics is None or name in topics)
+    )
+    return Comparison([pairs.result for pairs in found.values()], unexpected)
+
+
+def _side(
+    side: int, messages: Iterator[BagMessage]
+) -> Iterator[tuple[int, int, BagMessage]]:
+    return ((message.stamp_ns, side, message) for message in messages)
+
+
+class _TopicPairs:
+    """Finds the messages of a topic that belong together, and compares them."""
+
+    def __init__(
+        self, topic: BagTopic, other: BagTopic | None, tolerances: Tolerances
+    ) -> None:
+        self.result = TopicComparison(topic.name, topic.type_name)
+        self._tolerances = tolerances
+        self._waiting: tuple[deque[BagMessage], deque[BagMessage]] = (deque(), deque())
+        self._classes: tuple[Any, Any] | None = None
+        if other is not None and other.type_name != topic.type_name:
+            self.result.problem = f"type {topic.type_name}, now {other.type_name}"
+            return
+        try:
+            expected, got = _class_of(topic), _class_of(other or topic)
+        except NavetteError as error:
+            self.result.problem = str(error)
+            return
+        if fields(expected) != fields(got):
+            self.result.problem = f"{topic.type_name} has other fields now"
+        else:
+            self._classes = expected, got
+
+    def take(self, side: int, message: BagMessage) -> None:
+        partners = self._waiting[1 - side]
+        if not partners:
+            self._waiting[side].append(message)
+            return
+        partner = partners.popleft()
+        pair = (message, partner) if side == 0 else (partner, message)
+        self._compare(*pair)
+
+    def expire(self, before_ns: int | None) -> None:
+        """No partner can come any more for what is older (None: for all)."""
+        for side, waiting in enumerate(self._waiting):
+            while waiting and (before_ns is None or waiting[0].stamp_ns < before_ns):
+                waiting.popleft()
+                if side == 0:
+                    self.result.missing += 1
+                else:
+                    self.result.extra += 1
+
+    def _compare(self, expected: BagMessage, got: BagMessage) -> None:
+        if self._classes is None:
+            return
+        result = self.result
+        result.compared += 1
+        if expected.data == got.data:
+            return
+        try:
+            one = deserialize(expected.data, self._classes[0])
+            other = deserialize(got.data, self._classes[1])
+        except DecodeError as error:
+            result.problem = f"at {expected.stamp_ns / 1e9:.3f} s: {error}"
+            return
+        differences = message_differences(
+            one, other, lambda path: self._tolerances.of(result.name, path)
+        )
+        result.differing += bool(differences)
+        for each in differences:
+            summary = result.fields.setdefault(each.path, FieldSummary(each.path))
+            summary.add(expected.stamp_ns, each)
+
+
+def _class_of(topic: BagTopic) -> Any:
+    if topic.definition:
+        return register_definition(topic.type_name, topic.definition, private=True)
+    return get_interface(topic.type_name)
+
+
+def _size(difference: FieldDifference) -> float:
+    return float("inf") if difference.largest is None else difference.largest

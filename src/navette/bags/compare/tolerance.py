@@ -1,0 +1,84 @@
+"""How far numbers may be apart, by topic and field."""
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from navette.errors import InvalidValueError
+
+_FORMS = "wanted VALUE or TOPIC[.FIELD]=VALUE, VALUE as 0.01 or 0.01:2%"
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """``absolute`` in the field's own unit; ``share`` of an array's elements may be
+    further apart than that."""
+
+    absolute: float = 0.0
+    share: float = 0.0
+
+
+EXACT = Tolerance()
+
+
+@dataclass
+class Tolerances:
+    """The tolerance of a field: that of the last rule that matches it, or none.
+
+    A rule's pattern is a topic, or a topic and a field as in
+    ``/path.poses[].pose.position.x``; it holds for all fields below it. ``*`` stands
+    for any text.
+    """
+
+    rules: list[tuple[str, Tolerance]] = field(default_factory=list)
+    _found: dict[str, Tolerance] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def parse(cls, texts: Iterable[str]) -> "Tolerances":
+        """Of ``0.01``, ``/path=0.01``, ``/costmap.data=0:0.5%``.
+
+        Raises:
+            InvalidValueError: a text has another form.
+        """
+        tolerances = cls()
+        for text in texts:
+            pattern, equals, value = text.rpartition("=")
+            if equals and not pattern:
+                raise InvalidValueError(f"tolerance {text!r}: {_FORMS}")
+            tolerances.add(pattern or "*", *_numbers(value, text))
+        return tolerances
+
+    def add(self, pattern: str, absolute: float, share: float = 0.0) -> None:
+        """A rule that wins over those before."""
+        self.rules.append((pattern, Tolerance(absolute, share)))
+        self._found.clear()
+
+    def of(self, topic: str, path: str) -> Tolerance:
+        """The tolerance of a field (``""``: of the topic as a whole)."""
+        key = f"{topic}.{path}" if path else topic
+        if key not in self._found:
+            matching = [t for pattern, t in self.rules if _matches(pattern, key)]
+            self._found[key] = matching[-1] if matching else EXACT
+        return self._found[key]
+
+
+def _numbers(value: str, text: str) -> tuple[float, float]:
+    absolute_text, colon, share_text = value.partition(":")
+    try:
+        absolute = float(absolute_text)
+        share = float(share_text.removesuffix("%")) if colon else 0.0
+    except ValueError:
+        raise InvalidValueError(f"tolerance {text!r}: {_FORMS}") from None
+    if share_text.endswith("%"):
+        share /= 100.0
+    if not (0.0 <= absolute < math.inf and 0.0 <= share <= 1.0):
+        raise InvalidValueError(
+            f"tolerance {text!r}: wanted 0 or more, and a share of 0 to 100 %"
+        )
+    return absolute, share
+
+
+def _matches(pattern: str, key: str) -> bool:
+    expression = re.escape(pattern).replace(r"\*", ".*")
+    return re.fullmatch(rf"{expression}([.\[].*)?", key) is not None

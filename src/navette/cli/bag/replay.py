@@ -1,0 +1,194 @@
+"""``navette bag replay``: recorded inputs through nodes, as fast as they can."""
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from navette.bags.compare import Comparison
+    from navette.launch.replay import MakeNode
+    from navette.runtime import Node
+    from navette.runtime.overrides import ParameterOverrides
+
+FAILED = 1
+
+File = Annotated[
+    Path, typer.Argument(metavar="FILE", help="The recording that feeds the nodes.")
+]
+Nodes = Annotated[
+    list[str],
+    typer.Option(
+        "--node",
+        metavar="NAME",
+        help="A stage (costmap, map_memory, planner, control, …), MODULE:Class or"
+        " FILE.py:Class; repeat for several.",
+    ),
+]
+Parameters = Annotated[
+    list[str] | None,
+    typer.Option("-p", metavar="[NODE:]NAME:=VALUE", help="A parameter."),
+]
+ParamsFiles = Annotated[
+    list[Path] | None,
+    typer.Option("--params-file", metavar="FILE", help="ROS 2 parameter file."),
+]
+World = Annotated[
+    str | None,
+    typer.Option(help="The world it was recorded in, for its robot's parameters."),
+]
+Robot = Annotated[
+    str | None, typer.Option(help="The robot whose parameters the stages take.")
+]
+Record = Annotated[
+    Path | None,
+    typer.Option(metavar="OUT.mcap", help="Record what the nodes say."),
+]
+Golden = Annotated[
+    Path | None,
+    typer.Option(
+        "--compare",
+        metavar="GOLDEN",
+        help="Compare what the nodes say with this recording; exit code 1 if it"
+        " differs. FILE itself will do.",
+    ),
+]
+Tolerance = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="[TOPIC[.FIELD]=]VALUE[:SHARE%]",
+        help="How far numbers may be apart, and how many of an array's elements"
+        " further than that; repeat, the last that matches counts.",
+    ),
+]
+TimeTolerance = Annotated[
+    float,
+    typer.Option(metavar="S", help="How far stamps may be apart.", min=0.0),
+]
+Inputs = Annotated[
+    list[str] | None,
+    typer.Option("--input", metavar="TOPIC", help="Feed this topic in any case."),
+]
+Start = Annotated[
+    float,
+    typer.Option("-s", "--start-offset", metavar="S", help="Seconds to leave out."),
+]
+Length = Annotated[
+    float | None,
+    typer.Option("-u", "--duration", metavar="S", help="Seconds to replay."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")]
+
+
+def replay(
+    file: File,
+    nodes: Nodes,
+    parameters: Parameters = None,
+    params_files: ParamsFiles = None,
+    world: World = None,
+    robot: Robot = None,
+    record: Record = None,
+    golden: Golden = None,
+    tolerance: Tolerance = None,
+    time_tolerance: TimeTolerance = 0.0,
+    inputs: Inputs = None,
+    start_offset: Start = 0.0,
+    duration: Length = None,
+    as_json: Json = False,
+) -> None:
+    """Feed recorded inputs to nodes in lock-step, faster than real time.
+
+    What the nodes say themselves is not taken from the recording. Two replays write
+    the same bytes.
+    """
+    from navette.bags import open_bag
+    from navette.bags.compare import Tolerances, compare
+    from navette.bags.play import PlayOptions
+    from navette.cli.bag.replay_report import as_document, report
+    from navette.cli.output import show_json
+    from navette.launch.replay import Replay
+
+    tolerances = Tolerances.parse(tolerance or ())
+    comparison: Comparison | None = None
+    with ExitStack() as stack:
+        if golden is not None and record is None:
+            record = Path(stack.enter_context(TemporaryDirectory())) / "replay.mcap"
+            shown_record = None
+        else:
+            shown_record = record
+        _check_record(record, file, golden)
+        source = stack.enter_context(open_bag(file))
+        replayed = Replay(
+            source,
+            [_maker(name) for name in nodes],
+            record=record,
+            overrides=_robot_parameters(world, robot),
+            arguments=_arguments(parameters or [], params_files or []),
+            also=inputs or (),
+            options=PlayOptions(start_offset_s=start_offset, duration_s=duration),
+        )
+        stack.callback(replayed.close)
+        summary = replayed.run()
+        if golden is not None and record is not None:
+            expected = stack.enter_context(open_bag(golden))
+            got = stack.enter_context(open_bag(record))
+            comparison = compare(
+                expected,
+                got,
+                topics=summary.outputs,
+                tolerances=tolerances,
+                time_tolerance_ns=round(time_tolerance * 1e9),
+                start_ns=replayed.begin_ns,
+                # Its own recording was ended amid all that happened at the last stamp.
+                end_ns=replayed.end_ns - golden.samefile(file),
+            )
+    if as_json:
+        show_json(as_document(summary, comparison, shown_record))
+    else:
+        report(summary, comparison, shown_record)
+    raise typer.Exit(0 if comparison is None or comparison.same else FAILED)
+
+
+def _maker(name: str) -> "MakeNode":
+    """A stage by its name, or a class by where it is."""
+    if ":" not in name:
+        from navette.launch.stack import node_class
+
+        stage: Callable[..., Node] = node_class(name)
+        return lambda context: stage(context=context)
+    from navette.interop.node_classes import load_node_class
+
+    kind: Callable[[], Node] = load_node_class(name)
+    return lambda context: kind()
+
+
+def _robot_parameters(
+    world: str | None, robot: str | None
+) -> "Callable[[ParameterOverrides], None]":
+    if world is None and robot is None:
+        return lambda overrides: None
+    from navette.launch.options import RunOptions
+    from navette.launch.scene import resolve_scene
+
+    options = RunOptions(world=world or "empty", robot=robot)
+    return resolve_scene(options).override_parameters
+
+
+def _arguments(parameters: list[str], files: list[Path]) -> list[str]:
+    words = [word for each in files for word in ("--params-file", str(each))]
+    words += [word for each in parameters for word in ("-p", each)]
+    return ["--ros-args", *words] if words else []
+
+
+def _check_record(record: Path | None, *read: Path | None) -> None:
+    from navette.errors import InvalidValueError
+
+    if record is None or not record.exists():
+        return
+    if any(
+        path is not None and path.exists() and record.samefile(path) for path in read
+    ):
+        raise InvalidValueError(f"--record {record}: would replace what is read")
