@@ -10,6 +10,11 @@ from navette.errors import InvalidValueError
 from navette.transports.zenoh.security import Security
 from navette.transports.zenoh.settings import Settings
 
+ASK_TIMEOUT_MS = 1000
+"""A router that is stopped (SIGSTOP) still has its port: it is not waited for."""
+
+_OPEN_TIMEOUT_MS = 3000  # as long a link may take to open, and a session to close
+
 # As in rmw_zenoh's default configurations, but for the retries: the router is in one
 # of the processes, and another one takes over at once.
 _COMMON: dict[str, Any] = {
@@ -37,7 +42,13 @@ _COMMON: dict[str, Any] = {
     },
     "timestamping": {"enabled": True},
     "queries_default_timeout": 600_000,
-    "transport": {"unicast": {"accept_pending": 1000, "max_sessions": 10_000}},
+    "transport": {
+        "unicast": {
+            "open_timeout": _OPEN_TIMEOUT_MS,
+            "accept_pending": 1000,
+            "max_sessions": 10_000,
+        }
+    },
 }
 
 
@@ -58,6 +69,7 @@ def client_config(settings: Settings) -> zenoh.Config:
     config.insert_json5("mode", '"client"')
     config.insert_json5("listen/endpoints", "[]")
     config.insert_json5("connect/timeout_ms", "0")
+    config.insert_json5("transport/unicast/open_timeout", str(ASK_TIMEOUT_MS))
     config.insert_json5("connect/exit_on_failure", "true")
     return config
 

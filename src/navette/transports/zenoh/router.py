@@ -23,6 +23,7 @@ _log = logging.getLogger(__name__)
 # While one process binds, another may neither bind nor connect: it looks again.
 _LOOKS = 20
 _LOOK_S = 0.05
+_PATIENCE_S = 1.5  # with one that takes calls but does not answer
 
 
 class RouterRole:
@@ -46,17 +47,24 @@ class RouterRole:
         None if there is none and none can be made here (it is to be on another
         machine, and cannot be reached).
         """
+        patience = threading.Timer(_PATIENCE_S, lambda: None)
+        patience.daemon = True
+        patience.start()
         for _ in range(_LOOKS):
             client = self._ask()
             if client is not None:
+                patience.cancel()
                 return client
             if not self._serve():
                 return None
             if self._stop.wait(0.0 if self.is_serving else _LOOK_S):
                 return None
+            if not patience.is_alive():
+                break
         _log.warning(
             "%s is taken, but who listens there does not let this process in: another "
-            "program, a wrong certificate or password, or links with and without TLS",
+            "program, a wrong certificate or password, links with and without TLS, or "
+            "one that is stopped (Ctrl-Z)",
             ", ".join(router_endpoints(self._settings)),
         )
         return None
