@@ -15,7 +15,7 @@ import pytest
 
 from navette.bags import BagWriter
 from navette.cli.arguments import fill_values
-from navette.cli.keys import split_keys
+from navette.cli.keyboard import split_keys
 from navette.msgs import definition_text, serialize
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Stopwatch
