@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from navette.msgs.definition_text import definition_text
+from navette.msgs.definition_text import definition_text, interface_text
 from navette.msgs.foreign import load_definition_text
 from navette.msgs.registry import (
     add_interface_path,
@@ -42,6 +42,7 @@ __all__ = [
     "fields",
     "validate",
     "definition_text",
+    "interface_text",
     "type_hash",
     "type_description",
     "load_interfaces",

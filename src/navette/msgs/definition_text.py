@@ -8,6 +8,7 @@ from navette.msgs.interface import (
     Field,
     MessageSpec,
     ServiceSpec,
+    Spec,
     short_name,
 )
 from navette.msgs.registry import get_message_spec, get_spec
@@ -20,22 +21,39 @@ def definition_text(name: str) -> str:
 
     Services and actions give their parts separated by ``---``, as their files do.
     """
-    spec = get_spec(name)
-    if isinstance(spec, MessageSpec):
-        tops = [spec]
-    elif isinstance(spec, ServiceSpec):
-        tops = [spec.request, spec.response]
-    else:
-        assert isinstance(spec, ActionSpec), "there are three kinds of interface"
-        tops = [spec.goal, spec.result, spec.feedback]
+    tops = _tops(get_spec(name))
     contained: dict[str, MessageSpec] = {}
     for top in tops:
         _collect(top, contained)
-    text = "---\n".join(message_text(top) for top in tops)
+    text = _joined(tops)
     for dependency in contained.values():
         text += f"{_SEPARATOR}\nMSG: {short_name(dependency.name)}\n"
         text += message_text(dependency)
     return text
+
+
+def interface_text(name: str) -> str | None:
+    """What stands in the interface's own file; None for a part of a service or action.
+
+    Without comments, which are not kept.
+    """
+    spec = get_spec(name)
+    kinds = {MessageSpec: "msg", ServiceSpec: "srv", ActionSpec: "action"}
+    has_file = spec.name.split("/")[1] == kinds[type(spec)]
+    return _joined(_tops(spec)) if has_file else None
+
+
+def _tops(spec: Spec) -> list[MessageSpec]:
+    """The message itself, or the parts that a service's or action's file has."""
+    if isinstance(spec, MessageSpec):
+        return [spec]
+    if isinstance(spec, ServiceSpec):
+        return [spec.request, spec.response]
+    return [spec.goal, spec.result, spec.feedback]
+
+
+def _joined(parts: list[MessageSpec]) -> str:
+    return "---\n".join(message_text(part) for part in parts)
 
 
 def message_text(spec: MessageSpec) -> str:

@@ -40,6 +40,7 @@ from navette.runtime.ros_clock import Clock, ROSClock
 from navette.runtime.time import ns_to_stamp, seconds_to_ns
 from navette.runtime.time_source import TimeSource
 from navette.runtime.timer import Timer
+from navette.runtime.type_description_service import TypeDescriptionService
 from navette.transports import NodeInfo
 
 HIDDEN_NODE_PREFIX = "_"
@@ -96,6 +97,7 @@ class Node(NodeParameters, NodeTopics, NodeServices, NodeWaitables, NodeGraph):
             self._time_source = TimeSource(self)
             if start_parameter_services:
                 self._parameter_service = ParameterService(self)
+            self._type_description_service = TypeDescriptionService(self)
             if enable_logger_service:
                 self._logging_service = LoggingService(self)
         except NavetteError:

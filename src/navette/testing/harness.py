@@ -21,6 +21,7 @@ from navette.runtime import (
     DurabilityPolicy,
     Executor,
     Node,
+    Parameter,
     Publisher,
     QoSProfile,
     ReliabilityPolicy,
@@ -78,6 +79,9 @@ class GraphHarness:
             "harness",
             context=self.context,
             enable_rosout=False,
+            parameter_overrides=[
+                Parameter("start_type_description_service", value=False)
+            ],
             start_parameter_services=False,
         )  # publishes and collects for the test
         self.executor.add_node(self.node)

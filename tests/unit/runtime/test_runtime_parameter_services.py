@@ -68,13 +68,16 @@ def test_every_node_serves_its_parameters(graph: GraphHarness, node: Node) -> No
             "describe_parameters",
             "get_parameter_types",
             "get_parameters",
+            "get_type_description",
             "list_parameters",
             "set_parameters",
             "set_parameters_atomically",
         )
     ]
     silent = Node("silent", context=graph.context, start_parameter_services=False)
-    assert list(silent.services) == []
+    assert [each.srv_name for each in silent.services] == [
+        "/silent/get_type_description"
+    ]
 
 
 def test_get(client: AsyncParameterClient, ask: Ask) -> None:

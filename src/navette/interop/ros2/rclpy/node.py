@@ -71,6 +71,7 @@ from navette.runtime.time import NS_PER_S as S_TO_NS
 from navette.runtime.time_source import TimeSource
 from navette.runtime.timer import TimerInfo
 from navette.runtime.topic_endpoint_info import TopicEndpointInfo
+from navette.runtime.type_description_service import TypeDescriptionService
 from navette.runtime.type_support import (
     MsgT,
     SrvEventT,
@@ -135,6 +136,7 @@ __all__ = [
     "Timer",
     "TimerInfo",
     "TopicEndpointInfo",
+    "TypeDescriptionService",
     "Waitable",
     "check_is_valid_msg_type",
     "check_is_valid_srv_type",
