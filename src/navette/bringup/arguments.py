@@ -7,6 +7,8 @@ from typing import Any
 from navette.errors import InvalidValueError
 from navette.launch_files.launch import LaunchDescription, LaunchDescriptionEntity
 from navette.launch_files.launch.actions import (
+    ForEach,
+    ForLoop,
     IncludeLaunchDescription,
     OpaqueFunction,
 )
@@ -58,7 +60,7 @@ def is_complete(description: LaunchDescription) -> bool:
 def _may_declare(entity: LaunchDescriptionEntity) -> bool:
     if isinstance(entity, IncludeLaunchDescription):
         return not entity.describe_sub_entities()
-    return isinstance(entity, OpaqueFunction)
+    return isinstance(entity, (ForEach, ForLoop, OpaqueFunction))
 
 
 def describe_arguments(declared: Sequence[Any]) -> str:

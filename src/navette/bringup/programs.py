@@ -39,7 +39,7 @@ class InProcessRunner:
     """Python programs as threads that meet on one graph; the rest as processes."""
 
     def __init__(self) -> None:
-        self._graph = new_graph()
+        self.graph = new_graph()
         self._processes = SubprocessRunner()
         self._stack = ExitStack()
         # What the programs start goes with the launch as well.
@@ -64,7 +64,7 @@ class InProcessRunner:
         running = RunningThread(
             make_program(command.program, command.argv),
             listener,
-            lambda program, on_end: RunningProgram(program, self._graph, on_end),
+            lambda program, on_end: RunningProgram(program, self.graph, on_end),
         )
         running.start()
         return running
@@ -72,7 +72,7 @@ class InProcessRunner:
     def close(self) -> None:
         self._stack.close()
         self._processes.close()
-        self._graph.close()
+        self.graph.close()
 
 
 def make_program(program: PythonProgram, argv: tuple[str, ...]) -> Program:

@@ -191,7 +191,21 @@ class AliasLoader(_NavetteLoader, Loader):
         child = fullname.rpartition(".")[2]
         if child in self._submodules():
             return _spec(fullname, AliasLoader(fullname, f"{self._alias_of}.{child}"))
+        if self._has_module_of(child):
+            return _spec(fullname, AliasLoader(fullname, self._alias_of))
         return super().find_child(fullname)
+
+    def _has_module_of(self, name: str) -> bool:
+        """Whether ROS 2 keeps something of this package in a module of that name.
+
+        In launch and launch_ros each class has one: ``launch.actions.opaque_function``.
+        """
+        if self.name.partition(".")[0] not in ("launch", "launch_ros"):
+            return False
+        start = name.replace("_", "")
+        return name.islower() and any(
+            each.lower().startswith(start) for each in _public_names(self._real)
+        )
 
     def contents(self) -> list[str]:
         return sorted({*_public_names(self._real), *self._submodules()})

@@ -40,6 +40,8 @@ class FakeRunner:
     ``behaviour(process)`` is called after each start.
     """
 
+    graph = None
+
     def __init__(self, loop: EventLoop) -> None:
         self.loop = loop
         self.started: list[FakeProcess] = []

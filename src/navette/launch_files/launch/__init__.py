@@ -27,6 +27,7 @@ from navette.launch_files.launch.launch_description_entity import (
 from navette.launch_files.launch.launch_description_source import (
     LaunchDescriptionSource,
 )
+from navette.launch_files.launch.launch_introspector import LaunchIntrospector
 from navette.launch_files.launch.launch_service import LaunchService
 from navette.launch_files.launch.substitution import (
     SomeSubstitutionsType,
@@ -54,6 +55,7 @@ __all__ = [
     "LaunchDescription",
     "LaunchDescriptionEntity",
     "LaunchDescriptionSource",
+    "LaunchIntrospector",
     "LaunchService",
     "SomeEntitiesType",
     "SomeEntitiesType_types_tuple",

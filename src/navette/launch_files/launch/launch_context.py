@@ -2,7 +2,7 @@
 
 import os
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import SimpleNamespace
@@ -61,6 +61,7 @@ class LaunchContext:
         self._handlers: list[EventHandler] = []
         self._count = 0
         self._scratch: TemporaryDirectory[str] | None = None
+        self._on_close: list[Callable[[], None]] = []
 
     # -- values ------------------------------------------------------------------
 
@@ -112,8 +113,14 @@ class LaunchContext:
             self._scratch = TemporaryDirectory(prefix="navette_launch_")
         return Path(self._scratch.name)
 
+    def on_close(self, function: Callable[[], None]) -> None:
+        """Call ``function`` when the launch is over."""
+        self._on_close.append(function)
+
     def close(self) -> None:
-        """Take the scratch folder away."""
+        """Let go of what was made for the launch, and take the scratch folder away."""
+        for function in self._on_close:
+            function()
         if self._scratch is not None:
             self._scratch.cleanup()
 

@@ -101,8 +101,8 @@ class LaunchService:
                     self._fail(error)
         finally:
             context.restore_environment(context.notes["first environment"])
-            context.runner.close()
             context.close()
+            context.runner.close()
         return FAILED if self.errors or context.failed_labels else SUCCEEDED
 
     def _hurry(self) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from navette.processes import INTERRUPT, KILL, TERMINATE, Listener
+from navette.runtime.graph import Graph
 
 __all__ = [
     "INTERRUPT",
@@ -71,7 +72,13 @@ class Running(Protocol):
 
 
 class Runner(Protocol):
-    """Starts commands."""
+    """Starts commands.
+
+    ``graph``: where nodes that it starts in this process meet; None: it starts none.
+    """
+
+    @property
+    def graph(self) -> Graph | None: ...
 
     def start(self, command: Command, listener: Listener) -> Running:
         """Start one.

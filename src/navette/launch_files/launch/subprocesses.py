@@ -16,6 +16,8 @@ from navette.processes import (
 class SubprocessRunner:
     """Starts a process for each command."""
 
+    graph = None
+
     def __init__(self) -> None:
         self.keeper = Keeper()
 

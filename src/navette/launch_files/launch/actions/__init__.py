@@ -26,6 +26,7 @@ from navette.launch_files.launch.actions.execute_process import (
     ExecuteLocal,
     ExecuteProcess,
 )
+from navette.launch_files.launch.actions.for_loop import ForEach, ForLoop
 from navette.launch_files.launch.actions.group_action import GroupAction
 from navette.launch_files.launch.actions.include_launch_description import (
     IncludeLaunchDescription,
@@ -46,6 +47,8 @@ __all__ = [
     "EmitEvent",
     "ExecuteLocal",
     "ExecuteProcess",
+    "ForEach",
+    "ForLoop",
     "GroupAction",
     "IncludeLaunchDescription",
     "Log",

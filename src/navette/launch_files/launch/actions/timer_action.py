@@ -13,6 +13,8 @@ from navette.launch_files.launch.launch_description_entity import (
 from navette.launch_files.launch.typed import perform_bool, perform_seconds
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from navette.launch_files.launch.launch_context import LaunchContext
     from navette.runtime.loop import Call
 
@@ -39,6 +41,7 @@ class TimerAction(Action):
         self.actions = normalize_to_list_of_entities(actions)
         self.cancel_on_shutdown = cancel_on_shutdown
         self._call: Call | None = None
+        self._is_waiting = False
         self._context: LaunchContext | None = None
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
@@ -51,14 +54,17 @@ class TimerAction(Action):
         scope = dict(context.launch_configurations)
         local = context.get_locals_as_dict()
         self._context = context
+        self._is_waiting = True
         context.busy.add(self)
 
         def fire() -> None:
-            self._call = None
+            if not self._is_waiting:
+                return  # cancelled meanwhile
+            self._is_waiting = False
             context.busy.discard(self)
             context.visit_later([_Scoped(self.actions, scope, local)])
 
-        self._call = context.call_after(seconds, fire, f"timer of {seconds:g} s")
+        self.schedule(context, seconds, fire)
         if perform_bool(context, self.cancel_on_shutdown):
             context.register_event_handler(
                 AnsweringHandler(
@@ -68,11 +74,18 @@ class TimerAction(Action):
                 )
             )
 
+    def schedule(
+        self, context: "LaunchContext", seconds: float, fire: "Callable[[], None]"
+    ) -> None:
+        """Let ``fire`` be called on the launch's loop after so long."""
+        self._call = context.call_after(seconds, fire, f"timer of {seconds:g} s")
+
     def cancel(self) -> None:
         """Let it not happen; after it has happened: nothing."""
-        if self._call is not None and self._context is not None:
+        self._is_waiting = False
+        if self._call is not None:
             self._call.cancel()
-            self._call = None
+        if self._context is not None:
             self._context.busy.discard(self)
 
 

@@ -5,7 +5,11 @@ from navette.launch_files.launch_ros.actions.composition import (
     LoadComposableNodes,
 )
 from navette.launch_files.launch_ros.actions.lifecycle_node import LifecycleNode
+from navette.launch_files.launch_ros.actions.lifecycle_transition import (
+    LifecycleTransition,
+)
 from navette.launch_files.launch_ros.actions.node import Node
+from navette.launch_files.launch_ros.actions.ros_timer import RosTimer
 from navette.launch_files.launch_ros.actions.scoped import (
     PushROSNamespace,
     PushRosNamespace,
@@ -16,13 +20,18 @@ from navette.launch_files.launch_ros.actions.scoped import (
     SetUseSimTime,
 )
 
+ROSTimer = RosTimer  # launch_ros has both names
+
 __all__ = [
     "ComposableNodeContainer",
     "LifecycleNode",
+    "LifecycleTransition",
     "LoadComposableNodes",
     "Node",
     "PushROSNamespace",
     "PushRosNamespace",
+    "ROSTimer",
+    "RosTimer",
     "SetParameter",
     "SetParametersFromFile",
     "SetROSLogDir",
