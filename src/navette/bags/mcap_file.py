@@ -61,11 +61,14 @@ class McapFile:
         self._compression = "" if compression == "none" else compression
         self._compress = _compressor(compression)
         self._chunk_indexes: list[ChunkIndex] = []
+        #: Messages by channel, of each finished chunk.
+        self._chunk_counts: list[dict[int, int]] = []
         self._parts: list[bytes] = []
         self._index: dict[int, list[int]] = {}
         #: Bytes of the chunk so far.
         self.chunk_size = 0
         self._write(MAGIC + _record(Header(profile=profile, library=library)))
+        self._data_start = self._position
 
     @property
     def message_count(self) -> int:
@@ -145,10 +148,34 @@ class McapFile:
                 uncompressed_size=chunk.uncompressed_size,
             )
         )
+        counts = {channel: len(index) // 2 for channel, index in self._index.items()}
+        self._chunk_counts.append(counts)
         self._parts, self._index, self.chunk_size = [], {}, 0
 
-    def finish(self) -> None:
-        """End the last chunk and write the summary; the stream stays open."""
+    def keep(self, size: int) -> int:
+        """Forget what is not in the first ``size`` bytes of the file, whole chunks.
+
+        Gives the bytes that are still meant: the file has to be cut there.
+        """
+        self._parts, self._index, self.chunk_size = [], {}, 0
+        while self._chunk_indexes and _end(self._chunk_indexes[-1]) > size:
+            self._chunk_indexes.pop()
+            self._chunk_counts.pop()
+        self._sequences = [0] + [
+            sum(counts.get(channel.id, 0) for counts in self._chunk_counts)
+            for channel in self._channels
+        ]
+        chunks = self._chunk_indexes
+        self._position = _end(chunks[-1]) if chunks else self._data_start
+        return self._position
+
+    def finish(self, stream: IO[bytes] | None = None) -> None:
+        """End the last chunk and write the summary; the stream stays open.
+
+        Args:
+            stream: what to write to from here on, if not to that of before.
+        """
+        self._stream = stream or self._stream
         self.end_chunk()
         self._write(_record(DataEnd(data_section_crc=0)))
         summary_start = self._position
@@ -219,6 +246,11 @@ class McapFile:
     def _write(self, data: bytes) -> None:
         self._stream.write(data)
         self._position += len(data)
+
+
+def _end(chunk: ChunkIndex) -> int:
+    """Where the chunk and its message indexes end."""
+    return chunk.chunk_start_offset + chunk.chunk_length + chunk.message_index_length
 
 
 def _compressor(kind: str) -> Callable[[bytes], bytes]:

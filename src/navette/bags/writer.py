@@ -11,7 +11,9 @@ lost with the process, so flush often.
 """
 
 from contextlib import suppress
+from io import FileIO
 from pathlib import Path
+from typing import IO, cast
 
 from navette.bags.mcap_file import COMPRESSIONS, MAGIC, McapFile
 from navette.errors import FileFormatError, InvalidValueError
@@ -20,6 +22,8 @@ _CHUNK_BYTES = 256 * 1024
 # Larger than any chunk: a chunk and its index reach the system in one piece.
 _BUFFER_BYTES = 4 * 2**20
 _LIBRARY = "navette"
+_MOST_SACRIFICED = 4
+"""Chunks that are given up for the index when the disk is full."""
 
 
 class BagWriter:
@@ -109,9 +113,44 @@ class BagWriter:
             self._file.close()
 
     def abandon(self) -> None:
-        """Close after an ``OSError``; what was flushed stays readable."""
+        """Close after an ``OSError``; what was flushed stays readable.
+
+        Where the disk is full, the last chunk makes room for the index.
+        """
+        if self._file.closed:
+            return
         with suppress(OSError):  # the same error again; it is known already
             self._file.close()
+        with suppress(OSError):  # without an index it can be read all the same
+            self._finish_what_is_there()
+
+    def _finish_what_is_there(self) -> None:
+        size = self.path.stat().st_size
+        with self.path.open("r+b", buffering=0) as file:
+            for _ in range(_MOST_SACRIFICED):
+                size = self._mcap.keep(size)
+                file.truncate(size)
+                file.seek(size)
+                try:
+                    self._mcap.finish(cast(IO[bytes], _Whole(file)))
+                except OSError:
+                    size -= 1  # the chunk that ends there goes next
+                else:
+                    return
+            file.truncate(self._mcap.keep(size))
+
+
+class _Whole:
+    """Writes all or raises: a raw file may write less than it is given."""
+
+    def __init__(self, file: FileIO) -> None:
+        self._file = file
+
+    def write(self, data: bytes) -> int:
+        rest = memoryview(data)
+        while rest:
+            rest = rest[self._file.write(rest) :]
+        return len(data)
 
 
 def _is_something_else(path: Path) -> bool:
