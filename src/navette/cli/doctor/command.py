@@ -46,9 +46,14 @@ def _findings() -> Iterator[Finding]:
 
     # Before anything joins: a program that finds no router serves as one itself.
     network = look_at_network()
+    if any(router.is_stopped for router in network.routers):
+        yield from check_network(network, None)
+        yield from check_machine()
+        return
     try:
         with connect() as here:
-            domain, seen = here.context.get_domain_id(), look(here)
+            domain = here.context.get_domain_id()
+            seen = look(here, (network.nodes or {}).get(domain, ()))
     except NetworkError as error:
         yield from check_network(network, None)
         yield Finding(Level.PROBLEM, NETWORK, "joining", str(error))

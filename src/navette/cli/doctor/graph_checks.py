@@ -29,6 +29,8 @@ _MENDS = {
 
 def check_nodes(seen: Snapshot) -> Iterator[Finding]:
     """Are there nodes, under names of their own, and do they answer?"""
+    for name in seen.unreached:
+        yield _silent(name, "is known to the router, but cannot be reached")
     if not seen.nodes:
         yield Finding(
             Level.NOTE,
@@ -51,19 +53,18 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
         )
     silent = sorted(name for name, answer in seen.sim_time.items() if answer is None)
     for name in silent:
-        yield Finding(
-            Level.PROBLEM,
-            NODES,
-            name,
-            "is there, but does not answer",
-            "its program hangs in a callback, is stopped (Ctrl-Z) or is cut off",
-        )
+        yield _silent(name, "is there, but does not answer")
     if not twice and not silent:
         answered = " and answer" if seen.sim_time else ""
         text = f"{plural(len(seen.nodes), 'node')} under names of their own{answered}"
         yield Finding(
             Level.GOOD, NODES, "nodes", text, data={"nodes": sorted(seen.nodes)}
         )
+
+
+def _silent(name: str, how: str) -> Finding:
+    advice = "its program is stopped (Ctrl-Z), hangs in a callback, or is cut off"
+    return Finding(Level.PROBLEM, NODES, name, how, advice)
 
 
 def check_topics(seen: Snapshot) -> Iterator[Finding]:

@@ -1,10 +1,11 @@
 """Looking at what runs for a moment: the graph, its answers, heartbeats and clock."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from navette.cli.asking import Question, ask_all, node_names
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
-from navette.cli.session import endpoints, service_endpoints, wait_for
+from navette.cli.session import endpoints, is_hidden, service_endpoints, wait_for
 from navette.transports import Endpoint, EndpointKind
 
 if TYPE_CHECKING:
@@ -18,8 +19,12 @@ _GET = "rcl_interfaces/srv/GetParameters"
 _SANE_AGE_S = 3600.0  # older than that, a stamp is of another clock
 
 
-def look(here: "Node") -> Snapshot:
-    """Ask and listen; about as long as the slowest node needs, 1.2 s at most."""
+def look(here: "Node", known: Sequence[str]) -> Snapshot:
+    """Ask and listen; about as long as the slowest node needs, 2.2 s at most.
+
+    Args:
+        known: full names of the nodes that the router knows.
+    """
     nodes = node_names(here, hidden=True)
     topics = endpoints(here)
     services = service_endpoints(here)
@@ -31,6 +36,7 @@ def look(here: "Node") -> Snapshot:
         endpoints=tuple(topics),
         services=tuple(services),
         sim_time=sim_time,
+        unreached=tuple(sorted(n for n in {*known} - {*nodes} if not is_hidden(n))),
         clock_ticks=listening.clock_ns is not None,
         heartbeats=tuple(listening.heartbeats()),
     )

@@ -1,7 +1,7 @@
 """Checks of the way to the others: transport, router, domain."""
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from navette.cli.doctor.findings import Finding, Level, plural
@@ -28,6 +28,11 @@ class Router:
     process: Process | None = None
 
     @property
+    def is_stopped(self) -> bool:
+        """Whether its program has the port, but does not run."""
+        return self.process is not None and self.process.is_stopped
+
+    @property
     def is_here(self) -> bool:
         return _address(self.endpoint)[0] in _LOCAL
 
@@ -39,14 +44,15 @@ class Network:
     Args:
         transport: what NAVETTE_TRANSPORT says.
         routers: one per endpoint.
-        nodes: by domain; None: no router told.
+        nodes: full names by domain, of those that the router knows; None: no router
+            told.
         session_file: of ZENOH_SESSION_CONFIG_URI.
         middleware: RMW_IMPLEMENTATION, for ROS 2's programs.
     """
 
     transport: str = ""
     routers: tuple[Router, ...] = ()
-    nodes: Mapping[int, int] | None = field(default_factory=dict)
+    nodes: Mapping[int, Sequence[str]] | None = field(default_factory=dict)
     session_file: str = ""
     middleware: str = ""
 
@@ -127,6 +133,17 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
     if router.answers is None:
         text = f"{router.endpoint}, which cannot be tried from here"
         return Finding(Level.NOTE, NETWORK, "router", text, data=data)
+    if who is not None and who.is_stopped:
+        return Finding(
+            Level.PROBLEM,
+            NETWORK,
+            "router",
+            f"{router.endpoint} belongs to {who.command} (process {who.pid}), which is"
+            " stopped: nobody can join",
+            f"let it go on: fg in its terminal, or kill -CONT {who.pid}; or end it:"
+            f" kill -KILL {who.pid}",
+            data,
+        )
     if router.answers and speaks:
         return Finding(
             Level.GOOD, NETWORK, "router", f"{router.endpoint}{by}", data=data
@@ -155,13 +172,17 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
     )
 
 
-def _domain_findings(nodes: Mapping[int, int], domain: int) -> Iterator[Finding]:
+def _domain_findings(
+    nodes: Mapping[int, Sequence[str]], domain: int
+) -> Iterator[Finding]:
     """Is it in another domain that the nodes are?"""
-    elsewhere = {d: n for d, n in sorted(nodes.items()) if d != domain}
-    others = ", ".join(f"{plural(n, 'node')} in {d}" for d, n in elsewhere.items())
-    here = nodes.get(domain, 0)
+    elsewhere = {d: names for d, names in nodes.items() if d != domain}
+    others = ", ".join(
+        f"{plural(len(names), 'node')} in {d}" for d, names in elsewhere.items()
+    )
+    here = nodes.get(domain)
     text = f"{domain} (ROS_DOMAIN_ID)"
-    data = {"domain": domain, "nodes": dict(nodes)}
+    data = {"domain": domain, "nodes": {d: list(names) for d, names in nodes.items()}}
     if not elsewhere:
         yield Finding(Level.GOOD, NETWORK, "domain", text, data=data)
     elif here:

@@ -10,14 +10,19 @@ from typing import NamedTuple
 
 _PROC = Path("/proc")
 _LISTEN = "0A"
+_STOPPED = {"T", "t"}
 
 
 class Process(NamedTuple):
-    """A running program: id, that of its parent, and its command line."""
+    """A running program: id, that of its parent, and its command line.
+
+    A stopped one (Ctrl-Z, SIGSTOP) keeps its ports, and answers nobody.
+    """
 
     pid: int
     parent: int
     words: tuple[str, ...]
+    is_stopped: bool = False
 
     @property
     def command(self) -> str:
@@ -57,12 +62,14 @@ def processes() -> list[Process]:
         # A process may end while one looks.
         with contextlib.suppress(OSError, ValueError):
             words = (folder / "cmdline").read_bytes().decode(errors="replace")
-            parent = (folder / "stat").read_text(errors="replace")
+            stat = (folder / "stat").read_text(errors="replace")
+            state, parent = stat.rpartition(")")[2].split()[:2]
             found.append(
                 Process(
                     pid=int(folder.name),
-                    parent=int(parent.rpartition(")")[2].split()[1]),
+                    parent=int(parent),
                     words=tuple(words.rstrip("\0").split("\0")),
+                    is_stopped=state in _STOPPED,
                 )
             )
     return sorted(found)

@@ -30,6 +30,7 @@ class Snapshot:
         services: servers and clients.
         sim_time: full names of the nodes that were asked → what their use_sim_time
             is; None if they did not answer in time.
+        unreached: full names of nodes that the router knows, but that are not seen.
         clock_ticks: whether a message came on /clock.
         heartbeats: of every status topic.
     """
@@ -38,6 +39,7 @@ class Snapshot:
     endpoints: tuple[Endpoint, ...] = ()
     services: tuple[Endpoint, ...] = ()
     sim_time: Mapping[str, bool | None] = field(default_factory=dict)
+    unreached: tuple[str, ...] = ()
     clock_ticks: bool = False
     heartbeats: tuple[Heartbeat, ...] = ()
 

@@ -13,7 +13,7 @@ from navette.transports.zenoh.settings import Settings
 ASK_TIMEOUT_MS = 1000
 """A router that is stopped (SIGSTOP) still has its port: it is not waited for."""
 
-_OPEN_TIMEOUT_MS = 3000  # as long a link may take to open, and a session to close
+_OPEN_TIMEOUT_MS = 1500  # as long a link may take to open, and a session to close
 
 # As in rmw_zenoh's default configurations, but for the retries: the router is in one
 # of the processes, and another one takes over at once.
