@@ -4,6 +4,7 @@ import typer
 
 from navette.cli.bag import edit_verbs, look_verbs
 from navette.cli.bag.play import play
+from navette.cli.bag.plot import plot
 from navette.cli.bag.replay import replay
 
 bag = typer.Typer(
@@ -21,3 +22,4 @@ bag.command()(edit_verbs.convert)
 bag.command("filter")(edit_verbs.filter_)
 bag.command()(edit_verbs.cut)
 bag.command()(edit_verbs.merge)
+bag.command()(plot)

@@ -1,0 +1,118 @@
+"""Lines as a picture: over time in panels, or over each other on one plane."""
+
+from collections.abc import Sequence
+from itertools import cycle
+from pathlib import Path
+from typing import Any
+
+from navette.cli.bag.series import Series
+from navette.errors import FileFormatError, InvalidValueError, MissingPartError
+
+SUFFIXES = (".png", ".svg", ".pdf")
+# As the live view's page has them: readable beside each other, also without colour.
+_COLOURS = ("#c9430c", "#0b7285", "#5f3dc4", "#1f8a4c", "#b7791f", "#67707b")
+_INK, _QUIET, _LINE = "#1c2025", "#67707b", "#e4e0d8"
+_STYLE: Any = {
+    "font.size": 9.5,
+    "axes.edgecolor": _LINE,
+    "axes.labelcolor": _QUIET,
+    "axes.titlecolor": _INK,
+    "axes.titlesize": 10,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": _LINE,
+    "grid.linewidth": 0.6,
+    "xtick.color": _QUIET,
+    "ytick.color": _QUIET,
+    "xtick.major.size": 0,
+    "ytick.major.size": 0,
+    "lines.linewidth": 1.4,
+    "legend.frameon": False,
+    "svg.hashsalt": "navette",  # the same picture has the same bytes
+}
+
+
+def draw(series: Sequence[Series], title: str, path: Path) -> None:
+    """Write a picture of the lines.
+
+    Raises:
+        InvalidValueError: a suffix that is no picture's, or lines of both kinds.
+        MissingPartError: matplotlib is not installed.
+        FileFormatError: the file cannot be written.
+    """
+    if path.suffix not in SUFFIXES:
+        raise InvalidValueError(f"{path}: wanted a name in {', '.join(SUFFIXES)}")
+    if len({bool(each.wanted.x) for each in series}) > 1:
+        raise InvalidValueError(
+            "fields over time and fields over each other (with a colon) do not go into "
+            "one picture; make two"
+        )
+    try:
+        from matplotlib import rc_context
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise MissingPartError(
+            "plotting needs the package matplotlib: pip install 'navette[plot]'"
+        ) from error
+    with rc_context(_STYLE):
+        figure = Figure(layout="constrained", dpi=144)
+        paint = _paint_plane if series[0].wanted.x else _paint_panels
+        paint(figure, series)
+        figure.suptitle(title, x=0.01, ha="left", color=_INK, weight="bold", size=11)
+        metadata: dict[str, None] = {
+            ".png": {"Software": None},
+            ".svg": {"Date": None},
+            ".pdf": {"CreationDate": None},
+        }[path.suffix]
+        try:
+            figure.savefig(path, metadata=metadata)
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise FileFormatError(path, f"cannot be written: {reason}") from error
+
+
+def _paint_panels(figure: Any, series: Sequence[Series]) -> None:
+    """A panel for each field's name, under one time axis."""
+    panels: dict[str, list[Series]] = {}
+    for each in series:
+        panels.setdefault(each.wanted.y.rpartition(".")[2], []).append(each)
+    figure.set_size_inches(9.0, 0.9 + 2.3 * len(panels))
+    axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    colours = cycle(_COLOURS)
+    for axis, lines in zip(axes, panels.values(), strict=True):
+        for each in lines:
+            axis.plot(each.x, each.y, color=next(colours), label=_label(each))
+        _name(axis, lines)
+        axis.margins(x=0.0)
+    axes[-1].set_xlabel("seconds since the start of the recording")
+
+
+def _paint_plane(figure: Any, series: Sequence[Series]) -> None:
+    """All lines on one plane, as long one way as the other."""
+    figure.set_size_inches(7.2, 6.2)
+    axis = figure.subplots()
+    for each, colour in zip(series, cycle(_COLOURS), strict=False):
+        axis.plot(each.x, each.y, color=colour, label=_label(each))
+        axis.plot(each.x[0], each.y[0], "o", color=colour, markersize=4.5)
+    _name(axis, series)
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.set_xlabel(series[0].wanted.x)
+    axis.set_ylabel(series[0].wanted.y)
+
+
+def _name(axis: Any, lines: Sequence[Series]) -> None:
+    """One line: its name as a title; several: a legend."""
+    if len(lines) == 1:
+        axis.set_title(_label(lines[0]))
+    else:
+        axis.legend(loc="best", labelcolor=_INK)
+
+
+def _label(series: Series) -> str:
+    wanted = series.wanted
+    over = f" over {wanted.x}" if wanted.x else ""
+    note = f" ({series.note})" if series.note else ""
+    return f"{wanted.topic}  {wanted.y}{over}{note}"

@@ -1,0 +1,153 @@
+"""Numbers out of a recording, as ``navette bag plot`` is asked for them."""
+
+import math
+import re
+from array import array
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from navette.bags import BagReader, BagTopic
+from navette.bags.bag import OnDamage
+from navette.bags.message_types import Decoder
+from navette.cli.topic.field_path import FieldPath, parse_field_path
+from navette.errors import InvalidValueError, MessageError, UnknownNameError
+from navette.geometry import yaw_of
+
+_STAMPS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
+_QUATERNION = "geometry_msgs/msg/Quaternion"
+_NO_NUMBERS = ("string", "wstring", "byte")
+_FORM = "wanted TOPIC.FIELD, or TOPIC.FIELD:FIELD for one over the other"
+# A colon that is no slice's.
+_PAIR = re.compile(r":(?![^\[]*\])")
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What one argument asks for: a field over time, or over another field."""
+
+    text: str
+    topic: str
+    y: str
+    x: str = ""
+    """"" = time"""
+
+    @classmethod
+    def read(cls, text: str) -> "Wanted":
+        """From ``/odom.pose.pose.position.x``, or ``….x:y`` for y over x.
+
+        Behind the colon stands a field beside the first one, or a path with dots from
+        the message on.
+
+        Raises:
+            InvalidValueError: it has another form.
+        """
+        topic, dot, rest = text.partition(".")
+        first, *more = _PAIR.split(rest)
+        if not topic or not dot or not first or len(more) > 1 or "" in more:
+            raise InvalidValueError(f"{text[:100]!r}: {_FORM}")
+        topic = topic if topic.startswith("/") else f"/{topic}"
+        if not more:
+            return cls(text, topic, first)
+        second, folder = more[0], first.rpartition(".")[0]
+        if "." not in second and folder:
+            second = f"{folder}.{second}"
+        return cls(text, topic, second, first)
+
+
+@dataclass
+class Series:
+    """A line of a plot; ``x`` is time in seconds since the recording's start, or as
+    asked for."""
+
+    wanted: Wanted
+    x: "array[float]" = field(default_factory=lambda: array("d"))
+    y: "array[float]" = field(default_factory=lambda: array("d"))
+    note: str = ""
+    """what the numbers are, where the path does not say"""
+
+
+def read_series(
+    reader: BagReader, wanted: Sequence[Wanted], on_damage: OnDamage | None = None
+) -> list[Series]:
+    """The numbers, one series for each argument, in the order of the stamps.
+
+    Stamps and durations are given in seconds, a quaternion as its yaw in radians that
+    does not jump at π. Where a sequence is too short in a message there is a gap (NaN).
+
+    Raises:
+        UnknownNameError: no such topic; lists those there are.
+        MessageError: no such field, or it is no number.
+        InvalidValueError: there is not one message.
+    """
+    known = sorted({topic.name for topic in reader.topics})
+    for name in (each.topic for each in wanted):
+        if name not in known:
+            raise UnknownNameError.of("topic", name, known)
+    series = [Series(each) for each in wanted]
+    start_ns, pickers = reader.start_ns, dict[BagTopic, _Picker]()
+    topics = {each.topic for each in wanted}
+    for message in reader.messages(topics, on_damage=on_damage):
+        picker = pickers.get(message.topic)
+        if picker is None:
+            picker = pickers[message.topic] = _Picker(message.topic, series)
+        picker.add(message.data, (message.stamp_ns - start_ns) * 1e-9)
+    for line in series:
+        if not line.x:
+            raise InvalidValueError(f"{line.wanted.text}: no messages on that topic")
+    return series
+
+
+class _Picker:
+    """Adds what a topic's messages hold to the series that ask for it."""
+
+    def __init__(self, topic: BagTopic, series: Sequence[Series]) -> None:
+        self._decode = Decoder(topic)
+        type_name = self._decode.message_class._type_name_
+        self._lines = [
+            (
+                each,
+                _Number(each.wanted.x, type_name) if each.wanted.x else None,
+                _Number(each.wanted.y, type_name),
+            )
+            for each in series
+            if each.wanted.topic == topic.name
+        ]
+        for each, _, y in self._lines:
+            each.note = y.note
+
+    def add(self, data: bytes, time_s: float) -> None:
+        message = self._decode(data)
+        for series, x, y in self._lines:
+            series.x.append(time_s if x is None else x.of(message))
+            series.y.append(y.of(message))
+
+
+class _Number:
+    """A field as a number."""
+
+    def __init__(self, text: str, type_name: str) -> None:
+        self._path: FieldPath = parse_field_path(text, type_name)
+        kind = self._path.type
+        self._base = kind.base
+        self.note = {_QUATERNION: "yaw, rad"}.get(kind.base, "")
+        self._yaw = 0.0
+        if not kind.is_scalar:
+            raise MessageError(f"field {text!r}: {kind} is many; take one, as in [0]")
+        if kind.is_message and kind.base not in (*_STAMPS, _QUATERNION):
+            raise MessageError(f"field {text!r}: {kind} is no number; take one of its")
+        if kind.is_string or kind.base in _NO_NUMBERS:
+            raise MessageError(f"field {text!r}: {kind} is no number")
+
+    def of(self, message: Any) -> float:
+        try:
+            value = self._path.of(message)
+        except IndexError:
+            return math.nan
+        if self._base in _STAMPS:
+            return float(value.sec + value.nanosec * 1e-9)
+        if self._base == _QUATERNION:
+            yaw = yaw_of((value.x, value.y, value.z, value.w))
+            self._yaw += math.remainder(yaw - self._yaw, math.tau)
+            return self._yaw
+        return float(value)
