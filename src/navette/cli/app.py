@@ -18,6 +18,7 @@ from navette.cli.arguments import (
 )
 from navette.cli.bag import bag
 from navette.cli.doctor import doctor
+from navette.cli.interface import interface
 from navette.cli.keys import keys
 from navette.cli.launch import launch
 from navette.cli.lifecycle import lifecycle
@@ -205,6 +206,7 @@ app.add_typer(service)
 app.add_typer(action)
 app.add_typer(lifecycle)
 app.add_typer(topic)
+app.add_typer(interface)
 app.add_typer(bag)
 app.add_typer(keys)
 app.command()(launch)

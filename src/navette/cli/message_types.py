@@ -5,11 +5,11 @@ from typing import Any
 from navette import msgs
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import note
-from navette.cli.peer_definitions import fetch_definition
+from navette.cli.peer_definitions import described_by_peers
 from navette.cli.session import endpoints, fail, wait_for
-from navette.errors import FileFormatError, UnknownNameError
+from navette.errors import NavetteError, UnknownNameError
 from navette.runtime import Node
-from navette.transports import Endpoint, EndpointKind
+from navette.transports import Endpoint
 
 
 def topic_class(
@@ -51,8 +51,8 @@ def interface_class(
     name = full_type_name(type_name, kind)
     try:
         cls = msgs.get_interface(name)
-    except UnknownNameError as error:
-        return _class_from_outside(node, name, of, error)
+    except UnknownNameError:
+        return _class_from_outside(node, name, of)
     _check_hash(name, of)
     return cls
 
@@ -63,40 +63,38 @@ def full_type_name(type_name: str, kind: str) -> str:
     return f"{package}/{kind}/{rest}" if kind and "/" not in rest else type_name
 
 
-def _class_from_outside(
-    node: Node, name: str, of: list[Endpoint], unknown: UnknownNameError
-) -> Any:
-    users = [each for each in of if each.type_name == name]
-    reasons = []
-    for full_name in dict.fromkeys(
-        each.node_full_name for each in _servers_first(users)
-    ):
-        definition = fetch_definition(node, full_name, name)
-        if definition.text is None:
-            reasons.append(f"{full_name}: {definition.reason}")
-            continue
-        try:
-            return msgs.register_definition(name, definition.text)
-        except (FileFormatError, ValueError) as error:
-            reasons.append(f"{full_name}: {error}")
+def installed_class(name: str) -> Any:
+    """The class of a type that is installed or in the workspace; None if it is not."""
     from navette.packages import activate
 
-    activate()
-    try:
-        return msgs.get_interface(name)
-    except UnknownNameError:
+    for look_further in (lambda: None, activate):
+        look_further()
+        try:
+            return msgs.get_interface(name)
+        except UnknownNameError:
+            pass
+    return None
+
+
+def _class_from_outside(node: Node, name: str, of: list[Endpoint]) -> Any:
+    definition = described_by_peers(node, name, of)
+    reason = definition.reason
+    if definition.text is not None:
+        try:
+            return msgs.register_definition(name, definition.text)
+        except NavetteError as error:
+            reason = str(error)
+    found = installed_class(name)
+    if found is None:
         fail(
-            "; ".join([f"type {name} is not known here: {unknown}", *reasons])
-            if not reasons
-            else f"type {name} is not known here, and its users do not describe it: "
-            + "; ".join(reasons)
+            f"type {name} is not known here"
+            + (
+                f", and those who use it do not describe it ({reason})"
+                if reason
+                else ""
+            )
         )
-
-
-def _servers_first(users: list[Endpoint]) -> list[Endpoint]:
-    """Who publishes or serves is asked before who listens."""
-    gives = (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
-    return sorted(users, key=lambda each: each.kind not in gives)
+    return found
 
 
 def _check_type(topic: str, given: str, found: list[Endpoint]) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 from navette.errors import NavetteError
 from navette.msgs.interface import short_name
 from navette.runtime import Node
-from navette.transports import EndpointKind
+from navette.transports import Endpoint, EndpointKind
 
 ANSWER_TIMEOUT_S = 2.0
 _SERVICE = "get_type_description"
@@ -33,6 +33,23 @@ class Definition:
 
     text: str | None
     reason: str = ""
+
+
+def described_by_peers(node: Node, type_name: str, of: list[Endpoint]) -> Definition:
+    """The first definition that those of the endpoints who have the type give.
+
+    Who publishes or serves is asked before who listens.
+    """
+    gives = (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
+    users = [each for each in of if each.type_name == type_name]
+    users.sort(key=lambda each: each.kind not in gives)
+    reasons = []
+    for name in dict.fromkeys(each.node_full_name for each in users):
+        definition = fetch_definition(node, name, type_name)
+        if definition.text is not None:
+            return definition
+        reasons.append(f"{name}: {definition.reason}")
+    return Definition(None, "; ".join(reasons))
 
 
 def fetch_definition(node: Node, of: str, type_name: str) -> Definition:

@@ -72,7 +72,7 @@ def _parse(
     source = source or name
     members: list[list[Field | Constant]] = [[]]
     for number, raw in enumerate(text.splitlines(), start=1):
-        line = _without_comment(raw).strip()
+        line = without_comment(raw).strip()
         if line == "---":
             members.append([])
         elif line:
@@ -96,7 +96,8 @@ def _parse(
     ]
 
 
-def _without_comment(line: str) -> str:
+def without_comment(line: str) -> str:
+    """The line up to its ``#``, if that stands in no text."""
     quote = ""
     for index, character in enumerate(line):
         if quote:

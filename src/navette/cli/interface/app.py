@@ -1,0 +1,136 @@
+"""The verbs of ``navette interface``, and their options."""
+
+import sys
+from typing import Annotated
+
+import typer
+
+from navette.cli.completing import complete_packages, complete_types
+from navette.cli.output import show as put
+from navette.cli.output import show_json
+from navette.cli.session import fail
+from navette.errors import InvalidValueError
+
+interface = typer.Typer(
+    name="interface",
+    help="Show messages, services and actions, and how they are defined.",
+    no_args_is_help=True,
+)
+
+TypeName = Annotated[
+    str,
+    typer.Argument(
+        metavar="TYPE",
+        help="pkg/msg/Name, pkg/srv/Name or pkg/action/Name; - reads it from"
+        " standard input, as in navette topic type /odom | navette interface show -.",
+        autocompletion=complete_types,
+    ),
+]
+OnlyMsgs = Annotated[bool, typer.Option("--only-msgs", "-m", help="Messages.")]
+OnlySrvs = Annotated[bool, typer.Option("--only-srvs", "-s", help="Services.")]
+OnlyActions = Annotated[bool, typer.Option("--only-actions", "-a", help="Actions.")]
+Json = Annotated[bool, typer.Option("--json", help="One JSON value, for programs.")]
+
+
+@interface.command("show")
+def show(
+    type_name: TypeName,
+    all_comments: Annotated[
+        bool, typer.Option("--all-comments", help="Those of contained types too.")
+    ] = False,
+    no_comments: Annotated[
+        bool, typer.Option("--no-comments", help="No comments, no empty lines.")
+    ] = False,
+) -> None:
+    """Print a definition, with those it contains indented below.
+
+    A type that is not installed is asked of the programs that run.
+    """
+    from navette.cli.interface.definitions import Comments, definition_lines
+
+    if all_comments and no_comments:
+        raise InvalidValueError("--all-comments and --no-comments: wanted one of them")
+    comments = Comments.OWN
+    if all_comments or no_comments:
+        comments = Comments.ALL if all_comments else Comments.NONE
+    put("\n".join(definition_lines(_typed(type_name), comments)))
+
+
+@interface.command("list")
+def list_(
+    only_msgs: OnlyMsgs = False,
+    only_srvs: OnlySrvs = False,
+    only_actions: OnlyActions = False,
+    as_json: Json = False,
+) -> None:
+    """List all interfaces: Navette's, the workspace's and installed ones."""
+    from navette.cli.interface import listing
+
+    kinds = listing.chosen_kinds(only_msgs, only_srvs, only_actions)
+    found = {kind: listing.interfaces(kind) for kind in kinds}
+    if as_json:
+        show_json({kind.value: names for kind, names in found.items()})
+        return
+    for kind, names in found.items():
+        put("\n".join([f"{kind.title}:", *(f"    {name}" for name in names)]))
+
+
+@interface.command()
+def package(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="PACKAGE",
+            help="The package's name.",
+            autocompletion=complete_packages,
+        ),
+    ],
+    only_msgs: OnlyMsgs = False,
+    only_srvs: OnlySrvs = False,
+    only_actions: OnlyActions = False,
+) -> None:
+    """List the interfaces of a package."""
+    from navette.cli.interface import listing
+
+    kinds = listing.chosen_kinds(only_msgs, only_srvs, only_actions)
+    for line in listing.interfaces_of(name, kinds):
+        put(line)
+
+
+@interface.command()
+def packages(
+    only_msgs: OnlyMsgs = False,
+    only_srvs: OnlySrvs = False,
+    only_actions: OnlyActions = False,
+) -> None:
+    """List the packages that define interfaces."""
+    from navette.cli.interface import listing
+
+    for name in listing.packages(
+        listing.chosen_kinds(only_msgs, only_srvs, only_actions)
+    ):
+        put(name)
+
+
+@interface.command()
+def proto(
+    type_name: TypeName,
+    no_quotes: Annotated[
+        bool, typer.Option("--no-quotes", help="Without quotes around it.")
+    ] = False,
+) -> None:
+    """Print a message, a request or a goal with its defaults, as YAML to edit."""
+    from navette.cli.interface.definitions import prototype
+
+    yaml = prototype(_typed(type_name))
+    put(yaml if no_quotes else f'"{yaml}"')
+
+
+def _typed(type_name: str) -> str:
+    """The name, or a line of standard input in its place."""
+    if type_name != "-":
+        return type_name
+    if sys.stdin.isatty():
+        raise InvalidValueError("-: wanted a type's name on standard input")
+    name = sys.stdin.readline(1000).strip()
+    return name or fail("no type on standard input")
