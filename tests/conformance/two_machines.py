@@ -12,7 +12,6 @@ import struct
 import subprocess
 import threading
 import time
-from collections.abc import Mapping, Sequence
 from types import TracebackType
 
 import numpy as np
@@ -107,18 +106,6 @@ class Machines:
     ) -> None:
         self.wire.close()
         self._end()
-
-    def start(
-        self, machine: str, words: Sequence[str], *, env: Mapping[str, str], log: str
-    ) -> subprocess.Popen[bytes]:
-        """A program on a machine, its output in a file; who starts it ends it."""
-        with open(log, "wb") as file:  # noqa: PTH123
-            return subprocess.Popen(
-                ["ip", "netns", "exec", machine, *words],
-                env={**os.environ, **env},
-                stdout=file,
-                stderr=subprocess.STDOUT,
-            )
 
     def _make(self, name: str, address: str) -> str:
         device = os.open("/dev/net/tun", os.O_RDWR)
