@@ -1,0 +1,76 @@
+"""Makes the golden bags: one drive of the simulator, cut into a bag for each stage.
+
+    python tests/replay/make_golden.py
+
+Run it when a stage is meant to give other results, look at what `navette bag replay
+--compare` says of the old bags first, and commit the new ones with the change.
+"""
+
+import math
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from stages import PARAMETERS, STAGES, WORLD, Stage
+
+from navette.bags import BagReader, BagWriter, open_bag, qos_text
+from navette.launch.options import RunOptions
+from navette.launch.simulation import Simulation
+
+GOALS = ((-6.0, -12.0),)
+LONGEST_BYTES = 300_000
+
+
+def drive(path: Path) -> None:
+    """Record the drive."""
+    simulation = Simulation(
+        RunOptions(
+            world=WORLD,
+            goals=GOALS,
+            headless=True,
+            speed=math.inf,
+            record=path,
+            params_files=(PARAMETERS,),
+            max_time_s=30.0,
+        )
+    )
+    try:
+        simulation.run()
+    finally:
+        simulation.close()
+
+
+def cut(source: BagReader, stage: Stage) -> None:
+    """What the stage hears and says, from the start on."""
+    writer = BagWriter(stage.bag)
+    numbers = {}
+    end_ns = source.start_ns + round(stage.duration_s * 1e9)
+    for message in source.messages(stage.inputs + stage.outputs, end_ns=end_ns):
+        topic = message.topic
+        if topic not in numbers:
+            numbers[topic] = writer.add_channel(
+                topic.name,
+                topic.type_name,
+                topic.definition,
+                type_hash=topic.type_hash,
+                qos=qos_text(topic.qos),
+            )
+        writer.write(numbers[topic], message.stamp_ns, message.data)
+    writer.close()
+
+
+def main() -> None:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "drive.mcap"
+        drive(path)
+        with open_bag(path) as source:
+            for stage in STAGES:
+                cut(source, stage)
+                size = stage.bag.stat().st_size
+                sys.stdout.write(f"{stage.bag.name}: {size} bytes\n")
+                if size > LONGEST_BYTES:
+                    raise SystemExit(f"{stage.bag.name} is larger than {LONGEST_BYTES}")
+
+
+if __name__ == "__main__":
+    main()
