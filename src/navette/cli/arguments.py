@@ -2,11 +2,15 @@
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 from navette.errors import InvalidValueError
 
 PAIR_OPTIONS = ("--goal",)
-LIST_OPTIONS = ("--dependencies", "--topics", "--remap")
+LIST_OPTIONS = (
+    *("--dependencies", "--topics", "--remap"),
+    *("--param-prefixes", "--prefixes"),
+)
 OPTIONAL_VALUES = {"--clock": "40"}
 
 
@@ -35,7 +39,7 @@ def fill_values(arguments: Sequence[str]) -> list[str]:
     Why: ROS 2's command takes it so, and Typer takes options with a value or without.
     """
     filled: list[str] = []
-    for word, following in zip(arguments, [*arguments[1:], ""], strict=True):
+    for word, following in pairwise([*arguments, ""]):
         filled.append(word)
         if word in OPTIONAL_VALUES and not _is_number(following):
             filled.append(OPTIONAL_VALUES[word])

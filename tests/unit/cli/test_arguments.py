@@ -2,7 +2,13 @@ import math
 
 import pytest
 
-from navette.cli.arguments import join_pairs, parse_goal, parse_speed
+from navette.cli.arguments import (
+    fill_values,
+    join_pairs,
+    parse_goal,
+    parse_speed,
+    spread_lists,
+)
 from navette.errors import InvalidValueError
 
 
@@ -57,3 +63,7 @@ def test_speeds() -> None:
 def test_a_malformed_speed_says_what_is_allowed(text: str) -> None:
     with pytest.raises(InvalidValueError, match="max"):
         parse_speed(text)
+
+
+def test_no_words_at_all() -> None:
+    assert fill_values(spread_lists(join_pairs([]))) == []
