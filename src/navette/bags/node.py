@@ -6,16 +6,25 @@ and by a timer on the same clock, so that the same run gives the same bytes, and
 killed process loses at most ``flush_period_s`` of the robot's time.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from navette.bags.bag import BagTopic
 from navette.bags.params import RecorderParams
-from navette.bags.qos import OfferedQos, qos_text
-from navette.bags.writer import BagWriter
+from navette.bags.qos import OfferedQos
+from navette.bags.recording import (
+    RecordedTopic,
+    Recording,
+    SingleFile,
+    Snapshots,
+    SplitFiles,
+)
 from navette.errors import FileFormatError, UnknownNameError
-from navette.msgs import definition_text, get_interface, serialize, type_hash
+from navette.msgs import definition_text, get_interface, type_hash
+from navette.msgs.std_srvs.srv import SetBool, Trigger
 from navette.params import Params
 from navette.runtime.context import Context
 from navette.runtime.parameter import Parameter
@@ -26,7 +35,9 @@ from navette.runtime.qos import (
     QoSProfile,
     QoSReliabilityPolicy,
 )
+from navette.runtime.ros_clock import Clock
 from navette.runtime.stage import StageNode
+from navette.runtime.time import ClockType
 from navette.runtime.timer import Timer
 
 if TYPE_CHECKING:
@@ -45,16 +56,25 @@ class RecorderNode(StageNode):
     """Records from its making until :meth:`close`.
 
     A disk that fills up ends the recording, with an error in the log and in
-    :attr:`error`; the robot keeps driving.
+    :attr:`error`; the robot keeps driving. Services: ``~/pause`` (SetBool), and where
+    it keeps the last seconds, ``~/snapshot`` (Trigger) writes them.
 
     Args:
-        path: the ``.mcap`` file; one that exists is replaced.
+        path: the ``.mcap`` file; one that exists is replaced. Where files are split,
+            and for snapshots, a new folder for them.
 
     Raises:
         FileFormatError: the file cannot be made; names path and reason.
     """
 
     PARAMS: ClassVar[type[Params]] = RecorderParams
+    FIXED_AT_START: ClassVar[Collection[str]] = (
+        "compression",
+        "max_bag_size",
+        "max_bag_duration_s",
+        "snapshot_duration_s",
+        "snapshot_bytes",
+    )
     params: RecorderParams
 
     def __init__(
@@ -67,27 +87,43 @@ class RecorderNode(StageNode):
         self.path = Path(path)
         #: What ended the recording early, if anything did.
         self.error: FileFormatError | None = None
-        self._writer: BagWriter | None = None
+        self._recording: Recording | None = None
         self._stop_listening: Callable[[], None] = _nothing
         super().__init__(
             "recorder", context=context, parameter_overrides=parameter_overrides
         )
         try:
-            self._writer = BagWriter(self.path)
+            self._recording = _open(self.path, self.params)
         except FileFormatError:
             self.destroy_node()
             raise
         self._recorded: set[tuple[str, str]] = set()
+        #: Topics that should be recorded and whose type nobody has defined so far.
+        self.undefined: dict[str, str] = {}
         self._message_count = 0
+        self._payload_bytes = 0
         self._refreshing = False
         self._flush_timer = self._new_flush_timer()
+        self.create_service(SetBool, "~/pause", self._on_pause)
+        if isinstance(self._recording, Snapshots):
+            self.create_service(Trigger, "~/snapshot", self._on_snapshot)
         self._stop_listening = self.context.graph.on_change(self._on_graph_change)
-        self._refresh()
+        self.refresh()
 
     @property
     def message_count(self) -> int:
         """Messages recorded so far."""
         return self._message_count
+
+    @property
+    def payload_bytes(self) -> int:
+        """Bytes of the messages recorded so far, before compression."""
+        return self._payload_bytes
+
+    @property
+    def topics(self) -> list[str]:
+        """Topics that are listened to, sorted."""
+        return sorted({topic for topic, _ in self._recorded} - self.undefined.keys())
 
     def close(self) -> None:
         """Finish the file and leave the graph; twice is harmless."""
@@ -97,16 +133,16 @@ class RecorderNode(StageNode):
         self._stop_listening()
         self._stop_listening = _nothing
         super().destroy_node()
-        if self._writer is not None:
-            self._on_disk(self._writer.close)
-            self._writer = None
+        if self._recording is not None:
+            self._on_disk(self._recording.close)
+            self._recording = None
 
     def on_params_changed(self, old: RecorderParams) -> None:
         """More topics are taken up at once; those recorded already stay."""
         if self.params.flush_period_s != old.flush_period_s:
             self.destroy_timer(self._flush_timer)
             self._flush_timer = self._new_flush_timer()
-        self._refresh()
+        self.refresh()
 
     # -- which topics ----------------------------------------------------------
 
@@ -115,87 +151,143 @@ class RecorderNode(StageNode):
         if not self._refreshing:
             self._refreshing = True
             self.context.loop.call_soon_threadsafe(
-                self._refresh, "recorder graph", self.get_fully_qualified_name()
+                self.refresh, "recorder graph", self.get_fully_qualified_name()
             )
 
-    def _refresh(self) -> None:
+    def refresh(self) -> None:
+        """Take up topics that are new, or whose type has become known."""
         self._refreshing = False
-        if self._writer is None:
+        if self._recording is None:
             return
         selection = self.params.selection
         for topic, type_names in self.context.graph.topics().items():
             for type_name in type_names:
                 key = topic, type_name
-                if key not in self._recorded and selection.takes(topic, type_name):
-                    self._recorded.add(key)
+                is_new = key not in self._recorded or topic in self.undefined
+                if is_new and selection.takes(topic, type_name):
                     self._record_topic(topic, type_name)
 
     def _record_topic(self, topic: str, type_name: str) -> None:
+        is_first = (topic, type_name) not in self._recorded
+        self._recorded.add((topic, type_name))
         try:
             message_type = get_interface(type_name)
             definition = definition_text(type_name)
         except UnknownNameError as error:
-            self.get_logger().warning(f"cannot record {topic}: {error}")
+            self.undefined[topic] = type_name
+            if is_first:
+                self.get_logger().warning(f"cannot record {topic}: {error}")
             return
-        recording = _Channel(topic, type_name, definition)
+        self.undefined.pop(topic, None)
+        recorded = RecordedTopic(
+            BagTopic(topic, type_name, definition, type_hash(type_name))
+        )
         self.create_subscription(
-            message_type, topic, partial(self._record, recording), _QOS, shared=True
+            message_type,
+            topic,
+            partial(self._record, recorded),
+            _QOS,
+            raw=True,  # who is far away has packed it already
+            shared=True,
         )
 
-    def _announce(self, writer: BagWriter, channel: "_Channel") -> int:
+    def _announce(self, recorded: RecordedTopic) -> None:
         """At the first message: its publishers, and what they offer, are known."""
-        endpoints = self.context.graph.endpoints(channel.topic)
-        offers = [_offer(e) for e in endpoints if e.kind.name == "PUBLISHER"]
-        return writer.add_channel(
-            channel.topic,
-            channel.type_name,
-            channel.definition,
-            type_hash=type_hash(channel.type_name),
-            qos=qos_text(offers),
-        )
+        endpoints = self.context.graph.endpoints(recorded.topic.name)
+        offers = tuple(_offer(e) for e in endpoints if e.kind.name == "PUBLISHER")
+        recorded.topic = replace(recorded.topic, qos=offers)
 
     # -- what is said ----------------------------------------------------------
 
-    def _record(self, channel: "_Channel", message: Any) -> None:
-        if self._writer is not None:
-            self._on_disk(partial(self._write, self._writer, channel, message))
-
-    def _write(self, writer: BagWriter, channel: "_Channel", message: Any) -> None:
-        if channel.number is None:
-            channel.number = self._announce(writer, channel)
-        writer.write(channel.number, self._clock.now_ns, serialize(message))
+    def _record(self, recorded: RecordedTopic, payload: bytes) -> None:
+        if self._recording is None or self.params.paused:
+            return
+        if recorded.count == 0:
+            self._announce(recorded)
+        recorded.count += 1
         self._message_count += 1
+        self._payload_bytes += len(payload)
+        try:
+            self._recording.write(recorded, self._clock.now_ns, payload)
+        except OSError as error:
+            self._end_early(error)
 
     def _new_flush_timer(self) -> Timer:
-        return self.create_timer(self.params.flush_period_s, self._flush)
+        # Simulated time may stand still; what was said must reach the disk all the
+        # same.
+        clock = None
+        if self._clock.ros_time_is_active:
+            clock = Clock(clock_type=ClockType.STEADY_TIME, context=self.context)
+        return self.create_timer(self.params.flush_period_s, self._flush, clock=clock)
 
     def _flush(self) -> None:
-        if self._writer is not None:
-            self._on_disk(self._writer.flush)
+        if self._recording is not None:
+            self._on_disk(self._recording.flush)
+
+    def take_snapshot(self) -> Path | None:
+        """Write the last seconds into a new file; None if there is nothing to write.
+
+        Raises:
+            FileFormatError: this recorder writes all the time, or the disk is full.
+        """
+        if not isinstance(self._recording, Snapshots):
+            raise FileFormatError(self.path, "is no recording of snapshots")
+        try:
+            return self._recording.take()
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise FileFormatError(self.path, f"no snapshot: {reason}") from error
+
+    def _on_snapshot(self, request: Any, response: Any) -> Any:
+        try:
+            path = self.take_snapshot()
+        except FileFormatError as error:
+            self.get_logger().error(str(error))
+            response.message = str(error)
+            return response
+        response.success = path is not None
+        response.message = "nothing was said" if path is None else str(path)
+        self.get_logger().info(f"snapshot: {response.message}")
+        return response
+
+    def _on_pause(self, request: Any, response: Any) -> Any:
+        self.set_parameters([Parameter("paused", value=request.data)])
+        response.success = True
+        response.message = "paused" if request.data else "recording"
+        return response
 
     def _on_disk(self, work: Callable[[], None]) -> None:
         """Do ``work``; a disk that fails ends the recording, not the run."""
         try:
             work()
         except OSError as error:
-            assert self._writer is not None, "without a file there is no work"
-            self._writer.abandon()
-            self._writer = None
-            reason = error.strerror or str(error)
-            self.error = FileFormatError(self.path, f"recording ended: {reason}")
-            self.get_logger().error(str(self.error))
+            self._end_early(error)
+
+    def _end_early(self, error: OSError) -> None:
+        assert self._recording is not None, "without a file there is no work"
+        self._recording.abandon()
+        self._recording = None
+        reason = error.strerror or str(error)
+        self.error = FileFormatError(self.path, f"recording ended: {reason}")
+        self.get_logger().error(str(self.error))
 
 
-class _Channel:
-    """A recorded topic; ``number`` is its channel in the file once it has one."""
-
-    __slots__ = ("definition", "number", "topic", "type_name")
-
-    def __init__(self, topic: str, type_name: str, definition: str) -> None:
-        self.topic = topic
-        self.type_name = type_name
-        self.definition = definition
-        self.number: int | None = None
+def _open(path: Path, params: RecorderParams) -> Recording:
+    if params.snapshot_duration_s:
+        return Snapshots(
+            path,
+            duration_ns=round(params.snapshot_duration_s * 1e9),
+            max_bytes=params.snapshot_bytes,
+            compression=params.compression,
+        )
+    if params.max_bag_size or params.max_bag_duration_s:
+        return SplitFiles(
+            path,
+            compression=params.compression,
+            max_size=params.max_bag_size,
+            max_duration_ns=round(params.max_bag_duration_s * 1e9),
+        )
+    return SingleFile(path, compression=params.compression)
 
 
 def _offer(endpoint: "Endpoint") -> OfferedQos:

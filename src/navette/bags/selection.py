@@ -12,17 +12,21 @@ IMAGE_TYPE = "sensor_msgs/msg/Image"
 class TopicSelection:
     """By name, by pattern, or all; raw images and hidden topics only when asked.
 
-    A topic is recorded if it is named in ``topics`` or matches ``regex`` (with
-    neither: every topic) and does not match ``exclude``. Patterns are Python's and
-    are searched anywhere in the full name. A subscribed camera has to render, so
-    raw images need ``images``, or their name in ``topics``; so do hidden topics
-    (a part of the name starts with an underscore).
+    A topic is recorded if it is named in ``topics``, matches ``regex`` or has one of
+    ``types`` (with none of the three: every topic), and neither matches ``exclude`` nor
+    has one of ``exclude_types``. Patterns are Python's and are searched anywhere in
+    the full name. A subscribed camera has to render, so raw images need ``images``,
+    or their name in ``topics``; hidden topics (a part of the name starts with an
+    underscore) need ``hidden``, or their name.
     """
 
     topics: tuple[str, ...] = ()
     regex: str = ""
     exclude: str = ""
     images: bool = False
+    types: tuple[str, ...] = ()
+    exclude_types: tuple[str, ...] = ()
+    hidden: bool = False
 
     def __post_init__(self) -> None:
         for name in ("regex", "exclude"):
@@ -40,8 +44,17 @@ class TopicSelection:
             return True
         if self.exclude and re.search(self.exclude, topic):
             return False
+        if type_name in self.exclude_types:
+            return False
         if type_name == IMAGE_TYPE and not self.images:
             return False
+        return self._is_wanted(topic, type_name)
+
+    def _is_wanted(self, topic: str, type_name: str) -> bool:
+        if type_name in self.types:
+            return True
         if self.regex:
             return re.search(self.regex, topic) is not None
-        return not self.topics and "/_" not in topic
+        if self.topics or self.types:
+            return False
+        return self.hidden or "/_" not in topic

@@ -9,6 +9,7 @@ from navette.errors import InvalidValueError
 PAIR_OPTIONS = ("--goal",)
 LIST_OPTIONS = (
     *("--dependencies", "--topics", "--remap"),
+    *("--topic-types", "--exclude-topics", "--exclude-topic-types"),
     *("--param-prefixes", "--prefixes"),
 )
 OPTIONAL_VALUES = {"--clock": "40"}

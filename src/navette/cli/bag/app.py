@@ -5,13 +5,15 @@ import typer
 from navette.cli.bag import edit_verbs, look_verbs
 from navette.cli.bag.play import play
 from navette.cli.bag.plot import plot
+from navette.cli.bag.record import record
 from navette.cli.bag.replay import replay
 
 bag = typer.Typer(
     name="bag",
-    help="Recordings (.mcap, .bag, .db3): play, look into, check, repair, rework them.",
+    help="Recordings (.mcap, .bag, .db3): record, play, look into, repair, rework.",
     no_args_is_help=True,
 )
+bag.command()(record)
 bag.command()(play)
 bag.command()(replay)
 bag.command()(look_verbs.info)

@@ -1,0 +1,267 @@
+"""Where a recording goes: one file, files of a size or length, or the last seconds."""
+
+from collections import Counter, deque
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from navette.bags.bag import BagTopic
+from navette.bags.metadata import FileFacts, write_metadata
+from navette.bags.qos import qos_text
+from navette.bags.writer import BagWriter
+from navette.errors import FileFormatError
+
+
+class RecordedTopic:
+    """A topic of a recording; its identity is its channel."""
+
+    __slots__ = ("count", "topic")
+
+    #: Messages so far, of the whole recording.
+    count: int
+
+    def __init__(self, topic: BagTopic) -> None:
+        self.topic = topic
+        self.count = 0
+
+
+@dataclass
+class Facts:
+    """What is in one file."""
+
+    start_ns: int = 0
+    end_ns: int = 0
+    count: int = 0
+
+    def add(self, stamp_ns: int) -> None:
+        """One more message."""
+        self.start_ns = min(self.start_ns, stamp_ns) if self.count else stamp_ns
+        self.end_ns = max(self.end_ns, stamp_ns) if self.count else stamp_ns
+        self.count += 1
+
+
+class SingleFile:
+    """One ``.mcap`` file.
+
+    Raises:
+        FileFormatError: it cannot be made; names path and reason.
+
+    A full or vanished disk shows as ``OSError`` from any method but :meth:`abandon`.
+    """
+
+    def __init__(self, path: Path, *, compression: str = "zstd") -> None:
+        self.path = path
+        self._writer = BagWriter(path, compression=compression)
+        self._channels: dict[RecordedTopic, int] = {}
+        self.facts = Facts()
+
+    @property
+    def size(self) -> int:
+        """Bytes so far."""
+        return self._writer.size
+
+    def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
+        """Append a message."""
+        channel = self._channels.get(recorded)
+        if channel is None:
+            topic = recorded.topic
+            channel = self._channels[recorded] = self._writer.add_channel(
+                topic.name,
+                topic.type_name,
+                topic.definition,
+                type_hash=topic.type_hash,
+                qos=qos_text(topic.qos),
+            )
+        self._writer.write(channel, stamp_ns, payload)
+        self.facts.add(stamp_ns)
+
+    def flush(self) -> None:
+        """What was written outlives this process."""
+        self._writer.flush()
+
+    def close(self) -> None:
+        """Finish the file; twice is harmless."""
+        self._writer.close()
+
+    def abandon(self) -> None:
+        """Close after an ``OSError``."""
+        self._writer.abandon()
+
+
+class Folder:
+    """A folder of files as rosbag2 makes it: ``NAME/NAME_0.mcap``, …, metadata.yaml.
+
+    Raises:
+        FileFormatError: the folder is there already, or cannot be made.
+    """
+
+    def __init__(self, path: Path, *, compression: str = "zstd") -> None:
+        self.path = path
+        self._compression = compression
+        try:
+            path.mkdir()
+        except FileExistsError:
+            raise FileFormatError(path, "exists already; it is not replaced") from None
+        except OSError as error:
+            raise FileFormatError(path, f"cannot be made: {error.strerror}") from error
+        self.files: list[SingleFile] = []
+        self._counts: Counter[RecordedTopic] = Counter()
+
+    def next_file(self) -> SingleFile:
+        """A new file; those before it stay as they are."""
+        name = f"{self.path.name}_{len(self.files)}.mcap"
+        self.files.append(SingleFile(self.path / name, compression=self._compression))
+        return self.files[-1]
+
+    def note(self, recorded: RecordedTopic) -> None:
+        """A message of the topic was written."""
+        self._counts[recorded] += 1
+
+    def write_metadata(self) -> None:
+        """Say what is in the folder so far."""
+        files = [
+            FileFacts(f.path.name, f.facts.start_ns, f.facts.end_ns, f.facts.count)
+            for f in self.files
+        ]
+        topics = [(each.topic, count) for each, count in self._counts.items()]
+        write_metadata(self.path, files, topics)
+
+
+class SplitFiles:
+    """Files that end at a size or a length.
+
+    Args:
+        max_size: bytes of a file, 0 for no limit.
+        max_duration_ns: between a file's first and last message, 0 for no limit.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        *,
+        compression: str = "zstd",
+        max_size: int = 0,
+        max_duration_ns: int = 0,
+    ) -> None:
+        self.path = path
+        self._max_size = max_size
+        self._max_duration_ns = max_duration_ns
+        self._folder = Folder(path, compression=compression)
+        self._file = self._folder.next_file()
+        self._is_closed = False
+
+    def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
+        """Append a message, to a new file if the present one is full."""
+        if self._is_full(stamp_ns, len(payload)):
+            self._file.close()
+            self._file = self._folder.next_file()
+            self._folder.write_metadata()
+        self._file.write(recorded, stamp_ns, payload)
+        self._folder.note(recorded)
+
+    def _is_full(self, stamp_ns: int, length: int) -> bool:
+        facts = self._file.facts
+        if facts.count == 0:
+            return False
+        if self._max_size and self._file.size + length > self._max_size:
+            return True
+        length_ns = stamp_ns - facts.start_ns
+        return bool(self._max_duration_ns) and length_ns >= self._max_duration_ns
+
+    def flush(self) -> None:
+        """What was written outlives this process."""
+        self._file.flush()
+
+    def close(self) -> None:
+        """Finish the last file and the metadata; twice is harmless."""
+        if not self._is_closed:
+            self._is_closed = True
+            self._file.close()
+            self._folder.write_metadata()
+
+    def abandon(self) -> None:
+        """Close after an ``OSError``."""
+        self._is_closed = True
+        self._file.abandon()
+
+
+@dataclass
+class _Kept:
+    recorded: RecordedTopic
+    stamp_ns: int
+    payload: bytes = field(repr=False)
+
+
+class Snapshots:
+    """Keeps the last seconds in memory and writes them when asked.
+
+    The last message of a latched topic is kept however old it is: without the map,
+    the seconds would say little.
+
+    Args:
+        duration_ns: how much is kept.
+        max_bytes: and no more than that.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        *,
+        duration_ns: int,
+        max_bytes: int,
+        compression: str = "zstd",
+    ) -> None:
+        self.path = path
+        self._duration_ns = duration_ns
+        self._max_bytes = max_bytes
+        self._folder = Folder(path, compression=compression)
+        self._kept: deque[_Kept] = deque()
+        self._latched: dict[RecordedTopic, _Kept] = {}
+        self._size = 0
+
+    def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
+        """Keep a message for a while."""
+        self._kept.append(_Kept(recorded, stamp_ns, payload))
+        self._size += len(payload)
+        oldest_ns = stamp_ns - self._duration_ns
+        while self._kept[0].stamp_ns < oldest_ns or self._size > self._max_bytes:
+            gone = self._kept.popleft()
+            self._size -= len(gone.payload)
+            if gone.recorded.topic.latched:
+                self._latched[gone.recorded] = gone
+            if not self._kept:
+                break
+
+    def take(self) -> Path | None:
+        """Write what is kept into a new file; None if there is nothing.
+
+        Raises:
+            OSError: the disk is full.
+        """
+        if not self._kept and not self._latched:
+            return None
+        file = self._folder.next_file()
+        try:
+            for each in (*self._latched.values(), *self._kept):
+                file.write(each.recorded, each.stamp_ns, each.payload)
+                self._folder.note(each.recorded)
+            file.close()
+        except OSError:
+            file.abandon()
+            raise
+        self._folder.write_metadata()
+        return file.path
+
+    def flush(self) -> None:
+        """Nothing is on disk until a snapshot is taken."""
+
+    def close(self) -> None:
+        """What is kept and was not asked for is dropped."""
+        self._kept.clear()
+        self._latched.clear()
+
+    def abandon(self) -> None:
+        """As :meth:`close`."""
+        self.close()
+
+
+Recording = SingleFile | SplitFiles | Snapshots

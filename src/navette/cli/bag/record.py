@@ -1,0 +1,281 @@
+"""``navette bag record``: what a running system says, into a file."""
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navette.cli.output import note
+from navette.cli.session import FAILED
+
+if TYPE_CHECKING:
+    from navette.bags.node import RecorderNode
+    from navette.runtime import Node
+
+TopicNames = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="[TOPIC]...", help="Record these topics."),
+]
+All = Annotated[
+    bool, typer.Option("--all", "-a", help="Record every topic, raw images too.")
+]
+Regex = Annotated[
+    str, typer.Option("--regex", "-e", metavar="PATTERN", help="Topics that match.")
+]
+TopicTypes = Annotated[
+    list[str] | None,
+    typer.Option("--topic-types", metavar="TYPE...", help="Topics of these types."),
+]
+Exclude = Annotated[
+    str,
+    typer.Option(
+        "--exclude-regex",
+        "--exclude",
+        "-x",
+        metavar="PATTERN",
+        help="Leave out topics that match.",
+    ),
+]
+ExcludeTopics = Annotated[
+    list[str] | None,
+    typer.Option("--exclude-topics", metavar="TOPIC...", help="Leave out these."),
+]
+ExcludeTypes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--exclude-topic-types", metavar="TYPE...", help="Leave out these types."
+    ),
+]
+Hidden = Annotated[
+    bool,
+    typer.Option("--include-hidden-topics", help="Also topics such as /_action/…."),
+]
+Output = Annotated[
+    str,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="NAME",
+        help="NAME.mcap; a folder NAME where files are split. By default the date.",
+    ),
+]
+Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="Replace a recording of that name.")
+]
+MaxSize = Annotated[
+    int,
+    typer.Option("--max-bag-size", "-b", metavar="BYTES", min=0, help="Split at it."),
+]
+MaxDuration = Annotated[
+    float,
+    typer.Option("--max-bag-duration", "-d", metavar="S", min=0, help="Split at it."),
+]
+Snapshot = Annotated[
+    float,
+    typer.Option(
+        "--snapshot-duration",
+        metavar="S",
+        min=0,
+        help="Keep the last S seconds in memory; key s or the service"
+        " /recorder/snapshot writes them.",
+    ),
+]
+Compression = Annotated[
+    str, typer.Option(metavar="KIND", help="Of the chunks: zstd, lz4 or none.")
+]
+SimTime = Annotated[
+    bool, typer.Option("--use-sim-time", help="Stamps of /clock, not of the machine.")
+]
+Paused = Annotated[
+    bool,
+    typer.Option("--start-paused", "--paused", help="Record nothing until space."),
+]
+
+
+def record(
+    topics: TopicNames = None,
+    all_: All = False,
+    regex: Regex = "",
+    topic_types: TopicTypes = None,
+    exclude: Exclude = "",
+    exclude_topics: ExcludeTopics = None,
+    exclude_topic_types: ExcludeTypes = None,
+    include_hidden_topics: Hidden = False,
+    output: Output = "",
+    overwrite: Overwrite = False,
+    max_bag_size: MaxSize = 0,
+    max_bag_duration: MaxDuration = 0.0,
+    snapshot_duration: Snapshot = 0.0,
+    compression: Compression = "zstd",
+    use_sim_time: SimTime = False,
+    paused: Paused = False,
+) -> None:
+    """Record what is said into a bag, until Ctrl-C.
+
+    Topics that come up later are taken up, too. Keys: space pauses and goes on, s
+    writes a snapshot, q ends.
+    """
+    if not (topics or all_ or regex or topic_types):
+        raise typer.BadParameter("name topics, or --all, --regex, --topic-types")
+    patterns = [exclude] if exclude else []
+    patterns += [f"^{re.escape(_full(each))}$" for each in exclude_topics or ()]
+    in_folder = bool(max_bag_size or max_bag_duration or snapshot_duration)
+    path = _path(output, in_folder=in_folder, overwrite=overwrite)
+    parameters: dict[str, Any] = {
+        "topics": [_full(each) for each in topics or ()],
+        "types": list(topic_types or ()),
+        "regex": regex,
+        "exclude": "|".join(patterns),
+        "exclude_types": list(exclude_topic_types or ()),
+        "images": True,
+        "hidden": include_hidden_topics,
+        "compression": compression,
+        "max_bag_size": max_bag_size,
+        "max_bag_duration_s": max_bag_duration,
+        "snapshot_duration_s": snapshot_duration,
+        "paused": paused,
+        "use_sim_time": use_sim_time,
+    }
+    if all_:
+        parameters |= {"topics": [], "types": [], "regex": ""}
+    raise typer.Exit(_record(path, parameters))
+
+
+def _full(topic: str) -> str:
+    return topic if topic.startswith("/") else f"/{topic}"
+
+
+def _path(output: str, *, in_folder: bool, overwrite: bool) -> Path:
+    """Where to; one that exists is refused or removed."""
+    import shutil
+
+    from navette.bags.opening import is_bag
+    from navette.errors import FileFormatError
+
+    path = Path(output or _dated())
+    if in_folder:
+        path = path.with_suffix("") if path.suffix == ".mcap" else path
+    elif path.suffix != ".mcap":
+        path = path.with_name(f"{path.name}.mcap")
+    if path.exists():
+        if not overwrite:
+            raise FileFormatError(path, "exists already; --overwrite replaces it")
+        if not is_bag(path):
+            raise FileFormatError(path, "exists and is no bag; it is not replaced")
+        if path.is_dir():
+            shutil.rmtree(path)
+    return path
+
+
+def _dated() -> str:
+    from datetime import UTC, datetime
+
+    from navette.runtime import SystemClock
+
+    now = datetime.fromtimestamp(SystemClock().now_ns / 1e9, UTC).astimezone()
+    return now.strftime("navette_%Y_%m_%d-%H_%M_%S")
+
+
+def _record(path: Path, parameters: dict[str, Any]) -> int:
+    from contextlib import ExitStack
+
+    from navette.bags.node import RecorderNode
+    from navette.cli.bag.record_screen import RecordScreen
+    from navette.cli.keyboard import listening_to_keys
+    from navette.cli.session import connect
+    from navette.runtime import Parameter
+
+    overrides: list[Parameter[Any]] = [
+        Parameter(name, value=value) for name, value in parameters.items()
+    ]
+    with connect() as node, ExitStack() as stack:
+        recorder = RecorderNode(
+            path, context=node.context, parameter_overrides=overrides
+        )
+        stack.callback(recorder.close)
+        node.executor.add_node(recorder)
+        session = _Session(node, recorder)
+        screen = RecordScreen(recorder)
+        keys = stack.enter_context(listening_to_keys(session.on_key))
+        try:
+            with screen.watching(keys=keys):
+                session.run()
+        except KeyboardInterrupt:
+            pass  # the usual end of a recording
+        recorder.close()
+        screen.report()
+        return FAILED if recorder.error is not None else 0
+
+
+class _Session:
+    """Spins the recorder until it is to end."""
+
+    def __init__(self, node: "Node", recorder: "RecorderNode") -> None:
+        self._node = node
+        self._recorder = recorder
+        self._asked: set[str] = set()
+        self._is_over = False
+
+    def run(self) -> None:
+        """Until key q or a failure; asks nodes for types that nobody else has."""
+        from navette.cli.session import wait_for
+
+        while not self._is_over and self._recorder.error is None:
+            wait_for(self._node, self._has_to_look)
+            for topic in self._unasked():
+                self._asked.add(topic)
+                self._fetch(topic, self._recorder.undefined[topic])
+
+    def _has_to_look(self) -> bool:
+        return (
+            self._is_over or self._recorder.error is not None or bool(self._unasked())
+        )
+
+    def _unasked(self) -> list[str]:
+        return [each for each in self._recorder.undefined if each not in self._asked]
+
+    def _fetch(self, topic: str, type_name: str) -> None:
+        from navette.cli.peer_definitions import fetch_definition
+        from navette.errors import NavetteError
+        from navette.msgs import register_definition
+        from navette.transports import EndpointKind
+
+        graph = self._node.context.graph
+        for endpoint in graph.endpoints(topic, kind=EndpointKind.PUBLISHER):
+            found = fetch_definition(self._node, endpoint.node_full_name, type_name)
+            if found.text is None:
+                continue
+            try:
+                register_definition(type_name, found.text)
+            except NavetteError as error:
+                note(f"cannot record {topic}: {error}")
+            else:
+                self._recorder.refresh()
+                return
+
+    def on_key(self, key: str) -> None:
+        """From the keyboard's thread."""
+        act = {" ": self._toggle, "s": self._snapshot, "q": self._end}.get(key)
+        if act is not None:
+            loop = self._node.context.loop
+            loop.call_soon_threadsafe(act, "keyboard", "recorder")
+
+    def _toggle(self) -> None:
+        from navette.runtime import Parameter
+
+        paused = not self._recorder.params.paused
+        self._recorder.set_parameters([Parameter("paused", value=paused)])
+
+    def _snapshot(self) -> None:
+        from navette.errors import FileFormatError
+
+        try:
+            path = self._recorder.take_snapshot()
+        except FileFormatError as error:
+            note(str(error))
+        else:
+            note(f"snapshot: {path or 'nothing was said'}")
+
+    def _end(self) -> None:
+        self._is_over = True

@@ -1,0 +1,72 @@
+"""What the terminal shows of a recording; all of it on stderr."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from navette.cli.bag.text import count_text, size_text
+from navette.runtime import Stopwatch
+
+if TYPE_CHECKING:
+    from navette.bags.node import RecorderNode
+
+_REFRESH_HZ = 4
+
+
+class RecordScreen:
+    """A line while it records, and one for what came of it."""
+
+    def __init__(self, recorder: "RecorderNode") -> None:
+        self._recorder = recorder
+        self._stopwatch = Stopwatch()
+        self._console = Console(stderr=True, highlight=False)
+
+    @contextmanager
+    def watching(self, *, keys: bool) -> Iterator[None]:
+        """Show how it goes until the block ends."""
+        hint = "space pauses, q ends" if keys else "Ctrl-C ends"
+        self._console.print(
+            Text("recording to ", style="dim")
+            + Text(str(self._recorder.path), style="bold")
+            + Text(f"   {hint}", style="dim"),
+            soft_wrap=True,
+        )
+        if not self._console.is_terminal:
+            yield
+            return
+        with Live(
+            get_renderable=self._line,
+            console=self._console,
+            refresh_per_second=_REFRESH_HZ,
+            transient=True,
+        ):
+            yield
+
+    def report(self) -> None:
+        """The end of it."""
+        recorder = self._recorder
+        if recorder.error is not None:
+            text = f"{recorder.error}; what was recorded until then is sound"
+            self._console.print(Text(text, style="bold red"), soft_wrap=True)
+        self._console.print(
+            Text(f"{recorder.path}: ") + Text(self._figures()), soft_wrap=True
+        )
+
+    def _figures(self) -> str:
+        recorder = self._recorder
+        count = count_text(recorder.message_count)
+        return (
+            f"{count} messages of {len(recorder.topics)} topics, "
+            f"{size_text(recorder.payload_bytes)} before compression"
+        )
+
+    def _line(self) -> Text:
+        paused = self._recorder.params.paused
+        state = ("❚❚ paused   ", "yellow") if paused else ("● recording", "red")
+        line = Text(state[0], style=state[1])
+        line += Text(f"  {self._stopwatch.elapsed_s:7.1f} s  ", style="dim")
+        return line + Text(self._figures())
