@@ -11,6 +11,10 @@ from hypothesis import settings
 settings.register_profile("navette", deadline=None, derandomize=True)
 settings.load_profile("navette")
 
+# Tests run side by side and must not meet; those of the network say so themselves, and
+# have a router of their own.
+os.environ["NAVETTE_TRANSPORT"] = "inprocess"
+
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(
