@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from navette.errors import InvalidValueError, UnknownNameError
+from navette.errors import InvalidValueError
 
 MOST_BYTES = 4 * 1024 * 1024  # of text on standard input
 
@@ -57,21 +57,6 @@ def is_type_name(text: str, kind: str) -> bool:
     if len(parts) == 3 and parts[1] != kind:
         return False
     return len(parts) in (2, 3) and all(part.isidentifier() for part in parts)
-
-
-def interface(name: str, kind: str) -> Any:
-    """The class of an interface of a kind (srv, action); ``pkg/Name`` will do.
-
-    Raises:
-        UnknownNameError: there is none of that name.
-    """
-    from navette.msgs import get_interface
-
-    parts = name.split("/")
-    full = f"{parts[0]}/{kind}/{parts[1]}" if len(parts) == 2 else name
-    if not is_type_name(full, kind):
-        raise UnknownNameError(f"type {name!r}: wanted package/{kind}/Name")
-    return get_interface(full)
 
 
 def type_and_values(words: Sequence[str], kind: str) -> tuple[str | None, str | None]:

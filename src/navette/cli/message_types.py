@@ -7,7 +7,8 @@ from navette.cli.nearest import did_you_mean
 from navette.cli.output import note
 from navette.cli.peer_definitions import described_by_peers
 from navette.cli.session import endpoints, fail, wait_for
-from navette.errors import NavetteError, UnknownNameError
+from navette.errors import InvalidNameError, NavetteError, UnknownNameError
+from navette.msgs.registry import full_name
 from navette.runtime import Node
 from navette.transports import Endpoint
 
@@ -49,6 +50,8 @@ def interface_class(
         kind: ``msg``, ``srv`` or ``action``; lets ``pkg/Name`` do.
     """
     name = full_type_name(type_name, kind)
+    if kind and name.split("/")[1] != kind:
+        raise InvalidNameError(f"type {type_name!r}: wanted package/{kind}/Name")
     try:
         cls = msgs.get_interface(name)
     except UnknownNameError:
@@ -58,9 +61,15 @@ def interface_class(
 
 
 def full_type_name(type_name: str, kind: str) -> str:
-    """``pkg/Name`` → ``pkg/<kind>/Name``; full names stay."""
+    """``pkg/Name`` → ``pkg/<kind>/Name``; full names stay.
+
+    Raises:
+        InvalidNameError: neither of the two forms.
+    """
     package, _, rest = type_name.partition("/")
-    return f"{package}/{kind}/{rest}" if kind and "/" not in rest else type_name
+    return full_name(
+        f"{package}/{kind}/{rest}" if kind and "/" not in rest else type_name
+    )
 
 
 def installed_class(name: str) -> Any:

@@ -41,7 +41,8 @@ def described_by_peers(node: Node, type_name: str, of: list[Endpoint]) -> Defini
     Who publishes or serves is asked before who listens.
     """
     gives = (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
-    users = [each for each in of if each.type_name == type_name]
+    # An action's users have its parts: pkg/action/Name_SendGoal.
+    users = [e for e in of if f"{e.type_name}_".startswith(f"{type_name}_")]
     users.sort(key=lambda each: each.kind not in gives)
     reasons = []
     for name in dict.fromkeys(each.node_full_name for each in users):

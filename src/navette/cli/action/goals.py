@@ -7,10 +7,10 @@ import typer
 from navette.cli.action.looking import actions, types_of
 from navette.cli.action.options import ActionName, Json
 from navette.cli.completing import complete_action_types
-from navette.cli.filling import filled, from_stdin, interface, type_and_values
+from navette.cli.filling import filled, from_stdin, type_and_values
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import note, show, show_json, styled
-from navette.cli.session import FAILED, connect, fail, wait_for
+from navette.cli.session import FAILED, connect, fail, service_endpoints, wait_for
 
 if TYPE_CHECKING:
     from navette.runtime import Future, Node
@@ -58,10 +58,13 @@ def send_goal(
     type_name, values = type_and_values(words or [], "action")
     if stdin:
         values = from_stdin()
+    from navette.cli.message_types import interface_class
+
     with connect() as here:
         name = here.resolve_topic_name(action)
         _wait_for_server(here, name, wait or None)
-        kind = interface(type_name or types_of(here, name)[0], "action")
+        chosen = type_name or types_of(here, name)[0]
+        kind = interface_class(here, chosen, service_endpoints(here), kind="action")
         goal = filled(kind.Goal, values or "{}")
         client = ActionClient(here, kind, name)
         if not client.wait_for_server(wait or None):

@@ -18,9 +18,9 @@ from navette.companions.rosidl_runtime_py import (
 )
 from navette.errors import InvalidNameError, UnknownNameError
 from navette.msgs.definition_sections import read_definition, split_sections
-from navette.msgs.definition_text import message_text
+from navette.msgs.definition_text import interface_text
 from navette.msgs.parser import parse_message, without_comment
-from navette.msgs.registry import full_name, get_message_spec
+from navette.msgs.registry import full_name
 
 _SEPARATOR = "---"
 _INDENT, _INDENT_ON_TERMINAL = "\t", "    "
@@ -87,7 +87,7 @@ class _Texts:
         except UnknownNameError:
             pass
         try:
-            return message_text(get_message_spec(name))
+            return interface_text(name)
         except (UnknownNameError, InvalidNameError):
             return None
 

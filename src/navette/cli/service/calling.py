@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from navette.cli.completing import complete_service_types
-from navette.cli.filling import filled, from_stdin, interface, type_and_values
+from navette.cli.filling import filled, from_stdin, type_and_values
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import note, show, show_json, styled
 from navette.cli.service.looking import services, types_of
 from navette.cli.service.options import Json, ServiceName
-from navette.cli.session import connect, fail, wait_for
+from navette.cli.session import connect, fail, service_endpoints, wait_for
 from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -51,10 +51,13 @@ def call(
     if stdin:
         values = from_stdin()
     patience = timeout or None
+    from navette.cli.message_types import interface_class
+
     with connect() as here:
         name = here.resolve_service_name(service)
         _wait_for_server(here, name, patience)
-        kind = interface(type_name or types_of(here, name)[0], "srv")
+        chosen = type_name or types_of(here, name)[0]
+        kind = interface_class(here, chosen, service_endpoints(here), kind="srv")
         _check_type(here, name, kind)
         request = filled(kind.Request, values or "{}")
         client = here.create_client(kind, name)

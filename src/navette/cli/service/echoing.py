@@ -5,11 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
-from navette.cli.filling import interface
 from navette.cli.output import note, show
 from navette.cli.service.looking import types_of
 from navette.cli.service.options import ServiceName
-from navette.cli.session import connect, wait_for
+from navette.cli.session import connect, service_endpoints, wait_for
 
 _EVENTS = "/_service_event"
 
@@ -63,9 +62,12 @@ def echo(
         text = _as_csv if csv else partial(_as_yaml, flow_style=flow_style)
         show(text(event, shortened))
 
+    from navette.cli.message_types import interface_class
+
     with connect() as here:
         name = here.resolve_service_name(service)
-        kind = interface(service_type or types_of(here, name)[0], "srv")
+        chosen = service_type or types_of(here, name)[0]
+        kind = interface_class(here, chosen, service_endpoints(here), kind="srv")
         subscription = here.create_subscription(
             kind.Event, name + _EVENTS, print_event, qos_profile_services_default
         )

@@ -1,0 +1,120 @@
+"""Definitions out of what a node answers, with and without the texts it was made of."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import typer
+
+from navette.cli.message_types import interface_class
+from navette.cli.peer_definitions import definition_of, described_by_peers
+from navette.cli.session import connect, endpoints, service_endpoints
+from navette.errors import InvalidNameError
+from navette.msgs import get_interface, interface_names, packages
+from navette.msgs.definition_sections import messages_of, read_definition
+from navette.msgs.registry import get_spec
+from navette.msgs.std_srvs.srv import SetBool
+from navette.msgs.type_description_interfaces.srv import GetTypeDescription
+from navette.runtime import Context, Executor, Node, VirtualClock
+from navette.runtime.type_description_service import describe
+
+EVERY_TYPE = [
+    f"{package}/{kind}/{name}"
+    for package in packages()
+    for kind in ("msg", "srv", "action")
+    for name in interface_names(package, kind)
+]
+
+
+def answer(name: str, *, with_sources: bool) -> Any:
+    request = GetTypeDescription.Request(
+        type_name=name, include_type_sources=with_sources
+    )
+    return describe(request, GetTypeDescription.Response())
+
+
+def on_the_wire(spec: Any) -> list[Any]:
+    return [
+        (part.name, [(field.name, field.type) for field in part.fields])
+        for part in messages_of(spec)
+    ]
+
+
+@pytest.mark.parametrize("with_sources", [True, False])
+def test_every_type_comes_back_as_it_was(*, with_sources: bool) -> None:
+    for name in EVERY_TYPE:
+        text = definition_of(name, answer(name, with_sources=with_sources))
+        top, *contained = read_definition(name, text)
+        # char and uint8 are one type on the wire.
+        assert str(on_the_wire(top)).replace("'char'", "'uint8'") == str(
+            on_the_wire(get_spec(name))
+        ).replace("'char'", "'uint8'"), name
+        assert all(get_spec(each.name) for each in contained)
+
+
+def test_sources_keep_constants_and_defaults() -> None:
+    name = "sensor_msgs/msg/BatteryState"
+    text = definition_of(name, answer(name, with_sources=True))
+    assert "POWER_SUPPLY_STATUS_FULL" in text
+    text = definition_of(name, answer(name, with_sources=False))
+    assert "POWER_SUPPLY_STATUS_FULL" not in text
+
+
+def test_a_type_number_that_nobody_has_is_no_definition() -> None:
+    response = answer("std_msgs/msg/Int32", with_sources=False)
+    response.type_description.type_description.fields[0].type.type_id = 200
+    text = definition_of("std_msgs/msg/Int32", response)
+    with pytest.raises(ValueError, match="unknown_type_200"):
+        read_definition("std_msgs/msg/Int32", text)
+
+
+@pytest.fixture
+def server() -> Iterator[Node]:
+    with Context(clock=VirtualClock()) as context:
+        node = Node("server", context=context, start_parameter_services=False)
+        Executor(context=context).add_node(node)
+        node.create_service(SetBool, "switch", lambda _, response: response)
+        yield node
+
+
+def test_who_has_the_type_is_asked(server: Node) -> None:
+    with connect(server.context) as node:
+        every = [*endpoints(node), *service_endpoints(node)]
+        found = described_by_peers(node, "std_srvs/srv/SetBool", every)
+        assert found.text is not None
+        assert found.text.startswith("bool data\n---\nbool success\n")
+        other = described_by_peers(node, "std_srvs/srv/Trigger", every)
+        assert other.text is None
+
+
+def test_who_describes_nothing_is_named(
+    server: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with connect(server.context) as node:
+        mute = Node(
+            "mute", context=server.context, start_parameter_services=False,
+            cli_args=["-p", "start_type_description_service:=false"],
+        )  # fmt: skip
+        mute.create_service(SetBool, "other", lambda _, response: response)
+        found = described_by_peers(
+            node, "std_srvs/srv/SetBool", service_endpoints(node, "/other")
+        )
+        assert found.reason == "/mute: describes no types"
+
+
+def test_a_type_that_nobody_knows_ends_the_command(
+    server: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with connect(server.context) as node, pytest.raises(typer.Exit):
+        interface_class(node, "nowhere_msgs/Thing", endpoints(node), kind="msg")
+    assert "type nowhere_msgs/msg/Thing is not known here" in capsys.readouterr().err
+
+
+def test_a_type_of_another_kind_is_refused(server: Node) -> None:
+    with connect(server.context) as node:
+        assert interface_class(node, "std_srvs/SetBool", [], kind="srv") is SetBool
+        with pytest.raises(InvalidNameError, match="wanted package/srv/Name"):
+            interface_class(node, "std_msgs/msg/Bool", [], kind="srv")
+        with pytest.raises(InvalidNameError):
+            interface_class(node, "no/such/form/of/name", [])
+    assert get_interface("std_srvs/srv/SetBool") is SetBool
