@@ -394,3 +394,18 @@ def test_gids_of_the_graph_are_those_of_the_wire(
         gids = [publisher.endpoint.gid]
         until(lambda: [e.gid for e in pair.near.endpoints() if e.topic == "/t"] == gids)
         assert gid_of("") not in gids
+
+
+def test_latched_samples_of_the_same_session_do_not_come_by_the_network(
+    pair: ZenohPair,
+) -> None:
+    latched = EndpointQos.latched()
+    publisher = advertise(pair.near, qos=latched)
+    publisher.send(String(data="map"), 1, 1)
+    here, _ = subscribe(pair.near, qos=latched)
+    there, _ = subscribe(pair.far, qos=latched)
+    until(lambda: bool(there), "the latched sample")
+    publisher.send(String(data="newer"), 2, 2)
+    until(lambda: len(there) == 2, "the next sample")
+    assert texts(there) == ["map", "newer"]
+    assert here == []

@@ -1,6 +1,7 @@
 """Subscriptions: check what arrives and queue its bytes; who takes it decodes."""
 
 from collections.abc import Callable
+from collections.abc import Set as AbstractSet
 from typing import Any
 
 import zenoh
@@ -25,6 +26,8 @@ class ZenohSubscription(SubscriptionPort):
     """Gives each sample to the sink as :class:`Encoded`, in the publisher's order.
 
     Args:
+        own_gids: publishers of this very session. Their samples come by another way; a
+            query of the history brings them all the same, whatever its locality.
         now_ns: the time here, for the received stamp.
         closed: called once when the port is closed.
     """
@@ -37,6 +40,7 @@ class ZenohSubscription(SubscriptionPort):
         "_longest",
         "_message_class",
         "_now_ns",
+        "_own_gids",
         "_sink",
         "_subscriber",
         "matches",
@@ -50,6 +54,7 @@ class ZenohSubscription(SubscriptionPort):
         sink: Sink,
         matches: Matches,
         *,
+        own_gids: AbstractSet[bytes],
         complaints: Complaints,
         max_message_bytes: int,
         now_ns: Callable[[], int],
@@ -58,6 +63,7 @@ class ZenohSubscription(SubscriptionPort):
         self.matches = matches
         self._message_class = message_class
         self._sink = sink
+        self._own_gids = own_gids
         self._complaints = complaints
         self._longest = max_message_bytes
         self._now_ns = now_ns
@@ -110,7 +116,7 @@ class ZenohSubscription(SubscriptionPort):
         data = payload.to_bytes()
         if data[:2] not in _HEADERS:
             raise DecodeError(f"no plain CDR: header {data[:4].hex(' ')}")
-        if not self._is_next(gid, sequence):
+        if gid in self._own_gids or not self._is_next(gid, sequence):
             return None
 
         def failed(error: DecodeError) -> None:

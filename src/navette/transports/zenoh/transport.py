@@ -62,6 +62,8 @@ class ZenohTransport(Transport):
         self._announced: dict[bytes, EndpointToken] = {}
         self._ports: dict[Port, zenoh.LivelinessToken] = {}
         self._hashes: dict[str, str] = {}
+        #: Gids of the publishers here: those they reach in process are not told twice.
+        self._own_gids: set[bytes] = set()
         self._lock = threading.Lock()
 
     def observe(self, observer: TransportObserver) -> None:
@@ -102,11 +104,13 @@ class ZenohTransport(Transport):
 
     def advertise(self, endpoint: Endpoint, message_class: type) -> ZenohPublisher:
         token, matches = self._enter(endpoint)
+        gid = gid_of(token.key())
+        self._own_gids.add(gid)
         port = ZenohPublisher(
             self.session.zenoh,
             self._key(token),
             token.qos,
-            gid_of(token.key()),
+            gid,
             matches,
             self._leave,
         )
@@ -123,6 +127,7 @@ class ZenohTransport(Transport):
             message_class,
             sink,
             matches,
+            own_gids=self._own_gids,
             closed=self._leave,
             now_ns=self._now_ns,
             **self._limits(),
