@@ -17,6 +17,7 @@ from navette.cli.arguments import (
     spread_lists,
 )
 from navette.cli.bag import bag
+from navette.cli.completion import completion, is_completing, keep_quiet
 from navette.cli.doctor import doctor
 from navette.cli.interface import interface
 from navette.cli.keys import keys
@@ -38,7 +39,7 @@ app = typer.Typer(
     name="navette",
     help="Robot navigation you pip install: simulate, map, plan, drive, watch.",
     no_args_is_help=True,
-    add_completion=False,
+    add_completion=is_completing(),  # adds options that only a shell needs
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -211,12 +212,15 @@ app.add_typer(bag)
 app.add_typer(keys)
 app.command()(launch)
 app.command()(doctor)
+app.command()(completion)
 for command in (up, down, restart, ps, logs):
     app.command()(command)
 
 
 def main() -> None:
     """Entry point of the ``navette`` command."""
+    if is_completing():
+        keep_quiet()
     arguments = sys.argv[1:]
     if arguments[:1] != ["run"]:
         arguments = fill_values(spread_lists(join_pairs(arguments)))
