@@ -71,7 +71,7 @@ def list_(
     from navette.packages import find_packages
 
     for package in find_packages().values():
-        place = f"\t{package.origin.value}\t{package.share}" if paths else ""
+        place = f"\t{package.origin.value}\t{package.folder}" if paths else ""
         typer.echo(f"{package.name}{place}")
 
 

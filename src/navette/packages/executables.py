@@ -1,7 +1,6 @@
 """The programs of a package, as its build files name them.
 
-Nothing is run to find them: setup.py is read as text, and what it computes by more
-than constants, names, f-strings and sums stays unknown.
+Nothing is run to find them (see ``setup_py``).
 """
 
 import ast
@@ -14,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from navette.errors import FileFormatError, UnknownNameError
+from navette.packages.setup_py import read_setup_py
 
 BUILT_IN = "navette"
 _STAGES = {
@@ -133,61 +133,10 @@ def _from_cmake(path: Path) -> Iterator[Path]:
 
 
 def _from_setup_py(path: Path) -> Iterator[str]:
-    if not path.is_file():
-        return
-    try:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-    except SyntaxError as error:
-        raise FileFormatError(path, error.msg, error.lineno) from None
-    names = _constants(tree)
-    for call in ast.walk(tree):
-        if isinstance(call, ast.Call) and _called_name(call) == "setup":
-            for keyword in call.keywords:
-                if keyword.arg == "entry_points":
-                    yield from _console_scripts(keyword.value, names)
-
-
-def _called_name(call: ast.Call) -> str:
-    function = call.func
-    return getattr(function, "id", "") or getattr(function, "attr", "")
-
-
-def _console_scripts(entry_points: ast.expr, names: dict[str, str]) -> Iterator[str]:
-    if not isinstance(entry_points, ast.Dict):
+    setup = read_setup_py(path)
+    entry_points = setup and setup.argument("entry_points")
+    if not setup or not isinstance(entry_points, ast.Dict):
         return
     for key, value in zip(entry_points.keys, entry_points.values, strict=True):
-        if key is None or _text(key, names) != "console_scripts":
-            continue
-        if isinstance(value, (ast.List, ast.Tuple)):
-            for item in value.elts:
-                yield _text(item, names) or ""
-
-
-def _constants(tree: ast.Module) -> dict[str, str]:
-    """Names that the module sets to a text."""
-    found: dict[str, str] = {}
-    for node in tree.body:
-        if isinstance(node, ast.Assign) and len(node.targets) == 1:
-            target, text = node.targets[0], _text(node.value, found)
-            if isinstance(target, ast.Name) and text is not None:
-                found[target.id] = text
-    return found
-
-
-def _text(node: ast.expr, names: dict[str, str]) -> str | None:
-    """The text an expression gives; None where that takes more than is read here."""
-    if isinstance(node, ast.Constant):
-        return node.value if isinstance(node.value, str) else None
-    if isinstance(node, ast.Name):
-        return names.get(node.id)
-    if isinstance(node, ast.FormattedValue):
-        return _text(node.value, names)
-    parts: list[ast.expr] = []
-    if isinstance(node, ast.JoinedStr):
-        parts = node.values
-    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-        parts = [node.left, node.right]
-    texts = [_text(part, names) for part in parts]
-    if not texts or None in texts:
-        return None
-    return "".join(text or "" for text in texts)
+        if key is not None and setup.text(key) == "console_scripts":
+            yield from setup.texts(value)

@@ -108,11 +108,11 @@ def activate(start: Path | None = None) -> tuple[Path, ...]:
 
 
 def _add_interfaces(package: Package) -> None:
-    if package.share.name == package.name:
+    if package.folder.name == package.name:
         # Read when asked for: its types may use those of packages still to come.
-        msgs.add_interface_path(package.share.parent)
+        msgs.add_interface_path(package.folder.parent)
     else:
-        msgs.load_interfaces(package.name, package.share)
+        msgs.load_interfaces(package.name, package.folder)
 
 
 def _all(start: Path | None) -> Iterator[Package]:

@@ -11,6 +11,7 @@ from navette.packages.executables import (
     source_executables,
 )
 from navette.packages.manifest import FILE_NAME, Manifest, read_manifest
+from navette.packages.share import share_directory
 
 INTERFACE_KINDS = ("msg", "srv", "action")
 
@@ -28,32 +29,43 @@ class Package:
     """Found by :func:`find_package`.
 
     Attributes:
-        share: the folder of its files: launch/, config/, msg/, ….
+        folder: where it lies.
     """
 
     name: str
-    share: Path
+    folder: Path
     origin: Origin
+
+    @property
+    def share(self) -> Path:
+        """The folder of its files: launch/, config/, msg/, ….
+
+        Raises:
+            FileFormatError: setup.py is broken.
+        """
+        if self.origin is Origin.SOURCE:
+            return share_directory(self.name, self.folder)
+        return self.folder
 
     @property
     def prefix(self) -> Path:
         """The prefix it is installed in; where nothing was installed, its folder."""
         if self.origin is Origin.INSTALLED:
-            return self.share.parent.parent
-        return self.share
+            return self.folder.parent.parent
+        return self.folder
 
     @property
     def has_interfaces(self) -> bool:
         """Whether it defines messages, services or actions."""
         return any(
-            next((self.share / kind).glob(f"*.{kind}"), None)
+            next((self.folder / kind).glob(f"*.{kind}"), None)
             for kind in INTERFACE_KINDS
         )
 
     @property
     def python_path(self) -> Path | None:
         """The folder that its Python modules are imported from, if it is a source."""
-        return self.share if self.origin is Origin.SOURCE else None
+        return self.folder if self.origin is Origin.SOURCE else None
 
     def manifest(self) -> Manifest:
         """Read its package.xml.
@@ -61,7 +73,7 @@ class Package:
         Raises:
             FileFormatError: broken.
         """
-        return read_manifest(self.share / FILE_NAME)
+        return read_manifest(self.folder / FILE_NAME)
 
     def executables(self) -> tuple[Executable, ...]:
         """What ``navette run PACKAGE EXECUTABLE`` can run, sorted by name.
@@ -70,7 +82,7 @@ class Package:
             FileFormatError: setup.py, setup.cfg or pyproject.toml is broken.
         """
         if self.origin is Origin.SOURCE:
-            return source_executables(self.name, self.share)
+            return source_executables(self.name, self.folder)
         if self.origin is Origin.INSTALLED:
             return installed_executables(self.name, self.prefix / "lib" / self.name)
         return built_in_executables(self.name)

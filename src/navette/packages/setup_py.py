@@ -1,0 +1,106 @@
+"""What a package's setup.py says, without running it.
+
+It is read as text: constants, names, f-strings, sums, ``os.path.join`` and ``glob`` are
+understood; what it computes by more than that stays unknown.
+"""
+
+import ast
+from dataclasses import dataclass
+from pathlib import Path
+
+from navette.errors import FileFormatError
+
+
+@dataclass(frozen=True, slots=True)
+class SetupPy:
+    """The arguments of its ``setup()`` call.
+
+    Attributes:
+        folder: where it lies; patterns are looked up from there.
+        names: what the module sets to a text.
+    """
+
+    folder: Path
+    arguments: dict[str, ast.expr]
+    names: dict[str, str]
+
+    def argument(self, name: str) -> ast.expr | None:
+        """An argument as written; None if it is not given."""
+        return self.arguments.get(name)
+
+    def text(self, node: ast.expr) -> str | None:
+        """The text an expression gives; None where that takes more than is read."""
+        return _text(node, self.names)
+
+    def texts(self, node: ast.expr) -> list[str]:
+        """The texts of a list; of sums of lists; the files that a pattern finds."""
+        if isinstance(node, (ast.List, ast.Tuple)):
+            found = (self.text(item) for item in node.elts)
+            return [text for text in found if text is not None]
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            return [*self.texts(node.left), *self.texts(node.right)]
+        if isinstance(node, ast.Call) and _called_name(node) == "glob" and node.args:
+            return self._found(self.text(node.args[0]))
+        return []
+
+    def _found(self, pattern: str | None) -> list[str]:
+        if not pattern or Path(pattern).is_absolute():
+            return []
+        found = sorted(self.folder.glob(pattern))
+        return [str(path.relative_to(self.folder)) for path in found]
+
+
+def read_setup_py(path: Path) -> SetupPy | None:
+    """What the file says; None where there is none, or it calls no ``setup()``.
+
+    Raises:
+        FileFormatError: it is no Python; names the line.
+    """
+    if not path.is_file():
+        return None
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except SyntaxError as error:
+        raise FileFormatError(path, error.msg, error.lineno) from None
+    for call in ast.walk(tree):
+        if isinstance(call, ast.Call) and _called_name(call) == "setup":
+            arguments = {k.arg: k.value for k in call.keywords if k.arg is not None}
+            return SetupPy(path.parent, arguments, _constants(tree))
+    return None
+
+
+def _called_name(call: ast.Call) -> str:
+    function = call.func
+    return getattr(function, "id", "") or getattr(function, "attr", "")
+
+
+def _constants(tree: ast.Module) -> dict[str, str]:
+    """Names that the module sets to a text."""
+    found: dict[str, str] = {}
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and len(node.targets) == 1:
+            target, text = node.targets[0], _text(node.value, found)
+            if isinstance(target, ast.Name) and text is not None:
+                found[target.id] = text
+    return found
+
+
+def _text(node: ast.expr, names: dict[str, str]) -> str | None:
+    if isinstance(node, ast.Constant):
+        return node.value if isinstance(node.value, str) else None
+    if isinstance(node, ast.Name):
+        return names.get(node.id)
+    if isinstance(node, ast.FormattedValue):
+        return _text(node.value, names)
+    parts: list[ast.expr] = []
+    between = ""
+    if isinstance(node, ast.JoinedStr):
+        parts = node.values
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        parts = [node.left, node.right]
+    elif isinstance(node, ast.Call) and _called_name(node) == "join":
+        parts, between = node.args, "/"
+    texts = [_text(part, names) for part in parts]
+    if not texts or None in texts:
+        return None
+    return between.join(text or "" for text in texts)
