@@ -22,7 +22,7 @@ from navette.interop.program import (
     Program,
     run,
 )
-from navette.interop.readiness import tell_when_ready
+from navette.interop.readiness import Readiness, watch_start
 from navette.interop.sleeping import sleeping_lets_others_run
 from navette.runtime.clock import Stopwatch
 from navette.runtime.context import Scope, current_scope, new_graph
@@ -40,7 +40,8 @@ _argv: contextvars.ContextVar[list[str]] = contextvars.ContextVar("navette_argv"
 def run_alone(program: Program) -> int:
     """Run in the main thread; Ctrl-C raises in it as Python does."""
     argv, sys.argv = sys.argv, program.argv
-    tell_when_ready([current_scope.get()])
+    over: list[int] = []
+    watch_start(current_scope.get(), lambda: bool(over), Readiness().one_is_ready)
     try:
         # SIGTERM ends a program as ROS 2's does: its contexts are shut down.
         with (
@@ -50,6 +51,7 @@ def run_alone(program: Program) -> int:
         ):
             return run(program)
     finally:
+        over.append(1)
         sys.argv = argv
 
 
@@ -62,8 +64,11 @@ def run_together(programs: Sequence[Program]) -> int:
         The exit code of the first that failed, or 0.
     """
     graph = new_graph()
-    running = [RunningProgram(program, graph) for program in programs]
-    tell_when_ready([each.scope for each in running])
+    readiness = Readiness(len(programs))
+    running = [
+        RunningProgram(program, graph, on_ready=readiness.one_is_ready)
+        for program in programs
+    ]
     wishes: list[_End] = []
     with ExitStack() as stack:
         stack.enter_context(program_threads())
@@ -87,6 +92,7 @@ class RunningProgram:
     Args:
         graph: where it meets the others.
         on_end: called in its thread, with its exit code.
+        on_ready: called in another one, when its nodes are made and spin.
     """
 
     def __init__(
@@ -94,11 +100,13 @@ class RunningProgram:
         program: Program,
         graph: Graph,
         on_end: Callable[[int], object] | None = None,
+        on_ready: Callable[[], object] | None = None,
     ) -> None:
         self.program = program
         self.exit_code: int | None = None
         self.scope = Scope(graph)
         self._on_end = on_end
+        self._on_ready = on_ready
         # A daemon: one that never ends must not keep the process.
         self._thread = threading.Thread(
             target=self._run, name=program.name, daemon=True
@@ -106,6 +114,7 @@ class RunningProgram:
 
     def start(self) -> None:
         self._thread.start()
+        watch_start(self.scope, lambda: self.exit_code is not None, self._on_ready)
 
     @property
     def is_alive(self) -> bool:

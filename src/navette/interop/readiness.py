@@ -1,38 +1,77 @@
-"""A program tells whoever started it that its nodes are made and spinning.
+"""When a program's nodes are made and spin: what it was given is looked through then.
 
-As systemd's services do: the starter passes a pipe and its number in the environment.
+Who started it may want to know, as with systemd's services: it passes a pipe, and its
+number in the environment.
 """
 
 import contextlib
 import os
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable
+from functools import partial
 
-from navette.runtime.context import Scope
+from navette.interop.leftovers import warn_of_leftovers
+from navette.runtime.context import Context, Scope
 
 VARIABLE = "NAVETTE_READY_FD"
 _LOOK_S = 0.02
 
 
-def tell_when_ready(scopes: Sequence[Scope]) -> None:
-    """Tell, once, when a context of every scope has nodes and runs; if asked to."""
-    number = os.environ.pop(VARIABLE, "")
-    if number.isdigit():
-        thread = threading.Thread(target=_watch, args=(int(number), scopes))
-        thread.daemon = True
-        thread.start()
+class Readiness:
+    """Tells, once, when all programs of a process are ready; if asked to.
+
+    Args:
+        programs: how many there are.
+    """
+
+    def __init__(self, programs: int = 1) -> None:
+        number = os.environ.pop(VARIABLE, "")
+        self._pipe = int(number) if number.isdigit() else None
+        self._left = programs
+        self._lock = threading.Lock()
+
+    def one_is_ready(self) -> None:
+        """From any thread."""
+        with self._lock:
+            self._left -= 1
+            if self._left or self._pipe is None:
+                return
+            # Whoever asked may be gone by now.
+            with contextlib.suppress(OSError):
+                os.write(self._pipe, b"ready")
+                os.close(self._pipe)
 
 
-def _watch(pipe: int, scopes: Sequence[Scope]) -> None:
+def watch_start(
+    scope: Scope,
+    is_over: Callable[[], bool],
+    on_ready: Callable[[], object] | None = None,
+) -> None:
+    """Look, from a thread, until a context of the scope has nodes and runs."""
+    thread = threading.Thread(target=_watch, args=(scope, is_over, on_ready))
+    thread.daemon = True
+    thread.start()
+
+
+def _watch(
+    scope: Scope,
+    is_over: Callable[[], bool],
+    on_ready: Callable[[], object] | None,
+) -> None:
     pause = threading.Event()
-    while not all(map(_is_ready, scopes)):
+    while not (ready := _ready_contexts(scope)):
+        if is_over():
+            return
         pause.wait(_LOOK_S)
-    # Whoever asked may be gone by now.
-    with contextlib.suppress(OSError):
-        os.write(pipe, b"ready")
-        os.close(pipe)
+    for context in ready:
+        context.loop.call_soon_threadsafe(partial(warn_of_leftovers, context), "start")
+    if on_ready is not None:
+        on_ready()
 
 
-def _is_ready(scope: Scope) -> bool:
-    contexts = tuple(scope.contexts)
-    return any(context.nodes and context.loop.is_running for context in contexts)
+def _ready_contexts(scope: Scope) -> list[Context]:
+    return [
+        context
+        for context in tuple(scope.contexts)
+        if context.nodes and context.loop.is_running
+    ]

@@ -237,7 +237,7 @@ def _run(
     try:
         context.init(args=sys.argv)
         node = make(context)
-        check_reached(context.overrides, node)
+        check_reached(context.overrides, [node])
         runtime.spin(node)
     except KeyboardInterrupt:
         pass  # the way to end it
