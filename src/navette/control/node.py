@@ -147,6 +147,16 @@ class ControlNode(StageNode):
         if drove:
             self._take_path(self._path)
 
+    def on_time_jump(self) -> None:
+        """Nothing that came before holds: stop, and wait for the next path."""
+        self._tracker.reset()
+        self._follower = PathFollower(self.params)
+        self._path = np.empty((0, 3))
+        self._costmap = self._odometry = None
+        self._costmap_ns = self._placed_ns = _NEVER
+        self._odometry_ns = self._located_ns = _NEVER
+        self._planner_ns = _NEVER
+
     def destroy_node(self) -> None:
         """Stop the robot, then end."""
         if self._zeros_left and self.context.ok():

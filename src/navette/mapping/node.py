@@ -102,6 +102,11 @@ class MapMemoryNode(StageNode):
             self._memory.configure(self.params)
             self._gate.params = self.params
 
+    def on_time_jump(self) -> None:
+        """The clock was set back: the map starts anew."""
+        self._tracker.reset()
+        self._restart()
+
     def _new_tracker(self) -> PoseTracker:
         return PoseTracker(self, self.params.base_frame, self.params.map_frame)
 

@@ -8,9 +8,12 @@ failure it publishes an empty path: the robot stops.
 import math
 from typing import Any, ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
-from navette.grids import grid_from_message
+from navette.grids import GridSpec, grid_from_message
 from navette.msgs.geometry_msgs.msg import (
     Point,
     PointStamped,
@@ -88,6 +91,7 @@ class PlannerNode(StageNode):
         self._navigator = Navigator(self.params)
         self._navigator.planner.warm_up()
         self._odometry_ns: int | None = None
+        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._status = StatusReporter(self, "/planner/status")
         self._said = ""
         self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
@@ -108,6 +112,7 @@ class PlannerNode(StageNode):
         except InvalidValueError as error:
             self.get_logger().error(str(error), throttle_duration_sec=5.0)
             return
+        self._map = occupancy, spec
         self._navigator.set_map(occupancy, spec)
         self.on_timer()
 
@@ -149,6 +154,22 @@ class PlannerNode(StageNode):
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(params.plan_period_s, self.on_timer)
         self._navigator.configure(params)
+
+    def on_time_jump(self) -> None:
+        """The goal is of another time: stop the robot, and wait for the next.
+
+        The map stays until another comes: it may be one that is told only once.
+        """
+        had_path = self._navigator.has_path
+        self._tracker.reset()
+        self._odometry_ns = None
+        self._navigator = Navigator(self.params)
+        if self._map is not None:
+            self._navigator.set_map(*self._map)
+        if had_path:
+            empty = path_message(np.empty((0, 3)), self.params.map_frame, self._now_ns)
+            self.publish("/path", empty)
+        self._report()
 
     @property
     def _now_ns(self) -> int:

@@ -13,7 +13,9 @@ from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from navette.runtime.ros_clock import JumpThreshold, TimeJump
 from navette.runtime.stage_params import declare_params
+from navette.runtime.time import Duration
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,6 +99,10 @@ class StageNode(Node):
         self.add_on_set_parameters_callback(self._check_params)
         self.add_post_set_parameters_callback(self._take_params)
         self._arrivals_ns: dict[str, int] = {}
+        set_back = JumpThreshold(
+            min_forward=None, min_backward=Duration(nanoseconds=-1)
+        )
+        self._clock.create_jump_callback(set_back, post_callback=self._on_time_jump)
         self._timeouts_ns = {
             i.topic: None if i.timeout_s is None else round(i.timeout_s * 1e9)
             for i in self.inputs()
@@ -141,8 +147,18 @@ class StageNode(Node):
             return arrival_ns is None
         return self._clock.now_ns - arrival_ns > timeout_ns
 
+    def on_time_jump(self) -> None:
+        """Override to begin anew: the clock was set back (a bag loops, a run begins).
+
+        What the inputs said before is of another time, and forgotten already.
+        """
+
     def on_params_changed(self, old: Any) -> None:
         """Override to act on new values of ``self.params``."""
+
+    def _on_time_jump(self, jump: TimeJump) -> None:
+        self._arrivals_ns.clear()
+        self.on_time_jump()
 
     def _noting_arrival(self, declared: Input) -> Callable[[Any], Any]:
         callback = getattr(self, declared.callback)

@@ -5,13 +5,15 @@
 from typing import Any
 
 from navette.companions.message_filters.simple_filter import SimpleFilter, clock_of
-from navette.companions.message_filters.stamps import StampReader, as_time
+from navette.companions.message_filters.stamps import NEW_RUN_NS, StampReader, as_time
 from navette.errors import InvalidValueError
 from navette.runtime import Time
 
 
 class Cache(SimpleFilter):
     """Keeps the ``cache_size`` messages that arrived last, in order of arrival.
+
+    When stamps go back by more than a second (a bag that loops), it begins anew.
 
     Args:
         f: the filter to listen to.
@@ -45,6 +47,10 @@ class Cache(SimpleFilter):
         stamp = self._stamps.read(msg)
         if stamp is None:
             return
+        latest = self.getLatestTime()
+        if latest is not None and stamp.nanoseconds < latest.nanoseconds - NEW_RUN_NS:
+            self.cache_msgs.clear()
+            self.cache_times.clear()
         self.cache_times.append(stamp)
         self.cache_msgs.append(msg)
         if len(self.cache_msgs) > self.cache_size:

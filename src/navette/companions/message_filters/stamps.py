@@ -5,6 +5,9 @@ from typing import Any
 
 from navette.runtime import Clock, ClockType, Time
 
+NEW_RUN_NS = 1_000_000_000
+"""Stamps that go back by more are of another run: a bag that loops, a reset."""
+
 _LOG = logging.getLogger(__name__)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from navette.companions.message_filters.simple_filter import SimpleFilter, clock_of
-from navette.companions.message_filters.stamps import StampReader, as_time
+from navette.companions.message_filters.stamps import NEW_RUN_NS, StampReader, as_time
 from navette.errors import InvalidValueError, MessageError
 from navette.runtime import Clock, Duration
 
@@ -20,7 +20,8 @@ class TimeSynchronizer(SimpleFilter):
     Args:
         fs: the filters to listen to.
         queue_size: how many messages of each input wait for the others; of more, the
-            one with the oldest stamp goes.
+            one with the oldest stamp goes. When an input's stamps go back by more than
+            a second (a bag that loops), what waited is forgotten.
     """
 
     def __init__(self, fs: Sequence[Any], queue_size: int) -> None:
@@ -55,6 +56,10 @@ class TimeSynchronizer(SimpleFilter):
             self._emit([each] * len(self.queues))
 
     def _put(self, msg: Any, queue: Queue, stamp_ns: int) -> None:
+        if queue and stamp_ns < max(queue) - NEW_RUN_NS:
+            # Else the newest, being the oldest by its stamp, would be dropped for ever.
+            for each in self.queues:
+                each.clear()
         queue[stamp_ns] = msg
         while len(queue) > self.queue_size:
             del queue[min(queue)]

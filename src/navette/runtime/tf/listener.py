@@ -11,9 +11,13 @@ from navette.runtime.executor import SingleThreadedExecutor
 from navette.runtime.qos import DurabilityPolicy, QoSProfile
 from navette.runtime.tf.buffer import Buffer
 from navette.runtime.tf.exceptions import TransformException
+from navette.runtime.time import stamp_to_ns
 
 _DYNAMIC = QoSProfile(depth=100)
 _STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+# A frame whose stamps go back by more is of another run: a bag that loops, a simulation
+# that was reset. Less is a message that came late.
+_NEW_RUN_NS = 1_000_000_000
 _AUTHORITY = "default_authority"  # what tf2 records: a topic does not tell its sender
 
 
@@ -21,9 +25,12 @@ class TransformListener:
     """Listens on behalf of ``node`` for as long as it (or the node) lives.
 
     Its callbacks also run while another callback of the node waits for a transform.
+    When the stamps of a frame go back, what moves is forgotten, as it is when the
+    node's clock is set back: who plays a bag in a loop may not tell the time.
 
     Args:
-        buffer: anything with tf2's ``set_transform`` and ``set_transform_static``.
+        buffer: anything with tf2's ``set_transform``, ``set_transform_static`` and
+            ``clear``.
         spin_thread: let a thread spin the node, for programs that do not. Under a
             virtual clock there is none: time would run away from the program.
         static_only: leave the moving transforms out.
@@ -44,6 +51,7 @@ class TransformListener:
         self.buffer = buffer
         self.node = node
         self.group = ReentrantCallbackGroup()
+        self._newest_ns: dict[str, int] = {}
         if isinstance(buffer, Buffer):
             buffer.attach(node)
         self.tf_static_sub = self._subscribe(
@@ -64,11 +72,26 @@ class TransformListener:
 
     def callback(self, data: TFMessage) -> None:
         """A message of moving transforms."""
+        for transform in data.transforms:
+            self._watch_stamp(transform)
         self._take(data, self.buffer.set_transform)
 
     def static_callback(self, data: TFMessage) -> None:
         """A message of static transforms."""
         self._take(data, self.buffer.set_transform_static)
+
+    def _watch_stamp(self, transform: TransformStamped) -> None:
+        child, stamp_ns = transform.child_frame_id, stamp_to_ns(transform.header.stamp)
+        back_ns = self._newest_ns.get(child, stamp_ns) - stamp_ns
+        if back_ns > _NEW_RUN_NS:
+            self._newest_ns.clear()
+            self.buffer.clear()
+            self.node.get_logger().warning(
+                f"transforms of {child!r} went back by {back_ns / 1e9:.1f} s: "
+                "what moves is forgotten",
+                throttle_duration_sec=1.0,
+            )
+        self._newest_ns[child] = max(stamp_ns, self._newest_ns.get(child, stamp_ns))
 
     def _subscribe(
         self, topic: str, callback: Callable[[TFMessage], None], qos: QoSProfile | int
