@@ -83,6 +83,23 @@ class Notes(TransportObserver):
         self.told.append(("other type", local.node_name, remote.node_name))
 
 
+def test_a_gap_in_a_publishers_numbers_is_told(pair: ZenohPair) -> None:
+    lost: list[tuple[str, int]] = []
+
+    class Listening(TransportObserver):
+        def message_lost(self, subscription: Endpoint, count: int) -> None:
+            lost.append((subscription.node_name, count))
+
+    pair.near.observe(Listening())
+    subscribe(pair.near_zenoh, node="ear")
+    pair.settle()
+    hello = serialize(String(data="hello"))
+    for sequence, who in ((5, 1), (6, 1), (9, 1), (1, 2), (7, 1), (10, 1), (3, 2)):
+        send_raw(pair, hello, good(sequence, bytes([who] * 16)))
+    pair.settle()
+    assert lost == [("ear", 2), ("ear", 1)]
+
+
 def test_nodes_and_endpoints_come_and_go_with_their_tokens(pair: ZenohPair) -> None:
     notes = Notes()
     pair.near.observe(notes)

@@ -28,6 +28,7 @@ class Graph(TransportObserver):
         self._on_change: list[Callable[[], None]] = []
         self._on_incompatible: list[IncompatibleHook] = []
         self._on_incompatible_type: list[Callable[[Endpoint, Endpoint], None]] = []
+        self._on_lost: list[Callable[[Endpoint, int], None]] = []
         self._on_match: list[Callable[[Endpoint, Endpoint, bool], None]] = []
         self._on_liveliness: list[Callable[[Endpoint, bool], None]] = []
         #: Gids of the publishers that assert themselves and whose lease holds.
@@ -55,6 +56,11 @@ class Graph(TransportObserver):
         """Call back with an endpoint here and a remote one of another type."""
         self._on_incompatible_type.append(callback)
         return lambda: self._on_incompatible_type.remove(callback)
+
+    def on_lost(self, callback: Callable[[Endpoint, int], None]) -> Callable[[], None]:
+        """Call back with a subscription here and how many samples it missed."""
+        self._on_lost.append(callback)
+        return lambda: self._on_lost.remove(callback)
 
     def on_match(
         self, callback: Callable[[Endpoint, Endpoint, bool], None]
@@ -136,6 +142,10 @@ class Graph(TransportObserver):
     ) -> None:
         for callback in tuple(self._on_incompatible):
             callback(publisher, subscription, policies)
+
+    def message_lost(self, subscription: Endpoint, count: int) -> None:
+        for callback in tuple(self._on_lost):
+            callback(subscription, count)
 
     def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
         for callback in tuple(self._on_incompatible_type):

@@ -108,7 +108,8 @@ class SubscriptionEventCallbacks(EventCallbacks):
 
     Args:
         liveliness: called with :class:`QoSLivelinessChangedInfo`.
-        message_lost: never called in process, where nothing is lost on the way.
+        message_lost: samples of a remote publisher did not arrive; called with
+            :class:`QoSCountInfo`. In process nothing is lost on the way.
     """
 
     def __init__(self, *, message_lost: Callback = None, **others: Any) -> None:

@@ -39,6 +39,7 @@ class EndpointWatch:
         self._call_soon = call_soon
         self._incompatible = 0
         self._other_types = 0
+        self._lost = 0
         self._missed = 0
         self._match = QoSMatchedInfo()
         self._deadline: Watchdog | None = None
@@ -48,6 +49,7 @@ class EndpointWatch:
         self._undo = [
             graph.on_incompatible(self._on_incompatible),
             graph.on_incompatible_type(self._on_incompatible_type),
+            graph.on_lost(self._on_lost),
             graph.on_match(self._on_match),
         ]
         self._watch_deadline(context)
@@ -154,6 +156,12 @@ class EndpointWatch:
             self._tell(callback, info, "incompatible_type")
         elif self._callbacks.use_default_callbacks:
             self._logger.warning(_type_warning(local, remote))
+
+    def _on_lost(self, subscription: Endpoint, count: int) -> None:
+        if self._endpoint == subscription:
+            self._lost += count
+            callback = getattr(self._callbacks, "message_lost", None)
+            self._tell(callback, QoSCountInfo(self._lost, count), "message_lost")
 
     def _on_match(self, publisher: Endpoint, subscription: Endpoint, up: bool) -> None:
         if self._endpoint not in (publisher, subscription):

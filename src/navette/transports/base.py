@@ -95,6 +95,9 @@ class TransportObserver:
     ) -> None:
         """Same topic and type, but the offer falls short of the request."""
 
+    def message_lost(self, subscription: Endpoint, count: int) -> None:
+        """So many samples of a publisher did not reach the subscription."""
+
     def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
         """Same topic, another type or another definition of it: they do not meet."""
 

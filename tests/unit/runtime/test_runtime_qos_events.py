@@ -284,3 +284,17 @@ def test_a_lifespan_is_also_that_of_bytes(graph: GraphHarness) -> None:
     late = graph.collect("/news", String, latched=True)
     graph.run_for(0.1)
     assert late.count == 0
+
+
+def test_lost_messages_are_told(graph: GraphHarness) -> None:
+    told: list[QoSCountInfo] = []
+    callbacks = SubscriptionEventCallbacks(message_lost=told.append)
+    node = graph.add(Node("n", context=graph.context))
+    subscription = node.create_subscription(
+        String, "news", print, 1, event_callbacks=callbacks
+    )
+    other = node.create_subscription(String, "news", print, 1)
+    for which, count in ((subscription, 2), (other, 9), (subscription, 1)):
+        graph.context.graph.message_lost(which.endpoint, count)
+    graph.run_for(0.1)
+    assert told == [QoSCountInfo(2, 2), QoSCountInfo(3, 1)]

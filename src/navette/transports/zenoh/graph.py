@@ -219,6 +219,11 @@ class RemoteGraph:
         for observer in self.observers:
             self._events.append(partial(getattr(observer, event), *ends))
 
+    def lost(self, subscription: Endpoint, count: int) -> None:
+        """So many samples did not arrive; told at once."""
+        for observer in self.observers:
+            observer.message_lost(subscription, count)
+
     # -- telling ---------------------------------------------------------------
 
     def _tell(self) -> None:

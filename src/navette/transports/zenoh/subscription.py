@@ -28,6 +28,7 @@ class ZenohSubscription(SubscriptionPort):
     Args:
         own_gids: publishers of this very session. Their samples come by another way; a
             query of the history brings them all the same, whatever its locality.
+        lost: told how many samples are missing before the one that came.
         now_ns: the time here, for the received stamp.
         closed: called once when the port is closed.
     """
@@ -38,6 +39,7 @@ class ZenohSubscription(SubscriptionPort):
         "_is_open",
         "_last",
         "_longest",
+        "_lost",
         "_message_class",
         "_now_ns",
         "_own_gids",
@@ -55,6 +57,7 @@ class ZenohSubscription(SubscriptionPort):
         matches: Matches,
         *,
         own_gids: AbstractSet[bytes],
+        lost: Callable[[int], None],
         complaints: Complaints,
         max_message_bytes: int,
         now_ns: Callable[[], int],
@@ -64,6 +67,7 @@ class ZenohSubscription(SubscriptionPort):
         self._message_class = message_class
         self._sink = sink
         self._own_gids = own_gids
+        self._lost = lost
         self._complaints = complaints
         self._longest = max_message_bytes
         self._now_ns = now_ns
@@ -127,8 +131,11 @@ class ZenohSubscription(SubscriptionPort):
 
     def _is_next(self, gid: bytes, sequence: int) -> bool:
         """Whether it is newer than all before, and from one whose QoS fits."""
-        if gid in self.matches.refused or sequence <= self._last.get(gid, -1):
+        last = self._last.get(gid)
+        if gid in self.matches.refused or sequence <= (-1 if last is None else last):
             return False
+        if last is not None and sequence > last + 1:
+            self._lost(sequence - last - 1)
         if gid not in self._last and len(self._last) >= _MOST_PUBLISHERS:
             del self._last[next(iter(self._last))]
         self._last[gid] = sequence

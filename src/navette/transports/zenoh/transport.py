@@ -3,6 +3,7 @@
 import itertools
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import zenoh
@@ -128,6 +129,7 @@ class ZenohTransport(Transport):
             sink,
             matches,
             own_gids=self._own_gids,
+            lost=partial(self._graph.lost, endpoint),
             closed=self._leave,
             now_ns=self._now_ns,
             **self._limits(),
