@@ -63,18 +63,26 @@ def types(
 
 def get(here: "Node", node: str, wanted: Sequence[str]) -> "dict[str, Parameter[Any]]":
     """The values of a node's parameters; ends the command if one is not there."""
+    found = _found(here, node, wanted)
+    if len(found) != len(wanted):
+        _fail_unknown(here, node, wanted)
+    return found
+
+
+def _found(
+    here: "Node", node: str, wanted: Sequence[str]
+) -> "dict[str, Parameter[Any]]":
+    """All the values; none at all if one of them is not there."""
     from navette.runtime import Parameter
     from navette.runtime.parameter import ParameterType, parameter_value_to_python
 
-    client = _client(here, node)
-    values = _answered(here, client.get_parameters(list(wanted)), node).values
-    if len(values) != len(wanted):
-        _fail_unknown(here, node, wanted)
-    found: dict[str, Parameter[Any]] = {}
-    for name, value in zip(wanted, values, strict=True):
-        kind = ParameterType(value.type)
-        found[name] = Parameter(name, kind, parameter_value_to_python(value))
-    return found
+    values = _answered(here, _client(here, node).get_parameters(list(wanted)), node)
+    return {
+        name: Parameter(
+            name, ParameterType(value.type), parameter_value_to_python(value)
+        )
+        for name, value in zip(wanted, values.values, strict=False)
+    }
 
 
 def set_values(here: "Node", node: str, values: Mapping[str, Any]) -> list[Any]:
@@ -102,12 +110,28 @@ def set_values(here: "Node", node: str, values: Mapping[str, Any]) -> list[Any]:
             parameter = Parameter(name, value=value)
         parameters.append(parameter)
     results = list(_answered(here, client.set_parameters(parameters), node).results)
-    if not all(result.successful for result in results) and not kinds:
-        known = names(here, [node]).found.get(node, [])
-        for name, result in zip(wanted, results, strict=True):
-            if name not in known and not result.successful:
-                result.reason += did_you_mean(name, known)
+    refused = {
+        parameter.name: (parameter, result)
+        for parameter, result in zip(parameters, results, strict=True)
+        if not result.successful
+    }
+    if refused:
+        _explain(here, node, refused)
     return results
+
+
+def _explain(here: "Node", node: str, refused: Mapping[str, Any]) -> None:
+    """Say what is near a name that is not there; take a value that is there for set.
+
+    The latter are read-only: a dump has them, and can be loaded nevertheless.
+    """
+    known = names(here, [node]).found.get(node, [])
+    there = _found(here, node, [name for name in refused if name in known])
+    for name, (parameter, result) in refused.items():
+        if name not in known:
+            result.reason += did_you_mean(name, known)
+        elif there.get(name) == parameter:
+            result.successful, result.reason = True, "it is so already"
 
 
 def delete(here: "Node", node: str, name: str) -> Any:
