@@ -94,8 +94,11 @@ def _paint_plane(figure: Any, series: Sequence[Series]) -> None:
     """All lines on one plane, as long one way as the other."""
     figure.set_size_inches(7.2, 6.2)
     axis = figure.subplots()
+    alike = len({(each.wanted.x, each.wanted.y) for each in series}) == 1 < len(series)
     for each, colour in zip(series, cycle(_COLOURS), strict=False):
-        axis.plot(each.x, each.y, color=colour, label=_label(each))
+        # What all have in common, the axes say.
+        label = each.wanted.topic if alike else _label(each)
+        axis.plot(each.x, each.y, color=colour, label=label)
         axis.plot(each.x[0], each.y[0], "o", color=colour, markersize=4.5)
     _name(axis, series)
     axis.set_aspect("equal", adjustable="datalim")
