@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from navette._version import __version__
-from navette.cli.action import action
 from navette.cli.arguments import (
     fill_values,
     join_pairs,
@@ -16,20 +15,9 @@ from navette.cli.arguments import (
     parse_speed,
     spread_lists,
 )
-from navette.cli.bag import bag
-from navette.cli.completion import completion, is_completing, keep_quiet
-from navette.cli.doctor import doctor
-from navette.cli.interface import interface
-from navette.cli.keys import keys
-from navette.cli.launch import launch
-from navette.cli.lifecycle import lifecycle
-from navette.cli.modules import down, logs, ps, restart, up
-from navette.cli.node import node
-from navette.cli.param import param
-from navette.cli.pkg import pkg
-from navette.cli.run import run
-from navette.cli.service import service
-from navette.cli.topic import topic
+from navette.cli.completion import is_completing, keep_quiet
+from navette.cli.lazy import lazy_group
+from navette.cli.verbs import VERBS
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
@@ -37,6 +25,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     name="navette",
+    cls=lazy_group(VERBS),
     help="Robot navigation you pip install: simulate, map, plan, drive, watch.",
     no_args_is_help=True,
     add_completion=is_completing(),  # adds options that only a shell needs
@@ -196,25 +185,6 @@ def _run(options: "RunOptions", *, as_json: bool) -> None:
     from navette.cli.running import run_simulation
 
     raise typer.Exit(run_simulation(options, as_json=as_json))
-
-
-# What stands behind the program's name is the program's.
-app.command(context_settings={"allow_interspersed_args": False})(run)
-app.add_typer(pkg)
-app.add_typer(node)
-app.add_typer(param)
-app.add_typer(service)
-app.add_typer(action)
-app.add_typer(lifecycle)
-app.add_typer(topic)
-app.add_typer(interface)
-app.add_typer(bag)
-app.add_typer(keys)
-app.command()(launch)
-app.command()(doctor)
-app.command()(completion)
-for command in (up, down, restart, ps, logs):
-    app.command()(command)
 
 
 def main() -> None:

@@ -1,0 +1,153 @@
+"""The verbs that are imported when they are called, in the order of the help."""
+
+import typer
+
+from navette.cli.lazy import Later
+
+
+def _run(app: typer.Typer) -> None:
+    from navette.cli.run import run
+
+    # What stands behind the program's name is the program's.
+    app.command(context_settings={"allow_interspersed_args": False})(run)
+
+
+def _launch(app: typer.Typer) -> None:
+    from navette.cli.launch import launch
+
+    app.command()(launch)
+
+
+def _modules(app: typer.Typer) -> None:
+    from navette.cli.modules import down, logs, ps, restart, up
+
+    for command in (up, down, restart, ps, logs):
+        app.command()(command)
+
+
+def _topic(app: typer.Typer) -> None:
+    from navette.cli.topic import topic
+
+    app.add_typer(topic)
+
+
+def _node(app: typer.Typer) -> None:
+    from navette.cli.node import node
+
+    app.add_typer(node)
+
+
+def _param(app: typer.Typer) -> None:
+    from navette.cli.param import param
+
+    app.add_typer(param)
+
+
+def _service(app: typer.Typer) -> None:
+    from navette.cli.service import service
+
+    app.add_typer(service)
+
+
+def _action(app: typer.Typer) -> None:
+    from navette.cli.action import action
+
+    app.add_typer(action)
+
+
+def _interface(app: typer.Typer) -> None:
+    from navette.cli.interface import interface
+
+    app.add_typer(interface)
+
+
+def _lifecycle(app: typer.Typer) -> None:
+    from navette.cli.lifecycle import lifecycle
+
+    app.add_typer(lifecycle)
+
+
+def _bag(app: typer.Typer) -> None:
+    from navette.cli.bag import bag
+
+    app.add_typer(bag)
+
+
+def _pkg(app: typer.Typer) -> None:
+    from navette.cli.pkg import pkg
+
+    app.add_typer(pkg)
+
+
+def _keys(app: typer.Typer) -> None:
+    from navette.cli.keys import keys
+
+    app.add_typer(keys)
+
+
+def _doctor(app: typer.Typer) -> None:
+    from navette.cli.doctor import doctor
+
+    app.command()(doctor)
+
+
+def _completion(app: typer.Typer) -> None:
+    from navette.cli.completion import completion
+
+    app.command()(completion)
+
+
+# A test compares the texts with those of the commands themselves.
+VERBS = {
+    "run": Later("Run ROS 2 programs as they are, without ROS 2.", _run),
+    "launch": Later(
+        "Run a launch file: all its nodes in this process, or one process each.",
+        _launch,
+    ),
+    "up": Later(
+        "Start modules, each of its nodes a process that is kept running.", _modules
+    ),
+    "down": Later(
+        "End modules: those that need others first, all if none is named.", _modules
+    ),
+    "restart": Later(
+        "End modules and start them anew, as the project's file says now.", _modules
+    ),
+    "ps": Later(
+        "List the modules' processes: state, pid, since when, use, restarts, reason.",
+        _modules,
+    ),
+    "logs": Later(
+        "Print what the modules' processes wrote: all in one, in the order of writing.",
+        _modules,
+    ),
+    "topic": Later(
+        "Look into topics: list, info, echo, hz, bw, delay; and publish.", _topic
+    ),
+    "node": Later("Look at the nodes that run.", _node),
+    "param": Later("Read and change the parameters of nodes that run.", _param),
+    "service": Later(
+        "Look into services: list, type, find, info, echo; and call them.", _service
+    ),
+    "action": Later(
+        "Look into actions: list, type, find, info; and send goals.", _action
+    ),
+    "interface": Later(
+        "Show messages, services and actions, and how they are defined.", _interface
+    ),
+    "lifecycle": Later(
+        "Look at managed nodes, and take them from state to state.", _lifecycle
+    ),
+    "bag": Later(
+        "Recordings (.mcap, .bag, .db3): record, play, look into, repair, rework.", _bag
+    ),
+    "pkg": Later(
+        "Make packages and find them: in the workspace by folder, without building.",
+        _pkg,
+    ),
+    "keys": Later("Keys and certificates for links with mutual TLS.", _keys),
+    "doctor": Later("Find what is wrong here, and say what to do about it.", _doctor),
+    "completion": Later(
+        "Teach the shell to complete navette's words at Tab.", _completion
+    ),
+}
