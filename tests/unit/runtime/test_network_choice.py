@@ -41,7 +41,5 @@ def test_an_unknown_name_is_an_error_that_lists_the_known(
     with pytest.raises(InvalidValueError, match=r"'udp'; known: inprocess, zenoh"):
         Context(transport="udp")
     monkeypatch.setenv("NAVETTE_TRANSPORT", "Zenoh")
-    with pytest.raises(
-        InvalidValueError, match=r"NAVETTE_TRANSPORT: transport 'Zenoh'"
-    ):
+    with pytest.raises(InvalidValueError, match=r"NAVETTE_TRANSPORT: .*'Zenoh'"):
         Context().init(args=[])

@@ -1,0 +1,168 @@
+"""Two independent programs that speak rmw_zenoh: zenoh-ros2-sdk and pyzeros."""
+
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fleet import until
+
+from navette.msgs import type_hash
+from navette.msgs.std_msgs.msg import String
+from navette.msgs.std_srvs.srv import SetBool
+from navette.runtime import Context, Executor, Node, QoSProfile
+from navette.transports import EndpointKind
+
+pytestmark = pytest.mark.slow
+
+PEERS = Path(__file__).parent / "peers"
+HASHES = [type_hash("std_msgs/msg/String"), type_hash("std_srvs/srv/SetBool")]
+PROGRAMS = {"zenoh-ros2-sdk": "sdk_peer.py", "pyzeros": "pyzeros_peer.py"}
+
+
+class Peer:
+    """A running peer; what it has printed is in a file."""
+
+    def __init__(self, program: str, port: int, output: Path) -> None:
+        self._output = output
+        with output.open("wb") as file:
+            self._process = subprocess.Popen(
+                [sys.executable, str(PEERS / program), str(port), *HASHES],
+                stdin=subprocess.PIPE,
+                stdout=file,
+                stderr=subprocess.STDOUT,
+                env={**os.environ, "PYTHONWARNINGS": "ignore"},
+                text=True,
+            )
+
+    def tell(self, line: str) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.write(f"{line}\n")
+        self._process.stdin.flush()
+
+    def said(self, start: str) -> list[str]:
+        text = self._output.read_text(encoding="utf-8")
+        lines = text[: text.rfind("\n") + 1].splitlines()
+        return [line for line in lines if line.startswith(start)]
+
+    def end(self) -> int:
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        try:
+            return self._process.wait(20.0)
+        finally:
+            self._process.kill()
+
+
+class Meeting:
+    """A peer, and a node of ours on the same network."""
+
+    def __init__(self, peer: Peer, node: Node, executor: Executor) -> None:
+        self.peer = peer
+        self.node = node
+        self._executor = executor
+
+    def until(self, check: Callable[[], bool], what: str) -> None:
+        def look() -> bool:
+            self._executor.spin_once(timeout_sec=0.0)
+            return check()
+
+        until(look, what)
+
+
+@pytest.fixture(params=list(PROGRAMS))
+def meeting(
+    request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Meeting]:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    monkeypatch.setenv("NAVETTE_ROUTER", f"tcp/127.0.0.1:{port}")
+    context = Context(transport="zenoh")
+    context.init(args=[], domain_id=7)
+    node = Node("ours", context=context)
+    executor = Executor(context=context)
+    executor.add_node(node)
+    peer = Peer(PROGRAMS[request.param], port, tmp_path / "peer")
+    try:
+        until(lambda: bool(peer.said("ready")), "the peer")
+        yield Meeting(peer, node, executor)
+        assert peer.end() == 0
+    finally:
+        peer.end()
+        context.shutdown()
+
+
+def test_topics_both_ways(meeting: Meeting) -> None:
+    heard: list[tuple[str, int]] = []
+
+    def hear(message: Any, info: Any) -> None:
+        heard.append((message.data, info["publication_sequence_number"]))
+
+    node, peer = meeting.node, meeting.peer
+    subscription = node.create_subscription(String, "/from_peer", hear, 10)
+    publisher = node.create_publisher(String, "/to_peer", 10)
+    meeting.until(lambda: subscription.get_publisher_count() == 1, "the publisher")
+    meeting.until(lambda: publisher.get_subscription_count() == 1, "the subscription")
+    for number in range(3):
+        peer.tell(f"publish text-{number}")
+        publisher.publish(String(data=f"ours-{number}"))
+    meeting.until(lambda: len(heard) == 3, "the peer's messages")
+    meeting.until(lambda: len(peer.said("heard")) == 3, "our messages")
+    assert [text for text, _ in heard] == ["text-0", "text-1", "text-2"]
+    numbers = [number for _, number in heard]
+    assert numbers == list(range(numbers[0], numbers[0] + 3))
+    assert peer.said("heard") == ["heard ours-0", "heard ours-1", "heard ours-2"]
+
+
+def test_services_both_ways(meeting: Meeting) -> None:
+    node, peer = meeting.node, meeting.peer
+
+    def switch(request: Any, response: Any) -> Any:
+        response.success, response.message = request.data, "by us"
+        return response
+
+    node.create_service(SetBool, "/our_switch", switch)
+    peer.tell("call")
+    meeting.until(lambda: bool(peer.said("answer")), "our answer")
+    assert peer.said("answer") == ["answer True by us"]
+    client = node.create_client(SetBool, "/peer_switch")
+    meeting.until(client.service_is_ready, "the peer's server")
+    future = client.call_async(SetBool.Request(data=True))
+    meeting.until(future.done, "the peer's answer")
+    assert (future.result().success, future.result().message) == (True, "by the peer")
+
+
+def test_we_list_the_peers_graph(meeting: Meeting) -> None:
+    node = meeting.node
+    assert "peer" in node.get_node_names()
+    topics = dict(node.get_topic_names_and_types())
+    assert topics["/from_peer"] == ["std_msgs/msg/String"]
+    services = dict(node.get_service_names_and_types())
+    assert services["/peer_switch"] == ["std_srvs/srv/SetBool"]
+    (info,) = node.get_publishers_info_by_topic("/from_peer")
+    assert (info.node_name, info.node_namespace) == ("peer", "/")
+    assert str(info.topic_type_hash) == HASHES[0]
+    graph = node.context.graph
+    (end,) = graph.service_endpoints("/our_switch", kind=EndpointKind.CLIENT)
+    assert end.type_hash == HASHES[1]
+
+
+@pytest.mark.parametrize("meeting", ["zenoh-ros2-sdk"], indirect=True)
+def test_the_peer_lists_our_graph(meeting: Meeting) -> None:
+    node, peer = meeting.node, meeting.peer
+    node.create_publisher(String, "/ours", QoSProfile(depth=3))
+    node.create_service(SetBool, "/our_switch", lambda request, response: response)
+
+    def lists(line: str) -> bool:
+        peer.tell("topics")  # it asks the network anew each time
+        return line in peer.said(line.split()[0])
+
+    meeting.until(lambda: lists("topic /ours std_msgs/msg/String"), "our topic")
+    meeting.until(
+        lambda: lists("service /our_switch std_srvs/srv/SetBool"), "our service"
+    )
