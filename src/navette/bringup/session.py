@@ -1,6 +1,5 @@
 """One ``navette launch``: from the file to its end."""
 
-import logging
 import os
 import queue
 import signal
@@ -23,7 +22,7 @@ from navette.launch_files.launch.events import Shutdown
 from navette.launch_files.launch.launch_description_sources import (
     AnyLaunchDescriptionSource,
 )
-from navette.launch_files.launch.logging import ConsoleHandler, get_logger
+from navette.launch_files.launch.logging import console, get_logger
 from navette.launch_files.launch.subprocesses import SubprocessRunner
 from navette.packages import activate, find_package
 from navette.packages.finding import PATH_VARIABLE
@@ -40,15 +39,29 @@ def find_launch_file(words: list[str]) -> tuple[Path, list[str]]:
         UnknownNameError: no such package.
     """
     path = Path(words[0])
-    if path.is_file() or len(words) == 1 or ":=" in words[1]:
-        if not path.is_file():
-            raise FileFormatError(path, "no such launch file")
+    if path.is_file():
         return path.resolve(), words[1:]
+    if len(words) == 1 or ":=" in words[1]:
+        raise FileFormatError(path, f"no such launch file{_listed(Path.cwd())}")
     share = find_package(words[0]).share
     found = [p for p in sorted(share.rglob(words[1])) if p.is_file()]
     if not found:
-        raise FileFormatError(share, f"no launch file {words[1]!r} in it")
+        raise FileFormatError(
+            share, f"no launch file {words[1]!r} in it{_listed(share)}"
+        )
     return found[0], words[2:]
+
+
+def _listed(folder: Path) -> str:
+    """The launch files there are, for an error."""
+    places = (folder, folder / "launch")
+    names = {
+        str(path.relative_to(folder))
+        for place in places
+        for path in place.glob("*launch*.*")
+        if path.suffix in (".py", ".xml", ".yaml", ".yml")
+    }
+    return f"; there is {', '.join(sorted(names))}" if names else ""
 
 
 def show_arguments(path: Path) -> str:
@@ -79,7 +92,7 @@ def launch(
     Raises:
         NavetteError: the file or an argument is wrong.
     """
-    with _workspace_of(path), _console(debug=debug):
+    with _workspace_of(path), console(debug=debug):
         activate()
         source = _source(path)
         description = _load(source)
@@ -118,21 +131,6 @@ def _check_again(service: LaunchService, arguments: Mapping[str, str]) -> None:
     known = sorted(service.context.known_arguments)
     for name in unknown_arguments(arguments, known):
         raise unknown_argument_error(name, known)
-
-
-@contextmanager
-def _console(*, debug: bool) -> Iterator[None]:
-    logger = get_logger()
-    handler = ConsoleHandler()
-    before = logger.level, logger.propagate
-    logger.addHandler(handler)
-    logger.setLevel(logging.DEBUG if debug else logging.INFO)
-    logger.propagate = False
-    try:
-        yield
-    finally:
-        logger.removeHandler(handler)
-        logger.level, logger.propagate = before
 
 
 @contextmanager

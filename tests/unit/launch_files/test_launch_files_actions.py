@@ -4,12 +4,14 @@ from typing import Any
 
 import pytest
 
-from navette.launch_files.launch import LaunchDescription
+from navette.launch_files.launch import LaunchDescription, LaunchIntrospector
 from navette.launch_files.launch.actions import (
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
     EmitEvent,
     ExecuteProcess,
+    ForEach,
+    ForLoop,
     GroupAction,
     IncludeLaunchDescription,
     Log,
@@ -319,3 +321,42 @@ def test_an_action_runs_once(launch: Any) -> None:
     process = ExecuteProcess(cmd=["x"])
     launch.run(process, process)
     assert "can be executed once" in launch.errors
+
+
+def test_loops_make_entities(launch: Any, caplog: Any) -> None:
+    launch.run(
+        ForLoop(LaunchConfiguration("n"), function=lambda i: LogInfo(msg=f"no {i}")),
+        ForEach(
+            LaunchConfiguration("robots"),
+            function=lambda name, id=7: [LogInfo(msg=f"{name} {id + 1}")],
+        ),
+        ForEach("", function=lambda: LogInfo(msg="never")),
+        ForEach("{}", function=lambda: LogInfo(msg="once")),
+        n="2",
+        robots="{name: 'a', id: 1};{name: b}",
+    )
+    assert messages(caplog) == ["no 0", "no 1", "a 2", "b 8", "once"]
+
+
+@pytest.mark.parametrize(
+    ("action", "reason"),
+    [
+        (lambda: ForLoop("two", function=list), "length 'two': wanted 0"),
+        (lambda: ForEach("[1", function=list), "not YAML"),
+        (lambda: ForEach("[1]", function=list), "wanted names and values"),
+    ],
+)
+def test_wrong_loops_are_named(launch: Any, action: Any, reason: str) -> None:
+    assert launch.run(action()) == 1
+    assert reason in launch.errors
+
+
+def test_a_description_can_be_looked_into() -> None:
+    inner = GroupAction([LogInfo(msg="a"), LogInfo(msg="b")])
+    text = LaunchIntrospector().format_launch_description(
+        LaunchDescription([inner, LogInfo(msg="c")])
+    )
+    assert text == (
+        "LaunchDescription\n├── GroupAction\n│   ├── LogInfo('a')\n"
+        "│   └── LogInfo('b')\n└── LogInfo('c')"
+    )

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from typing import Any
 
 from navette.errors import CallbackError
@@ -14,7 +15,7 @@ from navette.launch_files.launch.launch_description import LaunchDescription
 from navette.launch_files.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
-from navette.launch_files.launch.logging import get_logger
+from navette.launch_files.launch.logging import console, get_logger
 from navette.launch_files.launch.running import Runner
 from navette.launch_files.launch.subprocesses import SubprocessRunner
 from navette.runtime import SystemClock
@@ -57,6 +58,8 @@ class LaunchService:
             runner=runner or SubprocessRunner(),
         )
         self._on_started: list[Callable[[], None]] = []
+        # Whoever brings a runner has a console of its own as well.
+        self._console = console(debug=debug) if runner is None else nullcontext()
 
     @property
     def event_loop(self) -> EventLoop:
@@ -88,6 +91,10 @@ class LaunchService:
 
         A failed launch ends what it has started.
         """
+        with self._console:
+            return self._run(shutdown_when_idle=shutdown_when_idle)
+
+    def _run(self, *, shutdown_when_idle: bool) -> int:
         context = self.context
         context.notes["first environment"] = dict(os.environ)
         self._shutdown_when_idle = shutdown_when_idle

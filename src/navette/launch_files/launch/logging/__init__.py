@@ -2,8 +2,9 @@
 
 from navette.launch_files.launch.logging.loggers import (
     ConsoleHandler,
+    console,
     get_logger,
     launch_config,
 )
 
-__all__ = ["ConsoleHandler", "get_logger", "launch_config"]
+__all__ = ["ConsoleHandler", "console", "get_logger", "launch_config"]

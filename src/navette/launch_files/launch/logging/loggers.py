@@ -3,6 +3,8 @@
 import logging
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
@@ -34,6 +36,22 @@ class ConsoleHandler(logging.Handler):
             stream = self._stdout or sys.stdout
         stream.write(self.format(record) + "\n")
         stream.flush()
+
+
+@contextmanager
+def console(*, debug: bool) -> Iterator[None]:
+    """Print what launches log, as long as the block runs."""
+    logger = get_logger()
+    handler = ConsoleHandler()
+    before = logger.level, logger.propagate
+    logger.addHandler(handler)
+    logger.setLevel(logging.DEBUG if debug else logging.INFO)
+    logger.propagate = False
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.level, logger.propagate = before
 
 
 class LaunchConfig:
