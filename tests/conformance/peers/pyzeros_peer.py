@@ -17,7 +17,8 @@ PORT = int(sys.argv[1])
 
 
 def say(*words: object) -> None:
-    print(*words, flush=True)
+    sys.stdout.write(" ".join(map(str, words)) + "\n")
+    sys.stdout.flush()
 
 
 def text(value: Any) -> str:

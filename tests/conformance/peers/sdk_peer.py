@@ -20,7 +20,8 @@ SWITCH: dict[str, Any] = {
 
 
 def say(*words: object) -> None:
-    print(*words, flush=True)
+    sys.stdout.write(" ".join(map(str, words)) + "\n")
+    sys.stdout.flush()
 
 
 def switch(request: Any) -> Any:
