@@ -4,7 +4,7 @@ from navette.errors import UnknownNameError
 from navette.runtime.context import Context
 from navette.runtime.graph import names_and_types
 from navette.runtime.names import NodeRemapper, full_node_name, normalize_namespace
-from navette.runtime.topic_endpoint_info import TopicEndpointInfo
+from navette.runtime.topic_endpoint_info import ServiceEndpointInfo, TopicEndpointInfo
 from navette.transports import Endpoint, EndpointKind
 
 NamesAndTypes = list[tuple[str, list[str]]]
@@ -77,13 +77,25 @@ class NodeGraph:
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         found = self._on_topic(EndpointKind.PUBLISHER, topic_name)
-        return [TopicEndpointInfo(endpoint) for endpoint in found]
+        return [TopicEndpointInfo.of(endpoint) for endpoint in found]
 
     def get_subscriptions_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         found = self._on_topic(EndpointKind.SUBSCRIPTION, topic_name)
-        return [TopicEndpointInfo(endpoint) for endpoint in found]
+        return [TopicEndpointInfo.of(endpoint) for endpoint in found]
+
+    def get_servers_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        found = self._on_service(EndpointKind.SERVICE, service_name)
+        return [ServiceEndpointInfo.of(endpoint) for endpoint in found]
+
+    def get_clients_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        found = self._on_service(EndpointKind.CLIENT, service_name)
+        return [ServiceEndpointInfo.of(endpoint) for endpoint in found]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Let events run until the node is there; False after ``timeout`` seconds."""

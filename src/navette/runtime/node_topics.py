@@ -100,6 +100,8 @@ class NodeTopics:
         publisher = publisher_class(
             msg_type, endpoint, qos, ports, self._context.loop, forget
         )
+        if event_callbacks is not None:
+            publisher.event_handlers = event_callbacks.handlers()
         if watch.on_sample is not None:
             publisher.watch(watch.on_sample, watch.on_assertion)
         self._entities.append(publisher)
@@ -151,6 +153,8 @@ class NodeTopics:
         )
         subscription.group.add_entity(subscription)
         self._entities.append(subscription)
+        if event_callbacks is not None:
+            subscription.event_handlers = event_callbacks.handlers()
         sink = watch.watched(subscription.receive)
         try:
             if content_filter_options is not None:

@@ -10,6 +10,7 @@ from navette.msgs import deserialize, type_name
 from navette.runtime.exceptions import InvalidHandle
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
+from navette.runtime.qos_events import EventHandler
 from navette.runtime.time import Duration
 from navette.transports import Encoded, Endpoint, PublisherPort
 
@@ -28,6 +29,7 @@ class Publisher(Generic[MsgT]):
         "_send",
         "_sequence",
         "endpoint",
+        "event_handlers",
         "msg_type",
         "ports",
         "qos_profile",
@@ -50,6 +52,8 @@ class Publisher(Generic[MsgT]):
         self._loop = loop
         self._sequence = 0
         self._on_assertion: Callable[[], None] | None = None
+        #: What it calls back for.
+        self.event_handlers: list[EventHandler] = []
         self._on_destroy = on_destroy
 
     def publish(self, msg: MsgT | bytes) -> None:

@@ -1,8 +1,9 @@
 """What QoS events tell, and the callbacks for them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from enum import IntEnum
+from typing import Any, ClassVar
 
 from navette.errors import NavetteError
 from navette.transports import QoSPolicyKind
@@ -66,6 +67,58 @@ QoSPublisherMatchedInfo = QoSMatchedInfo
 Callback = Callable[[Any], Any] | None
 
 
+class QoSPublisherEventType(IntEnum):
+    """Events of publishers; numbers as in rcl."""
+
+    RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
+    RCL_PUBLISHER_LIVELINESS_LOST = 1
+    RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS = 2
+    RCL_PUBLISHER_INCOMPATIBLE_TYPE = 3
+    RCL_PUBLISHER_MATCHED = 4
+
+
+class QoSSubscriptionEventType(IntEnum):
+    """Events of subscriptions; numbers as in rcl."""
+
+    RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
+    RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
+    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS = 2
+    RCL_SUBSCRIPTION_MESSAGE_LOST = 3
+    RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
+    RCL_SUBSCRIPTION_MATCHED = 5
+
+
+@dataclass(frozen=True)
+class EventHandler:
+    """An event that an endpoint calls back for."""
+
+    event_type: QoSPublisherEventType | QoSSubscriptionEventType
+    callback: Callable[[Any], Any]
+
+
+_PUBLISHER_EVENTS = dict(
+    zip(
+        ("deadline", "liveliness", "incompatible_qos", "incompatible_type", "matched"),
+        QoSPublisherEventType,
+        strict=True,
+    )
+)
+_SUBSCRIPTION_EVENTS = dict(
+    zip(
+        (
+            "deadline",
+            "liveliness",
+            "incompatible_qos",
+            "message_lost",
+            "incompatible_type",
+            "matched",
+        ),
+        QoSSubscriptionEventType,
+        strict=True,
+    )
+)
+
+
 class EventCallbacks:
     """What to call on events of one endpoint.
 
@@ -98,9 +151,21 @@ class EventCallbacks:
         self.matched = matched
         self.use_default_callbacks = use_default_callbacks
 
+    _events: ClassVar[Mapping[str, QoSPublisherEventType | QoSSubscriptionEventType]]
+
+    def handlers(self) -> list[EventHandler]:
+        """The events that there are callbacks for."""
+        return [
+            EventHandler(kind, getattr(self, name))
+            for name, kind in self._events.items()
+            if getattr(self, name) is not None
+        ]
+
 
 class PublisherEventCallbacks(EventCallbacks):
     """Events of a publisher; ``liveliness`` (:class:`QoSCountInfo`): lease not kept."""
+
+    _events = _PUBLISHER_EVENTS
 
 
 class SubscriptionEventCallbacks(EventCallbacks):
@@ -111,6 +176,8 @@ class SubscriptionEventCallbacks(EventCallbacks):
         message_lost: samples of a remote publisher did not arrive; called with
             :class:`QoSCountInfo`. In process nothing is lost on the way.
     """
+
+    _events = _SUBSCRIPTION_EVENTS
 
     def __init__(self, *, message_lost: Callback = None, **others: Any) -> None:
         super().__init__(**others)

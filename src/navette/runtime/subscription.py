@@ -11,6 +11,7 @@ from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.loop import Entity, EventLoop
 from navette.runtime.qos import QoSProfile
+from navette.runtime.qos_events import EventHandler
 from navette.runtime.signatures import takes_arguments
 from navette.transports import (
     INFINITE_NS,
@@ -55,6 +56,7 @@ class Subscription(Entity, Generic[MsgT]):
         "_received",
         "_room",
         "endpoint",
+        "event_handlers",
         "msg_type",
         "ports",
         "qos_profile",
@@ -82,6 +84,8 @@ class Subscription(Entity, Generic[MsgT]):
         self.raw = raw
         self.shared = shared
         self.ports: list[SubscriptionPort] = []
+        #: What it calls back for.
+        self.event_handlers: list[EventHandler] = []
         #: How many samples may wait; 0 where each has to be looked at first.
         self._room = endpoint.qos.queue_length or INFINITE_NS
         self._filter: Callable[[Any], bool] | None = None

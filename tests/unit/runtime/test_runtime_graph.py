@@ -4,8 +4,14 @@ import pytest
 
 from navette.errors import UnknownNameError
 from navette.msgs.std_msgs.msg import Float64, String
+from navette.msgs.std_srvs.srv import SetBool
 from navette.runtime import Context, Node, QoSProfile, ReliabilityPolicy, VirtualClock
-from navette.runtime.topic_endpoint_info import TopicEndpointTypeEnum
+from navette.runtime.topic_endpoint_info import (
+    EndpointTypeEnum,
+    ServiceEndpointInfo,
+    TopicEndpointInfo,
+    TopicEndpointTypeEnum,
+)
 from navette.transports import EndpointKind
 
 
@@ -63,7 +69,7 @@ def test_endpoint_infos(context: Context) -> None:
     )
     assert info.qos_profile.depth == 7
     assert info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT
-    assert "/ns/a" in repr(info)
+    assert "node_name='a', node_namespace='/ns'" in repr(info)
     assert str(info.topic_type_hash).startswith("RIHS01_")
     assert info.topic_type_hash.version == 1
     assert len(info.topic_type_hash.value) == 32
@@ -73,6 +79,29 @@ def test_endpoint_infos(context: Context) -> None:
     (info,) = a.get_subscriptions_info_by_topic("/t")
     assert info.qos_profile.depth == 3
     assert len(info.endpoint_gid) == 16
+
+
+def test_infos_of_services(context: Context) -> None:
+    a = make(context, "a", "/ns")
+    qos = QoSProfile(depth=7)
+    a.create_service(SetBool, "go", lambda request, response: response, qos_profile=qos)
+    a.create_client(SetBool, "go")
+    (server,) = a.get_servers_info_by_service("go")
+    (client,) = a.get_clients_info_by_service("/ns/go")
+    assert (server.node_name, server.node_namespace) == ("a", "/ns")
+    assert server.service_type == client.service_type == "std_srvs/srv/SetBool"
+    assert server.service_type_hash.version == 1
+    assert server.endpoint_type is EndpointTypeEnum.SERVER
+    assert client.endpoint_type is EndpointTypeEnum.CLIENT
+    assert (server.endpoint_count, server.qos_profiles[0].depth) == (1, 7)
+    assert "Endpoint type: SERVER\nEndpoint count: 1\nGID: 00." in str(server)
+    assert a.get_servers_info_by_service("stop") == []
+
+
+def test_infos_can_be_made_by_hand() -> None:
+    assert TopicEndpointInfo(node_name="a").endpoint_type is EndpointTypeEnum.INVALID
+    assert "Topic type hash: INVALID" in str(TopicEndpointInfo())
+    assert ServiceEndpointInfo(endpoint_count=2) != ServiceEndpointInfo()
 
 
 def test_change_hook(context: Context) -> None:

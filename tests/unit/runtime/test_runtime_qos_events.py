@@ -27,6 +27,7 @@ from navette.runtime.qos_events import (
     PublisherEventCallbacks,
     QoSCountInfo,
     QoSLivelinessChangedInfo,
+    QoSPublisherEventType,
     SubscriptionEventCallbacks,
 )
 from navette.runtime.qos_overriding_options import (
@@ -298,3 +299,22 @@ def test_lost_messages_are_told(graph: GraphHarness) -> None:
         graph.context.graph.message_lost(which.endpoint, count)
     graph.run_for(0.1)
     assert told == [QoSCountInfo(2, 2), QoSCountInfo(3, 1)]
+
+
+def test_handlers_tell_what_there_are_callbacks_for(graph: GraphHarness) -> None:
+    node = graph.add(Node("n", context=graph.context))
+    publisher = node.create_publisher(
+        String, "news", 1, event_callbacks=PublisherEventCallbacks(matched=print)
+    )
+    callbacks = SubscriptionEventCallbacks(message_lost=print, deadline=repr)
+    subscription = node.create_subscription(
+        String, "news", print, 1, event_callbacks=callbacks
+    )
+    (handler,) = publisher.event_handlers
+    assert handler.event_type is QoSPublisherEventType.RCL_PUBLISHER_MATCHED
+    assert handler.callback is print
+    assert [each.event_type.name for each in subscription.event_handlers] == [
+        "RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED",
+        "RCL_SUBSCRIPTION_MESSAGE_LOST",
+    ]
+    assert node.create_publisher(String, "news", 1).event_handlers == []

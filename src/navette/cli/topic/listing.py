@@ -87,10 +87,10 @@ def described(found: Topic, *, verbose: bool) -> str:
     types = ", ".join(found.types)
     blocks = [f"Type: {types}", f"Publisher count: {len(found.publishers)}"]
     if verbose:
-        blocks += [str(TopicEndpointInfo(each)) for each in found.publishers]
+        blocks += [str(TopicEndpointInfo.of(each)) for each in found.publishers]
     blocks.append(f"Subscription count: {len(found.subscriptions)}")
     if verbose:
-        blocks += [str(TopicEndpointInfo(each)) for each in found.subscriptions]
+        blocks += [str(TopicEndpointInfo.of(each)) for each in found.subscriptions]
     blocks += [styled(f"No exchange: {text}", fg="red") for text in found.mismatches]
     return ("\n\n" if verbose else "\n").join(blocks)
 
@@ -178,7 +178,7 @@ def _reason(kind: QoSPolicyKind, offered: EndpointQos, wanted: EndpointQos) -> s
 
 
 def _endpoint_json(endpoint: Endpoint) -> dict[str, Any]:
-    info = TopicEndpointInfo(endpoint)
+    info = TopicEndpointInfo.of(endpoint)
     qos = endpoint.qos
     return {
         "node": endpoint.node_full_name,

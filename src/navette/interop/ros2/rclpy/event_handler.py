@@ -1,6 +1,9 @@
 """Events of quality of service."""
 
+from navette.runtime import CallbackGroup
+from navette.runtime.qos import qos_policy_name_from_kind
 from navette.runtime.qos_events import (
+    EventHandler,
     IncompatibleTypeInfo,
     PublisherEventCallbacks,
     QoSLivelinessChangedInfo,
@@ -8,26 +11,35 @@ from navette.runtime.qos_events import (
     QoSMessageLostInfo,
     QoSOfferedDeadlineMissedInfo,
     QoSOfferedIncompatibleQoSInfo,
+    QoSPublisherEventType,
     QoSPublisherMatchedInfo,
     QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
+    QoSSubscriptionEventType,
     QoSSubscriptionMatchedInfo,
     SubscriptionEventCallbacks,
     UnsupportedEventTypeError,
 )
+from navette.runtime.qos_events import EventHandler as QoSEventHandler
 
 __all__ = [
+    "CallbackGroup",
+    "EventHandler",
     "IncompatibleTypeInfo",
     "PublisherEventCallbacks",
+    "QoSEventHandler",
     "QoSLivelinessChangedInfo",
     "QoSLivelinessLostInfo",
     "QoSMessageLostInfo",
     "QoSOfferedDeadlineMissedInfo",
     "QoSOfferedIncompatibleQoSInfo",
+    "QoSPublisherEventType",
     "QoSPublisherMatchedInfo",
     "QoSRequestedDeadlineMissedInfo",
     "QoSRequestedIncompatibleQoSInfo",
+    "QoSSubscriptionEventType",
     "QoSSubscriptionMatchedInfo",
     "SubscriptionEventCallbacks",
     "UnsupportedEventTypeError",
+    "qos_policy_name_from_kind",
 ]
