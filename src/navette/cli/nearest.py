@@ -1,9 +1,11 @@
 """Names near a mistyped one, for messages that help."""
 
 from collections.abc import Iterable
-from difflib import get_close_matches
+from difflib import SequenceMatcher
 
 _MOST = 3
+_ALIKE = 0.6  # of letters in common, from 0 to 1
+_AS_GOOD = 0.1  # how much less is still as good as the best
 
 
 def nearest(name: str, known: Iterable[str]) -> list[str]:
@@ -15,9 +17,11 @@ def nearest(name: str, known: Iterable[str]) -> list[str]:
     every = sorted(set(known))
     last = name.rpartition("/")[2]
     same = [each for each in every if last and each.rpartition("/")[2] == last]
-    close = get_close_matches(name, every, n=_MOST, cutoff=0.6)
+    alike = {each: SequenceMatcher(None, name, each).ratio() for each in every}
+    least = max(_ALIKE, max(alike.values(), default=0.0) - _AS_GOOD)
+    close = sorted((e for e in every if alike[e] >= least), key=lambda e: -alike[e])
     inside = [each for each in every if len(last) > 2 and last in each]
-    return list(dict.fromkeys([*same, *close, *inside]))[:_MOST]
+    return (same or close or inside)[:_MOST]
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -53,13 +53,12 @@ def send_goal(
 
     Exit code 0 only if the goal succeeded.
     """
+    from navette.cli.message_types import interface_class
     from navette.runtime.action import ActionClient
 
     type_name, values = type_and_values(words or [], "action")
     if stdin:
         values = from_stdin()
-    from navette.cli.message_types import interface_class
-
     with connect() as here:
         name = here.resolve_topic_name(action)
         _wait_for_server(here, name, wait or None)

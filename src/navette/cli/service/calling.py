@@ -45,14 +45,14 @@ def call(
 
     Exit code 1: nobody serves it, or it failed.
     """
+    from navette.cli.message_types import interface_class
+
     if rate is not None and not rate > 0:
         raise InvalidValueError(f"--rate {rate:g}: wanted more than 0 Hz")
     type_name, values = type_and_values(words or [], "srv")
     if stdin:
         values = from_stdin()
     patience = timeout or None
-    from navette.cli.message_types import interface_class
-
     with connect() as here:
         name = here.resolve_service_name(service)
         _wait_for_server(here, name, patience)

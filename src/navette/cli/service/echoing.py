@@ -47,6 +47,7 @@ def echo(
     The server or the client must tell of them: configure_introspection() in its
     program, or in ROS 2's demo the parameter service_configure_introspection.
     """
+    from navette.cli.message_types import interface_class
     from navette.runtime.qos import qos_profile_services_default
 
     shortened = {
@@ -61,8 +62,6 @@ def echo(
         shown += 1
         text = _as_csv if csv else partial(_as_yaml, flow_style=flow_style)
         show(text(event, shortened))
-
-    from navette.cli.message_types import interface_class
 
     with connect() as here:
         name = here.resolve_service_name(service)

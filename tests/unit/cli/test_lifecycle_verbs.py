@@ -1,0 +1,95 @@
+"""``navette lifecycle``: texts as of ros2 lifecycle."""
+
+import json
+from collections.abc import Iterator
+
+import pytest
+from verb_world import World, world
+
+from navette.runtime import Node
+from navette.runtime.lifecycle import LifecycleNode, TransitionCallbackReturn
+from navette.runtime.lifecycle.state_machine import LifecycleState
+
+
+class Camera(LifecycleNode):
+    """Does not get active."""
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        return TransitionCallbackReturn.FAILURE
+
+
+@pytest.fixture
+def here() -> Iterator[World]:
+    with world() as here:
+        here.graph.add(Camera("camera", context=here.context))
+        here.graph.add(LifecycleNode("arm", context=here.context))
+        here.graph.add(Node("plain", context=here.context))
+        yield here
+
+
+def test_nodes(here: World) -> None:
+    assert here.said("lifecycle", "nodes") == "/arm\n/camera\n"
+    assert here.said("lifecycle", "nodes", "-c") == "2\n"
+    assert json.loads(here.said("lifecycle", "nodes", "--json")) == ["/arm", "/camera"]
+
+
+def test_get(here: World) -> None:
+    assert here.said("lifecycle", "get", "camera") == "unconfigured [1]\n"
+    assert here.said("lifecycle", "get") == (
+        "/arm: unconfigured [1]\n/camera: unconfigured [1]\n"
+    )
+    one = json.loads(here.said("lifecycle", "get", "arm", "--json"))
+    assert one == {"id": 1, "label": "unconfigured"}
+
+
+def test_set_by_label_and_id(here: World) -> None:
+    assert here.said("lifecycle", "set", "camera", "configure") == (
+        "Transitioning successful\n"
+    )
+    assert here.said("lifecycle", "get", "camera") == "inactive [2]\n"
+    here.said("lifecycle", "set", "camera", "2")  # cleanup
+    assert here.said("lifecycle", "get", "camera") == "unconfigured [1]\n"
+
+
+def test_set_that_fails(here: World) -> None:
+    here.said("lifecycle", "set", "camera", "configure")
+    done = here.run("lifecycle", "set", "camera", "activate")
+    assert (done.out, done.err, done.code) == ("", "navette: Transitioning failed\n", 1)
+
+
+def test_a_transition_that_is_not_there(here: World) -> None:
+    done = here.run("lifecycle", "set", "camera", "configur")
+    assert done.code == 1
+    assert done.err == (
+        "navette: no transition 'configur' from this state; did you mean configure?"
+        " available ones are:\n- configure [1]\n- shutdown [5]\n"
+    )
+
+
+def test_list(here: World) -> None:
+    assert here.said("lifecycle", "list", "camera") == (
+        "- configure [1]\n\tStart: unconfigured\n\tGoal: configuring\n"
+        "- shutdown [5]\n\tStart: unconfigured\n\tGoal: shuttingdown\n"
+    )
+    every = here.said("lifecycle", "list", "camera", "-a")
+    assert "- activate [3]\n\tStart: inactive\n\tGoal: activating\n" in every
+    as_json = json.loads(here.said("lifecycle", "list", "camera", "--json"))
+    assert as_json[0] == {
+        "id": 1,
+        "label": "configure",
+        "start": "unconfigured",
+        "goal": "configuring",
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("plain", "node /plain is not managed; managed: /arm, /camera"),
+        ("camra", "no node /camra; did you mean /camera?"),
+    ],
+)
+def test_a_node_that_is_not_managed(here: World, name: str, reason: str) -> None:
+    for verb in (["get", name], ["list", name], ["set", name, "configure"]):
+        done = here.run("lifecycle", *verb)
+        assert (done.out, done.err, done.code) == ("", f"navette: {reason}\n", 1)
