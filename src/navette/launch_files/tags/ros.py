@@ -2,7 +2,12 @@
 
 from typing import Any
 
-from navette.launch_files.launch.frontend import SUBSTITUTIONS, Element, expose_action
+from navette.launch_files.launch.frontend import (
+    SUBSTITUTIONS,
+    Element,
+    expose_action,
+    parse_elements,
+)
 from navette.launch_files.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
@@ -12,6 +17,7 @@ from navette.launch_files.launch_ros.actions import (
     LoadComposableNodes,
     Node,
     PushRosNamespace,
+    RosTimer,
     SetParameter,
     SetParametersFromFile,
     SetRemap,
@@ -62,7 +68,7 @@ _TYPES: dict[str, Any] = {
 @expose_action("node")
 def node(element: Element) -> LaunchDescriptionEntity:
     return Node(
-        package=element.need_parts("pkg"),
+        package=element.parts("pkg"),
         name=element.parts("name"),
         namespace=_namespace(element),
         executable=element.need_parts("exec"),
@@ -73,11 +79,21 @@ def node(element: Element) -> LaunchDescriptionEntity:
 @expose_action("lifecycle_node")
 def lifecycle_node(element: Element) -> LaunchDescriptionEntity:
     return LifecycleNode(
-        package=element.need_parts("pkg"),
+        package=element.parts("pkg"),
         executable=element.need_parts("exec"),
         name=element.need_parts("name"),
         namespace=_namespace(element) or "",
+        autostart=element.parts("autostart") or False,
         **_node_options(element),
+    )
+
+
+@expose_action("ros_timer")
+def ros_timer(element: Element) -> LaunchDescriptionEntity:
+    return RosTimer(
+        period=element.need_parts("period"),
+        actions=parse_elements(element.rest()),
+        **condition_of(element),
     )
 
 
