@@ -36,7 +36,8 @@ class PoseTracker:
     ) -> None:
         self.base_frame = base_frame
         self.map_frame = map_frame
-        self.buffer = Buffer(node=node)
+        self.buffer = Buffer()
+        self.buffer.attach(node)
         self._node = node
         self._history_ns = round(history_s * 1e9)
         self._history: deque[tuple[int, Pose2]] = deque()

@@ -26,7 +26,17 @@ from navette.msgs.geometry_msgs.msg import (
 )
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.std_msgs.msg import Header
-from navette.runtime import Context, Duration, Node, Time
+from navette.msgs.tf2_msgs.action import LookupTransform
+from navette.msgs.tf2_msgs.srv import FrameGraph
+from navette.runtime import (
+    ActionServer,
+    Context,
+    Duration,
+    Future,
+    GoalResponse,
+    Node,
+    Time,
+)
 from navette.testing import GraphHarness
 
 HALF = math.sqrt(0.5)
@@ -268,3 +278,95 @@ def test_pose_as_its_parts() -> None:
     assert tf2_geometry_msgs.from_msg_msg(pose) is pose
     with pytest.raises(tf2_ros.TypeException):
         Buffer().transform(Odometry(), "map")
+
+
+def test_the_tree_is_served_as_yaml(graph: GraphHarness) -> None:
+    node = graph.add(Node("listener", context=graph.context))
+    buffer = Buffer(node=node)
+    buffer.set_transform_static(transform("map", "odom", 1.0), "test")
+    client = graph.node.create_client(FrameGraph, "/tf2_frames")
+    answer = client.call(FrameGraph.Request(), timeout_sec=1.0)
+    assert answer.frame_yaml == buffer.all_frames_as_yaml()
+    assert "odom" in answer.frame_yaml
+
+
+class Asking:
+    """A buffer behind a server, and a client of it."""
+
+    def __init__(self, graph: GraphHarness) -> None:
+        self.graph = graph
+        self.buffer = Buffer(node=graph.add(Node("keeper", context=graph.context)))
+        keeper = graph.add(Node("server", context=graph.context))
+        self.server = tf2_ros.BufferServer(self.buffer, keeper, "tf2_buffer_server")
+        asker = graph.add(Node("asker", context=graph.context))
+        self.client = tf2_ros.BufferClient(asker, "tf2_buffer_server")
+        self.buffer.set_transform_static(transform("odom", "base", 2.0), "test")
+
+
+def test_a_buffer_elsewhere(graph: GraphHarness) -> None:
+    asking = Asking(graph)
+    client = asking.client
+    assert client.wait_for_server(Duration(seconds=1))
+    found = client.lookup_transform("odom", "base", Time())
+    assert found.transform.translation.x == 2.0
+    assert client.can_transform("odom", "base", Time().to_msg())
+    full = client.lookup_transform_full("odom", Time(), "base", Time(), "odom")
+    assert full.transform.translation.x == 2.0
+    assert client.can_transform_full("odom", Time(), "base", Time(), "odom")
+    assert not client.can_transform_full("odom", Time(), "nose", Time(), "odom")
+    vector = Vector3Stamped(header=Header(frame_id="base"), vector=Vector3(x=1.0))
+    assert client.transform(vector, "odom").vector.x == 1.0
+    asking.client.destroy()
+
+
+def test_what_a_buffer_elsewhere_cannot_tell(graph: GraphHarness) -> None:
+    asking = Asking(graph)
+    with pytest.raises(tf2_ros.LookupException, match="nose"):
+        asking.client.lookup_transform("odom", "nose", Time())
+    asking.buffer.set_transform(transform("odom", "arm", 0.0, sec=5), "test")
+    with pytest.raises(tf2_ros.ExtrapolationException):
+        asking.client.lookup_transform("odom", "arm", Time(seconds=9))
+    with pytest.raises(TypeError, match="wanted a Time"):
+        asking.client.lookup_transform("odom", "arm", 3)  # type: ignore[arg-type]
+    asking.server.destroy()
+    with pytest.raises(tf2_ros.TimeoutException, match="no buffer server serves /tf2"):
+        asking.client.lookup_transform("odom", "base", Time())
+    assert not asking.client.can_transform("odom", "base", Time())
+
+
+def test_a_question_waits_for_its_transform(graph: GraphHarness) -> None:
+    asking = Asking(graph)
+    late = transform("map", "odom", 1.0)
+    graph.node.create_timer(0.5, lambda: asking.buffer.set_transform_static(late, "t"))
+    found = asking.client.lookup_transform("map", "base", Time(), Duration(seconds=1))
+    assert found.transform.translation.x == 3.0
+    assert 0.5 <= graph.now_ns / 1e9 < 0.6
+
+
+def test_a_server_that_does_not_answer_is_not_waited_for(graph: GraphHarness) -> None:
+    node = graph.add(Node("silent", context=graph.context))
+
+    async def never(goal: Any) -> Any:
+        await Future()
+
+    ActionServer(node, LookupTransform, "tf2_buffer_server", never)
+    asker = graph.add(Node("asker", context=graph.context))
+    client = tf2_ros.BufferClient(asker, "tf2_buffer_server")
+    with pytest.raises(tf2_ros.TimeoutException, match="did not answer in time"):
+        client.lookup_transform("a", "b", Time(), Duration(seconds=1))
+    assert graph.now_ns == 3_000_000_000
+
+
+def test_a_server_that_refuses(graph: GraphHarness) -> None:
+    node = graph.add(Node("proud", context=graph.context))
+    ActionServer(
+        node,
+        LookupTransform,
+        "tf2_buffer_server",
+        lambda goal: None,
+        goal_callback=lambda goal: GoalResponse.REJECT,
+    )
+    asker = graph.add(Node("asker", context=graph.context))
+    client = tf2_ros.BufferClient(asker, "tf2_buffer_server")
+    with pytest.raises(tf2_ros.TimeoutException, match="refused"):
+        client.lookup_transform("a", "b", Time())

@@ -10,6 +10,7 @@ from navette.companions.tf2_py import (
     TransformException,
 )
 from navette.companions.tf2_ros.buffer import Buffer
+from navette.companions.tf2_ros.buffer_client import BufferClient
 from navette.companions.tf2_ros.buffer_interface import (
     BufferInterface,
     ConvertRegistration,
@@ -19,6 +20,7 @@ from navette.companions.tf2_ros.buffer_interface import (
     TypeException,
     convert,
 )
+from navette.companions.tf2_ros.buffer_server import BufferServer
 from navette.companions.tf2_ros.static_transform_broadcaster import (
     StaticTransformBroadcaster,
 )
@@ -27,6 +29,8 @@ from navette.companions.tf2_ros.transform_listener import TransformListener
 
 __all__ = [
     "Buffer",
+    "BufferClient",
+    "BufferServer",
     "BufferCore",
     "BufferInterface",
     "ConnectivityException",

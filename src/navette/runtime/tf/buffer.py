@@ -21,8 +21,9 @@ class Buffer(MessageCore, BufferInterface):
     Args:
         cache_time: how long moving transforms are kept.
         node: its clock tells of jumps back in time, which clear moving transforms;
-            waits (``timeout``) need it. A buffer made without one takes that of the
-            first listener that fills it.
+            waits (``timeout``) need it; it serves ``tf2_frames``, the tree as YAML. A
+            buffer made without one takes that of the first listener that fills it (and
+            serves nothing).
     """
 
     def __init__(self, cache_time: Duration | None = None, node: Any = None) -> None:
@@ -32,6 +33,7 @@ class Buffer(MessageCore, BufferInterface):
         self._waiting: list[tuple[Callable[[], bool], Future[Any]]] = []
         if node is not None:
             self.attach(node)
+            node.serve("tf2_msgs/srv/FrameGraph", "tf2_frames", self._tell_frames)
 
     def attach(self, node: Any) -> None:
         """Wait by, and watch, this node's clock, if no other node came before."""
@@ -179,6 +181,10 @@ class Buffer(MessageCore, BufferInterface):
         return self._future_of(lambda: self.lookup_transform_full_core(*ask))
 
     # -- inside ----------------------------------------------------------------
+
+    def _tell_frames(self, request: Any, response: Any) -> Any:
+        response.frame_yaml = self.all_frames_as_yaml()
+        return response
 
     def _set(
         self, message: TransformStamped, authority: str, *, is_static: bool
