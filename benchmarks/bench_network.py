@@ -1,0 +1,218 @@
+"""There and back between two processes of one machine, beside Zenoh and a peer.
+
+The same bytes, as a sensor_msgs/Image, go to a second process, which sends them back:
+Navette's nodes with queues, CDR and executor; zenoh-python, which moves bytes that
+nobody makes or reads; zenoh-ros2-sdk, on the same wire contract. Zenoh's shared
+memory is on in all of them. Half the time of a round trip is a message's latency.
+"""
+
+import os
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import ExitStack
+from typing import Any
+
+from harness import Benchmark, Figure, optional
+
+SIZES = {"64 B": 64, "4 kB": 4096, "64 kB": 65_536, "1 MB": 1 << 20, "8 MB": 8 << 20}
+DOMAIN = "77"
+PATIENCE_S = 20.0
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+# -- the three ways, each a pair of "send this" and "call me with what comes" --------
+
+
+def navette_way(name: str, size: int, out: str, back: str) -> Any:
+    from navette.msgs.sensor_msgs.msg import Image
+    from navette.runtime import Context, Executor, Node, QoSProfile
+
+    context = Context(transport="zenoh")
+    context.init(args=[], initialize_logging=False)
+    node = Node(name, context=context)
+    executor = Executor(context=context)
+    executor.add_node(node)
+    publisher = node.create_publisher(Image, out, QoSProfile(depth=10))
+    image = Image(height=1, width=size, step=size, encoding="mono8")
+    image.data = bytes(size)
+
+    def listen(callback: Callable[[Any], None]) -> None:
+        node.create_subscription(Image, back, callback, QoSProfile(depth=10))
+
+    thread = threading.Thread(target=executor.spin, daemon=True)
+    thread.start()
+
+    def close() -> None:
+        executor.stop()
+        thread.join()
+        context.shutdown()
+
+    return image, publisher.publish, listen, close
+
+
+def zenoh_way(name: str, size: int, out: str, back: str) -> Any:
+    import zenoh
+
+    config = zenoh.Config()
+    here = os.environ["BENCH_LISTEN"]
+    there = os.environ["BENCH_CONNECT"]
+    config.insert_json5("mode", '"peer"')
+    config.insert_json5("listen/endpoints", f'["{here}"]')
+    config.insert_json5("connect/endpoints", f'["{there}"]')
+    config.insert_json5("scouting/multicast/enabled", "false")
+    session = zenoh.open(config)
+    publisher = session.declare_publisher(f"bench{out}")
+
+    def listen(callback: Callable[[Any], None]) -> None:
+        session.declare_subscriber(
+            f"bench{back}", lambda sample: callback(sample.payload)
+        )
+
+    return bytes(size), publisher.put, listen, session.close
+
+
+def sdk_way(name: str, size: int, out: str, back: str) -> Any:
+    import numpy as np
+    from zenoh_ros2_sdk import ROS2Publisher, ROS2Subscriber
+
+    from navette.msgs import definition_text, type_hash
+
+    kind = "sensor_msgs/msg/Image"
+    text = definition_text(kind)
+    where: dict[str, Any] = {
+        "router_port": int(os.environ["NAVETTE_ROUTER"].rpartition(":")[2]),
+        "domain_id": int(DOMAIN),
+        "type_hash": type_hash(kind),
+    }
+    publisher = ROS2Publisher(out, kind, text, node_name=name, **where)
+    types = publisher.session_mgr.store.types  # classes made from the text
+    stamp = types["builtin_interfaces/msg/Time"](sec=0, nanosec=0)
+    fields = {
+        "header": types["std_msgs/msg/Header"](stamp=stamp, frame_id=""),
+        "height": 1,
+        "width": size,
+        "encoding": "mono8",
+        "is_bigendian": 0,
+        "step": size,
+        "data": np.zeros(size, np.uint8),
+    }
+
+    def listen(callback: Callable[[Any], None]) -> None:
+        ROS2Subscriber(back, kind, callback, text, node_name=f"{name}_in", **where)
+
+    def send(message: Any) -> None:
+        publisher.publish(**(message if isinstance(message, dict) else vars(message)))
+
+    return fields, send, listen, publisher.close
+
+
+WAYS = {"navette": navette_way, "zenoh-python": zenoh_way, "zenoh-ros2-sdk": sdk_way}
+
+
+def echo(way: str, size: int) -> None:
+    """The second process: sends back what comes until its input ends."""
+    _, send, listen, close = WAYS[way]("echo", size, "/back", "/there")
+    listen(send)
+    print("ready", flush=True)
+    sys.stdin.read()
+    close()
+
+
+class Loop:
+    """A way with an echo in another process; calling it goes there and back once."""
+
+    def __init__(self, way: str, size: int, stack: ExitStack) -> None:
+        ends = [f"tcp/127.0.0.1:{free_port()}" for _ in range(2)]
+        common = {
+            "NAVETTE_ROUTER": f"tcp/127.0.0.1:{free_port()}",
+            "ROS_DOMAIN_ID": DOMAIN,
+        }
+        os.environ.update(common, BENCH_LISTEN=ends[0], BENCH_CONNECT=ends[1])
+        # Navette's router serves the peer as well.
+        router = None
+        if way == "zenoh-ros2-sdk":
+            router = navette_way("router", 1, "/unused", "/unused_back")
+            stack.callback(router[3])
+        self.message, self._send, listen, close = WAYS[way](
+            "bench", size, "/there", "/back"
+        )
+        self._came = threading.Event()
+        listen(lambda _: self._came.set())
+        environment = {
+            **os.environ,
+            "BENCH_LISTEN": ends[1],
+            "BENCH_CONNECT": ends[0],
+        }
+        self._process = subprocess.Popen(
+            [sys.executable, __file__, "--echo", way, str(size)],
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        stack.callback(self._end, close)
+        assert self._process.stdout is not None
+        while "ready" not in self._process.stdout.readline():
+            assert self._process.poll() is None, "the echo ended"
+        self._connect()
+
+    def __call__(self) -> None:
+        self._came.clear()
+        self._send(self.message)
+        assert self._came.wait(PATIENCE_S), "no echo"
+
+    def _connect(self) -> None:
+        for _ in range(200):
+            self._send(self.message)
+            if self._came.wait(0.1):
+                break
+        # What was sent meanwhile comes back as well.
+        while True:
+            self._came.clear()
+            if not self._came.wait(0.3):
+                return
+
+    def _end(self, close: Callable[[], None]) -> None:
+        self._process.kill()  # the peer's does not end by itself
+        self._process.communicate()
+        close()
+
+
+def build(stack: ExitStack) -> Benchmark:
+    bench = Benchmark("network", __doc__, budget_s=1.5)
+    ways = [
+        w
+        for w in WAYS
+        if w == "navette" or optional(w.replace("-", "_").replace("_python", ""))
+    ]
+    for label, size in SIZES.items():
+        loops = {way: Loop(way, size, stack) for way in ways}
+        bench.case(f"{label}, there and back", loops)
+
+    def throughput() -> Figure:
+        times = bench.results["8 MB, there and back"]["navette"]
+        return Figure(
+            "8 MB images, both ways together",
+            2 * (8 << 20) / 1e6 / (times.median_ms / 1e3),
+            "MB/s",
+            more_is_better=True,
+        )
+
+    bench.figure(throughput)
+    return bench
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--echo"]:
+        echo(sys.argv[2], int(sys.argv[3]))
+    else:
+        with ExitStack() as everything:
+            build(everything).main()
