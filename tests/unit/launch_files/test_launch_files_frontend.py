@@ -148,7 +148,7 @@ def test_everything_in_one_file(
     ("xml", "line", "reason"),
     [
         ("<launch>\n<nod pkg='a'/>\n</launch>", 2, "<nod>: unknown tag; .*node"),
-        ("<launch>\n\n<node exec='a'/></launch>", 3, "<node>: attribute 'pkg' is miss"),
+        ("<launch>\n\n<node pkg='a'/></launch>", 3, "<node>: attribute 'exec' is mis"),
         ("<launch><node pkg='a' exec='b' ouput='s'/></launch>", 1, "'ouput'; kn.*out"),
         ("<launch><log message='$(vra x)'/></launch>", 1, r"unknown subst.*'\$\(vra"),
         ("<launch><log message='$(var x'/></launch>", 1, r"closing '\)' is missing"),
@@ -180,7 +180,7 @@ def test_a_mistake_is_named_with_file_and_line(
 @pytest.mark.parametrize(
     ("text", "line", "reason"),
     [
-        ("launch:\n- node:\n    exec: a\n", 2, "<node>: attribute 'pkg' is missing"),
+        ("launch:\n- node:\n    pkg: a\n", 2, "<node>: attribute 'exec' is missing"),
         ("launch:\n- log: {message: a, lvel: b}\n", 2, "'lvel'"),
         ("launch:\n- {a: {}, b: {}}\n", 2, "one tag each"),
         ("launch: [\n", 2, "not YAML"),
