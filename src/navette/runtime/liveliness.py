@@ -1,7 +1,8 @@
 """Who is alive: leases that publishers keep, and what subscriptions see of it.
 
 A publisher that asserts itself (MANUAL_BY_TOPIC) is alive for its lease after each
-message or assertion; every other one for as long as it is there.
+message or assertion; every other one for as long as it is there, and so is every one of
+another process: what Zenoh tells of it is whether it is there.
 """
 
 from collections.abc import Callable
@@ -77,7 +78,8 @@ class LivelinessView:
             self._move(gid, alive=False, lapsed=False)
             return
         self._matched.add(gid)
-        if not has_lease(publisher.qos) or gid in self._graph.manually_alive:
+        asserts_itself = has_lease(publisher.qos) and not publisher.is_remote
+        if not asserts_itself or gid in self._graph.manually_alive:
             self._move(gid, alive=True, lapsed=False)
 
     def on_liveliness(self, publisher: Endpoint, alive: bool) -> None:

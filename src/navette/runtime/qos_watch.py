@@ -1,5 +1,6 @@
 """Follows the QoS events of one endpoint; incompatible QoS is warned about."""
 
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -45,6 +46,8 @@ class EndpointWatch:
         self._deadline: Watchdog | None = None
         self._lease: Lease | None = None
         self._view: LivelinessView | None = None
+        # Remote endpoints come and go in another thread than those here.
+        self._counting = threading.Lock()
         graph = context.graph
         self._undo = [
             graph.on_incompatible(self._on_incompatible),
@@ -166,13 +169,14 @@ class EndpointWatch:
     def _on_match(self, publisher: Endpoint, subscription: Endpoint, up: bool) -> None:
         if self._endpoint not in (publisher, subscription):
             return
-        if self._view is not None:
-            self._view.on_match(publisher, up)
-        if self._callbacks.matched is not None:
-            step = 1 if up else -1
-            total, current = self._match.total_count, self._match.current_count
-            self._match = QoSMatchedInfo(total + up, int(up), current + step, step)
-            self._tell(self._callbacks.matched, self._match, "matched")
+        with self._counting:
+            if self._view is not None:
+                self._view.on_match(publisher, up)
+            if self._callbacks.matched is not None:
+                step = 1 if up else -1
+                total, current = self._match.total_count, self._match.current_count
+                self._match = QoSMatchedInfo(total + up, int(up), current + step, step)
+                self._tell(self._callbacks.matched, self._match, "matched")
 
     def _warning(
         self,

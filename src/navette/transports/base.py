@@ -71,6 +71,11 @@ class Endpoint:
     type_hash: str = ""
 
     @property
+    def is_remote(self) -> bool:
+        """Whether it is of another process."""
+        return bool(self.type_hash)
+
+    @property
     def node_full_name(self) -> str:
         return f"{self.node_namespace.rstrip('/')}/{self.node_name}"
 

@@ -1,6 +1,7 @@
 """The session of a process with the network: opened, looked around, closed."""
 
 import atexit
+import os
 import threading
 import weakref
 from typing import Any
@@ -94,6 +95,11 @@ class Session:
             known = {str(reply.ok.key_expr) for reply in replies if reply.ok}
             if self.graph.wait_until_known(known, _LOOK_S):
                 return
+
+
+# A forked child has the sessions but not their threads: closing one would never end.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_open.clear)
 
 
 @atexit.register
