@@ -1,0 +1,86 @@
+"""Shell completion: what is offered, and what is installed where."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from verb_world import World, world
+
+from navette.cli import completing
+from navette.cli.completion import Shell, install_script
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.std_msgs.msg import String
+from navette.runtime import Node
+from navette.runtime.lifecycle import LifecycleNode
+
+
+@pytest.fixture
+def here() -> Iterator[World]:
+    with world() as here:
+        node = here.graph.add(Node("talker", context=here.context))
+        node.declare_parameter("speed", 1.0)
+        node.create_publisher(String, "chatter", 10)
+        node.create_publisher(String, "_own", 10)
+        node.create_service(AddTwoInts, "add", lambda request, response: response)
+        here.graph.add(LifecycleNode("camera", context=here.context))
+        yield here
+
+
+def typed(node: str) -> Any:
+    return SimpleNamespace(params={"node_name": node})
+
+
+def test_names_of_what_runs(here: World) -> None:
+    assert completing.complete_nodes("") == ["/camera", "/talker"]
+    assert completing.complete_nodes("/t") == ["/talker"]
+    assert completing.complete_topics("/c") == ["/camera/transition_event", "/chatter"]
+    assert completing.complete_topics("/_") == ["/_own"]
+    assert completing.complete_services("/a") == ["/add"]
+    assert completing.complete_managed_nodes("") == ["/camera"]
+
+
+def test_names_that_a_node_answers(here: World) -> None:
+    assert completing.complete_parameters(typed("talker"), "s") == [
+        "speed",
+        "start_type_description_service",
+    ]
+    assert completing.complete_transitions(typed("/camera"), "") == [
+        "configure",
+        "shutdown",
+    ]
+    assert completing.complete_parameters(typed(""), "") == []
+    assert completing.complete_parameters(typed("nobody"), "") == []
+
+
+def test_names_of_what_is_installed() -> None:
+    assert "std_msgs/msg/String" in completing.complete_messages("std_msgs/msg/S")
+    assert completing.complete_service_types("std_srvs/srv/E") == ["std_srvs/srv/Empty"]
+    assert completing.complete_action_types("example_interfaces/") == [
+        "example_interfaces/action/Fibonacci"
+    ]
+    assert "nav_msgs" in completing.complete_packages("nav")
+
+
+@pytest.mark.parametrize(
+    ("shell", "script", "settings"),
+    [
+        (Shell.BASH, ".config/navette/completion.bash", ".bashrc"),
+        (Shell.ZSH, ".config/navette/completion.zsh", ".zshrc"),
+    ],
+)
+def test_installing(tmp_path: Path, shell: Shell, script: str, settings: str) -> None:
+    file = tmp_path / settings
+    file.write_text("alias ll='ls -l'")
+    assert install_script(shell, tmp_path) == [tmp_path / script, file]
+    wanted = f"alias ll='ls -l'\nsource '{tmp_path / script}'\n"
+    assert file.read_text() == wanted
+    assert install_script(shell, tmp_path) == [tmp_path / script]
+    assert file.read_text() == wanted
+
+
+def test_installing_for_fish(tmp_path: Path) -> None:
+    (script,) = install_script(Shell.FISH, tmp_path)
+    assert script == tmp_path / ".config/fish/completions/navette.fish"
+    assert "complete --command navette" in script.read_text()

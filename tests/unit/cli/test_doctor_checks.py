@@ -1,0 +1,318 @@
+"""The doctor's checks, each on a made-up snapshot: what is said, and how loudly."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import pytest
+
+from navette.cli.doctor.findings import Finding, Level, listed, plural
+from navette.cli.doctor.graph_checks import check_nodes, check_services, check_topics
+from navette.cli.doctor.machine import is_navette, left_running
+from navette.cli.doctor.network import Network, Router, check_network
+from navette.cli.doctor.ports import Process
+from navette.cli.doctor.report import report_lines, summary
+from navette.cli.doctor.snapshot import Heartbeat, Snapshot
+from navette.cli.doctor.state_checks import check_stages, check_time
+from navette.transports import (
+    DurabilityPolicy,
+    Endpoint,
+    EndpointKind,
+    EndpointQos,
+    ReliabilityPolicy,
+)
+
+SCAN = "sensor_msgs/msg/LaserScan"
+BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
+LATCHED = EndpointQos(durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def end(
+    kind: EndpointKind,
+    topic: str,
+    node: str,
+    type_name: str = SCAN,
+    qos: EndpointQos | None = None,
+) -> Endpoint:
+    return Endpoint(kind, topic, type_name, qos or EndpointQos(), node, "/", bytes(16))
+
+
+def pub(topic: str, node: str, *rest: object) -> Endpoint:
+    return end(EndpointKind.PUBLISHER, topic, node, *rest)  # type: ignore[arg-type]
+
+
+def sub(topic: str, node: str, *rest: object) -> Endpoint:
+    return end(EndpointKind.SUBSCRIPTION, topic, node, *rest)  # type: ignore[arg-type]
+
+
+def of(findings: Iterable[Finding], what: str) -> Finding:
+    (found,) = [finding for finding in findings if finding.what == what]
+    return found
+
+
+def test_nodes_that_are_well() -> None:
+    seen = Snapshot(nodes=("/a", "/b"), sim_time={"/a": False, "/b": False})
+    (finding,) = check_nodes(seen)
+    assert (finding.level, finding.text) == (
+        Level.GOOD,
+        "2 nodes under names of their own and answer",
+    )
+
+
+def test_no_nodes_is_no_problem_but_says_what_to_do() -> None:
+    (finding,) = check_nodes(Snapshot())
+    assert finding.level is Level.NOTE
+    assert "ROS_DOMAIN_ID" in finding.advice
+
+
+def test_nodes_of_one_name() -> None:
+    finding = of(check_nodes(Snapshot(nodes=("/a", "/b", "/a"))), "/a")
+    assert (finding.level, finding.text) == (
+        Level.PROBLEM,
+        "2 nodes have this name",
+    )
+    assert "__node:=" in finding.advice
+
+
+def test_a_node_that_does_not_answer() -> None:
+    seen = Snapshot(nodes=("/a",), sim_time={"/a": None}, unreached=("/b",))
+    findings = list(check_nodes(seen))
+    assert of(findings, "/a").text == "is there, but does not answer"
+    assert of(findings, "/b").text == "is known to the router, but cannot be reached"
+    assert {finding.level for finding in findings} == {Level.PROBLEM}
+
+
+def test_topics_that_fit() -> None:
+    seen = Snapshot(endpoints=(pub("/scan", "lidar"), sub("/scan", "costmap")))
+    (finding,) = check_topics(seen)
+    assert (finding.level, finding.text) == (
+        Level.GOOD,
+        "1 topic with both sides, all fit",
+    )
+
+
+def test_two_types_on_a_topic() -> None:
+    seen = Snapshot(
+        endpoints=(pub("/scan", "lidar"), sub("/scan", "odd", "std_msgs/msg/String"))
+    )
+    finding = of(check_topics(seen), "/scan")
+    assert finding.level is Level.PROBLEM
+    assert finding.text == (f"has 2 types: {SCAN}: /lidar; std_msgs/msg/String: /odd")
+
+
+@pytest.mark.parametrize(
+    ("offered", "wanted", "policy"),
+    [
+        (BEST_EFFORT, EndpointQos(), "reliability"),
+        (EndpointQos(), LATCHED, "durability"),
+        (EndpointQos(), EndpointQos(deadline_ns=10**9), "deadline"),
+        (EndpointQos(), EndpointQos(lease_ns=10**9), "liveliness lease duration"),
+    ],
+)
+def test_qos_that_does_not_fit(
+    offered: EndpointQos, wanted: EndpointQos, policy: str
+) -> None:
+    seen = Snapshot(
+        endpoints=(
+            pub("/scan", "lidar", SCAN, offered),
+            sub("/scan", "costmap", SCAN, wanted),
+        )
+    )
+    finding = of(check_topics(seen), "/scan")
+    assert finding.level is Level.PROBLEM
+    assert finding.text == (
+        f"/costmap gets nothing from /lidar: {policy} of less than it asks for"
+    )
+    assert finding.advice
+
+
+def test_a_topic_that_nobody_publishes_and_the_one_that_was_meant() -> None:
+    seen = Snapshot(endpoints=(pub("/lidar", "lidar"), sub("/scan", "costmap")))
+    findings = list(check_topics(seen))
+    finding = of(findings, "/scan")
+    assert finding.level is Level.WARNING
+    assert finding.text == "nobody publishes it; /costmap waits for it"
+    assert finding.advice == (
+        "nobody reads /lidar, of the same type: if that is meant,"
+        " --ros-args -r /scan:=/lidar"
+    )
+    assert of(findings, "nobody reads").level is Level.NOTE
+
+
+def test_what_a_person_publishes_and_what_every_node_has_is_not_missed() -> None:
+    seen = Snapshot(
+        endpoints=(
+            sub("/goal_point", "planner"),
+            pub("/rosout", "planner"),
+            sub("/do/_action/feedback", "client"),
+        )
+    )
+    assert list(check_topics(seen)) == []
+
+
+def test_a_client_without_a_server() -> None:
+    client = end(EndpointKind.CLIENT, "/add", "asker", "a/srv/Add")
+    finding = of(check_services(Snapshot(services=(client,))), "/add")
+    assert finding.text == "nobody serves it; /asker may wait for it"
+    server = end(EndpointKind.SERVICE, "/add", "adder", "a/srv/Add")
+    assert list(check_services(Snapshot(services=(client, server)))) == []
+    odd = replace(server, type_name="b/srv/Add")
+    (finding,) = check_services(Snapshot(services=(client, odd)))
+    assert finding.level is Level.PROBLEM
+
+
+def test_time_stands_still_without_a_clock() -> None:
+    seen = Snapshot(nodes=("/a", "/b"), sim_time={"/a": True, "/b": False})
+    (finding,) = check_time(seen)
+    assert finding.level is Level.PROBLEM
+    assert "1 node with use_sim_time (/a)" in finding.text
+    assert "navette param set /a use_sim_time false" in finding.advice
+
+
+def test_clocks() -> None:
+    one = Snapshot(
+        nodes=("/a", "/sim"),
+        endpoints=(pub("/clock", "sim"),),
+        sim_time={"/a": True},
+        clock_ticks=True,
+    )
+    (finding,) = check_time(one)
+    assert (finding.level, finding.text) == (Level.GOOD, "simulated, by /sim")
+    (finding,) = check_time(replace(one, clock_ticks=False))
+    assert finding.level is Level.WARNING
+    two = replace(one, endpoints=(*one.endpoints, pub("/clock", "player")))
+    assert next(iter(check_time(two))).level is Level.PROBLEM
+
+
+@pytest.mark.parametrize(
+    ("beat", "level", "text"),
+    [
+        (Heartbeat("/planner/status", "following", 0, 0.1), Level.GOOD, "following"),
+        (Heartbeat("/planner/status", "no_path", 1, 0.1), Level.WARNING, "no_path"),
+        (
+            Heartbeat("/planner/status", "following", 0, 7.0),
+            Level.PROBLEM,
+            "silent for 7.0 s, last state following",
+        ),
+        (Heartbeat("/planner/status"), Level.PROBLEM, "silent, last state unknown"),
+    ],
+)
+def test_heartbeats(beat: Heartbeat, level: Level, text: str) -> None:
+    seen = Snapshot(endpoints=(pub(beat.topic, "planner"),), heartbeats=(beat,))
+    (finding,) = check_stages(seen)
+    assert (finding.level, finding.text) == (level, text)
+
+
+HERE = "tcp/127.0.0.1:7447"
+DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
+
+
+@pytest.mark.parametrize(
+    ("network", "level", "text"),
+    [
+        (
+            Network(routers=(Router(HERE, True, DEMO),), nodes={}),
+            Level.GOOD,
+            f"{HERE}, served by navette demo (process 12)",
+        ),
+        (
+            Network(routers=(Router(HERE, False),), nodes=None),
+            Level.NOTE,
+            f"{HERE} is free: the first program that starts serves",
+        ),
+        (
+            Network(routers=(Router(HERE, True),), nodes=None),
+            Level.PROBLEM,
+            f"{HERE} answers, but not as a Zenoh router for us",
+        ),
+        (
+            Network(routers=(Router(HERE, True, DEMO._replace(is_stopped=True)),)),
+            Level.PROBLEM,
+            f"{HERE} belongs to navette demo (process 12), which is stopped: nobody"
+            " can join",
+        ),
+        (
+            Network(routers=(Router("tcp/10.0.0.2:7447", False),), nodes=None),
+            Level.PROBLEM,
+            "tcp/10.0.0.2:7447 does not answer",
+        ),
+        (
+            Network(routers=(Router("quic/10.0.0.2:7447"),), nodes={}),
+            Level.NOTE,
+            "quic/10.0.0.2:7447, which cannot be tried from here",
+        ),
+    ],
+)
+def test_routers(network: Network, level: Level, text: str) -> None:
+    finding = of(check_network(network, 0), "router")
+    assert (finding.level, finding.text) == (level, text)
+
+
+def test_nodes_of_another_domain() -> None:
+    finding = of(check_network(Network(nodes={42: ["/a", "/b"]}), 0), "domain")
+    assert finding.level is Level.WARNING
+    assert finding.text == "0 (ROS_DOMAIN_ID) is empty; 2 nodes in 42"
+    assert finding.advice == "to see them: export ROS_DOMAIN_ID=42"
+    both = Network(nodes={0: ["/c"], 42: ["/a"]})
+    assert of(check_network(both, 0), "domain").level is Level.NOTE
+
+
+def test_settings_that_keep_one_alone() -> None:
+    network = Network(transport="inprocess", middleware="rmw_fastrtps_cpp")
+    findings = list(check_network(network, 0))
+    assert of(findings, "transport").level is Level.PROBLEM
+    assert "rmw_zenoh_cpp" in of(findings, "ROS 2").advice
+
+
+def test_programs_that_were_left_running() -> None:
+    every = [
+        Process(1, 0, ("/sbin/init",)),
+        Process(10, 1, ("/venv/bin/python", "/venv/bin/navette", "demo")),
+        Process(11, 1, ("bash",)),
+        Process(12, 11, ("/venv/bin/python", "-m", "navette", "sim")),
+        Process(13, 999, ("navette", "run", "talker.py")),
+        Process(14, 1, ("/venv/bin/python", "/venv/bin/navette", "doctor")),
+    ]
+    findings = list(left_running(every, here=14))
+    assert [finding.what for finding in findings] == ["process 10", "process 13"]
+    assert findings[0].text.startswith("navette demo runs without the terminal")
+    assert findings[0].advice == "if nobody needs it: kill 10"
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (("/usr/bin/python3", "/opt/venv/bin/navette", "sim"), True),
+        (("python3.12", "-m", "navette", "sim"), True),
+        (("vim", "navette"), False),
+        (("python3", "talker.py"), False),
+        ((), False),
+    ],
+)
+def test_which_processes_are_navette(words: tuple[str, ...], expected: bool) -> None:
+    assert is_navette(Process(1, 0, words)) == expected
+
+
+def test_words() -> None:
+    assert [plural(n, "node") for n in (0, 1, 2)] == ["no nodes", "1 node", "2 nodes"]
+    assert listed("dacb") == "a, b, c, d"
+    assert listed("abcdefgh", most=3) == "a, b, c and 5 more"
+
+
+def test_the_report() -> None:
+    findings = [
+        Finding(Level.GOOD, "Nodes", "nodes", "2 nodes"),
+        Finding(Level.PROBLEM, "Topics", "/scan", "bad", "mend it"),
+        Finding(Level.WARNING, "Topics", "/map", "odd"),
+    ]
+    assert report_lines(findings, everything=True) == [
+        "Nodes",
+        "  ✓ nodes  2 nodes",
+        "",
+        "Topics",
+        "  ✗ /scan  bad",
+        "           → mend it",
+        "  ! /map   odd",
+    ]
+    assert report_lines(findings, everything=False)[0] == "Topics"
+    assert summary(findings) == "1 problem, 1 thing to look at"
+    assert summary(findings[:1]) == "no problems"
