@@ -349,3 +349,23 @@ def test_the_command_passes_its_options_on() -> None:
             "--field", "ranges", "-l", "2", "--timeout", "5",
         )  # fmt: skip
     assert (shown.exit_code, shown.stdout) == (0, "- 1.0\n- 2.0\n- '...'\n---\n")
+
+
+def test_on_a_terminal_numbers_stand_beside_each_other(
+    talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("navette.cli.topic.printing.is_terminal", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
+    scan = LaserScan(ranges=[1.5, float("inf"), 1e-30, 4.0], intensities=[-1.0])
+    latch(talker, "scan", scan)
+    echo_of(talker, "scan", count=1, truncate_length=3)
+    assert capsys.readouterr().out.splitlines()[-3:] == [
+        "ranges: [1.5, .inf, 1.0000000031710769e-30, '...']",
+        "intensities: [-1.0]",
+        "---",
+    ]
+    echo_of(talker, "scan", count=1, path="ranges[:2]")
+    assert capsys.readouterr().out == "[1.5, .inf]\n---\n"
+    latch(talker, "poses", PoseArray(poses=[Pose()]))
+    echo_of(talker, "poses", count=1, path="poses")
+    assert capsys.readouterr().out.splitlines()[:2] == ["- position:", "    x: 0.0"]

@@ -103,6 +103,14 @@ def test_info(talker: Node) -> None:
     )
 
 
+def test_info_for_a_person_says_whose_they_are(
+    talker: Node, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("navette.cli.topic.listing.is_terminal", lambda: True)
+    lines = navette("topic", "info", "chatter").stdout.splitlines()
+    assert lines[1:] == ["Publisher count: 1  /talker", "Subscription count: 0"]
+
+
 def test_info_verbose_names_endpoints_with_hash_gid_and_qos(talker: Node) -> None:
     lines = navette("topic", "info", "/map", "--verbose").stdout.splitlines()
     assert lines[0] == "Type: nav_msgs/msg/OccupancyGrid"

@@ -85,14 +85,26 @@ def listed(found: list[Topic], *, show_types: bool, verbose: bool) -> str:
 def described(found: Topic, *, verbose: bool) -> str:
     """One topic as ``ros2 topic info`` prints it, and what does not fit."""
     types = ", ".join(found.types)
-    blocks = [f"Type: {types}", f"Publisher count: {len(found.publishers)}"]
+    publishers, subscriptions = map(_nodes, (found.publishers, found.subscriptions))
+    blocks = [
+        f"Type: {types}",
+        f"Publisher count: {len(found.publishers)}{publishers}",
+    ]
     if verbose:
         blocks += [str(TopicEndpointInfo.of(each)) for each in found.publishers]
-    blocks.append(f"Subscription count: {len(found.subscriptions)}")
+    blocks.append(f"Subscription count: {len(found.subscriptions)}{subscriptions}")
     if verbose:
         blocks += [str(TopicEndpointInfo.of(each)) for each in found.subscriptions]
     blocks += [styled(f"No exchange: {text}", fg="red") for text in found.mismatches]
     return ("\n\n" if verbose else "\n").join(blocks)
+
+
+def _nodes(found: tuple[Endpoint, ...]) -> str:
+    """For a person: whose they are."""
+    names = sorted({each.node_full_name for each in found})
+    if not is_terminal() or not names:
+        return ""
+    return styled(f"  {', '.join(names)}", dim=True)
 
 
 def describe_qos(qos: EndpointQos) -> str:

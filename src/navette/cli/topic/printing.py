@@ -16,6 +16,10 @@ from navette.companions.rosidl_runtime_py.convert import (
 from navette.msgs import Message, to_dict
 
 SEPARATOR = "---"
+_NUMBER = r"(?:-?(?:\.inf|\.nan|\d[\d.]*(?:e[+-]?\d+)?)|true|false|'\.\.\.')"
+_NUMBERS = re.compile(
+    rf"(?P<key>^ *(?:- )*\w+:|\A)\n?(?P<items>(?: *- {_NUMBER}\n)+)", re.MULTILINE
+)
 _KEY = re.compile(r"^([ ]*(?:- )*)([A-Za-z]\w*)(?=:)", re.MULTILINE)
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
@@ -49,11 +53,11 @@ class Style:
     def _yaml(self, value: Any, field: FieldPath | None) -> str:
         shortened = {**self._shortened(), "flow_style": self.flow_style}
         if isinstance(value, Message):
-            return _coloured(message_to_yaml(value, **shortened))
+            return _readable(message_to_yaml(value, **shortened))
         assert field is not None, "a message itself is a Message"
         if field.type.is_scalar:
             return _harmless(value_to_csv(value, field.type)) + "\n"
-        return _coloured(value_to_yaml(value, field.type, **shortened))
+        return _readable(value_to_yaml(value, field.type, **shortened))
 
     def _shortened(self) -> dict[str, Any]:
         return {
@@ -73,11 +77,18 @@ def _jsonable(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
-def _coloured(yaml: str) -> str:
-    """Names apart from values, for a person."""
+def _readable(yaml: str) -> str:
+    """For a person: numbers of an array beside each other, names apart from values."""
     if not is_terminal():
         return yaml
+    yaml = _NUMBERS.sub(_in_a_row, yaml)
     return _KEY.sub(lambda m: m[1] + styled(m[2], fg="cyan"), yaml)
+
+
+def _in_a_row(match: re.Match[str]) -> str:
+    items = [line.strip().removeprefix("- ") for line in match["items"].splitlines()]
+    key = f"{match['key']} " if match["key"] else ""
+    return f"{key}[{', '.join(items)}]\n"
 
 
 def _harmless(text: str) -> str:
