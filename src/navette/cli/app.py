@@ -195,7 +195,7 @@ def main() -> None:
     if arguments[:1] != ["run"]:
         arguments = fill_values(spread_lists(join_pairs(arguments)))
     try:
-        app(args=arguments)
+        app(args=arguments, prog_name="navette")
     except NavetteError as error:
         typer.secho(f"navette: {error}", fg="red", err=True)
         raise SystemExit(USAGE_ERROR) from None
