@@ -4,12 +4,15 @@ from collections.abc import Callable
 from typing import Any
 
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.loop import Entity, EventLoop
+from navette.runtime.context import Context, get_default_context
+from navette.runtime.loop import Entity
 
 
 class GuardCondition(Entity):
     """Calls back soon after :meth:`trigger`. Made by ``create_guard_condition``.
 
+    One that is made by hand belongs to no node: its callback runs whenever the
+    context's loop does.
     Triggers before the callback has begun count as one.
     """
 
@@ -17,18 +20,24 @@ class GuardCondition(Entity):
 
     def __init__(
         self,
-        callback: Callable[[], Any] | None,
-        callback_group: CallbackGroup,
-        loop: EventLoop,
-        node_name: str,
-        on_destroy: Callable[["GuardCondition"], None],
+        callback: Callable[[], Any] | None = None,
+        callback_group: CallbackGroup | None = None,
+        context: Context | None = None,
+        *,
+        node_name: str = "",
+        on_destroy: Callable[["GuardCondition"], None] | None = None,
     ) -> None:
         self.callback = callback
-        self.group = callback_group
-        self._loop = loop
+        self._loop = (context or get_default_context()).loop
+        self.group = callback_group or self._loop.free_group
         self._node_name = node_name
         self._on_destroy = on_destroy
         self._triggered = False
+
+    @property
+    def handle(self) -> "GuardCondition":
+        """What a wait set takes."""
+        return self
 
     @property
     def callback_group(self) -> CallbackGroup:
@@ -53,4 +62,5 @@ class GuardCondition(Entity):
 
     def destroy(self) -> None:
         self._triggered = False
-        self._on_destroy(self)
+        if self._on_destroy is not None:
+            self._on_destroy(self)

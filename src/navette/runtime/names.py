@@ -11,7 +11,6 @@ from navette.errors import InvalidValueError
 from navette.runtime.exceptions import (
     InvalidNamespaceException,
     InvalidNodeNameException,
-    InvalidParameterException,
     InvalidServiceNameException,
     InvalidTopicNameException,
     NameValidationException,
@@ -91,13 +90,6 @@ def topic_or_service_is_hidden(name: str) -> bool:
     """Whether any part of the name starts with an underscore."""
     tokens = name.split(TOPIC_SEPARATOR_STRING)
     return any(token.startswith(HIDDEN_TOPIC_PREFIX) for token in tokens)
-
-
-def validate_parameter_name(name: str) -> bool:
-    """True, or raise InvalidParameterException where it is empty."""
-    if not name:
-        raise InvalidParameterException(name)
-    return True
 
 
 def _check_tokens(name: str, kind: type[NameValidationException]) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context
 from navette.runtime.guard_condition import GuardCondition
+from navette.runtime.wait_set import WaitableEvents
 from navette.runtime.waitable import Waitable
 
 
@@ -32,7 +33,7 @@ class NodeWaitables:
         return (e for e in self._entities if isinstance(e, GuardCondition))
 
     @property
-    def waitables(self) -> Iterator[Waitable]:
+    def waitables(self) -> Iterator[Waitable[Any]]:
         return (e for e in self._entities if isinstance(e, Waitable))
 
     def create_guard_condition(
@@ -44,9 +45,9 @@ class NodeWaitables:
         guard = GuardCondition(
             callback,
             self._own_group(callback_group),
-            self._context.loop,
-            self.get_fully_qualified_name(),
-            self._forget,
+            self._context,
+            node_name=self.get_fully_qualified_name(),
+            on_destroy=self._forget,
         )
         guard.group.add_entity(guard)
         self._entities.append(guard)
@@ -55,9 +56,18 @@ class NodeWaitables:
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         return self._destroy(guard)
 
-    def add_waitable(self, waitable: Waitable) -> None:
-        """Keep it, and destroy it with the node."""
+    def add_waitable(self, waitable: Waitable[Any]) -> None:
+        """Run it when it is ready; keep it, and destroy it with the node."""
         self._entities.append(waitable)
+        if type(waitable).add_to_wait_set is Waitable.add_to_wait_set:
+            return  # one of ours, which the loop runs by its parts
+        events = WaitableEvents(
+            waitable,
+            self._own_group(waitable.callback_group),
+            self._context.loop,
+            self.get_fully_qualified_name(),
+        )
+        waitable.add_to_wait_set(events.wait_set)
 
-    def remove_waitable(self, waitable: Waitable) -> None:
+    def remove_waitable(self, waitable: Waitable[Any]) -> None:
         self._forget(waitable)

@@ -1,6 +1,7 @@
 """Guard conditions, waiting for a message, serialisation, names."""
 
 import threading
+from typing import Any
 
 import pytest
 
@@ -9,7 +10,9 @@ from navette.msgs.std_msgs.msg import String
 from navette.msgs.std_srvs.srv import Trigger
 from navette.runtime import (
     Context,
+    Future,
     Node,
+    ReentrantCallbackGroup,
     SystemClock,
     VirtualClock,
     deserialize_message,
@@ -17,9 +20,12 @@ from navette.runtime import (
     spin_once,
 )
 from navette.runtime.exceptions import InvalidParameterException
+from navette.runtime.guard_condition import GuardCondition
 from navette.runtime.names import topic_or_service_is_hidden
 from navette.runtime.parameter import validate_parameter_name
 from navette.runtime.wait_for_message import wait_for_message
+from navette.runtime.wait_set import NumberOfEntities, WaitSet
+from navette.runtime.waitable import Waitable
 from navette.testing import GraphHarness
 
 
@@ -103,3 +109,97 @@ def test_a_node_without_executor_has_no_callbacks() -> None:
     guard = node.create_guard_condition(lambda: pytest.fail("in no executor"))
     guard.trigger()
     context.loop.run(until_ns=1)
+
+
+class Doorbell(Waitable[str]):
+    """A program's own waitable: rings on a guard condition or when a timer is due."""
+
+    def __init__(self, node: Node) -> None:
+        super().__init__(ReentrantCallbackGroup())
+        self.guard = GuardCondition(None, None, context=node.context)
+        self.timer = node.create_timer(5.0, None)
+        self.guard_index: int | None = None
+        self.timer_index: int | None = None
+        self.rung: list[str] = []
+        self._reason = ""
+
+    def add_to_wait_set(self, wait_set: WaitSet) -> None:
+        self.guard_index = wait_set.add_guard_condition(self.guard.handle)
+        self.timer_index = wait_set.add_timer(self.timer)
+
+    def is_ready(self, wait_set: WaitSet) -> bool:
+        if wait_set.is_ready("guard_condition", self.guard_index):
+            self._reason = "guard"
+        elif wait_set.is_ready("timer", self.timer_index):
+            self._reason = "timer"
+        return self._reason != ""
+
+    def take_data(self) -> str:
+        reason, self._reason = self._reason, ""
+        return reason
+
+    async def execute(self, taken_data: str) -> None:
+        if taken_data == "guard" and not self.rung:
+            self.rung.append("first")
+            return
+        self.rung.append(taken_data)
+
+    def get_num_entities(self) -> NumberOfEntities:
+        return NumberOfEntities(num_gcs=1, num_timers=1)
+
+
+def test_a_waitable_of_ones_own(graph: GraphHarness) -> None:
+    node = graph.add(Node("n", context=graph.context))
+    bell = Doorbell(node)
+    node.add_waitable(bell)
+    assert list(node.waitables) == [bell]
+    graph.run_for(1.0)
+    assert bell.rung == []
+    bell.guard.trigger()
+    bell.guard.trigger()
+    graph.run_for(1.0)
+    bell.guard.trigger()
+    graph.run_for(4.0)
+    assert bell.rung == ["first", "guard", "timer"]
+    node.remove_waitable(bell)
+    assert list(node.waitables) == []
+
+
+def test_a_waitable_that_raises_is_named(graph: GraphHarness) -> None:
+    class Broken(Doorbell):
+        async def execute(self, taken_data: str) -> None:
+            raise ValueError(taken_data)
+
+    node = graph.add(Node("n", context=graph.context))
+    bell = Broken(node)
+    node.add_waitable(bell)
+    bell.guard.trigger()
+    with pytest.raises(
+        ValueError, match="/n: callback of waitable Broken .*guar"
+    ):
+        graph.run_for(1.0)
+
+
+def test_what_a_waitable_must_say() -> None:
+    waitable: Waitable[Any] = Waitable(ReentrantCallbackGroup())
+    wait_set = WaitSet(print)
+    for call in (
+        lambda: waitable.add_to_wait_set(wait_set),
+        lambda: waitable.is_ready(wait_set),
+        waitable.take_data,
+        waitable.get_num_entities,
+    ):
+        with pytest.raises(NotImplementedError, match="subclass"):
+            call()
+    future: Future[int] = Future()
+    waitable.add_future(future)
+    waitable.remove_future(future)
+
+
+def test_numbers_of_entities() -> None:
+    total = NumberOfEntities(1, 2, 3) + NumberOfEntities(num_events=4)
+    assert total == NumberOfEntities(1, 2, 3, 0, 0, 4)
+    total += NumberOfEntities(num_subs=1)
+    assert (total.num_subscriptions, total.num_guard_conditions) == (2, 2)
+    assert repr(total) == "<NumberOfEntities(2, 2, 3, 0, 0, 4)>"
+    assert total != 3

@@ -83,7 +83,7 @@ class ClientGoalHandle:
         return self._action_client.wait_for(self.get_result_async())
 
 
-class ActionClient(Waitable):
+class ActionClient(Waitable[Any]):
     """Sends goals to an action's server."""
 
     def __init__(

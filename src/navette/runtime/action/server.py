@@ -54,7 +54,7 @@ def default_cancel_callback(cancel_request: Any) -> CancelResponse:
     return CancelResponse.REJECT
 
 
-class ActionServer(Waitable):
+class ActionServer(Waitable[Any]):
     """Accepts goals and executes them; callbacks may be coroutine functions.
 
     Args:

@@ -21,11 +21,13 @@ from navette.runtime.qos_events import (
     UnsupportedEventTypeError,
 )
 from navette.runtime.qos_events import EventHandler as QoSEventHandler
+from navette.runtime.wait_set import NumberOfEntities
 
 __all__ = [
     "CallbackGroup",
     "EventHandler",
     "IncompatibleTypeInfo",
+    "NumberOfEntities",
     "PublisherEventCallbacks",
     "QoSEventHandler",
     "QoSLivelinessChangedInfo",

@@ -30,6 +30,7 @@ from navette.runtime.node import Node
 from navette.runtime.signals import SignalHandlerGuardCondition
 from navette.runtime.time import timeout_sec_to_nsec
 from navette.runtime.timer import TimerInfo
+from navette.runtime.wait_set import NumberOfEntities
 from navette.runtime.waitable import Waitable
 
 __all__ = [
@@ -45,6 +46,7 @@ __all__ = [
     "InvalidHandle",
     "MultiThreadedExecutor",
     "Node",
+    "NumberOfEntities",
     "Service",
     "ShutdownException",
     "SignalHandlerGuardCondition",

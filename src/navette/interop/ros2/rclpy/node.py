@@ -50,12 +50,14 @@ from navette.runtime.names import (
     validate_full_topic_name,
     validate_namespace,
     validate_node_name,
-    validate_parameter_name,
     validate_topic_name,
 )
 from navette.runtime.node import HIDDEN_NODE_PREFIX
 from navette.runtime.node_graph import NodeNameNonExistentError
-from navette.runtime.parameter import PARAMETER_SEPARATOR_STRING
+from navette.runtime.parameter import (
+    PARAMETER_SEPARATOR_STRING,
+    validate_parameter_name,
+)
 from navette.runtime.parameter_service import ParameterService
 from navette.runtime.program_log import get_logger
 from navette.runtime.qos import (

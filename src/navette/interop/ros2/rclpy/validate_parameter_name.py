@@ -1,7 +1,7 @@
 """Is it a parameter's name?"""
 
 from navette.runtime.exceptions import InvalidParameterException
-from navette.runtime.names import validate_parameter_name
+from navette.runtime.parameter import validate_parameter_name
 
 __all__ = [
     "InvalidParameterException",

@@ -8,12 +8,14 @@ from navette.runtime.qos import (
     qos_profile_services_default,
 )
 from navette.runtime.type_support import check_for_type_support
+from navette.runtime.wait_set import NumberOfEntities
 from navette.runtime.waitable import Waitable
 
 __all__ = [
     "ActionClient",
     "ClientGoalHandle",
     "Future",
+    "NumberOfEntities",
     "QoSProfile",
     "Waitable",
     "await_or_execute",

@@ -16,6 +16,7 @@ from navette.runtime.qos import (
     qos_profile_services_default,
 )
 from navette.runtime.type_support import check_for_type_support
+from navette.runtime.wait_set import NumberOfEntities
 from navette.runtime.waitable import Waitable
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "Future",
     "GoalEvent",
     "GoalResponse",
+    "NumberOfEntities",
     "QoSProfile",
     "RCLError",
     "ServerGoalHandle",
