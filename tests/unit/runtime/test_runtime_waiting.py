@@ -174,9 +174,7 @@ def test_a_waitable_that_raises_is_named(graph: GraphHarness) -> None:
     bell = Broken(node)
     node.add_waitable(bell)
     bell.guard.trigger()
-    with pytest.raises(
-        ValueError, match="/n: callback of waitable Broken .*guar"
-    ):
+    with pytest.raises(ValueError, match=r"/n: callback of waitable Broken .*guar"):
         graph.run_for(1.0)
 
 
