@@ -6,9 +6,17 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from navette.bags import Damage, open_bag
-from navette.bags.play import MergedSource, PlayOptions, Source, TolerantSource
+from navette.bags.play import (
+    MergedSource,
+    PlayOptions,
+    PlayState,
+    Source,
+    TolerantSource,
+)
 from navette.bags.play.node import PlayerNode, PlayProgress
-from navette.runtime import Context, Executor, LoggingSeverity
+from navette.runtime import Context, Executor, LoggingSeverity, Parameter
+from navette.viewer.node import ViewerNode
+from navette.viewer.playback import PlaybackState, PlaybackStatus
 
 _log = logging.getLogger(__name__)
 
@@ -54,9 +62,9 @@ class Playback:
             self._stack.callback(self.player.destroy_node)
             self.executor = Executor(context=self.context)
             self.executor.add_node(self.player)
+            #: Where to look at it in a browser.
+            self.url = None if view_port is None else self._open_view(view_port)
             opening.pop_all()
-        #: Where to look at it in a browser.
-        self.url: str | None = None
 
     def run(self) -> None:
         """Play to the end, or until :meth:`stop`."""
@@ -94,9 +102,51 @@ class Playback:
         context.init(args=[], console_level=LoggingSeverity.WARN)
         return context
 
+    def _open_view(self, port: int) -> str:
+        viewer = ViewerNode(
+            context=self.context,
+            playback=_Shown(self.player),
+            parameter_overrides=[Parameter("port", value=port)],
+        )
+        self._stack.callback(viewer.close)
+        self.executor.add_node(viewer)
+        return viewer.url
+
     def _on_end(self) -> None:
         if self.url is None:
             self.stop()
+
+
+class _Shown:
+    """The player as the live view sees it."""
+
+    def __init__(self, player: PlayerNode) -> None:
+        self._player = player
+        self.begin_ns = player.player.begin_ns
+        self.end_ns = player.player.end_ns
+
+    def state(self) -> PlaybackState:
+        progress = self._player.progress()
+        status = _STATUS[progress.state]
+        return PlaybackState(status, progress.position_ns, progress.rate)
+
+    def control(self, *, play: bool, speed: float, seek_ns: int | None) -> None:
+        # A 32-bit number on the wire: 0.1 was meant.
+        rate = float(f"{speed:.6g}")
+        self._player.control(play=play, rate=rate, seek_ns=seek_ns)
+
+    def step(self) -> None:
+        self._player.step()
+
+    def on_change(self, callback: Callable[[bool], None]) -> None:
+        self._player.on_change = callback
+
+
+_STATUS = {
+    PlayState.PLAYING: PlaybackStatus.PLAYING,
+    PlayState.PAUSED: PlaybackStatus.PAUSED,
+    PlayState.ENDED: PlaybackStatus.ENDED,
+}
 
 
 def _report(damage: Damage) -> None:

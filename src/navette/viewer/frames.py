@@ -1,7 +1,8 @@
 """Frames that clients send: text and binary to values, nothing else.
 
 Source: the Foxglove WebSocket protocol v1 (foxglove/ws-protocol, docs/spec.md);
-the later subprotocol ``foxglove.sdk.v1`` has the same frames. Whatever a client
+the later subprotocol ``foxglove.sdk.v1`` has the same frames and those that control
+playback (foxglove/foxglove-sdk, rust/foxglove/src/protocol). Whatever a client
 sends either becomes one of the values below or raises :class:`DecodeError`.
 """
 
@@ -18,6 +19,7 @@ from navette.errors import DecodeError
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 
 _U32 = 2**32
+_PLAYBACK = struct.Struct("<BBfBQI")
 
 
 @dataclass(frozen=True)
@@ -120,6 +122,21 @@ class CallService:
     data: bytes
 
 
+@dataclass(frozen=True)
+class ControlPlayback:
+    """Play or pause, how fast, and where first."""
+
+    play: bool
+    speed: float
+    seek_ns: int | None
+    request_id: str
+
+
+@dataclass(frozen=True)
+class StepPlayback:
+    """Pause and give the next message: of Navette's own page only."""
+
+
 ClientFrame = (
     Subscribe
     | Unsubscribe
@@ -134,6 +151,8 @@ ClientFrame = (
     | UnwatchGraph
     | FetchAsset
     | CallService
+    | ControlPlayback
+    | StepPlayback
 )
 
 
@@ -172,7 +191,9 @@ def _decode_binary(data: bytes) -> ClientFrame:
         return Publish(channel_id, bytes(data[5:]))
     if data[0] == 2:
         return _decode_call(data)
-    raise DecodeError(f"unknown binary opcode {data[0]}; known: 1 and 2")
+    if data[0] == 3:
+        return _decode_playback(data)
+    raise DecodeError(f"unknown binary opcode {data[0]}; known: 1, 2 and 3")
 
 
 def _decode_call(data: bytes) -> CallService:
@@ -184,6 +205,21 @@ def _decode_call(data: bytes) -> CallService:
         raise DecodeError("service call frame is cut short")
     encoding = data[13:end].decode("utf-8", "replace")
     return CallService(service_id, call_id, encoding, bytes(data[end:]))
+
+
+def _decode_playback(data: bytes) -> ControlPlayback:
+    """Command (0 play, 1 pause), speed, whether and where to seek, request id."""
+    if len(data) < _PLAYBACK.size:
+        raise DecodeError("playback control frame is cut short")
+    _, command, speed, seeks, seek_ns, length = _PLAYBACK.unpack_from(data)
+    end = _PLAYBACK.size + length
+    if end > len(data):
+        raise DecodeError("playback control frame is cut short")
+    if command > 1:
+        raise DecodeError(f"unknown playback command {command}; known: 0 and 1")
+    request_id = data[_PLAYBACK.size : end].decode("utf-8", "replace")
+    where = seek_ns if seeks else None
+    return ControlPlayback(command == 0, speed, where, request_id)
 
 
 def _refuse_constant(name: str) -> NoReturn:
@@ -296,5 +332,6 @@ _TEXT: dict[str, Callable[[_Fields], ClientFrame]] = {
     ),
     "subscribeConnectionGraph": lambda _: WatchGraph(),
     "unsubscribeConnectionGraph": lambda _: UnwatchGraph(),
+    "stepPlayback": lambda _: StepPlayback(),
     "fetchAsset": lambda f: FetchAsset(f.text("uri"), f.identifier("requestId")),
 }

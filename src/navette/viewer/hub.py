@@ -14,6 +14,7 @@ from navette.viewer import frames, replies
 from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, WireParameter
 from navette.viewer.outbox import Outbox
+from navette.viewer.playback import PlaybackState
 from navette.viewer.replies import Channel, Graph, Level
 from navette.viewer.session import Robot, Session, Topic, Watch
 
@@ -31,9 +32,12 @@ class Hub:
         name: str,
         session_id: str,
         assets: AssetFolders | None = None,
+        playback_range: tuple[int, int] | None = None,
     ) -> None:
         self._robot = robot
-        self._info = replies.server_info(name, session_id)
+        self._info = replies.server_info(name, session_id, playback_range)
+        self._plays = playback_range is not None
+        self._playback: bytes | None = None
         self._assets = assets or AssetFolders({})
         self._sessions: dict[int, Session] = {}
         self._channels: dict[int, Channel] = {}
@@ -61,6 +65,8 @@ class Hub:
         session.send(replies.advertise(self._channels.values()))
         if self.now_ns:
             session.send(replies.time(self.now_ns))
+        if self._playback is not None:
+            session.send(self._playback)
         return session
 
     def leave(self, session: Session) -> None:
@@ -134,6 +140,18 @@ class Hub:
         frame = replies.time(now_ns)
         for session in self._sessions.values():
             session.outbox.put_data(_TIME, frame, depth=1)
+
+    def set_playback(
+        self, state: PlaybackState, *, did_seek: bool, request_id: str
+    ) -> None:
+        """Tell the clients where the recording is; newcomers hear of it too."""
+        frame = replies.playback_state(state, did_seek=did_seek, request_id=request_id)
+        self._playback = replies.playback_state(state, did_seek=False, request_id="")
+        for session in self._sessions.values():
+            if did_seek:  # what still waits is from another place
+                for subscription_id in session.channel_by_subscription:
+                    session.outbox.forget(subscription_id)
+            session.send(frame)
 
     def parameters(
         self,
@@ -278,6 +296,23 @@ class Hub:
             )
         )
 
+    def _control_playback(
+        self, session: Session, request: frames.ControlPlayback
+    ) -> None:
+        if self._can_play(session):
+            self._robot.control_playback(session.id, request)
+
+    def _step_playback(self, session: Session, _request: frames.StepPlayback) -> None:
+        if self._can_play(session):
+            self._robot.step_playback(session.id)
+
+    def _can_play(self, session: Session) -> bool:
+        if not self._plays:
+            session.complain("playback control: no recording is played")
+            return False
+        session.pending += 1
+        return True
+
     # -- inside ----------------------------------------------------------------
 
     def _remove_channel(self, channel: Channel) -> None:
@@ -306,6 +341,8 @@ _HANDLERS: dict[type, Callable[..., None]] = {
     frames.UnwatchGraph: Hub._unwatch_graph,
     frames.FetchAsset: Hub._fetch_asset,
     frames.CallService: Hub._call_service,
+    frames.ControlPlayback: Hub._control_playback,
+    frames.StepPlayback: Hub._step_playback,
 }
 
 

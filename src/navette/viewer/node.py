@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 
 from navette._version import __version__
 from navette.errors import NavetteError, ParameterError, UnknownNameError
-from navette.msgs import definition_text, get_interface, serialize
+from navette.msgs import definition_text, get_interface
 from navette.msgs.rcl_interfaces.msg import ParameterEvent, SetParametersResult
 from navette.params import Params
 from navette.runtime.context import Context
@@ -32,11 +32,12 @@ from navette.runtime.qos import (
 from navette.runtime.stage import StageNode
 from navette.runtime.subscription import Subscription
 from navette.viewer.assets import AssetFolders
-from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
 from navette.viewer.parameters import from_wire, split_name, to_wire, wire_name
 from navette.viewer.params import ViewerParams
+from navette.viewer.playback import Playback
 from navette.viewer.publishing import decode_message
 from navette.viewer.server import ViewerServer
 from navette.viewer.session import Watch
@@ -48,6 +49,7 @@ class ViewerNode(StageNode):
     """The live view; serves from its making until :meth:`close`.
 
     Args:
+        playback: a recording that is played here: clients see its time and control it.
         asset_folders: package name → folder, for ``package://<name>/…`` addresses.
 
     Raises:
@@ -61,6 +63,7 @@ class ViewerNode(StageNode):
         self,
         *,
         context: Context | None = None,
+        playback: Playback | None = None,
         asset_folders: Mapping[str, Path] | None = None,
         parameter_overrides: Sequence[Parameter[Any]] | None = None,
     ) -> None:
@@ -73,12 +76,15 @@ class ViewerNode(StageNode):
         self._refreshing = False
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
+        self._playback = playback
+        self._playback_request = ""
         self._hub = Hub(
             _Bridge(self),
             name="Navette",
             # The same for a reconnecting client, another for another run.
             session_id=f"navette-{id(self):x}",
             assets=AssetFolders(asset_folders or {}),
+            playback_range=None if playback is None else _range(playback),
         )
         try:
             self._server = self._make_server()
@@ -96,6 +102,8 @@ class ViewerNode(StageNode):
         )
         self._stop_listening = self.context.graph.on_change(self._on_graph_change)
         self._refresh()
+        if playback is not None:
+            playback.on_change(self._report_playback)
 
     @property
     def port(self) -> int:
@@ -200,7 +208,7 @@ class ViewerNode(StageNode):
                 channel.topic,
                 partial(self._forward, watch),
                 qos_profile_best_available,  # latched messages too
-                shared=True,
+                raw=True,  # what came as bytes goes as bytes
             )
         except NavetteError as error:  # the topic has changed since it was advertised
             self.get_logger().warning(f"cannot watch {channel.topic}: {error}")
@@ -210,8 +218,8 @@ class ViewerNode(StageNode):
         if subscription is not None:
             self.destroy_subscription(subscription)
 
-    def _forward(self, watch: Watch, message: Any) -> None:
-        self._server.offer(watch, self.get_clock().now_ns, serialize(message))
+    def _forward(self, watch: Watch, payload: bytes) -> None:
+        self._server.offer(watch, self._now_ns(), payload)
 
     def open_publisher(self, client: int, channel: ClientChannel) -> None:
         """Raises NavetteError for what cannot be published; as do the next ones."""
@@ -266,6 +274,38 @@ class ViewerNode(StageNode):
         if not result.successful:
             raise ParameterError(f"parameter {wire.name!r}: {result.reason}")
 
+    def control_playback(self, request: ControlPlayback) -> None:
+        """Do what a client's playback bar asks for; all clients hear of it."""
+        if self._playback is None:
+            return
+        self._playback_request = request.request_id
+        try:
+            self._playback.control(
+                play=request.play, speed=request.speed, seek_ns=request.seek_ns
+            )
+        finally:
+            if self._playback_request:  # nothing changed: say how it is all the same
+                self._report_playback(False)
+
+    def step_playback(self) -> None:
+        """The recording's next message."""
+        if self._playback is not None:
+            self._playback.step()
+
+    def _report_playback(self, jumped: bool) -> None:
+        if self._playback is not None:
+            request_id, self._playback_request = self._playback_request, ""
+            report = partial(
+                self._hub.set_playback, did_seek=jumped, request_id=request_id
+            )
+            self._server.call(report, self._playback.state())
+
+    def _now_ns(self) -> int:
+        """The time that clients are shown; from any thread."""
+        if self._playback is not None:
+            return self._playback.state().position_ns
+        return self.get_clock().now_ns
+
     # -- between the threads -------------------------------------------------------
 
     def run_soon(self, function: Callable[[], None], source: str) -> None:
@@ -310,7 +350,7 @@ class ViewerNode(StageNode):
             Gate(params.host, params.allowed_origins, params.allowed_hosts),
             host=params.host,
             port=params.port,
-            now_ns=lambda: self.get_clock().now_ns,
+            now_ns=self._now_ns,
             time_rate_hz=params.time_rate_hz,
             max_clients=params.max_clients,
         )
@@ -321,7 +361,7 @@ class ViewerNode(StageNode):
             "version": __version__,
             "clients": self._hub.clients,
             "topics": len(self._hub.channels),
-            "time_s": self.get_clock().now_ns / 1e9,
+            "time_s": self._now_ns() / 1e9,
         }
 
 
@@ -370,6 +410,12 @@ class _Bridge:
 
         self._ask(client, work)
 
+    def control_playback(self, client: int, request: ControlPlayback) -> None:
+        self._ask(client, partial(self._node.control_playback, request))
+
+    def step_playback(self, client: int) -> None:
+        self._ask(client, self._node.step_playback)
+
     def _ask(self, client: int, work: Callable[[], None]) -> None:
         self._node.run_soon(partial(self._node.answer, client, work), "request")
 
@@ -382,6 +428,10 @@ def _parameters_of(node: Node) -> list[WireParameter]:
 
 def _to_wire(node: str, parameter: Parameter[Any]) -> WireParameter:
     return to_wire(wire_name(node, parameter.name), parameter.value)
+
+
+def _range(playback: Playback) -> tuple[int, int]:
+    return playback.begin_ns, playback.end_ns
 
 
 def _nothing() -> None:

@@ -1,6 +1,7 @@
 """Frames that the server sends: values to text and binary, nothing else.
 
-Source: the Foxglove WebSocket protocol v1 (foxglove/ws-protocol, docs/spec.md).
+Source: the Foxglove WebSocket protocol v1 (foxglove/ws-protocol, docs/spec.md), for
+playback control the SDK's (foxglove/foxglove-sdk, rust/foxglove/src/protocol).
 """
 
 import json
@@ -11,9 +12,9 @@ from enum import IntEnum
 from typing import Any
 
 from navette.viewer.frames import WireParameter
+from navette.viewer.playback import PlaybackState
 
-# Services and playback control join when the runtime has them: a capability that
-# is declared must work.
+# A capability that is declared must work; playback control is declared by who plays.
 CAPABILITIES = (
     "clientPublish",
     "parameters",
@@ -23,6 +24,7 @@ CAPABILITIES = (
     "assets",
 )
 ENCODINGS = ("cdr", "json")
+_NS_PER_S = 1_000_000_000
 
 
 class Level(IntEnum):
@@ -55,16 +57,26 @@ class Graph:
 EMPTY_GRAPH = Graph({}, {})
 
 
-def server_info(name: str, session_id: str) -> str:
+def server_info(
+    name: str, session_id: str, playback_range: tuple[int, int] | None = None
+) -> str:
+    """``playback_range``: first and last stamp (ns) of a recording that is played."""
+    extra: dict[str, Any] = {}
+    if playback_range is not None:
+        begin, end = (divmod(each, _NS_PER_S) for each in playback_range)
+        extra["dataStartTime"] = {"sec": begin[0], "nsec": begin[1]}
+        extra["dataEndTime"] = {"sec": end[0], "nsec": end[1]}
+    playback = () if playback_range is None else ("playbackControl",)
     return _json(
         op="serverInfo",
         name=name,
-        capabilities=CAPABILITIES,
+        capabilities=(*CAPABILITIES, *playback),
         supportedEncodings=ENCODINGS,
         # Without the distribution's name the Foxglove app does not know that this is
         # ROS 2, and its publish tools (the goal point!) stay off.
         metadata={"ROS_DISTRO": "jazzy"},
         sessionId=session_id,
+        **extra,
     )
 
 
@@ -99,6 +111,21 @@ def message_data(subscription_id: int, stamp_ns: int, payload: bytes) -> bytes:
 
 def time(stamp_ns: int) -> bytes:
     return struct.pack("<BQ", 2, _u64(stamp_ns))
+
+
+def playback_state(state: PlaybackState, *, did_seek: bool, request_id: str) -> bytes:
+    """``did_seek`` empties panels; ``request_id`` is that of the request, or ""."""
+    text = request_id.encode()
+    head = struct.pack(
+        "<BBQfBI",
+        5,
+        state.status,
+        _u64(state.position_ns),
+        state.speed,
+        did_seek,
+        len(text),
+    )
+    return head + text
 
 
 def parameter_values(

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from navette.viewer import replies
-from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.outbox import Outbox
 from navette.viewer.replies import Channel, Level
 
@@ -34,7 +34,7 @@ class Watch:
 class Robot(Protocol):
     """What the hub asks of the running program; every call returns at once.
 
-    After each publisher, publish and parameter call the program calls
+    After each publisher, publish, parameter and playback call the program calls
     :meth:`Hub.done`, so that a client cannot pile up work.
     """
 
@@ -52,6 +52,8 @@ class Robot(Protocol):
         parameters: tuple[WireParameter, ...],
         request_id: str | None,
     ) -> None: ...
+    def control_playback(self, client: int, request: ControlPlayback) -> None: ...
+    def step_playback(self, client: int) -> None: ...
 
 
 @dataclass

@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.outbox import Outbox
 from navette.viewer.session import Watch
 
@@ -41,6 +41,12 @@ class RecordingRobot:
         request_id: str | None,
     ) -> None:
         self.calls.append(("set", client, parameters, request_id))
+
+    def control_playback(self, client: int, request: ControlPlayback) -> None:
+        self.calls.append(("playback", client, request))
+
+    def step_playback(self, client: int) -> None:
+        self.calls.append(("step", client))
 
     def take(self) -> list[tuple[Any, ...]]:
         calls, self.calls = self.calls, []

@@ -16,6 +16,7 @@ from websockets.typing import Subprotocol
 
 from navette.runtime import Context, Executor, Node, Parameter, SystemClock
 from navette.viewer.node import ViewerNode
+from navette.viewer.playback import Playback
 
 PATIENCE_S = 10.0  # only a broken test waits this long
 
@@ -27,6 +28,7 @@ class Program:
         self,
         *make_nodes: Callable[[Context], Node],
         asset_folders: Mapping[str, Path] | None = None,
+        playback: Playback | None = None,
         **params: Any,
     ) -> None:
         self.context = Context(clock=SystemClock())
@@ -36,6 +38,7 @@ class Program:
         self.viewer = ViewerNode(
             context=self.context,
             asset_folders=asset_folders,
+            playback=playback,
             parameter_overrides=overrides,
         )
         for node in (*self.nodes, self.viewer):
@@ -247,6 +250,8 @@ def _split(frame: bytes) -> tuple[Any, ...]:
         return 1, subscription, stamp, frame[13:]
     if frame[0] == 2:
         return (2, *struct.unpack_from("<Q", frame, 1))
+    if frame[0] == 5:
+        return 5, frame[1:]
     assert frame[0] == 4, f"unknown opcode {frame[0]}"
     request, status, length = struct.unpack_from("<IBI", frame, 1)
     return 4, request, status, frame[10 : 10 + length], frame[10 + length :]

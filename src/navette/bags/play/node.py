@@ -187,6 +187,24 @@ class PlayerNode(Node):
         """Go forward or back."""
         self.seek(self.player.position_ns(self._now_ns()) + delta_ns)
 
+    def control(self, *, play: bool, rate: float, seek_ns: int | None) -> None:
+        """All at once: a place to go to (if any), a rate, and whether to play.
+
+        Raises:
+            InvalidValueError: no rate; nothing is changed.
+        """
+        player, now_ns = self.player, self._now_ns()
+        player.set_rate(now_ns, rate)
+        if seek_ns is None and play and player.state is PlayState.ENDED:
+            seek_ns = player.begin_ns
+        if seek_ns is not None:
+            player.seek(now_ns, seek_ns)
+        if play:
+            player.resume(now_ns)
+        else:
+            player.pause(now_ns)
+        self._changed(jumped=seek_ns is not None)
+
     def stop(self) -> None:
         """Pause, and end as if the end were reached."""
         self.pause()
