@@ -11,8 +11,17 @@ from typing import Any
 import pytest
 from transport_benches import LIMIT_S, free_endpoint, until, zenoh_environment
 
-from navette import Context, Node
+from navette import (
+    ActionClient,
+    AsyncParameterClient,
+    Context,
+    DurabilityPolicy,
+    Node,
+    QoSProfile,
+)
+from navette.msgs.example_interfaces.action import Fibonacci
 from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.rcl_interfaces.msg import Log
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Executor
 from navette.runtime.exceptions import ServiceFailedError
@@ -59,10 +68,39 @@ navette.spin(node)
 """
 
 
+WORKER = """
+import navette
+from navette.msgs.example_interfaces.action import Fibonacci
+from navette.msgs.std_msgs.msg import String
+navette.init(args=[])
+node = navette.Node("worker")
+node.declare_parameter("gain", 1.5)
+def count(goal_handle):
+    numbers = [0, 1]
+    for _ in range(goal_handle.request.order - 2):
+        numbers.append(numbers[-1] + numbers[-2])
+        goal_handle.publish_feedback(Fibonacci.Feedback(sequence=numbers))
+    goal_handle.succeed()
+    return Fibonacci.Result(sequence=numbers)
+server = navette.ActionServer(node, Fibonacci, "count", count)
+latched = navette.QoSProfile(
+    depth=1, durability=navette.DurabilityPolicy.TRANSIENT_LOCAL
+)
+map_publisher = node.create_publisher(String, "map", latched)
+map_publisher.publish(String(data="older"))
+map_publisher.publish(String(data="the map"))
+node.get_logger().warning("working")
+print("ready", flush=True)
+navette.spin(node)
+"""
+
+
 class Child:
     """A process that says ``ready``; killed at the end, if it has not ended before."""
 
-    def __init__(self, program: str, router: str, *args: str) -> None:
+    def __init__(
+        self, program: str, router: str, *args: str, is_waited_for: bool = True
+    ) -> None:
         self._process = subprocess.Popen(
             [sys.executable, "-c", program, *args],
             env=zenoh_environment(router),
@@ -74,7 +112,8 @@ class Child:
         self._ended: tuple[int, str] | None = None
         self._reader = threading.Thread(target=self._read)
         self._reader.start()
-        until(lambda: "ready" in self.lines, "the child's start")
+        if is_waited_for:
+            until(lambda: "ready" in self.lines, "the child's start")
 
     def end(self, signum: int = signal.SIGKILL) -> tuple[int, str]:
         """Exit code and what it said on stderr."""
@@ -101,8 +140,8 @@ class Network:
         self._stack = stack
         monkeypatch.setenv("NAVETTE_ROUTER", self.router)
 
-    def child(self, program: str, *args: str) -> Child:
-        child = Child(program, self.router, *args)
+    def child(self, program: str, *args: str, is_waited_for: bool = True) -> Child:
+        child = Child(program, self.router, *args, is_waited_for=is_waited_for)
         self._stack.callback(child.end)
         return child
 
@@ -179,6 +218,57 @@ def test_a_service_of_another_process_answers_and_its_death_is_named(
     spin_until(executor, future.done, "the failure")
     with pytest.raises(ServiceFailedError, match="/add failed: the server went away"):
         future.result()
+
+
+@pytest.mark.slow
+def test_actions_parameters_logs_and_the_latest_map_of_another_process(
+    network: Network,
+) -> None:
+    network.child(WORKER)
+    node, executor = network.node("boss")
+    maps: list[str] = []
+    logs: list[str] = []
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(String, "map", lambda m: maps.append(m.data), latched)
+    past = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(Log, "/rosout", lambda m: logs.append(m.msg), past)
+    spin_until(executor, lambda: maps and "working" in logs, "what was said before")
+    assert maps == ["the map"]
+
+    parameters = AsyncParameterClient(node, "/worker")
+    assert parameters.services_are_ready()
+    answer = parameters.get_parameters(["gain"])
+    spin_until(executor, answer.done, "the parameter")
+    assert answer.result().values[0].double_value == 1.5
+
+    client = ActionClient(node, Fibonacci, "count")
+    assert client.server_is_ready()
+    steps: list[int] = []
+    sent = client.send_goal_async(
+        Fibonacci.Goal(order=6),
+        feedback_callback=lambda m: steps.append(len(m.feedback.sequence)),
+    )
+    spin_until(executor, sent.done, "the goal's acceptance")
+    result = sent.result().get_result_async()
+    spin_until(executor, lambda: result.done() and len(steps) == 4, "the result")
+    assert list(result.result().result.sequence) == [0, 1, 1, 2, 3, 5]
+    assert steps == [3, 4, 5, 6]
+
+
+@pytest.mark.slow
+def test_many_that_start_at_once_agree_on_a_router(network: Network) -> None:
+    names = {f"racer{number}" for number in range(6)}
+    racers = [
+        network.child(TALKER, name, is_waited_for=False) for name in sorted(names)
+    ]
+    for racer in racers:
+        until(lambda racer=racer: "ready" in racer.lines, "a start")  # type: ignore[misc]
+    node, executor = network.node("judge")
+    assert names <= set(node.get_node_names())
+    heard = listen(node)
+    spin_until(
+        executor, lambda: {text.split()[0] for text in heard} == names, "everybody"
+    )
 
 
 @pytest.mark.slow
