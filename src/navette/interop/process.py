@@ -33,6 +33,7 @@ from navette.runtime.graph import Graph
 _GRACE_S = 0.5
 _LONGEST_END_S = 5.0
 _LOOK_S = 0.1
+_IMPORT_LOOK_S = 0.01
 
 _argv: contextvars.ContextVar[list[str]] = contextvars.ContextVar("navette_argv")
 
@@ -126,15 +127,33 @@ class RunningProgram:
         return not self._thread.is_alive()
 
     def interrupt(self) -> None:
-        """Raise KeyboardInterrupt in its main thread, as Ctrl-C does for a process."""
+        """Raise KeyboardInterrupt in its main thread, as Ctrl-C does for a process.
+
+        Not amid an import: Python's import locks would stay taken, and whoever imports
+        next would wait for ever. It comes right after.
+        """
+        if self._deliver():
+            return
+        threading.Thread(target=self._deliver_later, daemon=True).start()
+
+    def _deliver_later(self) -> None:
+        pause = threading.Event()
+        while not self._deliver():
+            pause.wait(_IMPORT_LOOK_S)
+
+    def _deliver(self) -> bool:
+        """Interrupt it now; False if that has to wait."""
         ident = self._thread.ident
         if ident is None or not self.is_alive:
-            return
+            return True
+        if _is_importing(ident):
+            return False
         ctypes.pythonapi.PyThreadState_SetAsyncExc(
             ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt)
         )
         for context in tuple(self.scope.contexts):
             context.loop.wake()
+        return True
 
     def shut_down(self) -> None:
         """Shut its contexts down, as SIGTERM does: its spins end, ``ok()`` is False."""
@@ -152,6 +171,16 @@ class RunningProgram:
             self.shut_down()
             if self._on_end is not None:
                 self._on_end(self.exit_code)
+
+
+def _is_importing(ident: int) -> bool:
+    """Whether a thread is in Python's import machinery, at whatever depth."""
+    frame = sys._current_frames().get(ident)
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
 
 
 @contextmanager
@@ -193,10 +222,13 @@ def _end_all(running: Sequence[RunningProgram], how: _End) -> None:
         how(each)
     for each in running:
         each.join(max(0.0, _GRACE_S - watch.elapsed_s))
+    # Again and again: one that began only now may still make a context.
+    while watch.elapsed_s < _LONGEST_END_S and any(each.is_alive for each in running):
+        for each in running:
+            each.shut_down()
+            each.join(_LOOK_S / len(running))
     for each in running:
-        each.shut_down()
-    for each in running:
-        if not each.join(max(0.0, _LONGEST_END_S - watch.elapsed_s)):
+        if each.is_alive:
             sys.stderr.write(
                 f"navette: {each.program.name} does not end; left behind\n"
             )

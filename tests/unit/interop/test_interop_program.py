@@ -1,13 +1,17 @@
 """Programs run as Python and ROS 2 run them: name, arguments, exit code."""
 
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
-from navette.interop.process import run_alone, run_together
+from navette.interop.process import RunningProgram, run_alone, run_together
+from navette.interop.program import Program
 from navette.interop.targets import read_programs
+from navette.runtime.context import new_graph
 
 Write = Callable[..., Path]
 
@@ -219,3 +223,36 @@ def test_sleeping_in_a_callback_lets_others_run_where_ros_has_threads(
 ) -> None:
     assert run(write(SLEEPER), executor) == 0
     assert capsys.readouterr().out == other_ran
+
+
+def test_an_interrupt_waits_for_the_end_of_an_import(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An import lock that is never let go would stop every later import."""
+    (tmp_path / "slow_module.py").write_text(
+        "import gates\ngates.entered.set()\ngates.go_on.wait(20)\nvalue = 1\n"
+    )
+    gates = ModuleType("gates")
+    gates.entered, gates.go_on = threading.Event(), threading.Event()  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "gates", gates)
+    monkeypatch.syspath_prepend(tmp_path)
+    seen: list[object] = []
+
+    def main() -> None:
+        import slow_module  # type: ignore[import-not-found]
+
+        seen.append(slow_module.value)
+        threading.Event().wait(20)
+
+    running = RunningProgram(Program("p", (), main), new_graph())
+    running.start()
+    assert gates.entered.wait(20)
+    running.interrupt()
+    assert not seen
+    gates.go_on.set()
+    assert running.join(20)
+    assert running.exit_code == 130
+    import slow_module
+
+    assert slow_module.value == 1
+    monkeypatch.delitem(sys.modules, "slow_module")
