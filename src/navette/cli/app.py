@@ -1,6 +1,7 @@
 """The commands and their options; the work is done in ``launch``."""
 
 import math
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -111,8 +112,16 @@ def _root(
             is_eager=True,
         ),
     ] = False,
+    domain_id: Annotated[
+        int | None,
+        typer.Option(
+            min=0, max=232, metavar="N", help="In this domain, not ROS_DOMAIN_ID's."
+        ),
+    ] = None,
 ) -> None:
     """Robot navigation you pip install: simulate, map, plan, drive, watch."""
+    if domain_id is not None:
+        os.environ["ROS_DOMAIN_ID"] = str(domain_id)
 
 
 @app.command()

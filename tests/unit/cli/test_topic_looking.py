@@ -166,3 +166,11 @@ def test_find_nothing(talker: Node) -> None:
     shown = navette("topic", "find", "std_msgs/msg/Bool")
     assert (shown.exit_code, shown.stdout) == (1, "")
     assert shown.stderr == "navette: no topic carries std_msgs/msg/Bool\n"
+
+
+def test_the_domain_as_an_option(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "0")  # put back afterwards
+    with shared_graph():
+        shown = navette("--domain-id", "57", "topic", "list")
+    assert shown.stderr == "no topics: nothing runs in domain 57 (ROS_DOMAIN_ID)\n"
+    assert navette("--domain-id", "233", "topic", "list").exit_code == 2
