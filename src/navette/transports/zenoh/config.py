@@ -106,9 +106,12 @@ def _read(path: Path | None) -> zenoh.Config:
     if path is None:
         return zenoh.Config.from_json5(json.dumps(_COMMON))
     try:
-        return zenoh.Config.from_file(str(path))
+        config = zenoh.Config.from_file(str(path))
     except zenoh.ZError as error:
         raise InvalidValueError(f"Zenoh configuration {path}: {error}") from error
+    # Latched topics need it, whatever the file says.
+    config.insert_json5("timestamping/enabled", "true")
+    return config
 
 
 def _refuse_plain(endpoints: tuple[str, ...]) -> None:

@@ -4,10 +4,11 @@ import itertools
 import threading
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import zenoh
 
+from navette.errors import NetworkError
 from navette.msgs import type_hash
 from navette.transports.base import (
     Endpoint,
@@ -32,6 +33,7 @@ _TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
 _SERVICE_KINDS = (EndpointKind.SERVICE, EndpointKind.CLIENT)
 
 Port = ZenohPublisher | ZenohSubscription | ZenohService | ZenohClient
+P = TypeVar("P", bound=Port)
 
 
 class ZenohTransport(Transport):
@@ -104,66 +106,48 @@ class ZenohTransport(Transport):
         return gid
 
     def advertise(self, endpoint: Endpoint, message_class: type) -> ZenohPublisher:
-        token, matches = self._enter(endpoint)
-        gid = gid_of(token.key())
-        self._own_gids.add(gid)
-        port = ZenohPublisher(
-            self.session.zenoh,
-            self._key(token),
-            token.qos,
-            gid,
-            matches,
-            self._leave,
-        )
-        self._announce(port, token)
-        return port
+        def make(token: EndpointToken, matches: Matches) -> ZenohPublisher:
+            gid = gid_of(token.key())
+            self._own_gids.add(gid)
+            key, session = self._key(token), self.session.zenoh
+            return ZenohPublisher(session, key, token.qos, gid, matches, self._leave)
+
+        return self._open(endpoint, make)
 
     def subscribe(
         self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
     ) -> ZenohSubscription:
-        token, matches = self._enter(endpoint)
-        port = ZenohSubscription(
-            self.session.zenoh,
-            self._key(token),
-            message_class,
-            sink,
-            matches,
-            own_gids=self._own_gids,
-            lost=partial(self._graph.lost, endpoint),
-            closed=self._leave,
-            now_ns=self._now_ns,
-            **self._limits(),
-        )
-        self._announce(port, token)
-        return port
+        def make(token: EndpointToken, matches: Matches) -> ZenohSubscription:
+            return ZenohSubscription(
+                self.session.zenoh,
+                self._key(token),
+                message_class,
+                sink,
+                matches,
+                own_gids=self._own_gids,
+                lost=partial(self._graph.lost, endpoint),
+                now_ns=self._now_ns,
+                **self._common(),
+            )
+
+        return self._open(endpoint, make)
 
     def serve(self, endpoint: Endpoint, sink: RequestSink) -> ZenohService:
-        token, matches = self._enter(endpoint)
-        port = ZenohService(
-            self.session.zenoh,
-            self._key(token),
-            sink,
-            matches,
-            closed=self._leave,
-            now_ns=self._now_ns,
-            **self._limits(),
-        )
-        self._announce(port, token)
-        return port
+        def make(token: EndpointToken, matches: Matches) -> ZenohService:
+            key, session = self._key(token), self.session.zenoh
+            return ZenohService(
+                session, key, sink, matches, now_ns=self._now_ns, **self._common()
+            )
+
+        return self._open(endpoint, make)
 
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> ZenohClient:
-        token, matches = self._enter(endpoint)
-        port = ZenohClient(
-            self.session.zenoh,
-            self._key(token),
-            gid_of(token.key()),
-            sink,
-            matches,
-            closed=self._leave,
-            **self._limits(),
-        )
-        self._announce(port, token)
-        return port
+        def make(token: EndpointToken, matches: Matches) -> ZenohClient:
+            key, session = self._key(token), self.session.zenoh
+            gid = gid_of(token.key())
+            return ZenohClient(session, key, gid, sink, matches, **self._common())
+
+        return self._open(endpoint, make)
 
     def endpoints(self) -> list[Endpoint]:
         """Those of other sessions."""
@@ -215,28 +199,39 @@ class ZenohTransport(Transport):
     def _key(self, token: EndpointToken) -> str:
         return data_key(token.domain_id, token.topic, token.type_name, token.type_hash)
 
-    def _enter(self, endpoint: Endpoint) -> tuple[EndpointToken, Matches]:
+    def _open(
+        self, endpoint: Endpoint, make: Callable[[EndpointToken, Matches], P]
+    ) -> P:
+        """A port that is matched, then announced: who sees its token may rely on it."""
         with self._lock:
             token = self._announced.pop(endpoint.gid, None)
         if token is None:
             token = self._token_of(endpoint)
-        return token, self._graph.add_local(endpoint, token.type_hash)
+        matches = self._graph.add_local(endpoint, token.type_hash)
+        try:
+            port = make(token, matches)
+            declared = self._declare_token(token.key())
+        except zenoh.ZError as error:
+            self._graph.remove_local(matches)
+            raise NetworkError(
+                f"{endpoint.kind.name.lower()} of {endpoint.topic} (node "
+                f"{endpoint.node_full_name}) cannot be opened: {error}"
+            ) from error
+        with self._lock:
+            self._ports[port] = declared
+        return port
 
-    def _limits(self) -> dict[str, Any]:
+    def _common(self) -> dict[str, Any]:
         return {
             "complaints": self.session.complaints,
             "max_message_bytes": self.session.settings.max_message_bytes,
+            "closed": self._leave,
         }
-
-    def _announce(self, port: Port, token: EndpointToken) -> None:
-        # After the port is open: who sees the token may rely on it.
-        declared = self._declare_token(token.key())
-        with self._lock:
-            self._ports[port] = declared
 
     def _leave(self, port: Port) -> None:
         with self._lock:
             token = self._ports.pop(port)
+        self._own_gids.discard(port.matches.endpoint.gid)
         self._graph.remove_local(port.matches)
         if not self.session.zenoh.is_closed():
             token.undeclare()
