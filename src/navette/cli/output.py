@@ -2,11 +2,16 @@
 
 import json
 import os
+import re
+import shutil
 import sys
+import textwrap
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import typer
+
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 def is_terminal() -> bool:
@@ -19,6 +24,31 @@ def styled(text: str, **style: Any) -> str:
     if not is_terminal() or "NO_COLOR" in os.environ:
         return text
     return typer.style(text, **style)
+
+
+def cut_to_width(line: str) -> str:
+    """A line that a person reads, cut to one line of the terminal."""
+    width = shutil.get_terminal_size().columns
+    if not is_terminal() or len(line) <= width:
+        return line
+    return f"{line[: width - 1]}…"
+
+
+def wrapped(text: str, indent: int) -> list[str]:
+    """Lines that a person's terminal has room for beside an indent; one in a pipe."""
+    if not is_terminal():
+        return [text] if text else []
+    width = shutil.get_terminal_size().columns - indent
+    return textwrap.wrap(
+        text, max(width, 20), break_long_words=False, break_on_hyphens=False
+    )
+
+
+def harmless(text: str) -> str:
+    """On a terminal, control characters in what others sent must not act."""
+    if not is_terminal():
+        return text
+    return _CONTROL.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
 
 
 def note(text: str) -> None:

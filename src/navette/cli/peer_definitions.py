@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from navette.cli.output import harmless
 from navette.errors import NavetteError
 from navette.msgs.interface import short_name
 from navette.runtime import Node
@@ -79,7 +80,7 @@ def fetch_definition(node: Node, of: str, type_name: str) -> Definition:
     finally:
         client.destroy()
     if not response.successful:
-        return Definition(None, response.failure_reason[:200] or "refused")
+        return Definition(None, harmless(response.failure_reason[:200]) or "refused")
     return Definition(definition_of(type_name, response))
 
 

@@ -1,6 +1,7 @@
 """Definitions out of what a node answers, with and without the texts it was made of."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -118,3 +119,17 @@ def test_a_type_of_another_kind_is_refused(server: Node) -> None:
         with pytest.raises(InvalidNameError):
             interface_class(node, "no/such/form/of/name", [])
     assert get_interface("std_srvs/srv/SetBool") is SetBool
+
+
+def test_another_definition_than_here_is_said(
+    server: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with connect(server.context) as node:
+        (end,) = service_endpoints(node, "/switch")
+        other = replace(end, type_hash="RIHS01_" + "0" * 64)
+        assert interface_class(node, "std_srvs/srv/SetBool", [other]) is SetBool
+    said = capsys.readouterr().err
+    assert said.startswith(
+        "/server has another definition of std_srvs/srv/SetBool (RIHS01_0000000000…"
+    )
+    assert "nothing it sends or takes can be read" in said

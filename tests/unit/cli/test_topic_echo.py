@@ -317,7 +317,7 @@ def test_qos_wishes_are_kept(talker: Node) -> None:
 def test_on_a_terminal_names_are_coloured_and_control_characters_do_not_act(
     talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in ("output", "topic.printing"):
+    for module in ("output", "topic.printing"):  # which is where each looks it up
         monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
     monkeypatch.delenv("NO_COLOR", raising=False)
     latch(talker, "chatter", String(data="a\x1b[2Jb"))

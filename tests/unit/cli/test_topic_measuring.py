@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import typer
 
-from navette.cli.session import connect
+from navette.cli.session import connect, follow_clock, is_simulated
 from navette.cli.topic.measuring import MeasureOptions, measure
 from navette.cli.topic.meters import (
     DelayMeter,
@@ -19,9 +19,10 @@ from navette.cli.topic.meters import (
 )
 from navette.msgs import serialize
 from navette.msgs.builtin_interfaces.msg import Time
+from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.sensor_msgs.msg import Imu
 from navette.msgs.std_msgs.msg import Header, Int32, String
-from navette.runtime import Context, Executor, Node, VirtualClock
+from navette.runtime import Context, Executor, Node, SystemClock, VirtualClock
 from navette.runtime.time import ns_to_stamp, stamp_to_ns
 
 MS = 1_000_000
@@ -197,3 +198,24 @@ def test_figures_come_once_for_the_same_messages() -> None:
 def test_units_of_bandwidth(bytes_per_s: float, first_line: str) -> None:
     load = Load(bytes_per_s, 1.0, 1, 1, 3)
     assert LoadMeter(1).text(load).splitlines()[0] == first_line
+
+
+def test_delay_is_measured_in_simulated_time_where_asked(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with Context(clock=SystemClock()) as context:
+        node = Node("simulator", context=context, start_parameter_services=False)
+        Executor(context=context).add_node(node)
+        clock = node.create_publisher(Clock, "/clock", 10)
+        imu = node.create_publisher(Imu, "imu", 10)
+
+        def tick() -> None:
+            clock.publish(Clock(clock=ns_to_stamp(100_000 * MS)))
+            imu.publish(Imu(header=Header(stamp=ns_to_stamp(99_750 * MS))))
+
+        node.create_timer(0.01, tick)
+        with connect(context) as here:
+            assert is_simulated(here)
+            follow_clock(here)
+            measure(here, MeasureOptions(topics=["imu"], count=1, **DELAY))
+    assert capsys.readouterr().out.startswith("average delay: 0.250\n")

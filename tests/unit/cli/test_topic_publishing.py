@@ -11,8 +11,9 @@ from navette.cli.session import connect
 from navette.cli.topic.publishing import PublishOptions, filled_message, publish
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.msgs.geometry_msgs.msg import PointStamped, Twist
+from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import Empty, String
-from navette.runtime import Context, Executor, Node, VirtualClock
+from navette.runtime import Context, Executor, Node, SystemClock, VirtualClock
 from navette.runtime.time import ns_to_stamp
 
 
@@ -174,3 +175,21 @@ def test_wrong_options_are_refused(options: list[str], reason: str) -> None:
     shown = navette("topic", "pub", "/x", "std_msgs/msg/String", *options)
     assert isinstance(shown.exception, InvalidValueError)
     assert reason in str(shown.exception)
+
+
+def test_stamps_are_in_simulated_time_where_there_is_a_clock() -> None:
+    with Context(clock=SystemClock()) as context:
+        node = Node("simulator", context=context, start_parameter_services=False)
+        Executor(context=context).add_node(node)
+        clock = node.create_publisher(Clock, "/clock", 10)
+        message = Clock(clock=ns_to_stamp(42 * 10**9))
+        node.create_timer(0.005, lambda: clock.publish(message))
+        heard: list[PointStamped] = []
+        node.create_subscription(PointStamped, "goal", heard.append, 10)
+        for wall_time in (False, True):
+            pub(
+                node, "goal", "geometry_msgs/PointStamped", values="{header: auto}",
+                times=1, keep_alive_s=0.0, print_each=0, wall_time=wall_time,
+            )  # fmt: skip
+    assert heard[0].header.stamp.sec == 42
+    assert heard[1].header.stamp.sec > 10**9

@@ -8,7 +8,7 @@ from typing import Any
 from navette.cli.interface.listing import Kind, interfaces
 from navette.cli.message_types import installed_class, interface_class
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import is_terminal, styled
+from navette.cli.output import harmless, is_terminal, styled
 from navette.cli.peer_definitions import described_by_peers
 from navette.cli.session import connect, endpoints, fail, service_endpoints
 from navette.companions.rosidl_runtime_py import (
@@ -67,7 +67,7 @@ class _Texts:
         indent = _INDENT_ON_TERMINAL if is_terminal() else _INDENT
         inside = comments if comments is Comments.ALL else Comments.NONE
         for line in self._text(name).splitlines():
-            shown = _shown(line.rstrip(), comments)
+            shown = _shown(harmless(line.rstrip()), comments)
             if shown is not None:
                 yield f"{indent * depth}{shown}" if shown else ""
             contained = _contained_type(name, line)

@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from navette.cli.output import is_terminal, styled
+from navette.cli.output import harmless, is_terminal, styled
 from navette.cli.topic.field_path import FieldPath
 from navette.companions.rosidl_runtime_py.convert import (
     message_to_csv,
@@ -21,7 +21,6 @@ _NUMBERS = re.compile(
     rf"(?P<key>^ *(?:- )*\w+:|\A)\n?(?P<items>(?: *- {_NUMBER}\n)+)", re.MULTILINE
 )
 _KEY = re.compile(r"^([ ]*(?:- )*)([A-Za-z]\w*)(?=:)", re.MULTILINE)
-_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +39,7 @@ class Style:
         if self.as_json:
             return json.dumps(_jsonable(value), ensure_ascii=False)
         if self.csv:
-            return _harmless(self._csv(value, field))
+            return harmless(self._csv(value, field))
         return f"{self._yaml(value, field)}{styled(SEPARATOR, dim=True)}"
 
     def _csv(self, value: Any, field: FieldPath | None) -> str:
@@ -56,7 +55,7 @@ class Style:
             return _readable(message_to_yaml(value, **shortened))
         assert field is not None, "a message itself is a Message"
         if field.type.is_scalar:
-            return _harmless(value_to_csv(value, field.type)) + "\n"
+            return harmless(value_to_csv(value, field.type)) + "\n"
         return _readable(value_to_yaml(value, field.type, **shortened))
 
     def _shortened(self) -> dict[str, Any]:
@@ -89,10 +88,3 @@ def _in_a_row(match: re.Match[str]) -> str:
     items = [line.strip().removeprefix("- ") for line in match["items"].splitlines()]
     key = f"{match['key']} " if match["key"] else ""
     return f"{key}[{', '.join(items)}]\n"
-
-
-def _harmless(text: str) -> str:
-    """On a terminal, control characters in a message must not act."""
-    if not is_terminal():
-        return text
-    return _CONTROL.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
