@@ -32,6 +32,11 @@ _STAGES = {
     )
 }
 
+_PROGRAMS = {
+    **_STAGES,
+    "component_container": ("navette.bringup.container", "main"),
+}
+
 _ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
 _CMAKE_PROGRAMS = re.compile(
     r"\binstall\s*\(\s*PROGRAMS\s+(.*?)\s+DESTINATION", re.DOTALL | re.IGNORECASE
@@ -62,12 +67,12 @@ class Executable:
 
 
 def built_in_executables(package: str) -> tuple[Executable, ...]:
-    """Navette's own: each stage as a program."""
+    """Navette's own: each stage as a program, and the container of nodes."""
     if package != BUILT_IN:
         return ()
     return tuple(
         Executable(package, name, module, attribute)
-        for name, (module, attribute) in sorted(_STAGES.items())
+        for name, (module, attribute) in sorted(_PROGRAMS.items())
     )
 
 
