@@ -3,7 +3,7 @@
 from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage
 from navette.bags.opening import open_bag
 from navette.bags.params import RecorderParams
-from navette.bags.qos import OfferedQos, qos_text
+from navette.bags.qos import OfferedQos, parse_qos, qos_text
 from navette.bags.selection import TopicSelection
 from navette.bags.writer import BagWriter
 
@@ -18,4 +18,5 @@ __all__ = [
     "RecorderParams",
     "TopicSelection",
     "qos_text",
+    "parse_qos",
 ]

@@ -208,12 +208,21 @@ def _check_index(reader: McapReader | Ros1Reader, findings: _Findings) -> None:
     walked = reader.walked()
     for problem in walked.problems:
         findings.error("records", problem)
-    named = {chunk.position for chunk in reader.chunks}
-    there = {chunk.position for chunk in walked.chunks}
-    for position in sorted(there - named):
+    named = {chunk.position: chunk for chunk in reader.chunks}
+    there = {chunk.position: chunk for chunk in walked.chunks}
+    for position in sorted(there.keys() - named.keys()):
         findings.error("index", f"byte {position}: a chunk that the index lacks")
-    for position in sorted(named - there):
+    for position in sorted(named.keys() & there.keys()):
+        if _span(named[position]) != _span(there[position]):
+            findings.error(
+                "times", f"byte {position}: chunk: its head and the index disagree"
+            )
+    for position in sorted(named.keys() - there.keys()):
         findings.error("index", f"byte {position}: the index names a chunk, it is none")
+
+
+def _span(chunk: Chunk) -> tuple[int, int, int]:
+    return chunk.length, chunk.start_ns, chunk.end_ns
 
 
 def _check_messages(reader: BagReader, findings: _Findings) -> None:

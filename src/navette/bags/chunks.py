@@ -7,7 +7,7 @@ overlaps is slow, not fatal.
 """
 
 from collections import OrderedDict, deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import NamedTuple
@@ -122,6 +122,11 @@ class ChunkMerge:
                 waiting[0].start_ns if waiting else choice.last_ns + 1,
             )
             yield from self._run(current, limit, heap)
+
+    @property
+    def cached(self) -> Collection[int]:
+        """Numbers of the chunks whose bytes are in memory."""
+        return self._cached.keys()
 
     def _run(
         self, current: _Open, limit_ns: int, heap: list[_Open]

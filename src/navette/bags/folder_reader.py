@@ -30,6 +30,7 @@ class Metadata:
     counts: Mapping[tuple[str, str], int] | None = None
     """Messages by topic and type."""
     qos: Mapping[tuple[str, str], Any] | None = None
+    hashes: Mapping[tuple[str, str], str] | None = None
 
 
 def read_metadata(folder: Path) -> Metadata:
@@ -70,6 +71,10 @@ def _parse(found: Mapping[str, Any]) -> Metadata:
             (str(t["name"]), str(t["type"])): t.get("offered_qos_profiles", "")
             for t, _ in topics
         },
+        {
+            (str(t["name"]), str(t["type"])): str(t.get("type_description_hash") or "")
+            for t, _ in topics
+        },
     )
 
 
@@ -107,6 +112,9 @@ class FolderReader:
         if not topic.qos and self._metadata.qos:
             qos = self._metadata.qos.get((topic.name, topic.type_name))
             topic = replace(topic, qos=parse_qos(qos))
+        if not topic.type_hash and self._metadata.hashes:
+            hash_ = self._metadata.hashes.get((topic.name, topic.type_name), "")
+            topic = replace(topic, type_hash=hash_)
         for reader in self._readers:
             if topic.definition:
                 break

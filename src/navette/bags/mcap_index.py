@@ -225,7 +225,10 @@ class _Walk:
 
     def _chunk(self, head: Head) -> None:
         first, last, _, _, compression, _ = chunk_head(self._file, head)
-        by_channel = read_message_indexes(self._file, head.end)
+        try:
+            by_channel = read_message_indexes(self._file, head.end)
+        except (FileFormatError, DecodeError):
+            by_channel = {}  # what follows is broken; the chunk itself may be sound
         known = by_channel.keys() <= self._index.channels.keys()
         chunk = Chunk(
             len(self._index.chunks),

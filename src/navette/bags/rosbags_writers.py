@@ -12,6 +12,7 @@ from navette.bags.bag import BagMessage, BagTopic
 from navette.errors import FileFormatError, InvalidValueError
 from navette.msgs.definition_sections import read_definition
 
+_FIRST_TOO_LATE_NS = (1 << 32) * 1_000_000_000
 _HEADER = "std_msgs/msg/Header"
 
 
@@ -194,6 +195,8 @@ class Ros1Writer:
         self.add_topic(message.topic)
         channel, convert = self._channels[message.topic]
         try:
+            if not 0 <= message.stamp_ns < _FIRST_TOO_LATE_NS:
+                raise ValueError("its stamps go from 1970 to 2106")
             data = convert(message.data, message.topic.type_name)
             self._writer.write(channel, message.stamp_ns, data)
         except OSError as error:
