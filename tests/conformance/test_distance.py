@@ -1,10 +1,14 @@
 """Bags of a drive, played: the distance that odom_integrator counts."""
 
+import runpy
 from pathlib import Path
 
 import numpy as np
 import pytest
 from distance_drive import length, played_distance, write_drive
+
+from navette.bags import open_bag
+from navette.bags.compare import Tolerances, compare
 
 SECONDS = 30.0
 
@@ -60,3 +64,18 @@ def test_neither_rate_nor_looping_nor_seeking_adds_a_jump(
     assert back == pytest.approx(once + between(5.0, 20.0), abs=one_step)
     ahead = played(seeks=[(8.0, 22.0)])
     assert ahead == pytest.approx(once - between(8.0, 22.0), abs=one_step)
+
+
+def test_the_shipped_drive_is_what_its_script_makes(tmp_path: Path) -> None:
+    data = Path(__file__).parents[2] / "examples" / "data"
+    make = runpy.run_path(str(data / "make_drive.py"))["make"]
+    make(tmp_path / "drive.mcap")
+    shipped = data / "drive.mcap"
+    with open_bag(shipped) as expected, open_bag(tmp_path / "drive.mcap") as got:
+        topics = [topic.name for topic in expected.topics]
+        # Values are rounded; another machine's sine may round the other way.
+        found = compare(
+            expected, got, topics=topics, tolerances=Tolerances.parse(["0.0011"])
+        )
+    assert found.same
+    assert shipped.stat().st_size < 200_000

@@ -1,0 +1,47 @@
+"""The tutorial's three terminals: node, recording, and the distance that counts up."""
+
+import os
+import re
+import socket
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from fleet import Fleet
+
+DRIVE = Path(__file__).parents[2] / "examples" / "data" / "drive.mcap"
+DISTANCE = "/odom_integrator/distance"
+
+
+def navette(env: Mapping[str, str], *words: str) -> str:
+    """What a verb prints."""
+    done = subprocess.run(
+        [sys.executable, "-m", "navette", *words],
+        env={**os.environ, "NAVETTE_TRANSPORT": "zenoh", **env},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
+def test_the_distance_counts_up_while_the_bag_plays(tmp_path: Path) -> None:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        router = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    env = {"NAVETTE_ROUTER": router}
+    with Fleet(tmp_path, env) as fleet:
+        fleet.start("integrator", "odom_integrator")
+        once = ("topic", "echo", "--once", "--timeout", "30", DISTANCE)
+        assert navette(env, *once) == "data: 0.0\n---\n"
+        navette(env, "bag", "play", "-r", "30", str(DRIVE))
+        (metres,) = re.findall(r"data: ([\d.]+)", navette(env, *once))
+        # A queue of one: where this machine is busy, a bend is cut short.
+        assert float(metres) == pytest.approx(102.4, rel=0.01)
+    assert fleet.running["integrator"].returncode in (0, 130)
