@@ -15,7 +15,6 @@ from navette.bags.play import (
 )
 from navette.bags.play.node import PlayerNode, PlayProgress
 from navette.runtime import Context, Executor, LoggingSeverity, Parameter
-from navette.viewer.node import ViewerNode
 from navette.viewer.playback import PlaybackState, PlaybackStatus
 
 _log = logging.getLogger(__name__)
@@ -103,6 +102,9 @@ class Playback:
         return context
 
     def _open_view(self, port: int) -> str:
+        # Only here: who plays without a view need not wait for a web server to load.
+        from navette.viewer.node import ViewerNode
+
         viewer = ViewerNode(
             context=self.context,
             playback=_Shown(self.player),
