@@ -1,0 +1,225 @@
+"""Nodes of contexts that share a network and no process's memory."""
+
+import json
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+from transport_benches import free_endpoint, until
+
+from navette import Context, DurabilityPolicy, HistoryPolicy, Node, QoSProfile
+from navette.errors import InvalidValueError
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.std_msgs.msg import Float64, String
+from navette.runtime import Executor
+from navette.runtime.context import new_graph
+from navette.runtime.qos_events import (
+    PublisherEventCallbacks,
+    SubscriptionEventCallbacks,
+)
+from navette.transports.zenoh import ZenohTransport
+
+LATCHED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Network:
+    """Contexts, each with a session of its own, and what runs their nodes."""
+
+    def __init__(self, stack: ExitStack) -> None:
+        self._stack = stack
+        self._executors: list[Executor] = []
+
+    def node(self, name: str) -> Node:
+        context = self._stack.enter_context(Context(transport="zenoh"))
+        node = Node(name, context=context)
+        executor = Executor(context=context)
+        executor.add_node(node)
+        self._executors.append(executor)
+        return node
+
+    def until(self, condition: Any, what: str) -> None:
+        def look() -> bool:
+            for executor in self._executors:
+                for _ in range(20):
+                    executor.spin_once(timeout_sec=0.0)
+            return bool(condition())
+
+        until(look, what)
+
+
+@pytest.fixture
+def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
+    monkeypatch.setenv("NAVETTE_ROUTER", free_endpoint())
+    with ExitStack() as stack:
+        yield Network(stack)
+
+
+def transport_of(node: Node) -> ZenohTransport:
+    transport = node.context.graph.transports[1]
+    assert isinstance(transport, ZenohTransport)
+    return transport
+
+
+def test_a_publisher_that_comes_later_is_heard_once(network: Network) -> None:
+    here, there = network.node("here"), network.node("there")
+    heard: list[str] = []
+    here.create_subscription(String, "map", lambda m: heard.append(m.data), LATCHED)
+    publisher = there.create_publisher(String, "map", LATCHED)
+    for text in ("a", "b"):
+        publisher.publish(String(data=text))
+    network.until(lambda: len(heard) >= 2, "both")
+    publisher.publish(String(data="c"))
+    network.until(lambda: len(heard) >= 3, "the third")
+    assert heard == ["a", "b", "c"]
+
+
+def test_reliable_and_keep_all_is_complete_and_in_order(network: Network) -> None:
+    here, there = network.node("here"), network.node("there")
+    qos = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    heard: list[float] = []
+    here.create_subscription(Float64, "t", lambda m: heard.append(m.data), qos)
+    publisher = there.create_publisher(Float64, "t", qos)
+    until(lambda: publisher.get_subscription_count() == 1, "the match")
+    for number in range(1000):
+        publisher.publish(Float64(data=float(number)))
+    network.until(lambda: len(heard) >= 1000, "everything")
+    assert heard == list(range(1000))
+
+
+def test_a_slow_subscription_keeps_the_newest(network: Network) -> None:
+    here, there = network.node("here"), network.node("there")
+    heard: list[str] = []
+    here.create_subscription(String, "t", lambda m: heard.append(m.data), 2)
+    last: list[str] = []
+    here.create_subscription(String, "end", lambda m: last.append(m.data), 1)
+    publisher = there.create_publisher(String, "t", 10)
+    end = there.create_publisher(String, "end", 1)
+    until(lambda: end.get_subscription_count() == 1, "the match")
+    until(lambda: publisher.get_subscription_count() == 1, "the match")
+    for number in range(5):
+        publisher.publish(String(data=str(number)))
+    end.publish(String(data="end"))
+    waiting = next(s for s in here.subscriptions if s.topic == "/end")
+    until(lambda: len(waiting._queue) == 1, "the arrival of all")
+    network.until(lambda: last, "the end")
+    network.until(lambda: len(heard) >= 2, "what was kept")
+    assert heard == ["3", "4"]
+
+
+def test_servers_here_and_there_are_both_asked_once(network: Network) -> None:
+    here, there = network.node("here"), network.node("there")
+    asked: list[str] = []
+
+    def serve(node: Node) -> None:
+        def add(request: Any, response: Any) -> Any:
+            asked.append(node.get_name())
+            response.sum = request.a + request.b
+            return response
+
+        node.create_service(AddTwoInts, "add", add)
+
+    serve(here)
+    serve(there)
+    client = here.create_client(AddTwoInts, "add")
+    until(lambda: sum(p.server_count for p in client.ports) == 2, "both servers")
+    future = client.call_async(AddTwoInts.Request(a=1, b=2))
+    network.until(lambda: future.done() and len(asked) == 2, "both answers")
+    assert (future.result().sum, sorted(asked)) == (3, ["here", "there"])
+
+
+def test_events_tell_of_remote_endpoints(network: Network) -> None:
+    here, there = network.node("here"), network.node("there")
+    alive: list[int] = []
+    matched: list[int] = []
+    types: list[int] = []
+    here.create_subscription(
+        String,
+        "t",
+        lambda m: None,
+        10,
+        event_callbacks=SubscriptionEventCallbacks(
+            liveliness=lambda info: alive.append(info.alive_count),
+            matched=lambda info: matched.append(info.current_count),
+            incompatible_type=lambda info: types.append(info.total_count),
+        ),
+    )
+    publisher = there.create_publisher(String, "t", 10)
+    network.until(lambda: alive == [1] and matched == [1], "the publisher")
+    publisher.destroy()
+    network.until(lambda: alive == [1, 0] and matched == [1, 0], "its end")
+    other: list[int] = []
+    there.create_publisher(
+        Float64,
+        "t",
+        10,
+        event_callbacks=PublisherEventCallbacks(
+            incompatible_type=lambda info: other.append(info.total_count)
+        ),
+    )
+    network.until(lambda: types == [1] and other == [1], "the other type")
+
+
+def test_what_is_destroyed_leaves_nothing_behind(network: Network) -> None:
+    here, there = network.node("here"), network.node("there")
+    for _ in range(3):
+        guest = Node("guest", context=here.context)
+        guest.create_publisher(String, "t", LATCHED)
+        guest.create_subscription(String, "t", lambda m: None, 10)
+        guest.create_client(AddTwoInts, "add")
+        guest.destroy_node()
+    here.destroy_node()
+    until(lambda: there.get_node_names() == ["there"], "the end of the nodes")
+    transport = transport_of(here)
+    assert not transport._ports
+    assert not transport._nodes
+    assert not transport._announced
+    assert not transport._own_gids
+    assert not transport.session.graph._locals
+    graph = transport_of(there).session.graph
+    until(lambda: not graph._endpoints and not graph._by_name, "the end of endpoints")
+    assert not graph._count_of
+
+
+def test_contexts_of_one_graph_share_the_session_and_the_domain(
+    network: Network,
+) -> None:
+    graph = new_graph()
+    with Context(graph=graph, transport="zenoh"):
+        with Context(graph=graph, transport="zenoh"):
+            assert len(graph.transports) == 2
+        third = Context(graph=graph, transport="zenoh")
+        with pytest.raises(InvalidValueError, match=r"domain 9: .* domain 0"):
+            third.init(args=[], domain_id=9)
+    graph.close()
+
+
+def test_a_graph_with_nodes_cannot_join_any_more(network: Network) -> None:
+    graph = new_graph()
+    with Context(graph=graph, transport="inprocess") as context:
+        Node("early", context=context)
+        with pytest.raises(InvalidValueError, match=r"there are nodes \(/early\)"):
+            Context(graph=graph, transport="zenoh").init(args=[])
+    graph.close()
+
+
+def test_a_configuration_file_as_for_rmw_zenoh(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    router = free_endpoint()
+    session = {
+        "mode": "peer",
+        "connect": {"endpoints": [router]},
+        "listen": {"endpoints": ["tcp/127.0.0.1:0"]},
+        "scouting": {"multicast": {"enabled": False}, "delay": 0},
+    }
+    file = tmp_path / "session.json5"
+    file.write_text(f"// as ROS 2 has it\n{json.dumps(session)}", encoding="utf-8")
+    monkeypatch.setenv("ZENOH_SESSION_CONFIG_URI", str(file))
+    with ExitStack() as stack:
+        network = Network(stack)
+        here, there = network.node("here"), network.node("there")
+        assert transport_of(here).session.serves_as_router
+        assert not transport_of(there).session.serves_as_router
+        assert sorted(there.get_node_names()) == ["here", "there"]
