@@ -100,8 +100,6 @@ class RunningThread:
     ) -> None:
         self._listener = listener
         self._input: SimpleQueue[bytes] = SimpleQueue()
-        self._is_inside = False
-        self._interrupted = False
         self._over = False
         self._lock = Lock()
         self._running = make(
@@ -121,7 +119,7 @@ class RunningThread:
         A thread cannot be ended from outside; it goes with the process.
         """
         if number == INTERRUPT:
-            self._interrupt()
+            self._running.interrupt()
         elif number == KILL:
             self._end(LEFT_BEHIND)
         else:
@@ -130,24 +128,10 @@ class RunningThread:
     def write(self, data: bytes) -> None:
         self._input.put(data)
 
-    def _interrupt(self) -> None:
-        """Raise KeyboardInterrupt in the program itself, not in what is around it."""
-        with self._lock:
-            self._interrupted = True
-            if self._is_inside:
-                self._running.interrupt()
-
     def _main(self, program: Program) -> object:
         program_output.set(self._listener.output)
         program_input.set(self._input)
-        with self._lock:
-            if self._interrupted:
-                raise KeyboardInterrupt
-            self._is_inside = True
-        try:
-            return program.main()
-        finally:
-            self._is_inside = False
+        return program.main()
 
     def _end(self, code: int) -> None:
         with self._lock:

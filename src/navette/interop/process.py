@@ -6,7 +6,6 @@ Python has once a process they get once a program: ``sys.argv``, the default con
 
 import asyncio
 import contextvars
-import ctypes
 import signal
 import sys
 import threading
@@ -15,6 +14,7 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any, overload
 
+from navette.interop.interrupts import ThreadInterrupt
 from navette.interop.program import (
     FAILED,
     INTERRUPTED,
@@ -33,7 +33,6 @@ from navette.runtime.graph import Graph
 _GRACE_S = 0.5
 _LONGEST_END_S = 5.0
 _LOOK_S = 0.1
-_IMPORT_LOOK_S = 0.01
 
 _argv: contextvars.ContextVar[list[str]] = contextvars.ContextVar("navette_argv")
 
@@ -108,6 +107,7 @@ class RunningProgram:
         self.scope = Scope(graph)
         self._on_end = on_end
         self._on_ready = on_ready
+        self._interrupt = ThreadInterrupt(self._wake)
         # A daemon: one that never ends must not keep the process.
         self._thread = threading.Thread(
             target=self._run, name=program.name, daemon=True
@@ -127,33 +127,12 @@ class RunningProgram:
         return not self._thread.is_alive()
 
     def interrupt(self) -> None:
-        """Raise KeyboardInterrupt in its main thread, as Ctrl-C does for a process.
+        """Raise KeyboardInterrupt in its main thread, as Ctrl-C does for a process."""
+        self._interrupt.interrupt()
 
-        Not amid an import: Python's import locks would stay taken, and whoever imports
-        next would wait for ever. It comes right after.
-        """
-        if self._deliver():
-            return
-        threading.Thread(target=self._deliver_later, daemon=True).start()
-
-    def _deliver_later(self) -> None:
-        pause = threading.Event()
-        while not self._deliver():
-            pause.wait(_IMPORT_LOOK_S)
-
-    def _deliver(self) -> bool:
-        """Interrupt it now; False if that has to wait."""
-        ident = self._thread.ident
-        if ident is None or not self.is_alive:
-            return True
-        if _is_importing(ident):
-            return False
-        ctypes.pythonapi.PyThreadState_SetAsyncExc(
-            ctypes.c_ulong(ident), ctypes.py_object(KeyboardInterrupt)
-        )
+    def _wake(self) -> None:
         for context in tuple(self.scope.contexts):
             context.loop.wake()
-        return True
 
     def shut_down(self) -> None:
         """Shut its contexts down, as SIGTERM does: its spins end, ``ok()`` is False."""
@@ -165,22 +144,13 @@ class RunningProgram:
         _argv.set(self.program.argv)
         try:
             with _main_thread_event_loop():
-                self.exit_code = run(self.program)
+                code = self._interrupt.run(lambda: run(self.program))
+            self.exit_code = INTERRUPTED if code is None else code
         finally:
             self.exit_code = FAILED if self.exit_code is None else self.exit_code
             self.shut_down()
             if self._on_end is not None:
                 self._on_end(self.exit_code)
-
-
-def _is_importing(ident: int) -> bool:
-    """Whether a thread is in Python's import machinery, at whatever depth."""
-    frame = sys._current_frames().get(ident)
-    while frame is not None:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):
-            return True
-        frame = frame.f_back
-    return False
 
 
 @contextmanager

@@ -16,6 +16,7 @@ FILE_NAME = "navette.yaml"
 WHO_NAME = "supervisor.json"
 STATE_VARIABLE = "NAVETTE_STATE_DIR"
 _PRIVATE = 0o700
+_LONGEST_SOCKET = 100  # bytes; the least that any system takes is 104
 
 
 @dataclass(frozen=True)
@@ -75,14 +76,15 @@ def socket_path(state: Path) -> Path:
     Raises:
         FileFormatError: the folder for it belongs to somebody else.
     """
-    runtime = os.environ.get("XDG_RUNTIME_DIR")
-    base = Path(runtime) if runtime else Path(tempfile.gettempdir())
-    folder = base / f"navette-{os.getuid()}"
+    digest = hashlib.sha256(str(state).encode()).hexdigest()[:20]
+    bases = (os.environ.get("XDG_RUNTIME_DIR") or "", tempfile.gettempdir(), "/tmp")
+    folders = [Path(base) / f"navette-{os.getuid()}" for base in bases if base]
+    fitting = (f for f in folders if len(f"{f}/{digest}.sock") <= _LONGEST_SOCKET)
+    folder = next(fitting, folders[-1])
     folder.mkdir(mode=_PRIVATE, exist_ok=True)
     found = folder.lstat()
     if found.st_uid != os.getuid() or found.st_mode & 0o077:
         raise FileFormatError(folder, "not this user's alone; remove it")
-    digest = hashlib.sha256(str(state).encode()).hexdigest()[:20]
     return folder / f"{digest}.sock"
 
 

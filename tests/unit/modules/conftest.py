@@ -2,6 +2,7 @@
 
 import os
 import select
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -58,9 +59,10 @@ class Bench:
 @pytest.fixture
 def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
     monkeypatch.setenv("NAVETTE_STATE_DIR", str(tmp_path / "state"))
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
+    # Sockets need short paths.
+    run = tempfile.TemporaryDirectory(prefix="navette-test-")
+    monkeypatch.setenv("XDG_RUNTIME_DIR", run.name)
     monkeypatch.setenv("NAVETTE_TRANSPORT", "inprocess")
-    (tmp_path / "run").mkdir()
     folder = tmp_path / "project"
     folder.mkdir()
     monkeypatch.chdir(folder)
@@ -68,6 +70,7 @@ def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
     yield made
     if made.client.is_there():
         made.down()
+    run.cleanup()
 
 
 def read_bounded(pipe: int, size: int = 1) -> bytes:
