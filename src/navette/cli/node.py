@@ -6,8 +6,8 @@ import typer
 
 from navette.cli.asking import chosen_node, node_names
 from navette.cli.completing import complete_nodes
-from navette.cli.output import note, show, show_json, styled
-from navette.cli.session import connect, is_hidden
+from navette.cli.output import is_terminal, note, show, show_json, styled
+from navette.cli.session import connect, is_hidden, is_of_every_node
 
 if TYPE_CHECKING:
     from navette.runtime import Node
@@ -70,16 +70,29 @@ def info(
         keyed = {title.lower().replace(" ", "_"): s for title, s in sections.items()}
         show_json({"node": full, **keyed})
         return
+    if is_terminal():
+        _show_to_a_person(full, sections)
+        return
+    show(full)
+    for title, names in sections.items():
+        show(f"  {title}:")
+        # An empty section is an empty line, as ROS 2's command prints it.
+        show("\n".join(f"    {name}: {', '.join(names[name])}" for name in names))
+
+
+def _show_to_a_person(full: str, sections: dict[str, dict[str, list[str]]]) -> None:
+    """Types in a column; in the background what is empty or as in every node."""
+    every = [name for names in sections.values() for name in names]
+    width = max(map(len, every), default=0)
     show(styled(full, bold=True))
     for title, names in sections.items():
-        show(f"  {styled(f'{title}:', bold=True)}")
-        lines = [f"    {each}: {_types(names[each])}" for each in names]
-        # An empty section is an empty line, as ROS 2's command prints it.
-        show("\n".join(lines))
-
-
-def _types(names: list[str]) -> str:
-    return styled(", ".join(names), dim=True)
+        show(
+            f"  {styled(title, bold=True)}{'' if names else styled('  none', dim=True)}"
+        )
+        for name, types in names.items():
+            usual = name in ("/rosout", "/parameter_events") or is_of_every_node(name)
+            shown = f"    {styled(name.ljust(width), dim=True if usual else None)}"
+            show(f"{shown}  {styled(', '.join(types), dim=True)}")
 
 
 def _sections(

@@ -24,6 +24,16 @@ if TYPE_CHECKING:
     from navette.runtime import Context, Node
     from navette.transports import Endpoint, EndpointKind
 
+_EVERY_NODE_SERVES = {
+    "describe_parameters",
+    "get_parameter_types",
+    "get_parameters",
+    "get_type_description",
+    "list_parameters",
+    "set_parameters",
+    "set_parameters_atomically",
+}
+
 FAILED = 1
 INTERRUPTED = 128 + signal.SIGINT
 TERMINATED = 128 + signal.SIGTERM
@@ -116,6 +126,11 @@ def service_endpoints(
 def is_hidden(name: str) -> bool:
     """Whether a topic's, service's or node's name is for machines, as ROS 2 says."""
     return any(token.startswith("_") for token in name.split("/"))
+
+
+def is_of_every_node(service: str) -> bool:
+    """Whether it is one of the services that every node has."""
+    return service.rpartition("/")[2] in _EVERY_NODE_SERVES
 
 
 def fail(message: str) -> Never:

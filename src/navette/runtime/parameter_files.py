@@ -207,6 +207,18 @@ def format_parameters(nodes: Mapping[str, Mapping[str, Any]]) -> str:
     return text
 
 
+def format_value(value: Any) -> str:
+    """A value as :func:`parse_value` reads it, in one line."""
+    text: str = yaml.dump(
+        value,
+        Dumper=_Dumper,
+        allow_unicode=True,
+        width=2**31 - 1,
+        default_flow_style=True,
+    )
+    return text.removesuffix("...\n").rstrip("\n")
+
+
 def _nested(values: Mapping[str, Any]) -> dict[str, Any]:
     tree: dict[str, Any] = {}
     for name in sorted(values, key=lambda name: (name.count("."), name)):

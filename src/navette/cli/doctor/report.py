@@ -1,11 +1,11 @@
 """The doctor's report, for people and for programs."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
 from navette.cli.doctor.findings import Finding, Level, count, plural
-from navette.cli.output import styled
+from navette.cli.output import harmless, styled, wrapped
 
 _COLOURS = {
     Level.GOOD: "green",
@@ -37,14 +37,18 @@ def report_lines(findings: Sequence[Finding], *, everything: bool) -> list[str]:
     return lines
 
 
-def _finding_lines(finding: Finding, width: int) -> Iterable[str]:
+def _finding_lines(finding: Finding, width: int) -> Iterator[str]:
     mark = styled(finding.level.value, fg=_COLOURS[finding.level], bold=True)
-    text = finding.text
-    if finding.level is Level.NOTE:
-        text = styled(text, dim=True)
-    yield f"  {mark} {finding.what.ljust(width)}  {text}"
-    if finding.advice:
-        yield f"    {' ' * width}  {styled('→', fg='cyan')} {finding.advice}"
+    head = f"  {mark} {finding.what.ljust(width)}  "
+    indent = " " * (width + 6)
+    quiet = {"dim": True} if finding.level is Level.NOTE else {}
+    for line in wrapped(harmless(finding.text), len(indent)):
+        yield head + styled(line, **quiet)
+        head = indent
+    arrow = styled("→", fg="cyan")
+    for line in wrapped(finding.advice, len(indent) + 2):
+        yield f"{indent}{arrow} {line}"
+        arrow = " "
 
 
 def summary(findings: Sequence[Finding]) -> str:

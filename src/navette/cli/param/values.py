@@ -1,6 +1,7 @@
 """The parameters of running nodes, as the verbs of ``navette param`` need them."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -59,6 +60,27 @@ def types(
         for name, kind in zip(found[node], given, strict=False):
             kinds[node, name] = type_word(kind)
     return kinds
+
+
+def held(
+    here: "Node", found: Mapping[str, Sequence[str]]
+) -> dict[tuple[str, str], str]:
+    """(node, name) → the value in a parameter file's words; ``-`` without one."""
+    from navette.runtime.parameter import parameter_value_to_python
+    from navette.runtime.parameter_files import format_value
+
+    nodes = [node for node in found if found[node]]
+    answers = ask_all(
+        here,
+        [_question(n, "get_parameters", {"names": list(found[n])}) for n in nodes],
+    )
+    texts: dict[tuple[str, str], str] = {}
+    for node, (response, _) in zip(nodes, answers, strict=True):
+        values = list(response.values) if response is not None else []
+        for name, value in zip_longest(found[node], values[: len(found[node])]):
+            got = None if value is None else parameter_value_to_python(value)
+            texts[node, name] = "-" if got is None else format_value(got)
+    return texts
 
 
 def get(here: "Node", node: str, wanted: Sequence[str]) -> "dict[str, Parameter[Any]]":

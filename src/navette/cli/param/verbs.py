@@ -8,7 +8,16 @@ import typer
 
 from navette.cli.asking import chosen_node, node_names
 from navette.cli.completing import complete_nodes, complete_parameters
-from navette.cli.output import note, show, show_json, styled
+from navette.cli.output import (
+    aligned,
+    cut_to_width,
+    harmless,
+    is_terminal,
+    note,
+    show,
+    show_json,
+    styled,
+)
 from navette.cli.param import text, values
 from navette.cli.session import connect, fail
 from navette.errors import InvalidValueError
@@ -86,6 +95,7 @@ def list_(
             for node, names in listed.found.items()
         }
         kinds = values.types(here, found) if types else {}
+        held = values.held(here, found) if is_terminal() and not as_json else {}
     if as_json:
         show_json(
             {
@@ -94,7 +104,7 @@ def list_(
             }
         )
     else:
-        _show_names(found, kinds, with_nodes=node_name is None)
+        _show_names(found, kinds, held, with_nodes=node_name is None)
     if node_name and listed.silent:
         raise typer.Exit(1)
 
@@ -111,14 +121,29 @@ def _pattern(text: str | None) -> re.Pattern[str] | None:
 
 
 def _show_names(
-    found: dict[str, list[str]], kinds: dict[tuple[str, str], str], *, with_nodes: bool
+    found: dict[str, list[str]],
+    kinds: dict[tuple[str, str], str],
+    held: dict[tuple[str, str], str],
+    *,
+    with_nodes: bool,
 ) -> None:
+    """A name per line; for a person with its value, in columns."""
     for node, names in found.items():
         if with_nodes and names:
             show(styled(f"{node}:", bold=True))
-        for name in names:
-            kind = styled(f" (type: {kinds[node, name]})", dim=True) if kinds else ""
-            show(f"  {name}{kind}")
+        if not held:
+            for name in names:
+                kind = f" (type: {kinds[node, name]})" if kinds else ""
+                show(f"  {name}{kind}")
+            continue
+        rows = [
+            (name, *([kinds[node, name]] if kinds else []), held[node, name])
+            for name in names
+        ]
+        width = max(map(len, names), default=0)
+        for line in aligned(rows):
+            text = cut_to_width(f"  {line}")
+            show(text[: width + 2] + styled(text[width + 2 :], dim=True))
 
 
 @param.command()
@@ -137,9 +162,9 @@ def get(
     if as_json:
         show_json(text.plain(got))
     elif hide_type:
-        show(str(got.value))
+        show(harmless(str(got.value)))
     else:
-        show(text.labelled(got))
+        show(harmless(text.labelled(got)))
 
 
 @param.command("set", context_settings={"ignore_unknown_options": True})
@@ -178,7 +203,7 @@ def describe(node_name: NodeName, names: Names, as_json: Json = False) -> None:
     for each in described:
         show(styled(f"Parameter name: {each.name}", bold=True))
         for line in text.descriptor_lines(each):
-            show(line)
+            show(harmless(line))
 
 
 @param.command()
@@ -255,4 +280,4 @@ def delete(node_name: NodeName, name: Name) -> None:
 
 
 def _with_reason(text: str, result: Any) -> str:
-    return f"{text}: {result.reason}" if result.reason else text
+    return f"{text}: {harmless(result.reason)}" if result.reason else text

@@ -5,9 +5,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import aligned, is_terminal, show, show_json, styled
+from navette.cli.output import aligned, is_terminal, note, show, show_json, styled
 from navette.cli.service.options import Hidden, Json, ServiceName, ServiceType
-from navette.cli.session import connect, fail, is_hidden, service_endpoints
+from navette.cli.session import (
+    connect,
+    fail,
+    is_hidden,
+    is_of_every_node,
+    service_endpoints,
+)
 
 if TYPE_CHECKING:
     from navette.runtime import Node
@@ -33,6 +39,11 @@ def list_(
         show(str(len(found)))
     elif as_json:
         show_json([{"name": name, "types": found[name]} for name in found])
+    elif is_terminal() and not include_hidden_services:
+        own = {n: types for n, types in found.items() if not is_of_every_node(n)}
+        show_names(own, with_types=show_types)
+        if len(own) < len(found):
+            note(f"and {len(found) - len(own)} that every node has (-a lists them)")
     else:
         show_names(found, with_types=show_types)
 

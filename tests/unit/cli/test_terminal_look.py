@@ -1,0 +1,92 @@
+"""What people see on a terminal: columns, values, and the usual in the background."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from unittest.mock import patch
+
+import pytest
+from verb_world import World, world
+
+from navette.cli.doctor.findings import Finding, Level
+from navette.cli.doctor.report import report_lines
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.std_msgs.msg import String
+from navette.runtime import Node
+
+# The last one after the others are imported: they take what it has.
+ASKING = ("node", "param.verbs", "service.looking", "output")
+
+
+@pytest.fixture(autouse=True)
+def terminal(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A person's, 50 columns wide, without colours."""
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "50")
+    with ExitStack() as stack:
+        for name in ASKING:
+            stack.enter_context(patch(f"navette.cli.{name}.is_terminal", lambda: True))
+        yield
+
+
+@pytest.fixture
+def here() -> Iterator[World]:
+    with world() as here:
+        node = Node("talker", context=here.context)
+        node.declare_parameter("speed", 1.5)
+        node.declare_parameter("where", "a place whose name is really much too long")
+        node.create_publisher(String, "chatter", 10)
+        node.create_service(AddTwoInts, "add", lambda request, response: response)
+        here.graph.add(node)
+        yield here
+
+
+def test_node_info(here: World) -> None:
+    lines = here.said("node", "info", "talker").splitlines()
+    assert lines[:3] == ["/talker", "  Subscribers  none", "  Publishers"]
+    assert lines[3] == "    /chatter                           std_msgs/msg/String"
+
+
+def test_param_list(here: World) -> None:
+    assert here.said("param", "list", "talker", "--filter", "s|w").splitlines() == [
+        "  speed                           1.5",
+        "  start_type_description_service  true",
+        "  where                           a place whose n…",
+    ]
+    typed = here.said("param", "list", "talker", "--param-type", "--filter", "sp|u")
+    assert typed.splitlines() == [
+        "  speed         double   1.5",
+        "  use_sim_time  boolean  false",
+    ]
+
+
+def test_service_list(here: World) -> None:
+    done = here.run("service", "list")
+    assert done.out == "/add\n"
+    assert done.err == "and 7 that every node has (-a lists them)\n"
+    assert len(here.said("service", "list", "-a").splitlines()) == 8
+    assert here.said("service", "list", "-t") == (
+        "/add  example_interfaces/srv/AddTwoInts\n"
+    )
+
+
+def test_the_doctors_lines_are_wrapped_under_themselves() -> None:
+    finding = Finding(
+        Level.PROBLEM,
+        "Topics",
+        "/scan",
+        "/costmap gets nothing from /lidar: reliability of less than it asks for",
+        "let the subscription ask for best effort, or the publisher offer reliable",
+    )
+    assert report_lines([finding], everything=True) == [
+        "Topics",
+        "  ✗ /scan  /costmap gets nothing from /lidar:",
+        "           reliability of less than it asks for",
+        "           → let the subscription ask for best",
+        "             effort, or the publisher offer",
+        "             reliable",
+    ]
+
+
+def test_what_others_say_does_not_move_the_cursor() -> None:
+    finding = Finding(Level.NOTE, "Stages", "/s", "calm \x1b[2J")
+    assert report_lines([finding], everything=True)[1] == "  · /s  calm \\x1b[2J"
