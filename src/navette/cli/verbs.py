@@ -25,6 +25,12 @@ def _modules(app: typer.Typer) -> None:
         app.command()(command)
 
 
+def _teleop(app: typer.Typer) -> None:
+    from navette.cli.teleop import teleop
+
+    app.command()(teleop)
+
+
 def _topic(app: typer.Typer) -> None:
     from navette.cli.topic import topic
 
@@ -121,6 +127,7 @@ VERBS = {
         "Print what the modules' processes wrote: all in one, in the order of writing.",
         _modules,
     ),
+    "teleop": Later("Drive a robot with the keys of this terminal.", _teleop),
     "topic": Later(
         "Look into topics: list, info, echo, hz, bw, delay; and publish.", _topic
     ),

@@ -1,0 +1,144 @@
+"""``navette teleop``: drive a robot with the keys of this terminal."""
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Annotated
+
+import typer
+
+# A terminal tells when a key goes down, and again while it is held, but never when it
+# is let go: a key drives for so long. Longer than a usual keyboard waits to repeat.
+_HOLD_NS = 600_000_000
+_PERIOD_S = 0.1
+_STEP = 1.1
+
+# Forward and turn, as in ROS 2's teleop_twist_keyboard, on arrows and on wasd.
+_WAYS = {
+    **dict.fromkeys(("up", "w", "i"), (1, 0)),
+    **dict.fromkeys(("down", "s", ","), (-1, 0)),
+    **dict.fromkeys(("left", "a", "j"), (0, 1)),
+    **dict.fromkeys(("right", "d", "l"), (0, -1)),
+    "u": (1, 1),
+    "o": (1, -1),
+    "m": (-1, 1),
+    ".": (-1, -1),
+}
+_HELP = (
+    ("↑ ↓ ← →", "or w s a d"),
+    ("u o m .", "curves"),
+    ("space", "stop"),
+    ("+ −", "faster, slower"),
+    ("q", "quit"),
+)
+
+
+class KeyDriver:
+    """From keys to a speed command: pure, the time is given.
+
+    Args:
+        speed_mps: forward, at first.
+        turn_radps: of turns, at first.
+    """
+
+    def __init__(self, speed_mps: float, turn_radps: float) -> None:
+        self.speed_mps = speed_mps
+        self.turn_radps = turn_radps
+        self.has_quit = False
+        self._way = (0, 0)
+        self._until_ns = 0
+        self._drives = False
+
+    def press(self, key: str, now_ns: int) -> None:
+        """Take a key; one that means nothing stops, as every wrong key should."""
+        if key in ("+", "=", "-", "−"):
+            factor = _STEP if key in "+=" else 1 / _STEP
+            self.speed_mps *= factor
+            self.turn_radps *= factor
+            return
+        self.has_quit = self.has_quit or key in ("q", "escape")
+        self._way = _WAYS.get(key, (0, 0))
+        self._until_ns = now_ns + _HOLD_NS
+        self._drives = True
+
+    def command(self, now_ns: int) -> tuple[float, float] | None:
+        """Speed (m/s) and turn rate (rad/s) to send now; None: leave it to others.
+
+        After the last one comes a zero, once.
+        """
+        if not self._drives:
+            return None
+        if now_ns >= self._until_ns or self._way == (0, 0) or self.has_quit:
+            self._drives = False
+            return 0.0, 0.0
+        forward, turn = self._way
+        return forward * self.speed_mps, turn * self.turn_radps
+
+
+def teleop(
+    topic: Annotated[str, typer.Argument(help="Where the robot listens.")] = "/cmd_vel",
+    speed: Annotated[float, typer.Option(metavar="M/S", help="Forward.")] = 0.5,
+    turn: Annotated[float, typer.Option(metavar="RAD/S", help="Of turns.")] = 0.8,
+) -> None:
+    """Drive a robot with the keys of this terminal.
+
+    The robot stops when no key is held. Beside a planner that has a goal, both drive:
+    let it arrive first, or end it.
+    """
+    for name, value in (("--speed", speed), ("--turn", turn)):
+        if not (math.isfinite(value) and value > 0):
+            raise typer.BadParameter(f"{name} {value}: wanted more than 0")
+    from navette.cli.keyboard import listening_to_keys
+    from navette.cli.session import connect, fail, wait_for
+    from navette.msgs.geometry_msgs.msg import Twist
+
+    driver = KeyDriver(speed, turn)
+    with connect(node_name="teleop") as node:
+        publisher = node.create_publisher(Twist, topic, 1)
+        clock = node.context.clock
+
+        def send() -> None:
+            command = driver.command(clock.now_ns)
+            if command is not None:
+                message = Twist()
+                message.linear.x, message.angular.z = command
+                publisher.publish(message)
+
+        def press(key: str) -> None:
+            driver.press(key, clock.now_ns)
+            node.executor.call_soon_threadsafe(send)
+
+        node.create_timer(_PERIOD_S, send)
+        with listening_to_keys(press) as has_keys:
+            if not has_keys:
+                fail("teleop needs a terminal to read keys from")
+            with _shown(driver, topic, publisher.get_subscription_count) as refresh:
+                node.create_timer(_PERIOD_S, refresh)
+                wait_for(node, lambda: driver.has_quit)
+                publisher.publish(Twist())
+
+
+@contextmanager
+def _shown(
+    driver: KeyDriver, topic: str, listeners: Callable[[], int]
+) -> Iterator[Callable[[], None]]:
+    """Keys and speeds on the terminal, one live line."""
+    from rich.console import Console
+    from rich.live import Live
+    from rich.text import Text
+
+    console = Console(stderr=True, highlight=False)
+    keys = Text()
+    for key, meaning in _HELP:
+        keys += Text(f"{key} ", style="bold") + Text(f"{meaning}   ", style="dim")
+    console.print(keys, soft_wrap=True)
+
+    def line() -> Text:
+        count = listeners()
+        command = Text(f"{driver.speed_mps:.2f} m/s  {driver.turn_radps:.2f} rad/s")
+        if count == 0:
+            return command + Text(f"   nobody listens to {topic}", style="yellow")
+        return command + Text(f"   → {topic}", style="dim")
+
+    with Live(line(), console=console, auto_refresh=False, transient=True) as live:
+        yield lambda: live.update(line(), refresh=True)
