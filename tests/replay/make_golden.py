@@ -11,18 +11,26 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from stages import PARAMETERS, STAGES, WORLD, Stage
+from stages import STAGES, Stage
 
 from navette.bags import BagReader, BagWriter, open_bag, qos_text
 from navette.launch.options import RunOptions
 from navette.launch.simulation import Simulation
 
+WORLD = "course"
 GOALS = ((-6.0, -12.0),)
+PARAMETERS = """
+costmap:
+  ros__parameters:
+    size: 10.0 # small, so that the bags are small
+"""
 LONGEST_BYTES = 300_000
 
 
 def drive(path: Path) -> None:
     """Record the drive."""
+    parameters = path.with_suffix(".yaml")
+    parameters.write_text(PARAMETERS)
     simulation = Simulation(
         RunOptions(
             world=WORLD,
@@ -30,7 +38,7 @@ def drive(path: Path) -> None:
             headless=True,
             speed=math.inf,
             record=path,
-            params_files=(PARAMETERS,),
+            params_files=(parameters,),
             max_time_s=30.0,
         )
     )
@@ -45,7 +53,8 @@ def cut(source: BagReader, stage: Stage) -> None:
     writer = BagWriter(stage.bag)
     numbers = {}
     end_ns = source.start_ns + round(stage.duration_s * 1e9)
-    for message in source.messages(stage.inputs + stage.outputs, end_ns=end_ns):
+    topics = "/parameter_events", *stage.inputs, *stage.outputs
+    for message in source.messages(topics, end_ns=end_ns):
         topic = message.topic
         if topic not in numbers:
             numbers[topic] = writer.add_channel(

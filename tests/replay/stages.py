@@ -1,6 +1,7 @@
 """The stages that are replayed: what feeds each, and how far its results may be off.
 
-The golden bags hold inputs and results of one drive of our own simulator. What a stage
+The golden bags hold inputs, parameters and results of one drive of our own simulator,
+each a bag for ``navette bag replay BAG --node STAGE --compare BAG``. What a stage
 says when it is fed the same again is compared with what it said then: exactly, except
 for what another processor or another release of NumPy may round otherwise.
 """
@@ -11,16 +12,11 @@ from pathlib import Path
 
 from navette.bags import open_bag
 from navette.bags.compare import Comparison, Tolerances, compare
-from navette.launch.options import RunOptions
 from navette.launch.replay import Replay
-from navette.launch.scene import resolve_scene
 from navette.launch.stack import node_class
 from navette.runtime import Context, Node
-from navette.runtime.overrides import ParameterOverrides
 
 FOLDER = Path(__file__).parent / "golden"
-PARAMETERS = FOLDER / "parameters.yaml"
-WORLD = "course"
 
 
 @dataclass(frozen=True)
@@ -85,19 +81,12 @@ def replay(
     arguments: tuple[str, ...] = (),
 ) -> Comparison:
     """Feed the stage with its golden bag; what differs from the results in it."""
-    robot = resolve_scene(RunOptions(world=WORLD))
-
-    def parameters(overrides: ParameterOverrides) -> None:
-        robot.override_parameters(overrides)
-        overrides.add_file(PARAMETERS)
-
     kind: Callable[..., Node] = node_class(stage.name)
     with open_bag(stage.bag) as source:
         replayed = Replay(
             source,
             [make or (lambda context: kind(context=context))],
             record=record,
-            overrides=parameters,
             arguments=["--ros-args", *arguments],
         )
         try:

@@ -6,7 +6,7 @@ The nodes run as under the machine's clock, which here jumps instead of waiting.
 from typing import Any
 
 import pytest
-from stages import PARAMETERS, STAGES, WORLD, Stage
+from stages import STAGES, Stage
 
 from navette.bags import open_bag
 from navette.bags.compare.fields import message_differences
@@ -18,8 +18,7 @@ from navette.companions.message_filters import (
     Cache,
     Subscriber,
 )
-from navette.launch.options import RunOptions
-from navette.launch.scene import resolve_scene
+from navette.launch.recorded_parameters import give_recorded_parameters
 from navette.launch.stack import node_class
 from navette.msgs.geometry_msgs.msg import (
     PointStamped,
@@ -45,11 +44,9 @@ class HostClock(VirtualClock):
 def passes(stage: Stage, count: int, *, tell_time: bool) -> list[dict[str, list[Any]]]:
     """What the stage says in each pass of its bag, by topic."""
     heard = []
-    robot = resolve_scene(RunOptions(world=WORLD))
     with GraphHarness(clock=HostClock(10**18)) as graph, open_bag(stage.bag) as bag:
         overrides = graph.context.overrides
-        robot.override_parameters(overrides)
-        overrides.add_file(PARAMETERS)
+        give_recorded_parameters(overrides, bag)
         overrides.add("/**", {"use_sim_time": tell_time}, "test")
         inputs = tuple(t.name for t in bag.topics if t.name in stage.inputs)
         player = graph.add(

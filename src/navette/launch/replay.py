@@ -16,6 +16,7 @@ from navette.bags.node import RecorderNode
 from navette.bags.play import PlayOptions, Source
 from navette.bags.play.node import PlayerNode
 from navette.errors import InvalidValueError
+from navette.launch.recorded_parameters import give_recorded_parameters
 from navette.runtime import (
     Context,
     Executor,
@@ -57,7 +58,8 @@ class Replay:
         makers: make the nodes, each in the context that it is given (which is also
             the default one while they are made).
         record: where the nodes' outputs go.
-        overrides: gives parameters that need not reach a node (a robot's).
+        overrides: gives parameters that need not reach a node (a robot's). Without
+            any, nodes have those with which they were recorded, if that is known.
         arguments: ROS arguments, such as ``["--ros-args", "-p", "a:=1"]``.
         also: topics to feed although a node says them itself, or asks for them late.
         options: the part of the recording; its topics are chosen here.
@@ -84,6 +86,7 @@ class Replay:
         with ExitStack() as making:
             making.callback(self.close)
             self._stack.callback(self.context.try_shutdown)
+            give_recorded_parameters(self.context.overrides, source)
             overrides(self.context.overrides)
             given = len(self.context.overrides.sets)
             self.context.init(list(arguments), console_level=LoggingSeverity.WARN)
