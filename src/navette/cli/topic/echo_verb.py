@@ -12,7 +12,7 @@ from navette.cli.topic.options import Filter, TopicName
 TypeName = Annotated[
     str | None,
     typer.Argument(
-        metavar="[TYPE]",
+        metavar="TYPE",
         help="Its type; by default what is published.",
         autocompletion=complete_messages,
     ),
@@ -60,7 +60,11 @@ def echo(
     truncate_length: Annotated[
         int,
         typer.Option(
-            "--truncate-length", "-l", min=0, help="Items shown of arrays and texts."
+            "--truncate-length",
+            "-l",
+            min=0,
+            metavar="N",
+            help="Items shown of arrays and texts.",
         ),
     ] = 128,
     full_length: Annotated[

@@ -31,7 +31,7 @@ def hz(
     topics: Annotated[
         list[str],
         typer.Argument(
-            metavar="TOPIC...",
+            metavar="TOPIC",
             help="Topics to measure.",
             autocompletion=complete_topics,
         ),

@@ -24,7 +24,7 @@ def pub(
     values: Annotated[
         str,
         typer.Argument(
-            metavar="[YAML]",
+            metavar="YAML",
             help="Fields that are not at their defaults, as in '{linear: {x: 0.5}}';"
             " auto for a header and now for a time mean when it is sent.",
         ),

@@ -18,7 +18,9 @@ Profile = Annotated[
 ]
 Depth = Annotated[
     int | None,
-    typer.Option("--qos-depth", min=0, help="Queue length.", rich_help_panel=PANEL),
+    typer.Option(
+        "--qos-depth", min=0, metavar="N", help="Queue length.", rich_help_panel=PANEL
+    ),
 ]
 History = Annotated[
     str | None,
