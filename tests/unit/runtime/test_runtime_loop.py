@@ -230,6 +230,16 @@ def test_call_from_another_thread_wakes_a_waiting_loop() -> None:
     assert arrived == [threading.get_ident()]
 
 
+def test_calls_of_other_threads_are_no_events_that_are_counted() -> None:
+    loop = EventLoop(VirtualClock())
+    order: list[str] = []
+    loop.call_soon(lambda: order.append("event"))
+    loop.call_soon(lambda: order.append("later"))
+    loop.call_soon_threadsafe(lambda: order.append("asked"))
+    loop.run(limit=1)
+    assert order == ["asked", "event"]
+
+
 def test_only_one_thread_drives_and_the_other_sees_the_result() -> None:
     executor = Executor(context=_context())
     future: Future[str] = Future(executor=executor)
