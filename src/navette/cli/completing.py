@@ -6,6 +6,7 @@ typed line.
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -93,6 +94,41 @@ def complete_packages(incomplete: str) -> list[str]:
     from navette.packages import find_packages
 
     return _chosen(incomplete, find_packages())
+
+
+def complete_programs(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Of ``navette run``: packages with programs, those of a package, files here."""
+    from navette.packages import find_packages
+
+    before = list(ctx.params.get("words") or ())
+    packages = find_packages()
+    if len(before) == 1 and before[0] in packages:
+        return _chosen(incomplete, (e.name for e in packages[before[0]].executables()))
+    if before:
+        return []
+    built_in = packages["navette"].executables() if "navette" in packages else ()
+    names = [each.name for each in built_in]
+    names += [name for name, each in packages.items() if each.executables()]
+    return _chosen(incomplete, [*names, *_files_here("*.py")])
+
+
+def complete_launch_files(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Of ``navette launch``: files here, packages, the launch files of a package."""
+    from navette.packages import find_packages
+
+    before = list(ctx.params.get("words") or ())
+    packages = find_packages()
+    if len(before) == 1 and before[0] in packages:
+        folder = packages[before[0]].share / "launch"
+        return _chosen(incomplete, (path.name for path in folder.glob("*launch*")))
+    if before:
+        return []
+    names = [n for n, p in packages.items() if (p.share / "launch").is_dir()]
+    return _chosen(incomplete, [*names, *_files_here("*launch*")])
+
+
+def _files_here(pattern: str) -> list[str]:
+    return [path.name for path in Path.cwd().glob(pattern) if path.is_file()]
 
 
 def _running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[str]:

@@ -4,11 +4,14 @@ from typing import Annotated
 
 import typer
 
+from navette.cli.completing import complete_launch_files
+
 Words = Annotated[
     list[str],
     typer.Argument(
         metavar="FILE|PACKAGE FILE [NAME:=VALUE]...",
         help="A launch file in Python, XML or YAML, and its arguments.",
+        autocompletion=complete_launch_files,
     ),
 ]
 ShowArgs = Annotated[

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from navette.cli.completing import complete_packages
+
 if TYPE_CHECKING:
     from navette.packages import Package
 
@@ -15,6 +17,12 @@ pkg = typer.Typer(
 )
 
 Name = Annotated[str, typer.Argument(metavar="NAME", help="The package's name.")]
+Found = Annotated[
+    str,
+    typer.Argument(
+        metavar="NAME", help="The package's name.", autocompletion=complete_packages
+    ),
+]
 
 
 @pkg.command()
@@ -77,7 +85,7 @@ def list_(
 
 @pkg.command()
 def prefix(
-    name: Name,
+    name: Found,
     share: Annotated[
         bool, typer.Option("--share", help="The folder of its files instead.")
     ] = False,
@@ -92,7 +100,12 @@ def prefix(
 @pkg.command()
 def executables(
     name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="Only of this package.")
+        str | None,
+        typer.Argument(
+            metavar="[NAME]",
+            help="Only of this package.",
+            autocompletion=complete_packages,
+        ),
     ] = None,
     full_path: Annotated[
         bool, typer.Option("--full-path", help="Say what each of them runs.")

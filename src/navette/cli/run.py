@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from navette.cli.completing import complete_programs
+
 Words = Annotated[
     list[str],
     typer.Argument(
@@ -11,6 +13,7 @@ Words = Annotated[
         help="FILE.py, PACKAGE EXECUTABLE, or MODULE:Class of a node, and what the"
         " program is to find in sys.argv, --ros-args included. [bold]--with[/bold]"
         " PROGRAM [ARGS] adds another one in the same process.",
+        autocompletion=complete_programs,
     ),
 ]
 OnNavette = Annotated[

@@ -84,3 +84,30 @@ def test_installing_for_fish(tmp_path: Path) -> None:
     (script,) = install_script(Shell.FISH, tmp_path)
     assert script == tmp_path / ".config/fish/completions/navette.fish"
     assert "complete --command navette" in script.read_text()
+
+
+def test_programs_and_launch_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path / "src" / "arm"
+    (package / "launch").mkdir(parents=True)
+    (package / "launch" / "arm.launch.py").touch()
+    (package / "package.xml").write_text(
+        '<package format="3"><name>arm</name><version>1.0.0</version>'
+        "<description>An arm.</description></package>"
+    )
+    (package / "setup.py").write_text(
+        "from setuptools import setup\n"
+        "setup(name='arm', entry_points={'console_scripts': ['wave = arm.wave:main']})"
+    )
+    (tmp_path / "artist.py").touch()
+    monkeypatch.chdir(tmp_path)
+    nothing: Any = SimpleNamespace(params={})
+    of_arm: Any = SimpleNamespace(params={"words": ["arm"]})
+    assert completing.complete_programs(nothing, "ar") == ["arm", "artist.py"]
+    assert completing.complete_programs(of_arm, "") == ["wave"]
+    assert "planner" in completing.complete_programs(nothing, "pl")
+    assert completing.complete_launch_files(nothing, "ar") == ["arm"]
+    assert completing.complete_launch_files(of_arm, "") == ["arm.launch.py"]
+    further: Any = SimpleNamespace(params={"words": ["arm", "wave"]})
+    assert completing.complete_programs(further, "") == []
