@@ -60,23 +60,30 @@ class Snapshot:
 class PlanarEkf:
     """Estimate and covariance, brought forward in time and corrected.
 
-    An entry that was never measured starts at 0 with its initial variance and is
+    An entry that was never measured starts at its initial value and variance and is
     carried along by the motion model; the first measurement of it replaces it.
 
     Args:
         process_noise: (8, 8) added to the covariance per second.
         initial_covariance: (8, 8) before the first measurement.
+        initial_state: (8,) likewise; all 0 if not given.
     """
 
-    def __init__(self, process_noise: Array, initial_covariance: Array) -> None:
+    def __init__(
+        self,
+        process_noise: Array,
+        initial_covariance: Array,
+        initial_state: Array | None = None,
+    ) -> None:
         self.process_noise = process_noise
         self.initial_covariance = initial_covariance
+        self.initial_state = np.zeros(SIZE) if initial_state is None else initial_state
         self.reset()
 
     def reset(self) -> None:
         """Forget everything."""
         self.snapshot = Snapshot(
-            None, np.zeros(SIZE), self.initial_covariance, frozenset(range(SIZE))
+            None, self.initial_state, self.initial_covariance, frozenset(range(SIZE))
         )
 
     @property

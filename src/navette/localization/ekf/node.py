@@ -9,6 +9,8 @@ after a jump of the measurements' time (a bag that loops) it begins anew.
 from dataclasses import replace
 from typing import Any, ClassVar
 
+import numpy as np
+
 from navette.errors import NavetteError, ParameterError, TransformError
 from navette.geometry import Transform3
 from navette.localization.ekf.filter import Estimate, Fused, PlanarEkf
@@ -20,7 +22,7 @@ from navette.localization.ekf.messages import (
 )
 from navette.localization.ekf.params import FIXED_AT_START, SOURCES, EkfParams
 from navette.localization.ekf.sensors import KINDS, Sensor
-from navette.localization.ekf.state import planar_covariance
+from navette.localization.ekf.state import PLANAR, planar_covariance
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.runtime import (
     Buffer,
@@ -158,7 +160,7 @@ class EkfNode(StageNode):
             for name in ("process_noise_covariance", "initial_estimate_covariance")
         )
         self._filter = OrderedEkf(
-            PlanarEkf(noise, initial),
+            PlanarEkf(noise, initial, np.array(params.initial_state)[PLANAR]),
             round(params.history_length * 1e9),
             round(params.max_gap * 1e9),
         )

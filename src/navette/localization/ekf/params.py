@@ -90,6 +90,10 @@ class EkfParams(Params):
         (1e-9,) * len(SPATIAL),
         "before the first measurement: 15 variances or 15 × 15",
     )
+    initial_state: tuple[float, ...] = param(
+        (0.0,) * len(SPATIAL),
+        "before the first measurement: " + " ".join(SPATIAL) + ", m and rad",
+    )
     history_length: float = param(
         1.0,
         "a measurement so much older than the newest is put in its place in time; an "
@@ -186,6 +190,11 @@ class EkfParams(Params):
                 planar_covariance(getattr(self, name), f"parameter {name!r}")
             except InvalidValueError as error:
                 raise ParameterError(str(error)) from None
+        if len(self.initial_state) != len(SPATIAL):
+            raise ParameterError(
+                f"parameter 'initial_state': {len(self.initial_state)} numbers; wanted "
+                f"{len(SPATIAL)}, for {' '.join(SPATIAL)}"
+            )
         for source in self.used:
             self._check_config(source)
         datum = self.gps0_datum

@@ -1,0 +1,73 @@
+"""The stack drives by the filter, not by the simulator's knowledge."""
+
+import math
+
+import pytest
+
+from navette.launch.options import RunOptions
+from navette.launch.scene import resolve_scene
+from navette.launch.stack import NavigationStack
+from navette.localization.ekf.node import EkfNode
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.runtime import Context, Executor, Parameter, VirtualClock
+from navette.sim.node import SimNode
+
+GOAL = (12.0, 0.0)
+ORDER = "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()
+# The wheels' odometry is an input of the filter now, and its transform nobody's.
+REMAP = "--ros-args -r /odom/filtered:=/wheels/odometry -r /tf:=/tf_of_wheels".split()
+
+
+def config(*names: str) -> list[bool]:
+    return [name in names for name in ORDER]
+
+
+def filter_for(sim: SimNode, context: Context) -> EkfNode:
+    frames = {
+        "odom_frame": sim.params.odom_frame,
+        "world_frame": sim.params.odom_frame,
+        "base_link_frame": sim.params.base_frame,
+    }
+    inputs = {
+        "odom0": "/wheels/odometry",
+        "odom0_config": config("vx", "vy", "vyaw"),
+        "imu0": "/imu",
+        "imu0_config": config("yaw", "vyaw"),
+    }
+    start = {"initial_state": [-6.0, *[0.0] * 14]}
+    values = {**frames, **inputs, **start, "frequency": 20.0}
+    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    return EkfNode(context=context, parameter_overrides=overrides)
+
+
+@pytest.mark.slow
+def test_the_robot_drives_by_filtered_wheels_and_imu() -> None:
+    """22 m round an obstacle, with wheels whose slip adds up."""
+    resolved = resolve_scene(RunOptions(world="course"))
+    context = Context(clock=VirtualClock())
+    with context:
+        resolved.override_parameters(context.overrides)
+        context.overrides.add("missions", {"goals": list(GOAL)}, "test")
+        noisy = {"odometry": "wheel", "wheel_noise": 0.02, "odometry_child_frame": ""}
+        context.overrides.add("sim", noisy, "test")
+        sim = SimNode(resolved.scene, context=context, cli_args=REMAP)
+        ekf = filter_for(sim, context)
+        stack = NavigationStack.create(context)
+        executor = Executor(context=context)
+        off: list[float] = []
+
+        def on_estimate(estimate: Odometry) -> None:
+            x, y, _ = sim.simulator.pose().translation
+            place = estimate.pose.pose.position
+            off.append(math.hypot(place.x - x, place.y - y))
+
+        ekf.create_subscription(Odometry, "/odom/filtered", on_estimate, 10)
+        for node in context.nodes:
+            executor.add_node(node)
+        stack.missions.on_done = executor.stop
+        executor.spin_until(90_000_000_000)
+        results = [goal.result for goal in stack.missions.standing]
+        assert results == ["reached"]
+        assert sim.simulator.contacts.count == 0
+        assert len(off) > 300
+        assert max(off) < 0.25
