@@ -1,5 +1,6 @@
 """``navette up``, ``down``, ``ps``, ``logs``, ``restart``: modules of a project."""
 
+import os
 import threading
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from navette.cli.output import note, show, show_json
+from navette.errors import NavetteError
 
 if TYPE_CHECKING:
     from navette.modules.client import Client
@@ -177,6 +179,8 @@ def logs(
 
 
 def _project(file: Path | None) -> "Project":
+    if os.name != "posix":
+        raise NavetteError("modules need Linux or macOS; navette launch works here")
     from navette.modules.project import find_project
 
     return find_project(Path.cwd(), file)

@@ -16,6 +16,7 @@ from navette.modules.project import (
     Project,
     is_locked,
     make_private,
+    read_who,
     socket_path,
     state_root,
 )
@@ -83,7 +84,12 @@ class Client:
             return self._ask(request)
         except ConnectionError:
             start_supervisor(self.project, self._socket)
+        try:
             return self._ask(request)
+        except ConnectionError as error:
+            raise SupervisorError(
+                f"the supervisor of {self.project.folder} does not answer: {error}"
+            ) from error
 
     def _ask(self, request: dict[str, Any]) -> list[dict[str, Any]]:
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
@@ -120,7 +126,7 @@ def known_projects() -> list[Project]:
     """Every project of this user that has a supervisor."""
     found = []
     for who in sorted(state_root().glob(f"*/{WHO_NAME}")):
-        told = _who(who.parent)
+        told = read_who(who.parent)
         if told is not None and is_locked(who.parent):
             found.append(Project(Path(told["folder"])))
     return found
@@ -128,18 +134,10 @@ def known_projects() -> list[Project]:
 
 def died(project: Project) -> int | None:
     """The process id of a supervisor that was killed; None if none was."""
-    told = _who(project.state)
+    told = read_who(project.state)
     if told is None or is_locked(project.state):
         return None
     return int(told["pid"])
-
-
-def _who(state: Path) -> dict[str, Any] | None:
-    try:
-        told = json.loads((state / WHO_NAME).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return told if isinstance(told, dict) and {"pid", "folder"} <= told.keys() else None
 
 
 def start_supervisor(project: Project, path: Path) -> None:

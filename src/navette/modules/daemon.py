@@ -13,12 +13,20 @@ import threading
 from pathlib import Path
 from typing import Any
 
+from navette.modules.client import answers
 from navette.modules.log_book import LogBook
-from navette.modules.project import WHO_NAME, Project, lock_of, make_private, try_lock
+from navette.modules.project import (
+    WHO_NAME,
+    Project,
+    lock_of,
+    make_private,
+    read_who,
+    try_lock,
+)
 from navette.modules.server import Server
 from navette.modules.specs import ModuleSpec
 from navette.modules.supervisor import Supervisor
-from navette.processes import Keeper
+from navette.processes import Keeper, sweep
 from navette.runtime import SystemClock
 from navette.runtime.loop import Call, EventLoop
 
@@ -45,8 +53,6 @@ def main(folder: Path, socket: Path, ready: int) -> None:
 
 def _locked(lock: int, socket: Path) -> bool:
     """Take the lock; False once another supervisor answers, or it takes too long."""
-    from navette.modules.client import answers
-
     pause, left_s = threading.Event(), _LOCK_S
     while not try_lock(lock):
         if answers(socket) or left_s <= 0:
@@ -56,12 +62,20 @@ def _locked(lock: int, socket: Path) -> bool:
     return True
 
 
+def _end_leftovers(state: Path) -> None:
+    """Of a supervisor that was killed together with its guard."""
+    before = read_who(state)
+    if before is not None and before.get("token"):
+        sweep(before["token"])
+
+
 class _Daemon:
     """A supervisor with its loop, log and socket."""
 
     def __init__(self, folder: Path, socket: Path, lock: int) -> None:
         state = Project(folder).state
         self._who = state / WHO_NAME
+        _end_leftovers(state)
         self._loop = EventLoop(SystemClock())
         self._log = LogBook(state, lambda: self._loop.clock.now_ns)
         self._keeper = Keeper(hold=[lock])
@@ -71,9 +85,12 @@ class _Daemon:
             self._keeper, self._loop, self._log, self._become_idle
         )
         self._server = Server(socket, self._loop, self._handle)
-        self._who.write_text(
-            json.dumps({"pid": os.getpid(), "folder": str(folder)}), encoding="utf-8"
-        )
+        told = {
+            "pid": os.getpid(),
+            "folder": str(folder),
+            "token": self._keeper.token,
+        }
+        self._who.write_text(json.dumps(told), encoding="utf-8")
 
     def run(self) -> None:
         self._listen_to_signals()

@@ -5,10 +5,12 @@ A project is a folder: that of the ``navette.yaml`` found in this folder or abov
 
 import fcntl
 import hashlib
+import json
 import os
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from navette.errors import FileFormatError
 
@@ -91,6 +93,15 @@ def socket_path(state: Path) -> Path:
 def make_private(folder: Path) -> None:
     """Make a folder that only this user can look into."""
     folder.mkdir(mode=_PRIVATE, parents=True, exist_ok=True)
+
+
+def read_who(state: Path) -> dict[str, Any] | None:
+    """What a supervisor said of itself: its ``pid``, ``folder`` and ``token``."""
+    try:
+        told = json.loads((state / WHO_NAME).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return told if isinstance(told, dict) and {"pid", "folder"} <= told.keys() else None
 
 
 def lock_of(state: Path) -> Path:

@@ -8,7 +8,7 @@ from navette.processes.child import (
     Listener,
 )
 from navette.processes.ending import SIGNAL_NAMES, Ending, Patience
-from navette.processes.guard import without_marks
+from navette.processes.guard import sweep, without_marks
 from navette.processes.keeper import Keeper, ProcessError, StartOptions
 from navette.processes.lines import LineCutter
 from navette.processes.outcome import describe_exit
@@ -27,5 +27,6 @@ __all__ = [
     "StartOptions",
     "TERMINATE",
     "describe_exit",
+    "sweep",
     "without_marks",
 ]

@@ -96,6 +96,16 @@ class Guard:
             stdin.flush()
 
 
+def sweep(token: str) -> None:
+    """End what carries a token whose guard is gone, too (on Linux)."""
+    subprocess.run(
+        [sys.executable, "-I", "-S", str(_PROGRAM), token],
+        stdin=subprocess.DEVNULL,
+        env=without_marks(os.environ),
+        check=False,
+    )
+
+
 def marked(env: Mapping[str, str], token: str) -> dict[str, str]:
     """The environment of a process that is kept under ``token`` as well."""
     tokens = [each for each in env.get(VARIABLE, "").split(":") if each]

@@ -81,6 +81,12 @@ class Keeper:
         guard.add(process.pid)
         return ChildProcess(process, listener, lambda: guard.discard(process.pid))
 
+    @property
+    def token(self) -> str:
+        """What every process it started carries; empty where there is no guard."""
+        guard = self.guard()
+        return "" if guard is None else guard.token
+
     def guard(self) -> Guard | None:
         """The guard, started if need be; None where there are no process groups."""
         if self._guard is None and _POSIX:

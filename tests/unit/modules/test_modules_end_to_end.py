@@ -138,6 +138,31 @@ def test_nothing_outlives_a_supervisor_that_was_killed(bench: Any) -> None:
     second.wait_end()
 
 
+@pytest.mark.skipif(
+    not Path("/proc/self").is_dir(), reason="leftovers are found in Linux's /proc"
+)
+def test_what_a_supervisor_and_its_guard_left_ends_with_the_next(bench: Any) -> None:
+    pipe = Pipe(bench.folder / "pipe")
+    bench.write(f"modules: {{a: {{nodes: [{holder(pipe)}]}}}}")
+    bench.up()
+    wait_for(lambda: "a/hold: holding" in said(bench))
+    pid = json.loads((bench.client.project.state / "supervisor.json").read_text())[
+        "pid"
+    ]
+    os.kill(pid, signal.SIGSTOP)  # lest it replaces its guard
+    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    (guard,) = (
+        int(child)
+        for child in children
+        if "guard_program" in Path(f"/proc/{child}/cmdline").read_text()
+    )
+    os.kill(guard, signal.SIGKILL)
+    os.kill(pid, signal.SIGKILL)
+    bench.write("modules: {b: {nodes: [{command: sleep 1000}]}}")
+    bench.up()
+    pipe.wait_end()
+
+
 def test_edit_and_restart(bench: Any) -> None:
     node = bench.write(NODE, "node.py")
     bench.write("modules: {m: {nodes: [node.py]}}")
