@@ -73,6 +73,12 @@ def _lifecycle(app: typer.Typer) -> None:
     app.add_typer(lifecycle)
 
 
+def _component(app: typer.Typer) -> None:
+    from navette.cli.component import component
+
+    app.add_typer(component)
+
+
 def _bag(app: typer.Typer) -> None:
     from navette.cli.bag import bag
 
@@ -144,6 +150,9 @@ VERBS = {
     ),
     "lifecycle": Later(
         "Look at managed nodes, and take them from state to state.", _lifecycle
+    ),
+    "component": Later(
+        "Load nodes into containers that run, and take them out.", _component
     ),
     "bag": Later(
         "Recordings (.mcap, .bag, .db3): record, play, look into, repair, rework.", _bag

@@ -17,6 +17,7 @@ from navette.testing import GraphHarness
 _JOINING = (
     "action.goals",
     "action.looking",
+    "component",
     "completing",
     "doctor.command",
     "lifecycle",

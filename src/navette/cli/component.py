@@ -1,0 +1,226 @@
+"""``navette component``: nodes loaded into containers that run."""
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navette.cli.asking import Answer, Question, ask_all, chosen_node, node_names
+from navette.cli.completing import complete_nodes, complete_packages
+from navette.cli.output import note, show, show_json, styled
+from navette.cli.session import FAILED, connect, fail, service_endpoints
+from navette.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from navette.runtime import Node
+
+component = typer.Typer(
+    name="component",
+    help="Load nodes into containers that run, and take them out.",
+    no_args_is_help=True,
+)
+
+Container = Annotated[
+    str,
+    typer.Argument(
+        metavar="CONTAINER",
+        help="As /component_container.",
+        autocompletion=complete_nodes,
+    ),
+]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Only ids and names of components.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+
+_SERVICES = {
+    "list_nodes": "composition_interfaces/srv/ListNodes",
+    "load_node": "composition_interfaces/srv/LoadNode",
+    "unload_node": "composition_interfaces/srv/UnloadNode",
+}
+_LOAD_S = 30.0  # a node may compile its kernels
+
+
+@component.command("list")
+def list_(
+    container: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[CONTAINER]", help="By default all.", autocompletion=complete_nodes
+        ),
+    ] = None,
+    containers_only: Annotated[
+        bool, typer.Option("--containers-only", help="Without what is in them.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """List containers and the components in them."""
+    with connect() as here:
+        names = [_chosen(here, container)] if container else containers(here)
+        questions = [_question(name, "list_nodes") for name in names]
+        answers = dict(zip(names, ask_all(here, questions), strict=True))
+    held = {
+        name: dict(zip(r.unique_ids, r.full_node_names, strict=True))
+        for name, (r, _) in answers.items()
+        if r is not None
+    }
+    for name, (response, reason) in answers.items():
+        if response is None:
+            note(f"{name}: {reason}")
+    if as_json:
+        show_json({n: {str(i): c for i, c in own.items()} for n, own in held.items()})
+    else:
+        for name, own in held.items():
+            if container is None:
+                show(styled(name, bold=True))
+            indent = "" if container else "  "
+            for number, node in own.items() if not containers_only else ():
+                show(f"{indent}{number}  {node}")
+    if len(held) < len(names):
+        raise typer.Exit(FAILED)
+
+
+@component.command()
+def load(
+    container: Container,
+    package: Annotated[
+        str,
+        typer.Argument(
+            metavar="PACKAGE",
+            help="Where the class is.",
+            autocompletion=complete_packages,
+        ),
+    ],
+    plugin: Annotated[
+        str,
+        typer.Argument(metavar="PLUGIN", help="As package::Class, or module:Class."),
+    ],
+    node_name: Annotated[
+        str, typer.Option("--node-name", "-n", metavar="NAME", help="Its name.")
+    ] = "",
+    node_namespace: Annotated[
+        str,
+        typer.Option("--node-namespace", metavar="NAMESPACE", help="Its namespace."),
+    ] = "",
+    log_level: Annotated[
+        str, typer.Option("--log-level", metavar="LEVEL", help="As debug, info, warn.")
+    ] = "",
+    remap_rule: Annotated[
+        list[str] | None,
+        typer.Option("--remap-rule", "-r", metavar="FROM:=TO", help="May be repeated."),
+    ] = None,
+    parameter: Annotated[
+        list[str] | None,
+        typer.Option("--parameter", "-p", metavar="NAME:=VALUE", help="Likewise."),
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Load a node into a container."""
+    fields = {
+        "package_name": package,
+        "plugin_name": plugin,
+        "node_name": node_name,
+        "node_namespace": node_namespace,
+        "log_level": _level(log_level),
+        "remap_rules": remap_rule or [],
+        "parameters": [_parameter(each) for each in parameter or ()],
+    }
+    with connect() as here:
+        name = _chosen(here, container)
+        (answer,) = ask_all(here, [_question(name, "load_node", **fields)], _LOAD_S)
+    response = _succeeded(answer, f"Failed to load component {plugin}")
+    number, node = response.unique_id, response.full_node_name
+    if quiet:
+        show(f"{number}  {node}")
+    else:
+        show(f"Loaded component {number} into '{name}' container node as '{node}'")
+
+
+@component.command()
+def unload(
+    container: Container,
+    component_uid: Annotated[
+        list[int], typer.Argument(metavar="ID...", help="As list prints them.")
+    ],
+    quiet: Quiet = False,
+) -> None:
+    """Take nodes out of a container."""
+    with connect() as here:
+        name = _chosen(here, container)
+        for number in component_uid:
+            question = _question(name, "unload_node", unique_id=number)
+            (answer,) = ask_all(here, [question])
+            where = f"component {number} from '{name}' container node"
+            _succeeded(answer, f"Failed to unload {where}")
+            show(str(number) if quiet else f"Unloaded {where}")
+
+
+@component.command()
+def types(as_json: Json = False) -> None:
+    """List the components that installed packages have registered."""
+    from importlib.metadata import entry_points
+
+    from navette.bringup.components import GROUP
+
+    found: dict[str, list[str]] = {}
+    for point in entry_points(group=GROUP):
+        package = point.value.partition(":")[0].partition(".")[0]
+        found.setdefault(package, []).append(point.name)
+    if as_json:
+        show_json({package: sorted(found[package]) for package in sorted(found)})
+        return
+    for package in sorted(found):
+        show(styled(package, bold=True))
+        for name in sorted(found[package]):
+            show(f"  {name}")
+
+
+def containers(here: "Node") -> list[str]:
+    """Full names of the nodes that can load others, sorted."""
+    serving = {
+        end.topic.removesuffix("/_container/load_node")
+        for end in service_endpoints(here)
+        if end.type_name == _SERVICES["load_node"]
+    }
+    return [name for name in node_names(here, hidden=True) if name in serving]
+
+
+def _chosen(here: "Node", name: str) -> str:
+    full = chosen_node(here, name)
+    known = containers(here)
+    if full not in known:
+        fail(f"node {full} is no container; containers: {', '.join(known) or 'none'}")
+    return full
+
+
+def _question(container: str, service: str, **fields: Any) -> Question:
+    name = f"{container}/_container/{service}"
+    return Question(name, _SERVICES[service], fields)
+
+
+def _succeeded(answer: Answer, otherwise: str) -> Any:
+    """The response; ends the command if there is none, or one of failure."""
+    if answer.response is None:
+        fail(f"{otherwise}: {answer.reason}")
+    if not answer.response.success:
+        fail(f"{otherwise}: {answer.response.error_message}")
+    return answer.response
+
+
+def _level(name: str) -> int:
+    from navette.runtime import LoggingSeverity
+
+    known = {each.name.lower(): int(each) for each in LoggingSeverity}
+    if name and name.lower() not in known:
+        raise InvalidValueError(f"--log-level {name!r}: known: {', '.join(known)}")
+    return known[name.lower()] if name else 0
+
+
+def _parameter(text: str) -> Any:
+    """A message of ``name:=value``."""
+    from navette.msgs.rcl_interfaces.msg import Parameter
+    from navette.runtime.parameter import get_parameter_value
+
+    name, assigned, value = text.partition(":=")
+    if not (name and assigned):
+        raise InvalidValueError(f"--parameter {text!r}: wanted NAME:=VALUE")
+    return Parameter(name=name, value=get_parameter_value(value))
