@@ -85,7 +85,7 @@ class Progress:
 
 
 def _state_text(view: ProcessView) -> str:
-    text = view.state.value if view.state is not State.PAUSING else "restarts soon"
+    text = view.state.value
     trouble = view.is_in_trouble or view.state is State.WAITING
     return f"{text}: {view.reason}" if view.reason and trouble else text
 

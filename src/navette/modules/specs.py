@@ -17,7 +17,7 @@ class State(Enum):
     WAITING = "waiting"  # for the modules it needs
     STARTING = "starting"
     RUNNING = "running"
-    PAUSING = "pausing"  # before its next restart
+    PAUSING = "restarting"  # before its next restart
     STOPPING = "stopping"
     STOPPED = "stopped"  # because it was asked to
     ENDED = "ended"  # by itself, with exit code 0

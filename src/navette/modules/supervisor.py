@@ -90,7 +90,8 @@ class Supervisor:
         wanted = list(self._modules) if names is None else list(names)
         for name in wanted:
             if name not in self._modules:
-                raise UnknownNameError.of("module that is up", name, [*self._modules])
+                up = ", ".join(self._modules) or "nothing"
+                raise UnknownNameError(f"{name!r} is not up; {up} is")
         for name in wanted:
             self._modules[name].is_wanted = False
         self._look()

@@ -111,7 +111,7 @@ def test_restarts_come_later_and_later_and_then_no_more(world: Any) -> None:
     world.behaviour = lambda child: world.exit_after(child, 1.0, 3)
     world.supervisor.up([module("m", delay_s=0.5, limit=3)], {})
     world.run(1.0)
-    assert world.states == {"m": "pausing"}
+    assert world.states == {"m": "restarting"}
     world.run(60)
     assert [child.at_s for child in world.children] == [0.0, 1.5, 3.5, 6.5]
     assert world.states == {"m": "failed"}
@@ -187,7 +187,7 @@ def test_a_stubborn_one_gets_each_signal(world: Any) -> None:
     world.run(20)
     assert world.children[0].signals == [2, 15, 9]
     assert "m: does not end; sending SIGKILL" in world.said
-    with pytest.raises(UnknownNameError, match="'m'; known: none"):
+    with pytest.raises(UnknownNameError, match="'m' is not up; nothing is"):
         world.supervisor.down(["m"])
 
 
