@@ -11,6 +11,7 @@ from transport_benches import free_endpoint, until
 
 from navette import Context, DurabilityPolicy, HistoryPolicy, Node, QoSProfile
 from navette.errors import InvalidValueError
+from navette.msgs import serialize, type_hash
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import Float64, String
 from navette.runtime import Executor
@@ -20,6 +21,8 @@ from navette.runtime.qos_events import (
     SubscriptionEventCallbacks,
 )
 from navette.transports.zenoh import ZenohTransport
+from navette.transports.zenoh.attachment import Attachment
+from navette.transports.zenoh.keys import data_key
 
 LATCHED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -106,6 +109,28 @@ def test_a_slow_subscription_keeps_the_newest(network: Network) -> None:
     network.until(lambda: last, "the end")
     network.until(lambda: len(heard) >= 2, "what was kept")
     assert heard == ["3", "4"]
+
+
+def test_a_payload_that_is_no_such_message_calls_nobody_and_stops_nothing(
+    network: Network,
+) -> None:
+    here, there = network.node("here"), network.node("there")
+    heard: list[Any] = []
+    with_info: list[Any] = []
+    raw: list[Any] = []
+    here.create_subscription(String, "t", heard.append, 10)
+    here.create_subscription(String, "t", lambda m, info: with_info.append(m.data), 10)
+    here.create_subscription(String, "t", raw.append, 10, raw=True)
+    publisher = there.create_publisher(String, "t", 10)
+    until(lambda: publisher.get_subscription_count() == 3, "the matches")
+    garbage = b"\x00\x01\x00\x00" + b"\xff" * 20
+    key = data_key(0, "/t", "std_msgs/msg/String", type_hash("std_msgs/msg/String"))
+    attachment = Attachment(1, 0, bytes(16)).encode()
+    transport_of(there).session.zenoh.put(key, garbage, attachment=attachment)
+    publisher.publish(String(data="fine"))
+    network.until(lambda: heard and with_info and len(raw) == 2, "the good one")
+    assert ([m.data for m in heard], with_info) == (["fine"], ["fine"])
+    assert raw == [garbage, serialize(String(data="fine"))]  # as it came
 
 
 def test_servers_here_and_there_are_both_asked_once(network: Network) -> None:

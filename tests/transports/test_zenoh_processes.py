@@ -1,5 +1,6 @@
 """Several processes on one network: they meet, and outlive each other."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -25,6 +26,11 @@ from navette.msgs.rcl_interfaces.msg import Log
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Executor
 from navette.runtime.exceptions import ServiceFailedError
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's"),
+]
 
 TALKER = """
 import sys, navette
@@ -173,7 +179,6 @@ def spin_until(executor: Executor, condition: Any, what: str) -> None:
     until(look, what)
 
 
-@pytest.mark.slow
 def test_two_processes_meet_with_nothing_prepared(network: Network) -> None:
     network.child(TALKER, "talker")
     node, executor = network.node("listener")
@@ -186,7 +191,6 @@ def test_two_processes_meet_with_nothing_prepared(network: Network) -> None:
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
-@pytest.mark.slow
 def test_another_takes_over_when_the_router_is_killed(network: Network) -> None:
     first = network.child(SILENT)
     network.child(TALKER, "talker")
@@ -203,7 +207,6 @@ def test_another_takes_over_when_the_router_is_killed(network: Network) -> None:
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
-@pytest.mark.slow
 def test_a_service_of_another_process_answers_and_its_death_is_named(
     network: Network,
 ) -> None:
@@ -220,7 +223,6 @@ def test_a_service_of_another_process_answers_and_its_death_is_named(
         future.result()
 
 
-@pytest.mark.slow
 def test_actions_parameters_logs_and_the_latest_map_of_another_process(
     network: Network,
 ) -> None:
@@ -255,7 +257,6 @@ def test_actions_parameters_logs_and_the_latest_map_of_another_process(
     assert steps == [3, 4, 5, 6]
 
 
-@pytest.mark.slow
 def test_many_that_start_at_once_agree_on_a_router(network: Network) -> None:
     names = {f"racer{number}" for number in range(6)}
     racers = [
@@ -271,7 +272,6 @@ def test_many_that_start_at_once_agree_on_a_router(network: Network) -> None:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
 def test_a_process_that_is_interrupted_ends_at_once(
     network: Network, signum: int
