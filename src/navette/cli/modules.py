@@ -78,12 +78,25 @@ def up(
     project, content, names = _read(words or [], file)
     specs = content.specs(names or content.names)
     client = _client(project)
+    up_before = {module["module"] for module in client.status()}
+    started = [s.name for s in specs if s.name not in up_before or s.name in names]
+    reader = _reader(project, started)
+    reader.last(0)
     client.up(specs)
-    _watch_start(client, [spec.name for spec in specs], timeout, stay=attach or watch)
-    if watch:
-        _watch_files(client, words or [], file)
-    elif attach:
-        _follow_until_interrupted(client, names or content.names)
+    try:
+        _watch_start(client, [s.name for s in specs], timeout, stay=attach or watch)
+        if watch:
+            _watch_files(client, words or [], file)
+        elif attach:
+            _follow(reader)
+    except KeyboardInterrupt:
+        if attach:
+            _end(client, started)
+        else:
+            note("the modules go on; navette down ends them")
+        raise typer.Exit(_INTERRUPTED) from None
+    finally:
+        reader.close()
 
 
 def restart(
@@ -241,20 +254,14 @@ def _end(client: "Client", names: Sequence[str] | None) -> None:
         raise typer.Exit(_FAILED)
 
 
-def _follow_until_interrupted(client: "Client", names: Sequence[str]) -> None:
+def _follow(reader: "LogReader") -> None:
+    """Show what comes until Ctrl-C."""
     from navette.cli.modules_view import LogView
 
-    reader, view, pause = _reader(client.project, names), LogView(), threading.Event()
-    try:
-        view.show(reader.last(None)[-50:])
-        while True:
-            pause.wait(_LOOK_S)
-            view.show(reader.new())
-    except KeyboardInterrupt:
-        _end(client, names)
-        raise typer.Exit(_INTERRUPTED) from None
-    finally:
-        reader.close()
+    view, pause = LogView(), threading.Event()
+    while True:
+        view.show(reader.new())
+        pause.wait(_LOOK_S)
 
 
 def _watch_files(client: "Client", words: Sequence[str], file: Path | None) -> None:
