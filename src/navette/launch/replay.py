@@ -46,6 +46,7 @@ class ReplaySummary:
     outputs: tuple[str, ...]
     fed: int
     recorded: int
+    begin_ns: int
     duration_s: float
     wall_time_s: float
 
@@ -139,6 +140,7 @@ class Replay:
             self.outputs,
             progress.published,
             0 if self.recorder is None else self.recorder.message_count,
+            self.begin_ns,
             (progress.end_ns - progress.begin_ns) / 1e9,
             watch.elapsed_s,
         )
@@ -159,17 +161,17 @@ class Replay:
         return tuple(sorted(found))
 
     def _choose_inputs(self, source: Source, also: Sequence[str]) -> tuple[str, ...]:
-        heard = {*self._topics_of(EndpointKind.SUBSCRIPTION), *_TRANSFORMS}
-        wanted = (heard - set(self.outputs)) | set(also)
-        recorded = [topic.name for topic in source.topics]
-        chosen = tuple(n for n in dict.fromkeys(recorded) if _full(n) in wanted)
-        if not chosen:
+        heard = set(self._topics_of(EndpointKind.SUBSCRIPTION))
+        wanted = (heard.union(_TRANSFORMS) - set(self.outputs)) | set(also)
+        recorded = dict.fromkeys(_full(topic.name) for topic in source.topics)
+        chosen = tuple(name for name in recorded if name in wanted)
+        if not heard.union(also).intersection(chosen):
             raise InvalidValueError(
-                f"no input was recorded: the nodes read "
-                f"{', '.join(sorted(heard - set(_TRANSFORMS))) or 'nothing'}; "
+                "no input was recorded: the nodes read "
+                f"{', '.join(sorted(heard)) or 'nothing'}; "
                 f"the bag has {', '.join(recorded) or 'nothing'}"
             )
-        return tuple(_full(name) for name in chosen)
+        return chosen
 
     def _check_late_inputs(self) -> None:
         """What was recorded and asked for later on was not fed: say so."""

@@ -25,6 +25,7 @@ from navette.msgs import (
     type_name,
 )
 from navette.msgs.std_msgs.msg import Float64, String
+from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile
 
 S = 1_000_000_000
@@ -206,6 +207,9 @@ def test_what_makes_no_sense_is_named(bag: Path, tmp_path: Path) -> None:
         InvalidValueError, match="no input was recorded: the nodes read"
     ):
         replay(bag, lambda context: Listener(context, "/other"))
+    path = write(tmp_path / "t.mcap", [("/tf_static", 0.0, TFMessage())])
+    with pytest.raises(InvalidValueError, match="no input was recorded"):
+        replay(path, lambda context: Listener(context, "/other"))
     path = write(tmp_path / "s.mcap", [("/s", 0.0, String())])
     with pytest.raises(InvalidValueError, match="listener publishes nothing"):
         replay(path, lambda c: Listener(c, "/s"), record=tmp_path / "out.mcap")

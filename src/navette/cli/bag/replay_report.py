@@ -20,10 +20,10 @@ def report(
     if record is not None:
         note(f"recorded {summary.recorded} messages in {record}")
     if comparison is not None:
-        show("\n".join(_comparison_lines(comparison)))
+        show("\n".join(_comparison_lines(comparison, summary.begin_ns)))
 
 
-def _comparison_lines(comparison: Comparison) -> list[str]:
+def _comparison_lines(comparison: Comparison, begin_ns: int) -> list[str]:
     rows: list[list[str]] = [["", "topic", "compared", "differ", "missing", "extra"]]
     for topic in comparison.topics:
         counts = topic.compared, topic.differing, topic.missing, topic.extra
@@ -32,7 +32,7 @@ def _comparison_lines(comparison: Comparison) -> list[str]:
     colours = ("green" if topic.same else "red" for topic in comparison.topics)
     lines = [head, *map(_coloured, rest, colours)]
     for topic in comparison.topics:
-        lines += _topic_lines(topic)
+        lines += _topic_lines(topic, begin_ns)
     if comparison.unexpected:
         lines.append(f"not compared, new: {', '.join(comparison.unexpected)}")
     return lines
@@ -42,7 +42,7 @@ def _coloured(line: str, colour: str) -> str:
     return styled(line, fg=colour)
 
 
-def _topic_lines(topic: TopicComparison) -> list[str]:
+def _topic_lines(topic: TopicComparison, begin_ns: int) -> list[str]:
     if topic.problem:
         return ["", f"{topic.name}: {topic.problem}"]
     if not topic.fields:
@@ -53,7 +53,7 @@ def _topic_lines(topic: TopicComparison) -> list[str]:
         assert worst is not None, "a field is listed with its first difference"
         apart = "" if worst.largest is None else f"{worst.largest:.3g}"
         of = f"{worst.differing} of {worst.elements}" if worst.elements > 1 else ""
-        first = f"{each.first_ns / 1e9:.3f} s"
+        first = f"{(each.first_ns - begin_ns) / 1e9:.3f} s"
         example = f"{worst.expected} → {worst.got}"
         rows.append((each.path, str(each.messages), of, apart, first, example))
     return ["", styled(topic.name, bold=True), *(f"  {x}" for x in aligned(rows))]
