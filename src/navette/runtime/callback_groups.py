@@ -10,15 +10,37 @@ from typing import Any
 
 
 class CallbackGroup:
-    """Base of the two kinds; holds events back while ``held`` is above zero."""
+    """Base of the two kinds, and of a program's own.
+
+    Events are held back while ``held`` is above zero. A class that overrides
+    :meth:`can_execute` or :meth:`beginning_execution` has rules of its own: its groups
+    are held for ever (``floor``), and asked before each event.
+    """
 
     #: Whether a waiting callback keeps the others of the group from starting.
-    exclusive = True
+    exclusive = False
+    #: Whether a subclass decides by itself.
+    has_rules = False
 
-    __slots__ = ("__weakref__", "_entities", "calling", "held", "parked", "ready")
+    __slots__ = (
+        "__weakref__",
+        "_entities",
+        "calling",
+        "floor",
+        "held",
+        "parked",
+        "ready",
+    )
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        cls.has_rules = any(
+            getattr(cls, name) is not getattr(CallbackGroup, name)
+            for name in ("can_execute", "beginning_execution", "ending_execution")
+        )
 
     def __init__(self) -> None:
-        self.held = 0
+        self.held = self.floor = 1 if self.has_rules else 0
         self.calling = 0  # how many of the holds are callbacks that wait for a service
         self.parked: deque[Any] = deque()
         self.ready: deque[Any] | None = None  # the loop's queue, once known
@@ -38,7 +60,26 @@ class CallbackGroup:
 
     def can_execute(self, entity: Any) -> bool:
         """Whether ``entity``'s callback might start now."""
-        return self.held == 0
+        return self.held == self.floor
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Asked right before the callback; False holds it back after all."""
+        return True
+
+    def ending_execution(self, entity: Any) -> None:
+        """Told when the callback has ended."""
+
+    def blocks(self, entity: Any) -> bool:
+        """Whether an event must wait; asked while the group is held."""
+        return self.held > self.floor or not (
+            self.has_rules and self.can_execute(entity)
+        )
+
+    def ask_again(self) -> None:
+        """Queue what the rules held back, if they now let the first of it start."""
+        if self.parked and self.ready is not None and not self.blocks(self.parked[0]):
+            self.ready.extendleft(reversed(self.parked))
+            self.parked.clear()
 
     def hold(self) -> None:
         """Keep the group's events back until the matching :meth:`release`."""
@@ -59,7 +100,7 @@ class CallbackGroup:
     def release(self) -> None:
         """Undo one :meth:`hold`; parked events go first, in their old order."""
         self.held -= 1
-        if self.held == 0 and self.parked and self.ready is not None:
+        if self.held == self.floor and self.parked and self.ready is not None:
             self.ready.extendleft(reversed(self.parked))
             self.parked.clear()
 
@@ -67,11 +108,11 @@ class CallbackGroup:
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
     """At most one of the group's callbacks is under way at a time."""
 
+    exclusive = True
     __slots__ = ()
 
 
 class ReentrantCallbackGroup(CallbackGroup):
     """Any of the group's callbacks may start while others wait."""
 
-    exclusive = False
     __slots__ = ()

@@ -91,6 +91,9 @@ class EventLoop:
         self._heap: list[tuple[int, int, Any]] = []
         self._sequence = 0
         self.free_group = ReentrantCallbackGroup()
+        #: Groups with rules of their own that held something back.
+        self._ruled: list[CallbackGroup] = []
+        self._ran = 0  # events since they were asked
         self._inbox: deque[Entity] = deque()
         self._wakeup = Wakeup()
         self._attention = False
@@ -316,13 +319,14 @@ class EventLoop:
             entity = ready.popleft()
             if not self._must_wait(entity):
                 return entity
-            entity.group.parked.append(entity)
+            self._park(entity)
         return None
 
     @staticmethod
     def _must_wait(entity: Entity) -> bool:
         group = entity.group
-        return bool(group.held) and not (entity.answers_calls and group.calling)
+        is_held = bool(group.held) and not (entity.answers_calls and group.calling)
+        return is_held and group.blocks(entity)
 
     def _take_turn(self) -> bool:
         """Become the driver; False after a short wait if another thread is."""
@@ -426,9 +430,12 @@ class EventLoop:
                 break
             entity = ready.popleft()
             group = entity.group
+            rules = None
             if group.held and not (entity.answers_calls and group.calling):
-                group.parked.append(entity)
-                continue
+                if group.blocks(entity) or not group.beginning_execution(entity):
+                    self._park(entity)
+                    continue
+                rules = group
             self._running = entity
             count += 1
             try:
@@ -436,11 +443,22 @@ class EventLoop:
             except Exception as error:
                 self._raise(entity.origin(), error)
             if result is not None and isinstance(result, Coroutine):
-                self._start(entity, result)
+                self._start(entity, result, rules)
+            elif rules is not None:
+                rules.ending_execution(entity)
+        self._ran += count
         return count
+
+    def _park(self, entity: Entity) -> None:
+        group = entity.group
+        group.parked.append(entity)
+        if group.has_rules and group not in self._ruled:
+            self._ruled.append(group)
 
     def _go_on(self, until_ns: int | None) -> bool:
         """Go to the next event's time; False if there is nothing to wait for."""
+        if self._rules_let_go_on():
+            return True
         heap = self._heap
         with self._lock:
             while heap and heap[0][2].token != heap[0][1]:
@@ -464,7 +482,20 @@ class EventLoop:
             self._wakeup.clear()
         return True
 
-    def _start(self, entity: Entity, coroutine: Coroutine[Any, Any, Any]) -> None:
+    def _rules_let_go_on(self) -> bool:
+        """Ask groups with rules again, if an event ran that may have changed them."""
+        if self._ran and self._ruled:
+            self._ran = 0
+            for group in self._ruled:
+                group.ask_again()
+        return bool(self.ready)
+
+    def _start(
+        self,
+        entity: Entity,
+        coroutine: Coroutine[Any, Any, Any],
+        rules: CallbackGroup | None,
+    ) -> None:
         """Run a coroutine callback; its exclusive group is held until it ends."""
         node, source = entity.origin()
         task: Task[Any] = Task(coroutine, loop=self, source=source, node=node)
@@ -475,6 +506,8 @@ class EventLoop:
 
         task.on_error = fail
         task()
+        if rules is not None:
+            task.add_done_callback(lambda _: rules.ending_execution(entity))
         if not task.done() and entity.group.exclusive:
             group = entity.group
             group.hold()

@@ -8,6 +8,7 @@ from navette.msgs import Message, type_name
 # rclpy's names for annotations.
 Msg = Message
 MsgT = TypeVar("MsgT")
+SrvT = TypeVar("SrvT")
 SrvRequestT = TypeVar("SrvRequestT")
 SrvResponseT = TypeVar("SrvResponseT")
 SrvEventT = TypeVar("SrvEventT")

@@ -7,6 +7,9 @@ from navette.runtime.qos import QoSProfile
 from navette.runtime.ros_clock import Clock
 from navette.runtime.service_introspection import ServiceIntrospectionState
 from navette.runtime.type_support import SrvEventT, SrvRequestT, SrvResponseT
+from navette.runtime.type_support import SrvRequestT as SrvTypeRequest
+from navette.runtime.type_support import SrvResponseT as SrvTypeResponse
+from navette.runtime.type_support import SrvT as SrvType
 
 __all__ = [
     "CallbackGroup",
@@ -19,4 +22,7 @@ __all__ = [
     "SrvEventT",
     "SrvRequestT",
     "SrvResponseT",
+    "SrvType",
+    "SrvTypeRequest",
+    "SrvTypeResponse",
 ]

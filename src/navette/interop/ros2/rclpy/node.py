@@ -82,6 +82,10 @@ from navette.runtime.type_support import (
     check_is_valid_msg_type,
     check_is_valid_srv_type,
 )
+from navette.runtime.type_support import MsgT as MsgType
+from navette.runtime.type_support import SrvRequestT as SrvTypeRequest
+from navette.runtime.type_support import SrvResponseT as SrvTypeResponse
+from navette.runtime.type_support import SrvT as SrvType
 from navette.runtime.waitable import Waitable
 
 __all__ = [
@@ -102,6 +106,7 @@ __all__ = [
     "LoggingService",
     "MessageInfo",
     "MsgT",
+    "MsgType",
     "MutuallyExclusiveCallbackGroup",
     "Node",
     "NodeNameNonExistentError",
@@ -132,6 +137,9 @@ __all__ = [
     "SrvEventT",
     "SrvRequestT",
     "SrvResponseT",
+    "SrvType",
+    "SrvTypeRequest",
+    "SrvTypeResponse",
     "Subscription",
     "SubscriptionEventCallbacks",
     "TimeSource",
