@@ -5,6 +5,7 @@ import os
 import select
 import signal
 import socket
+import subprocess
 import sys
 import threading
 from collections.abc import Callable
@@ -14,6 +15,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
+import navette as package
 from navette.cli.app import app
 from navette.modules.client import died, known_projects
 from navette.modules.log_book import LogReader
@@ -217,3 +219,32 @@ def test_malformed_requests_are_refused(bench: Any, line: bytes) -> None:
         connection.shutdown(socket.SHUT_WR)
         assert "error" in json.loads(connection.makefile("rb").readline())
     assert len(bench.client.status()) == 1
+
+
+def test_attached_to_the_end(bench: Any) -> None:
+    pipe = Pipe(bench.folder / "pipe")
+    bench.write(
+        f"modules:\n  a: {{nodes: [{holder(pipe)}]}}\n"
+        "  b: {needs: [a], nodes: [{command: sleep 1000}]}\n"
+    )
+    bench.up("a")
+    wait_for(lambda: "a/hold: holding" in said(bench))
+    words = [sys.executable, "-u", "-m", "navette.cli", "up", "b", "--attach"]
+    source = str(Path(package.__file__).parents[1])
+    with subprocess.Popen(
+        words,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": source},
+    ) as attached:
+        assert attached.stdout is not None
+        alarm = threading.Timer(WAIT_S, attached.kill)
+        alarm.start()
+        lines = iter(attached.stdout.readline, "")
+        assert any("b/sleep: * started" in line for line in lines)
+        attached.send_signal(signal.SIGINT)
+        assert list(lines)[-1] == "b/sleep  stopped\n"
+        alarm.cancel()
+    assert attached.returncode == 130
+    left = [view["name"] for view in json.loads(navette("ps", "--json").output)]
+    assert left == ["hold"]
