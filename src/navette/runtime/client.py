@@ -11,13 +11,13 @@ from navette.msgs import get_interface, type_name
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context
+from navette.runtime.events import Entity
 from navette.runtime.exceptions import (
     InvalidHandle,
     ROSInterruptException,
     ServiceFailedError,
 )
 from navette.runtime.future import Future
-from navette.runtime.loop import Entity
 from navette.runtime.qos import QoSProfile
 from navette.runtime.ros_clock import Clock
 from navette.runtime.service_introspection import (

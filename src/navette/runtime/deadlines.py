@@ -2,7 +2,8 @@
 
 from collections.abc import Callable
 
-from navette.runtime.loop import Call, EventLoop
+from navette.runtime.events import Call
+from navette.runtime.loop import EventLoop
 
 
 class Watchdog:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 from navette.errors import InvalidValueError
 from navette.runtime.clock import TimeSource
 from navette.runtime.context import Context, get_default_context
+from navette.runtime.events import Call, Entity
 from navette.runtime.exceptions import (
     ConditionReachedException,
     ExternalShutdownException,
@@ -20,7 +21,7 @@ from navette.runtime.exceptions import (
     TimeoutException,
 )
 from navette.runtime.future import Future, Task
-from navette.runtime.loop import Call, Entity, EventLoop
+from navette.runtime.loop import EventLoop
 
 if TYPE_CHECKING:
     from navette.runtime.node import Node

@@ -5,7 +5,7 @@ from typing import Any
 
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context, get_default_context
-from navette.runtime.loop import Entity
+from navette.runtime.events import Entity
 
 
 class GuardCondition(Entity):

@@ -9,7 +9,8 @@ from navette.errors import MessageError
 from navette.msgs import get_interface, type_name
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.loop import Entity, EventLoop
+from navette.runtime.events import Entity
+from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.ros_clock import Clock
 from navette.runtime.service_introspection import (

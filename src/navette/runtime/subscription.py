@@ -9,7 +9,8 @@ from typing import Any, Generic, TypedDict, TypeVar
 from navette.msgs import serialize
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.content_filter import ContentFilterOptions
-from navette.runtime.loop import Entity, EventLoop
+from navette.runtime.events import Entity
+from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.qos_events import EventHandler
 from navette.runtime.signatures import takes_arguments

@@ -6,7 +6,7 @@ from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.loop import Entity
+from navette.runtime.events import Entity
 from navette.runtime.ros_clock import (
     Clock,
     ClockChange,

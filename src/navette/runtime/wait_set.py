@@ -4,7 +4,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.loop import Entity, EventLoop
+from navette.runtime.events import Entity
+from navette.runtime.loop import EventLoop
 
 if TYPE_CHECKING:
     from navette.runtime.waitable import Waitable

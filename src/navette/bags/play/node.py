@@ -27,7 +27,7 @@ from navette.errors import NavetteError
 from navette.msgs import get_interface, register_definition
 from navette.msgs.rosgraph_msgs.msg import Clock as ClockMsg
 from navette.runtime.context import Context
-from navette.runtime.loop import Call
+from navette.runtime.events import Call
 from navette.runtime.node import Node
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (

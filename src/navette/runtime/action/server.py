@@ -11,10 +11,10 @@ from navette.runtime.action.cancelling import goals_to_cancel
 from navette.runtime.action.goal_states import CancelResponse, GoalEvent, GoalResponse
 from navette.runtime.action.server_goal_handle import ServerGoalHandle
 from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.events import Call
 from navette.runtime.exceptions import RCLError
 from navette.runtime.executor import await_or_execute
 from navette.runtime.future import Future
-from navette.runtime.loop import Call
 from navette.runtime.node import Node
 from navette.runtime.qos import (
     QoSProfile,

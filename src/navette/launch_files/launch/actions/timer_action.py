@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from navette.launch_files.launch.launch_context import LaunchContext
-    from navette.runtime.loop import Call
+    from navette.runtime.events import Call
 
 
 class TimerAction(Action):
