@@ -28,7 +28,8 @@ from navette.modules.specs import ModuleSpec
 from navette.modules.supervisor import Supervisor
 from navette.processes import Keeper, sweep
 from navette.runtime import SystemClock
-from navette.runtime.loop import Call, EventLoop
+from navette.runtime.events import Call
+from navette.runtime.loop import EventLoop
 
 # A guard that ends what a killed supervisor left holds the lock meanwhile.
 _LOCK_S = 15.0

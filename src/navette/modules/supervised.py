@@ -19,7 +19,8 @@ from navette.processes import (
     StartOptions,
     describe_exit,
 )
-from navette.runtime.loop import Call, EventLoop
+from navette.runtime.events import Call
+from navette.runtime.loop import EventLoop
 
 READY_VARIABLE = "NAVETTE_READY_FD"
 # A program that never says so is taken for ready after this long.

@@ -19,7 +19,8 @@ from navette.launch_files.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-from navette.runtime.loop import Call, EventLoop
+from navette.runtime.events import Call
+from navette.runtime.loop import EventLoop
 
 
 class LaunchContext:
