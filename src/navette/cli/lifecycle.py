@@ -14,7 +14,7 @@ from navette.cli.asking import (
 )
 from navette.cli.completing import complete_managed_nodes, complete_transitions
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import note, show, show_json, styled
+from navette.cli.output import harmless, note, show, show_json, styled
 from navette.cli.session import FAILED, connect, fail
 
 if TYPE_CHECKING:
@@ -89,7 +89,8 @@ def get(
     else:
         for name, state in states.items():
             head = "" if node_name else f"{name}: "
-            show(f"{head}{state.label} {styled(f'[{state.id}]', dim=True)}")
+            number = styled(f"[{state.id}]", dim=True)
+            show(f"{head}{harmless(state.label)} {number}")
     if len(states) < len(names):
         raise typer.Exit(FAILED)
 
@@ -138,9 +139,10 @@ def list_(
         show_json([_as_dict(each) for each in found])
         return
     for each in found:
-        label, number = each.transition.label, each.transition.id
+        label, number = harmless(each.transition.label), each.transition.id
+        start, goal = harmless(each.start_state.label), harmless(each.goal_state.label)
         show(f"- {styled(label, bold=True)} [{number}]")
-        show(f"\tStart: {each.start_state.label}\n\tGoal: {each.goal_state.label}")
+        show(f"\tStart: {start}\n\tGoal: {goal}")
 
 
 def transitions(here: "Node", name: str, *, every: bool = False) -> list[Any]:

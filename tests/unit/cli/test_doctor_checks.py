@@ -264,18 +264,22 @@ def test_settings_that_keep_one_alone() -> None:
 
 
 def test_programs_that_were_left_running() -> None:
+    demo = Process(10, 1, ("/venv/bin/python", "/venv/bin/navette", "demo"), session=9)
     every = [
         Process(1, 0, ("/sbin/init",)),
-        Process(10, 1, ("/venv/bin/python", "/venv/bin/navette", "demo")),
+        demo,
         Process(11, 1, ("bash",)),
         Process(12, 11, ("/venv/bin/python", "-m", "navette", "sim")),
-        Process(13, 999, ("navette", "run", "talker.py")),
         Process(14, 1, ("/venv/bin/python", "/venv/bin/navette", "doctor")),
     ]
     findings = list(left_running(every, here=14))
-    assert [finding.what for finding in findings] == ["process 10", "process 13"]
+    assert [finding.what for finding in findings] == ["process 10"]
     assert findings[0].text.startswith("navette demo runs without the terminal")
     assert findings[0].advice == "if nobody needs it: kill 10"
+    in_container = [Process(1, 0, ("bash",), session=1), demo._replace(session=1)]
+    assert list(left_running(in_container, here=14)) == []
+    orphan = [in_container[0], demo]  # its terminal, session 9, has gone
+    assert [each.what for each in left_running(orphan, here=14)] == ["process 10"]
 
 
 @pytest.mark.parametrize(
@@ -283,6 +287,8 @@ def test_programs_that_were_left_running() -> None:
     [
         (("/usr/bin/python3", "/opt/venv/bin/navette", "sim"), True),
         (("python3.12", "-m", "navette", "sim"), True),
+        (("python3", "-m", "navette.cli", "sim"), True),
+        (("python3", "-m", "navette.modules.daemon"), False),
         (("vim", "navette"), False),
         (("python3", "talker.py"), False),
         ((), False),

@@ -119,7 +119,9 @@ def left_running(every: list[Process], here: int) -> Iterator[Finding]:
         if process.pid == here or not is_navette(process):
             continue
         parent = by_id.get(process.parent)
-        if parent is None or parent.command.partition(" ")[0] in _INITS:
+        of_init = parent is not None and parent.command.partition(" ")[0] in _INITS
+        # In a container, the first process may be anything, a shell as well.
+        if of_init or (process.parent == 1 and process.session not in by_id):
             yield Finding(
                 Level.WARNING,
                 MACHINE,
@@ -137,5 +139,11 @@ def is_navette(process: Process) -> bool:
     names = [Path(word).name for word in words]
     is_python = bool(names) and names[0].startswith("python")
     return names[:1] == ["navette"] or (
-        is_python and (names[1:2] == ["navette"] or words[1:3] == ("-m", "navette"))
+        is_python
+        and (
+            names[1:2] == ["navette"]
+            or (
+                words[1:2] == ("-m",) and words[2:3] in (("navette",), ("navette.cli",))
+            )
+        )
     )

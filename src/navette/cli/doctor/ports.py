@@ -14,7 +14,7 @@ _STOPPED = {"T", "t"}
 
 
 class Process(NamedTuple):
-    """A running program: id, that of its parent, and its command line.
+    """A running program: id, that of its parent, command line, id of its session.
 
     A stopped one (Ctrl-Z, SIGSTOP) keeps its ports, and answers nobody.
     """
@@ -23,6 +23,7 @@ class Process(NamedTuple):
     parent: int
     words: tuple[str, ...]
     is_stopped: bool = False
+    session: int = 0
 
     @property
     def command(self) -> str:
@@ -63,13 +64,14 @@ def processes() -> list[Process]:
         with contextlib.suppress(OSError, ValueError):
             words = (folder / "cmdline").read_bytes().decode(errors="replace")
             stat = (folder / "stat").read_text(errors="replace")
-            state, parent = stat.rpartition(")")[2].split()[:2]
+            state, parent, _, session = stat.rpartition(")")[2].split()[:4]
             found.append(
                 Process(
                     pid=int(folder.name),
                     parent=int(parent),
                     words=tuple(words.rstrip("\0").split("\0")),
                     is_stopped=state in _STOPPED,
+                    session=int(session),
                 )
             )
     return sorted(found)

@@ -134,7 +134,7 @@ def _show_names(
         if not held:
             for name in names:
                 kind = f" (type: {kinds[node, name]})" if kinds else ""
-                show(f"  {name}{kind}")
+                show(harmless(f"  {name}{kind}"))
             continue
         rows = [
             (name, *([kinds[node, name]] if kinds else []), held[node, name])
@@ -142,7 +142,7 @@ def _show_names(
         ]
         width = max(map(len, names), default=0)
         for line in aligned(rows):
-            text = cut_to_width(f"  {line}")
+            text = cut_to_width(harmless(f"  {line}"))
             show(text[: width + 2] + styled(text[width + 2 :], dim=True))
 
 
