@@ -44,6 +44,9 @@ from navette.viewer.session import Watch
 from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
 from navette.viewer.web import Gate, Site
 
+# Parameters of other processes' nodes that are remembered.
+_MOST_TOLD = 10_000
+
 
 class ViewerNode(StageNode):
     """The live view; serves from its making until :meth:`close`.
@@ -73,6 +76,7 @@ class ViewerNode(StageNode):
         self._watched: dict[Watch, Subscription[Any]] = {}
         self._opened: dict[tuple[int, int], tuple[str, Publisher[Any]]] = {}
         self._definitions: dict[str, str | None] = {}
+        self._told: dict[str, WireParameter] = {}
         self._refreshing = False
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
@@ -195,7 +199,17 @@ class ViewerNode(StageNode):
             WireParameter(wire_name(event.node, parameter.name), None)
             for parameter in event.deleted_parameters
         ]
+        here = (node.get_fully_qualified_name() for node in self.context.nodes)
+        if event.node not in here:
+            self._remember(changed)
         self._server.call(self._hub.parameters_changed, changed)
+
+    def _remember(self, told: list[WireParameter]) -> None:
+        for parameter in told:
+            if parameter.value is None:
+                self._told.pop(parameter.name, None)
+            elif len(self._told) < _MOST_TOLD or parameter.name in self._told:
+                self._told[parameter.name] = parameter
 
     # -- what clients want (executor thread) ---------------------------------------
 
@@ -240,8 +254,12 @@ class ViewerNode(StageNode):
             publisher.publish(decode_message(encoding, publisher.msg_type, data))
 
     def get_wire_parameters(self, names: tuple[str, ...]) -> list[WireParameter]:
-        """The named parameters, or all; names that nobody has are left out."""
-        found = {
+        """The named parameters, or all; names that nobody has are left out.
+
+        Of nodes that are not here (elsewhere, or in a recording that is played) as far
+        as they told them.
+        """
+        found = self._told | {
             parameter.name: parameter
             for node in self.context.nodes
             for parameter in _parameters_of(node)

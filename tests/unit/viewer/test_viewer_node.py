@@ -17,6 +17,7 @@ from navette.errors import InvalidValueError
 from navette.msgs import deserialize, serialize
 from navette.msgs.geometry_msgs.msg import Point, PointStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.msgs.rcl_interfaces.msg import ParameterEvent
 from navette.msgs.sensor_msgs.msg import Image
 from navette.msgs.std_msgs.msg import Header, String
 from navette.runtime import Context, Node, Parameter, Stopwatch, VirtualClock
@@ -479,3 +480,21 @@ def test_closing_lets_clients_go_and_leaves_no_thread() -> None:
 
 def thread_names() -> set[str]:
     return {thread.name for thread in threading.enumerate()}
+
+
+def test_parameters_of_nodes_elsewhere_are_those_they_told() -> None:
+    """Of another process, or of a recording that is played."""
+
+    def teller(context: Context) -> Node:
+        node = Node("teller", context=context)
+        publisher = node.create_publisher(ParameterEvent, "/parameter_events", 10)
+        value = Parameter("gain", value=1.5).to_parameter_msg()
+        event = ParameterEvent(node="/elsewhere", new_parameters=[value])
+        node.create_timer(0.01, lambda: publisher.publish(event))
+        return node
+
+    with Program(teller) as program, Client(program.address) as client:
+        client.send(op="subscribeParameterUpdates", parameterNames=["/elsewhere.gain"])
+        told = client.wait_for_op("parameterValues")["parameters"]
+        assert [(p["name"], p["value"]) for p in told] == [("/elsewhere.gain", 1.5)]
+        assert client.get_parameters("/elsewhere.gain") == {"/elsewhere.gain": 1.5}
