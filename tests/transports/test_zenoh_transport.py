@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import LIMIT_S, ZenohPair, message_of, until
+from transport_benches import LIMIT_S, ZenohPair, free_endpoint, message_of, until
 
 from navette import Context, Node
 from navette.errors import InvalidValueError, NetworkError
@@ -366,6 +366,18 @@ def test_closing_twice_is_harmless_and_leaves_no_thread(pair: ZenohPair) -> None
 def test_a_network_that_cannot_be_joined_is_a_named_error() -> None:
     with pytest.raises(NetworkError, match="cannot join the network"):
         ZenohTransport(0, lambda: 0, Settings(router=("nonsense/1:1",), listen=("x",)))
+
+
+def test_the_router_may_be_on_one_of_several_machines() -> None:
+    # The first address is of no machine (RFC 6666), the second is of this one.
+    settings = Settings(router=("tcp/[100::1]:7447", free_endpoint()))
+    first = ZenohTransport(0, lambda: 0, settings)
+    second = ZenohTransport(0, lambda: 0, settings)
+    assert first.session.serves_as_router
+    assert not second.session.serves_as_router
+    first.close()
+    until(lambda: second.session.serves_as_router, "the other one's turn")
+    second.close()
 
 
 def test_the_environment_is_checked() -> None:

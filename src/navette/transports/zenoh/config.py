@@ -74,12 +74,12 @@ def client_config(settings: Settings) -> zenoh.Config:
     return config
 
 
-def router_config(settings: Settings) -> zenoh.Config:
-    """Of the router, at the endpoints where the others look for it."""
+def router_config(settings: Settings, endpoint: str) -> zenoh.Config:
+    """Of a router that listens at one of the places where the others look for it."""
     config = _base(settings, settings.router_file or settings.session_file)
     config.insert_json5("mode", '"router"')
     if settings.router_file is None:
-        config.insert_json5("listen/endpoints", json.dumps(router_endpoints(settings)))
+        config.insert_json5("listen/endpoints", json.dumps([endpoint]))
         config.insert_json5("connect/endpoints", "[]")
     return config
 

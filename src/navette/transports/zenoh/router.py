@@ -4,7 +4,6 @@ Peers find each other at the router and talk directly from then on; whose proces
 takes its router along. Who binds the endpoint first is the next.
 """
 
-import contextlib
 import logging
 import threading
 
@@ -114,26 +113,32 @@ class RouterRole:
             return None  # nobody answers
 
     def _serve(self) -> bool:
-        """Try to bind; False where the endpoint is not of this machine."""
+        """Try to bind; False where no endpoint is of this machine."""
         if self._router is not None:
             return True
-        try:
-            self._router = zenoh.open(router_config(self._settings))
-        except zenoh.ZError as error:
-            if "in use" in str(error):
-                return True  # by who was faster
-            where = ", ".join(router_endpoints(self._settings))
-            _log.warning("no router at %s, and none can be started: %s", where, error)
-            return False
-        return True
+        reasons = []
+        for endpoint in router_endpoints(self._settings):
+            try:
+                self._router = zenoh.open(router_config(self._settings, endpoint))
+            except zenoh.ZError as error:
+                if "in use" in str(error):
+                    return True  # by who was faster
+                reasons.append(f"{endpoint}: {reason_of(error)}")
+            else:
+                return True
+        _log.warning("no router answers, and none can be started: %s", reasons)
+        return False
+
+
+def reason_of(error: zenoh.ZError) -> str:
+    """Zenoh's words, without the place in its source."""
+    return str(error).split(" at /")[0]
 
 
 def refuse(settings: Settings, error: zenoh.ZError) -> NetworkError:
     """Why the network cannot be joined, in the user's words."""
-    with contextlib.suppress(IndexError):
-        reason = str(error).split(" at /")[0]
     listen = ", ".join(settings.listen)
     return NetworkError(
         f"cannot join the network (router {', '.join(router_endpoints(settings))}, "
-        f"listening on {listen}): {reason}"
+        f"listening on {listen}): {reason_of(error)}"
     )
