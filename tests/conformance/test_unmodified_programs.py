@@ -12,6 +12,7 @@ LISTENER_NODE = f"{PROGRAMS / 'listener_node.py'}:Listener"
 ADDER = str(PROGRAMS / "adder.py")
 COUNTING = str(PROGRAMS / "counting.py")
 MANAGED = str(PROGRAMS / "managed.py")
+SURFACE = str(PROGRAMS / "surface.py")
 
 pytestmark = pytest.mark.slow
 
@@ -112,6 +113,21 @@ def test_nodes_of_other_files_in_one_executor() -> None:
 def test_events_of_quality_of_service() -> None:
     run = printed([str(PROGRAMS / "events.py")], r"\+1, now 1", "-1, now 0")
     assert not run.interrupted
+
+
+def test_corners_of_the_surface() -> None:
+    run = printed(
+        [SURFACE],
+        r"sequence array\('i', \[0, 1, 1\]\) 1 False",
+        r"MultiArrayLayout\(dim=\[\], data_offset=0\), data=\[0, 1, 1\]\)",
+        r"filtered \[2, 3\]",
+        "caught KeyError 'of the callback'",
+        "ran for pooled",
+        "asyncio 7",
+        "no node without init",
+    )
+    assert not run.interrupted
+    assert "[surface]: before init" in run.output
 
 
 def test_what_navette_has_not_got_is_named(tmp_path: Path) -> None:
