@@ -86,6 +86,19 @@ def test_the_covariance_stays_symmetric_and_positive(seed: int) -> None:
         assert abs(ekf.snapshot.state[YAW]) <= math.pi
 
 
+wild = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@given(st.lists(st.tuples(wild, st.floats(1e-9, 1e300)), min_size=1, max_size=8))
+def test_no_measurement_makes_the_estimate_infinite(values) -> None:
+    ekf = new_filter()
+    for tick, (value, variance) in enumerate(values):
+        seen = np.array([value, -value]), np.diag([variance, variance])
+        result = ekf.step(Measurement("odom0", tick * 10**9, (X, VX + tick % 5), *seen))
+        assert result in (Fused.USED, Fused.UNSOUND)
+        assert ekf.snapshot.is_finite
+
+
 @given(st.integers(0, 2**32 - 1), st.integers(0, 2**32 - 1))
 def test_the_order_of_arrival_does_not_matter(seed: int, shuffle: int) -> None:
     rng = np.random.default_rng(seed)

@@ -216,6 +216,19 @@ def test_poses_are_taken_as_they_are_or_from_the_first(option, expected) -> None
         assert pose_of(estimates.last)[:2] == pytest.approx(expected, abs=0.01)
 
 
+def test_a_heading_that_is_no_rotation_is_refused_where_it_is_asked_for() -> None:
+    message = pose(1.0, 4.0, 3.0, 0.0)
+    message.pose.pose.orientation = Quaternion(w=0.0)
+    for names, used in ((("x", "y"), True), (("x", "y", "yaw"), False)):
+        with GraphHarness() as graph:
+            _, estimates = started(graph, pose0="/pose", pose0_config=config(*names))
+            logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
+            graph.publish("/pose", message)
+            graph.run_for(0.05)
+            assert (estimates.count > 0) is used
+            assert any("no rotation" in log.msg for log in logs.messages) is not used
+
+
 def test_differential_poses_are_velocities() -> None:
     with GraphHarness() as graph:
         _, estimates = started(graph, **POSE, pose0_differential=True)

@@ -81,6 +81,14 @@ def test_what_is_no_number_changes_nothing(bad: float) -> None:
     assert odometer.distance == 5.0
 
 
+def test_a_way_without_end_is_refused() -> None:
+    odometer = counting()
+    odometer.step_position((1.7e308, 0.0, 0.0), 0)
+    assert odometer.step_position((-1.7e308, 0.0, 0.0), 1) is Step.REFUSED
+    assert odometer.step_velocity((1.7e308,) * 3, SECOND) is Step.REFUSED
+    assert odometer.distance == 0.0
+
+
 def test_a_latitude_beyond_the_pole_is_no_place() -> None:
     assert counting().step_place(GeoPoint(90.1, 0.0, 0.0), 0) is Step.REFUSED
 

@@ -54,20 +54,19 @@ class Odometer:
         if not all(map(math.isfinite, position)):
             return Step.REFUSED
         step = self._follow(stamp_ns)
-        if step is Step.ADDED:
-            self.distance += math.dist(self._last, position)
+        metres = math.dist(self._last, position) if step is Step.ADDED else 0.0
         self._last = tuple(position)
-        return step
+        return self._add(metres, step)
 
     def step_place(self, place: GeoPoint, stamp_ns: int) -> Step:
         """A place on the Earth; see :func:`geodesic_distance`."""
         if not place.is_valid:
             return Step.REFUSED
         step = self._follow(stamp_ns)
-        if step is Step.ADDED:
-            self.distance += geodesic_distance(GeoPoint(*self._last), place)
+        adds = step is Step.ADDED
+        metres = geodesic_distance(GeoPoint(*self._last), place) if adds else 0.0
         self._last = place
-        return step
+        return self._add(metres, step)
 
     def step_velocity(self, velocity: Sequence[float], stamp_ns: int) -> Step:
         """A velocity (x, y, z), m/s: that of the time since the message before it."""
@@ -75,8 +74,15 @@ class Odometer:
             return Step.REFUSED
         before_ns = self._last_ns
         step = self._follow(stamp_ns)
-        if step is Step.ADDED and before_ns is not None:
-            self.distance += (stamp_ns - before_ns) * 1e-9 * math.hypot(*velocity)
+        if step is not Step.ADDED or before_ns is None:
+            return step
+        return self._add((stamp_ns - before_ns) * 1e-9 * math.hypot(*velocity), step)
+
+    def _add(self, metres: float, step: Step) -> Step:
+        """Sum up, but for a way without end (numbers near the largest there are)."""
+        if not math.isfinite(self.distance + metres):
+            return Step.REFUSED
+        self.distance += metres
         return step
 
     def _follow(self, stamp_ns: int) -> Step:

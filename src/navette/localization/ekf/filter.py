@@ -5,7 +5,6 @@ updated in Joseph's form (Bucy and Joseph 1968): it stays symmetric and positive
 whatever the gain's rounding.
 """
 
-import math
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
@@ -23,6 +22,7 @@ from navette.localization.ekf.state import (
     Array,
     predicted,
     predicted_jacobian,
+    wrapped,
 )
 
 # Variance of an entry that nothing was known of: far more than any sensor's.
@@ -35,6 +35,7 @@ class Fused(Enum):
     USED = "used"
     REJECTED = "farther from the estimate than the rejection threshold"
     TOO_OLD = "older than the history"
+    UNSOUND = "there is no finite estimate with it"
 
 
 class Estimate(NamedTuple):
@@ -55,6 +56,12 @@ class Snapshot:
     state: Array
     covariance: Array
     unseen: frozenset[int]
+
+    @property
+    def is_finite(self) -> bool:
+        return bool(
+            np.isfinite(self.state).all() and np.isfinite(self.covariance).all()
+        )
 
 
 class PlanarEkf:
@@ -94,33 +101,52 @@ class PlanarEkf:
     def estimate_at(self, stamp_ns: int) -> Estimate | None:
         """The estimate brought forward to a time; the filter stays as it is.
 
-        None before the first measurement; an earlier time gives the newest estimate.
+        None before the first measurement, and where the model runs off to infinity; an
+        earlier time gives the newest estimate.
         """
         now = self.snapshot
         if now.stamp_ns is None:
             return None
-        later = self._predicted_to(max(stamp_ns, now.stamp_ns))
+        with np.errstate(all="ignore"):
+            later = self._predicted_to(max(stamp_ns, now.stamp_ns))
+        if not later.is_finite:
+            return None
         return Estimate(max(stamp_ns, now.stamp_ns), later.state, later.covariance)
 
     def step(self, measurement: Measurement) -> Fused:
         """Bring the estimate to the measurement's time and correct it.
 
-        One that is rejected has no effect but that time. Must not be older than the
-        estimate: see :class:`~navette.localization.ekf.history.OrderedEkf`.
+        One that is rejected has no effect but that time, an unsound one none at all.
+        Must not be older than the estimate: see
+        :class:`~navette.localization.ekf.history.OrderedEkf`.
         """
-        self.snapshot = self._predicted_to(measurement.stamp_ns)
+        before = self.snapshot
+        with np.errstate(all="ignore"):  # what comes of it is looked at
+            try:
+                self.snapshot = self._predicted_to(measurement.stamp_ns)
+                result = self._correct(measurement)
+            except np.linalg.LinAlgError:
+                result = Fused.UNSOUND
+        if result is Fused.UNSOUND or not self.snapshot.is_finite:
+            self.snapshot = before
+            return Fused.UNSOUND
+        return result
+
+    def _correct(self, measurement: Measurement) -> Fused:
         first_seen = self.snapshot.unseen.intersection(measurement.indices)
         state, prior = self.snapshot.state, self._prior(first_seen)
         difference = innovation(measurement, state)
         H = expected_jacobian(measurement, state)
         S = H @ prior @ H.T + measurement.covariance
         weighted = np.linalg.solve(S, np.column_stack([difference, H @ prior]))
+        if not np.all(np.isfinite(weighted)):
+            return Fused.UNSOUND
         squared_distance = float(difference @ weighted[:, 0])
         if not first_seen and squared_distance > measurement.threshold**2:
             return Fused.REJECTED
         K = weighted[:, 1:].T
         state = state + K @ difference
-        state[YAW] = math.remainder(state[YAW], math.tau)
+        state[YAW] = wrapped(state[YAW])
         kept = np.eye(SIZE) - K @ H
         covariance = kept @ prior @ kept.T + K @ measurement.covariance @ K.T
         self.snapshot = Snapshot(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navette.localization.ekf.state import SIZE, YAW, Array, X, Y
+from navette.localization.ekf.state import SIZE, YAW, Array, X, Y, wrapped
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,5 +57,5 @@ def innovation(measurement: Measurement, state: Array) -> Array:
     difference = measurement.values - expected(measurement, state)
     if YAW in measurement.indices:
         at = measurement.indices.index(YAW)
-        difference[at] = math.remainder(difference[at], math.tau)
+        difference[at] = wrapped(difference[at])
     return difference

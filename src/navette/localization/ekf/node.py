@@ -196,7 +196,7 @@ class EkfNode(StageNode):
         if fused is not Fused.USED:
             at = f"{source} at {stamp_ns / 1e9:.3f} s"
             self._complain(source, f"{at} not used: {fused.value}")
-        if fused is not Fused.TOO_OLD:
+        if fused in (Fused.USED, Fused.REJECTED):
             self._is_fresh = True
             self._arrived_ns = self._now_ns()
             self._is_silent = False

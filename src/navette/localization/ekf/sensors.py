@@ -1,6 +1,7 @@
 """Messages → measurements, one object per input of the filter."""
 
 import logging
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import replace
@@ -9,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from navette.errors import InvalidValueError
-from navette.geometry import Transform3, yaw_of
+from navette.geometry import Pose2, Transform3, yaw_of
 from navette.geometry.geodesy import GeoPoint, LocalPlane
 from navette.geometry.se3 import multiply, rotate
 from navette.localization.ekf.measurement import Measurement
@@ -83,7 +84,7 @@ class Sensor(ABC):
             return
         reading = pose_reading(
             stamp_ns,
-            _transform(msg.pose.pose).to_pose2(),
+            self._pose_of(msg.pose.pose),
             _planar(msg.pose.covariance),
             self.frames.base_in(child).to_pose2(),
         )
@@ -99,6 +100,11 @@ class Sensor(ABC):
             world_T_frame = self.frames.in_world(msg.header.frame_id).to_pose2()
             reading = turned(reading, world_T_frame)
         yield self._measured(reading, X, self.selection.pose, threshold)
+
+    def _pose_of(self, pose: Pose) -> Pose2:
+        """The heading as 0 where it is not asked for: many senders leave it out."""
+        yaw = yaw_of(_quaternion(pose.orientation)) if YAW in self.selection.pose else 0
+        return Pose2(pose.position.x, pose.position.y, yaw)
 
     def _twist(
         self, twist: Any, child: str, stamp_ns: int, threshold: float
@@ -263,12 +269,10 @@ def _planar(covariance: Any) -> Array:
     return planar
 
 
-def _transform(pose: Pose) -> Transform3:
-    p = pose.position
-    return Transform3((p.x, p.y, p.z), _quaternion(pose.orientation))
-
-
 def _quaternion(q: Any) -> tuple[float, float, float, float]:
+    if not 0.9 < math.hypot(q.x, q.y, q.z, q.w) < 1.1:
+        values = [q.x, q.y, q.z, q.w]
+        raise InvalidValueError(f"its orientation {values} is no rotation")
     return (q.x, q.y, q.z, q.w)
 
 

@@ -18,9 +18,7 @@ X, Y, YAW, VX, VY, VYAW, AX, AY = range(8)
 SIZE = 8
 
 #: The order of robot_localization's lists of 15.
-SPATIAL = (
-    "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()  # as documented
-)
+SPATIAL = tuple("x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split())
 #: Where the state's entries stand in that order.
 PLANAR = [SPATIAL.index(name) for name in NAMES]
 
@@ -57,6 +55,11 @@ def is_covariance(matrix: Array) -> bool:
     return bool(np.linalg.eigvalsh(matrix)[0] >= -1e-6 * scale)
 
 
+def wrapped(angle: float) -> float:
+    """The same angle in [−π, π]; NaN for an infinite one."""
+    return math.remainder(angle, math.tau) if math.isfinite(angle) else math.nan
+
+
 def predicted(state: Array, dt: float) -> Array:
     """The state ``dt`` seconds later: accelerations and turn rate as they are.
 
@@ -69,7 +72,7 @@ def predicted(state: Array, dt: float) -> Array:
     later = state.copy()
     later[X] += c * forward - s * left
     later[Y] += s * forward + c * left
-    later[YAW] = math.remainder(state[YAW] + state[VYAW] * dt, math.tau)
+    later[YAW] = wrapped(state[YAW] + state[VYAW] * dt)
     later[VX] += state[AX] * dt
     later[VY] += state[AY] * dt
     return later
