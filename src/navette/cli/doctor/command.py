@@ -53,7 +53,8 @@ def _findings() -> Iterator[Finding]:
     try:
         with connect() as here:
             domain = here.context.get_domain_id()
-            seen = look(here, (network.nodes or {}).get(domain, ()))
+            known = {} if network.is_alone else network.nodes or {}
+            seen = look(here, known.get(domain, ()))
     except NetworkError as error:
         yield from check_network(network, None)
         yield Finding(Level.PROBLEM, NETWORK, "joining", str(error))

@@ -56,6 +56,11 @@ class Network:
     session_file: str = ""
     middleware: str = ""
 
+    @property
+    def is_alone(self) -> bool:
+        """Whether programs started here join nobody."""
+        return self.transport == "inprocess"
+
 
 def look_at_network() -> Network:
     """Try the router's endpoints and ask it who is there."""
@@ -96,7 +101,7 @@ def check_network(network: Network, domain: int | None) -> Iterator[Finding]:
     Args:
         domain: this terminal's; None if nothing could be joined.
     """
-    if network.transport == "inprocess":
+    if network.is_alone:
         yield Finding(
             Level.PROBLEM,
             NETWORK,
@@ -154,7 +159,8 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
             NETWORK,
             "router",
             f"{router.endpoint} answers{by}, but not as a Zenoh router for us",
-            "if it is another program, choose another port everywhere:"
+            "a router wants the same TLS, certificates and password on both sides; if"
+            " it is another program, choose another port everywhere:"
             " export NAVETTE_ROUTER=tcp/127.0.0.1:7448",
             data,
         )
