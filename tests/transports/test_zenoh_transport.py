@@ -369,8 +369,8 @@ def test_a_network_that_cannot_be_joined_is_a_named_error() -> None:
 
 
 def test_the_router_may_be_on_one_of_several_machines() -> None:
-    # The first address is of no machine (RFC 6666), the second is of this one.
-    settings = Settings(router=("tcp/[100::1]:7447", free_endpoint()))
+    # The first address is of no machine (RFC 1122), the second is of this one.
+    settings = Settings(router=("tcp/0.0.0.1:7447", free_endpoint()))
     first = ZenohTransport(0, lambda: 0, settings)
     second = ZenohTransport(0, lambda: 0, settings)
     assert first.session.serves_as_router
