@@ -66,6 +66,8 @@ class _Findings:
         self._add(Severity.WARNING, kind, text)
 
     def _add(self, severity: Severity, kind: str, text: str) -> None:
+        if any(text in known.text for known in self.found):
+            return  # the same fault met a second time
         self._more[kind] += 1
         if self._more[kind] <= _MOST:
             self.found.append(Finding(severity, text))

@@ -27,12 +27,12 @@ def show_info(summary: BagSummary, *, verbose: bool = False) -> None:
     """As ``rosbag info`` and ``ros2 bag info`` lay it out."""
     console = open_console()
     for name, value in _head(summary).items():
-        console.print(Text(f"{name + ':':<13}", style="dim") + Text(value))
+        console.print(Text.assemble((f"{name + ':':<13}", "dim"), value))
     if verbose and len(summary.files) > 1:
         for path in summary.files:
             console.print(Text(f"{'':<13}{path.name}", style="dim"))
     for problem in summary.problems:
-        console.print(Text(f"{'damaged:':<13}", style="bold yellow") + Text(problem))
+        console.print(Text.assemble((f"{'damaged:':<13}", "bold yellow"), problem))
     if not summary.topics:
         return
     console.print()
@@ -140,12 +140,13 @@ def _show_details(console: Console, summary: BagSummary) -> None:
     )
     console.print()
     for (name, type_hash), _ in sorted(hashes.items()):
-        console.print(Text(f"{name}  ") + Text(type_hash or "no hash", style="dim"))
+        console.print(Text.assemble(f"{name}  ", (type_hash or "no hash", "dim")))
     console.print()
     for each in summary.topics:
         for offer in each.topic.qos:
             text = f"{offer.reliability}, {offer.durability}, {offer.history}"
             console.print(
-                Text(f"{each.topic.name}  ", style="cyan")
-                + Text(f"{text} {offer.depth}", style="dim")
+                Text.assemble(
+                    (f"{each.topic.name}  ", "cyan"), (f"{text} {offer.depth}", "dim")
+                )
             )

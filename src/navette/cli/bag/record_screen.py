@@ -30,9 +30,11 @@ class RecordScreen:
         """Show how it goes until the block ends."""
         hint = "space pauses, q ends" if keys else "Ctrl-C ends"
         self._console.print(
-            Text("recording to ", style="dim")
-            + Text(str(self._recorder.path), style="bold")
-            + Text(f"   {hint}", style="dim"),
+            Text.assemble(
+                ("recording to ", "dim"),
+                (str(self._recorder.path), "bold"),
+                (f"   {hint}", "dim"),
+            ),
             soft_wrap=True,
         )
         if not self._console.is_terminal:
@@ -67,6 +69,5 @@ class RecordScreen:
     def _line(self) -> Text:
         paused = self._recorder.params.paused
         state = ("❚❚ paused   ", "yellow") if paused else ("● recording", "red")
-        line = Text(state[0], style=state[1])
-        line += Text(f"  {self._stopwatch.elapsed_s:7.1f} s  ", style="dim")
-        return line + Text(self._figures())
+        since = f"  {self._stopwatch.elapsed_s:7.1f} s  "
+        return Text.assemble(state, (since, "dim"), self._figures())

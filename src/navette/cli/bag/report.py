@@ -25,20 +25,19 @@ def show_report(report: CheckReport) -> None:
     """A line for each finding, and what comes of them."""
     console = open_console()
     for finding in report.findings:
-        console.print(
-            Text(f"{finding.severity.value:<8}", style=_STYLES[finding.severity])
-            + Text(finding.text)
-        )
+        severity = f"{finding.severity.value:<8}"
+        style = _STYLES[finding.severity]
+        console.print(Text.assemble((severity, style), finding.text))
     count = f"{count_text(report.messages)} messages"
     if report.is_sound:
-        verdict = Text("sound", style="bold green") + Text(f": {count} read")
+        verdict, rest = ("sound", "bold green"), f": {count} read"
     elif report.messages:
         hint = f"navette bag recover {report.path} -o …"
-        verdict = Text("damaged", style="bold red")
-        verdict += Text(f": {count} can be read; {hint} saves them")
+        verdict = ("damaged", "bold red")
+        rest = f": {count} can be read; {hint} saves them"
     else:
-        verdict = Text("damaged", style="bold red") + Text(": nothing can be read")
-    console.print(Text(f"{report.path}: ") + verdict)
+        verdict, rest = ("damaged", "bold red"), ": nothing can be read"
+    console.print(Text.assemble(f"{report.path}: ", verdict, rest))
 
 
 def to_json(report: CheckReport) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 
 from datetime import UTC, datetime
 
+from navette.cli.output import is_terminal
+
 _UNITS = ("B", "kB", "MB", "GB", "TB")
 _EPOCH_FROM_S = 10**8
 """Stamps below are a robot's own time since its start, not a date."""
@@ -56,6 +58,8 @@ def rate_text(rate_hz: float | None) -> str:
     return f"{rate_hz:.3g} Hz" if rate_hz < 100 else f"{rate_hz:.0f} Hz"
 
 
-def count_text(count: int) -> str:
-    """``12 765``: digits in groups of three, by thin spaces."""
-    return f"{count:,}".replace(",", "\u202f")
+def count_text(count: int, *, grouped: bool | None = None) -> str:
+    """``12 765``: digits in groups of three where a person reads it."""
+    if grouped is None:
+        grouped = is_terminal()
+    return f"{count:,}".replace(",", "\u202f") if grouped else str(count)

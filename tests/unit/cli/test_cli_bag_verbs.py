@@ -1,0 +1,177 @@
+"""``navette bag``: info, list, check, recover, convert, filter, cut, merge."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from bag_samples import START_NS, STEP_NS, write_sample
+from navette.bags import open_bag
+from navette.cli.bag import bag
+from navette.cli.bag.text import (
+    count_text,
+    duration_text,
+    gap_text,
+    rate_text,
+    size_text,
+    stamp_text,
+)
+
+
+def run(*words: object) -> Result:
+    return CliRunner().invoke(bag, [str(word) for word in words])
+
+
+def numbers(path: Path) -> list[int]:
+    with open_bag(path) as reader:
+        return [(m.stamp_ns - START_NS) // STEP_NS for m in reader.messages()]
+
+
+@pytest.fixture
+def sample_bag(tmp_path: Path) -> Path:
+    return write_sample(tmp_path / "a.mcap", 20)
+
+
+def test_info_says_what_rosbag_says(sample_bag: Path) -> None:
+    result = run("info", sample_bag)
+    assert result.exit_code == 0
+    head, table = result.stdout.split("\n\n")
+    told = dict(line.split(": ", 1) for line in head.splitlines())
+    assert {name.strip(): value.strip() for name, value in told.items()} | {
+        "size": ""
+    } == {
+        "path": str(sample_bag),
+        "format": "MCAP 0",
+        "duration": "1.90 s",
+        "start": "2023-11-14 22:13:20.000 UTC (1700000000.000)",
+        "end": "2023-11-14 22:13:21.900 UTC (1700000001.900)",
+        "size": "",
+        "messages": "20",
+        "compression": "zstd [1/1 chunks]",
+    }
+    assert [re.sub("  +", "|", line) for line in table.splitlines()] == [
+        "topic|type|messages|rate|longest gap|qos",
+        "/chatter|std_msgs/msg/String|10|5 Hz|200 ms|latched",
+        "/point|geometry_msgs/msg/PointStamped|10|5 Hz|200 ms",
+    ]
+    assert len({line.index("5 Hz") for line in table.splitlines()[1:]}) == 1
+
+
+def test_one_figure_and_names_only(sample_bag: Path) -> None:
+    assert run("info", sample_bag, "--key", "duration").stdout == "1.900000000\n"
+    assert run("info", sample_bag, "-k", "messages").stdout == "20\n"
+    assert run("info", sample_bag, "-t").stdout == "/chatter\n/point\n"
+    assert "unknown key 'length'" in str(
+        run("info", sample_bag, "-k", "length").exception
+    )
+
+
+def test_info_for_programs(sample_bag: Path, tmp_path: Path) -> None:
+    other = write_sample(tmp_path / "b.bag", 4)
+    told = json.loads(run("info", sample_bag, other, "--json").stdout)
+    assert [each["storage"] for each in told] == ["mcap", "rosbag1"]
+    assert told[0]["topics"][0]["longest_gap_s"] == pytest.approx(0.2)
+    assert told[0]["topics"][0]["qos"][0]["durability"] == "transient_local"
+
+
+def test_details(sample_bag: Path) -> None:
+    said = run("info", "-v", sample_bag).stdout
+    assert (
+        "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+        in said
+    )
+    assert "/chatter  reliable, transient_local, keep_last 1" in said
+
+
+def test_list(sample_bag: Path, tmp_path: Path) -> None:
+    (tmp_path / "broken.mcap").write_bytes(b"nothing")
+    (tmp_path / "notes.txt").write_text("no bag", "utf-8")
+    (tmp_path / "below").mkdir()
+    write_sample(tmp_path / "below" / "c.db3", 3)
+    lines = run("list", tmp_path).stdout.splitlines()
+    assert [line.split()[0] for line in lines[1:]] == [
+        str(sample_bag),
+        str(tmp_path / "broken.mcap"),
+    ]
+    assert "does not begin as one" in lines[2]
+    told = json.loads(run("list", "-r", "--json", tmp_path).stdout)
+    assert [each["messages"] for each in told] == [20, 3, 0]
+    assert run("list", tmp_path / "below" / "..", "--json").exit_code == 0
+    (tmp_path / "empty").mkdir()
+    assert "no recordings in" in run("list", tmp_path / "empty").output
+
+
+def test_check_and_recover(sample_bag: Path, tmp_path: Path) -> None:
+    result = run("check", sample_bag)
+    assert (result.exit_code, result.stdout) == (
+        0,
+        f"{sample_bag}: sound: 20 messages read\n",
+    )
+    sample_bag.write_bytes(sample_bag.read_bytes()[:-50])
+    result = run("check", sample_bag)
+    assert result.exit_code == 1
+    assert "error   the summary cannot be read" in result.stdout
+    assert "navette bag recover" in result.stdout
+    told = json.loads(run("check", "--json", sample_bag).stdout)
+    assert (told["sound"], told["messages"]) == (False, 20)
+    saved = tmp_path / "saved.mcap"
+    result = run("recover", sample_bag, "-o", saved)
+    assert result.exit_code == 0
+    assert "damaged: the summary cannot be read" in result.output
+    assert run("check", saved, "--decode").exit_code == 0
+    assert numbers(saved) == list(range(20))
+
+
+def test_convert_filter_cut_merge(sample_bag: Path, tmp_path: Path) -> None:
+    def made(*words: object) -> list[int]:
+        result = run(*words, "-o", tmp_path / "b.mcap", "--overwrite")
+        assert result.exit_code == 0, result.output
+        return numbers(tmp_path / "b.mcap")
+
+    assert made("convert", sample_bag, "--compression", "lz4") == list(range(20))
+    assert made("filter", sample_bag, "-t", "/point") == list(range(1, 20, 2))
+    assert made("filter", sample_bag, "-e", "cha", "--end", "0.5") == [0, 2, 4]
+    assert made("filter", sample_bag, "--where", "m.point.x > 17", "-x", "cha") == [19]
+    assert made("cut", sample_bag, "--start", "1.5") == [15, 16, 17, 18, 19]
+    assert made("cut", sample_bag, "--start", "-0.2") == [17, 18, 19]
+    absolute = f"{START_NS / 1e9 + 1.85:.2f}"
+    assert made("cut", sample_bag, "--start", absolute) == [19]
+    assert made("cut", sample_bag, "--start", "0.5", "-u", "0.2") == [5, 6, 7]
+    other = write_sample(tmp_path / "c.bag", 3)
+    assert made("merge", sample_bag, other) == sorted([*range(20), *range(3)])
+    result = run("convert", sample_bag, "-o", tmp_path / "run", "-s", "sqlite3")
+    assert result.exit_code == 0
+    assert (tmp_path / "run" / "metadata.yaml").is_file()
+
+
+def test_wrong_uses(sample_bag: Path) -> None:
+    assert "not written over" in run("convert", sample_bag, "-o", sample_bag).output
+    result = run("cut", sample_bag, "--start", "soon", "-o", "b.mcap")
+    assert result.exit_code == 2
+    assert "no time in seconds" in result.output
+    result = run("cut", sample_bag, "--end", "1", "-u", "1", "-o", "b.mcap")
+    assert result.exit_code == 2
+
+
+def test_figures_in_words() -> None:
+    assert [size_text(n) for n in (999, 1000, 3_708_268, 10**13)] == [
+        "999 B",
+        "1.0 kB",
+        "3.7 MB",
+        "10.0 TB",
+    ]
+    assert duration_text(740.553) == "12:20 (740.55 s)"
+    assert duration_text(3723.4) == "1:02:03 (3723.40 s)"
+    assert stamp_text(13_960_000_000) == "13.960 s"
+    assert stamp_text(10**30) == "1000000000000000000000.000"
+    assert gap_text(None) == rate_text(None) == ""
+    assert (gap_text(0.0333333), gap_text(2.04), gap_text(1234.6)) == (
+        "33.3 ms",
+        "2.04 s",
+        "1235 s",
+    )
+    assert (rate_text(0.01), rate_text(104.2)) == ("every 100 s", "104 Hz")
+    assert count_text(26566, grouped=True) == "26\u202f566"
+    assert count_text(26566) == "26566"
