@@ -24,16 +24,42 @@ _INTERRUPTED = 130
 _DOWN_S = 60.0
 _LOOK_S = 0.1
 
+
+def complete_modules(incomplete: str) -> list[str]:
+    """Names of the modules of the project's file, for the shell."""
+    from navette.modules.reading import read_project
+
+    try:
+        names = read_project(_project(None), {}).names
+    except NavetteError:
+        return []  # it is said when the command is given
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def complete_running_modules(incomplete: str) -> list[str]:
+    """Names of the modules that are up, for the shell."""
+    try:
+        names = [module["module"] for module in _client(_project(None)).status()]
+    except NavetteError:
+        return []
+    return [name for name in names if name.startswith(incomplete)]
+
+
 Words = Annotated[
     list[str] | None,
     typer.Argument(
         metavar="[MODULE]... [NAME:=VALUE]...",
         help="Modules, all if none is named, and values for the file's arguments.",
+        autocompletion=complete_modules,
     ),
 ]
 Modules = Annotated[
     list[str] | None,
-    typer.Argument(metavar="[MODULE]...", help="All of the project, if none is named."),
+    typer.Argument(
+        metavar="[MODULE]...",
+        help="All of the project, if none is named.",
+        autocompletion=complete_running_modules,
+    ),
 ]
 File = Annotated[
     Path | None,

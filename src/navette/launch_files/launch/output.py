@@ -1,5 +1,6 @@
 """What commands write: whole lines, labelled, on the terminal and in log files."""
 
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -10,6 +11,7 @@ from navette.launch_files.launch.logging import launch_config
 from navette.processes import LineCutter
 
 STREAMS = ("stdout", "stderr")
+_COLOURS = (36, 32, 35, 33, 34, 96)  # cyan, green, magenta, yellow, blue, bright cyan
 _MODES: dict[str, dict[str, set[str]]] = {
     "screen": {"stdout": {"screen"}, "stderr": {"screen"}},
     "log": {"stdout": {"log"}, "stderr": {"log", "screen"}},
@@ -43,6 +45,15 @@ def output_places(value: object) -> dict[str, set[str]]:
     return _MODES[str(value)]
 
 
+def _shown(label: str) -> str:
+    """``[talker-1]``; on a terminal in a colour of its own."""
+    if not sys.stdout.isatty() or "NO_COLOR" in os.environ:
+        return f"[{label}]"
+    number = label.rpartition("-")[2]
+    colour = _COLOURS[int(number) % len(_COLOURS) if number.isdigit() else 0]
+    return f"\x1b[{colour}m[{label}]\x1b[0m"
+
+
 class LabelledOutput:
     """Cuts what a command writes into lines and puts its label before each.
 
@@ -60,7 +71,7 @@ class LabelledOutput:
     ) -> None:
         self._label = label
         self._places = places
-        self._format = line_format or (lambda line: f"[{label}] {line}")
+        self._format = line_format or (lambda line: f"{_shown(label)} {line}")
         self._cutters = {stream: LineCutter() for stream in STREAMS}
         self._log: IO[str] | None = None
 
