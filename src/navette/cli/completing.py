@@ -89,6 +89,28 @@ def complete_action_types(incomplete: str) -> list[str]:
     return _types(incomplete, "action")
 
 
+def complete_type_of_service(ctx: typer.Context, incomplete: str) -> list[str]:
+    """The type of the service named before, if it is served; else every type."""
+    name = f"/{str(ctx.params.get('service') or '').lstrip('/')}"
+    served = _running(
+        incomplete,
+        lambda here: (e.type_name for e in service_endpoints(here, name)),
+    )
+    return served or complete_service_types(incomplete)
+
+
+def complete_type_of_action(ctx: typer.Context, incomplete: str) -> list[str]:
+    """The type of the action named before, if there is one; else every type."""
+    from navette.runtime.action import get_action_names_and_types
+
+    name = f"/{str(ctx.params.get('action') or '').lstrip('/')}"
+    served = _running(
+        incomplete,
+        lambda here: dict(get_action_names_and_types(here)).get(name, []),
+    )
+    return served or complete_action_types(incomplete)
+
+
 def complete_packages(incomplete: str) -> list[str]:
     """Packages, installed or in the workspace."""
     from navette.packages import find_packages

@@ -54,6 +54,16 @@ def test_names_that_a_node_answers(here: World) -> None:
     assert completing.complete_parameters(typed("nobody"), "") == []
 
 
+def test_the_type_of_what_is_served(here: World) -> None:
+    served: Any = SimpleNamespace(params={"service": "add"})
+    wanted = ["example_interfaces/srv/AddTwoInts"]
+    assert completing.complete_type_of_service(served, "") == wanted
+    other: Any = SimpleNamespace(params={"service": "other", "action": "other"})
+    wanted = ["std_srvs/srv/Empty"]
+    assert completing.complete_type_of_service(other, "std_srvs/srv/E") == wanted
+    assert "nav2_msgs/action/Spin" in completing.complete_type_of_action(other, "nav2")
+
+
 def test_names_of_what_is_installed() -> None:
     assert "std_msgs/msg/String" in completing.complete_messages("std_msgs/msg/S")
     assert completing.complete_service_types("std_srvs/srv/E") == ["std_srvs/srv/Empty"]
