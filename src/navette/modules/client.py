@@ -98,10 +98,15 @@ class Client:
                 connection.connect(str(self._socket))
             except FileNotFoundError:
                 raise ConnectionRefusedError from None
-            with connection.makefile("rwb") as file:
-                file.write(json.dumps(request).encode() + b"\n")
-                file.flush()
-                line = file.readline()
+            try:
+                with connection.makefile("rwb") as file:
+                    file.write(json.dumps(request).encode() + b"\n")
+                    file.flush()
+                    line = file.readline()
+            except TimeoutError:
+                raise SupervisorError(
+                    f"the supervisor of {self.project.folder} does not answer"
+                ) from None
         if not line:
             raise ConnectionResetError
         answer = json.loads(line)

@@ -8,6 +8,7 @@ import json
 import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO
@@ -51,14 +52,17 @@ class LogBook:
             LogLine(now_ns, module, name, text[:_LONGEST_TEXT], event) for text in texts
         ]
         data = "".join(f"{json.dumps(asdict(line))}\n" for line in lines)
-        with self._lock:
-            if self._file.closed:
-                return
-            self._file.write(data.encode())
-            if self._file.tell() > _MOST_BYTES:
-                self._file.close()
-                os.replace(self._folder / FILE_NAME, self._folder / _OLD_NAME)  # noqa: PTH105
-                self._file = self._open()
+        # A disk that is full costs lines, not the processes that wrote them.
+        with self._lock, suppress(OSError):
+            if not self._file.closed:
+                self._file.write(data.encode())
+                self._turn_over()
+
+    def _turn_over(self) -> None:
+        if self._file.tell() > _MOST_BYTES:
+            self._file.close()
+            (self._folder / FILE_NAME).replace(self._folder / _OLD_NAME)
+            self._file = self._open()
 
     def close(self) -> None:
         with self._lock:

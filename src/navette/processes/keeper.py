@@ -76,6 +76,8 @@ class Keeper:
             )
         except OSError as error:
             raise ProcessError(_reason(words[0], options.cwd, error)) from error
+        except ValueError as error:  # a word or a variable that no process can have
+            raise ProcessError(f"cannot start {words[0]!r}: {error}") from error
         if guard is None:
             return ChildProcess(process, listener, lambda: None)
         guard.add(process.pid)

@@ -1,12 +1,16 @@
 """The log book, and what tells that files changed."""
 
 import os
+import socket
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from navette.modules import log_book
+from navette.modules.client import SupervisorError
 from navette.modules.log_book import LogBook, LogLine, LogReader
+from navette.modules.project import socket_path
 from navette.modules.watching import FileWatch
 
 
@@ -87,3 +91,35 @@ def test_no_more_files_than_can_be_looked_at(
     for number in range(9):
         (tmp_path / f"{number}.py").touch()
     assert FileWatch([tmp_path, tmp_path / "nowhere"]).count == 3
+
+
+def test_a_full_disk_costs_lines_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    book = LogBook(tmp_path, lambda: 0)
+
+    class Full:
+        closed = False
+
+        def write(self, data: bytes) -> None:
+            raise OSError(28, "No space left on device")
+
+        def close(self) -> None:
+            pass
+
+    book._file.close()
+    monkeypatch.setattr(book, "_file", Full())
+    book.write("a", "x", ["lost"])
+    book.close()
+
+
+def test_a_supervisor_that_hangs_is_not_waited_for_long(
+    bench: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("navette.modules.client._PATIENCE_S", 0.05)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as deaf:
+        deaf.bind(str(socket_path(bench.client.project.state)))
+        deaf.listen()
+        with pytest.raises(SupervisorError, match="does not answer"):
+            bench.client.down(None)
+        Path(deaf.getsockname()).unlink()

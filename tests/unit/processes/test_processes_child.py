@@ -60,6 +60,7 @@ def test_a_shell_line(bench: Any) -> None:
     ("words", "cwd", "reason"),
     [
         (["/no/such/tool"], None, "cannot start '/no/such/tool': No such file"),
+        (["ls", "a\0b"], None, "cannot start 'ls': embedded null byte"),
         (["ls"], "/no/such", "cannot start 'ls' in '/no/such': no such folder"),
     ],
 )
