@@ -358,16 +358,26 @@ class EventLoop:
             # Between two callbacks, and not counted as one: spin_once has still to run
             # an event of the program's.
             self.ready.appendleft(self._inbox.popleft())
-            self._run_ready(None, 1)
+            # Even if somebody calls for attention: else the next would overtake it.
+            self._run_ready(None, 1, heeds=False)
 
-    def _run_ready(self, done: Callable[[], bool] | None, limit: int | None) -> int:
-        """Run one batch: what is ready at the start, at most ``limit`` events."""
+    def _run_ready(
+        self,
+        done: Callable[[], bool] | None,
+        limit: int | None,
+        *,
+        heeds: bool = True,
+    ) -> int:
+        """Run one batch: what is ready at the start, at most ``limit`` events.
+
+        Ends early when it is called for attention, if it ``heeds`` that.
+        """
         ready = self.ready
         count = 0
         for _ in range(len(ready)):
-            if self._attention or (done is not None and done()) or count == limit:
+            if (heeds and self._attention) or not ready or count == limit:
                 break
-            if not ready:
+            if done is not None and done():
                 break
             entity = ready.popleft()
             group = entity.group

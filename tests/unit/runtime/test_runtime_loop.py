@@ -459,3 +459,16 @@ def test_futures_are_awaited_by_asyncio_while_another_task_spins() -> None:
         return await each
 
     assert asyncio.run(main()) == ["done"] * 3
+
+
+def test_what_other_threads_ask_is_done_in_their_order(loop: EventLoop) -> None:
+    """Also where each asks for attention while an earlier one is done."""
+    done: list[int] = []
+
+    def ask() -> None:
+        for number in range(1, 6):
+            loop.call_soon_threadsafe(lambda n=number: done.append(n))
+
+    loop.call_soon_threadsafe(ask)
+    loop.run(until_ns=0)
+    assert done == [1, 2, 3, 4, 5]
