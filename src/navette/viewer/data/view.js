@@ -11,6 +11,7 @@ const view = {
   outline: [],               // the robot's outline in its base frame
   goal: null,
   hidden: new Set(),         // topics that are switched off
+  known: new Set(),          // topics that were drawn before
 
   start(canvas, onClick) {
     this.canvas = canvas;
@@ -33,12 +34,19 @@ const view = {
   },
 
   add(topic, layer) {
-    if (layer.isQuiet) this.hidden.add(topic);
+    if (layer.isQuiet && !this.known.has(topic)) this.hidden.add(topic); // once: then a person decides
+    this.known.add(topic);
     this.layers.set(topic, layer);
     const order = (l) => l.order;
     this.layers = new Map([...this.layers].sort(([, a], [, b]) => order(a) - order(b)));
     this.listLayers?.(this);
     return layer;
+  },
+  /** What these topics showed is of another time. */
+  forget(topics) {
+    for (const topic of topics) this.layers.delete(topic);
+    this.trail = []; this.base = null;
+    this.invalidate();
   },
   remove(topic) { if (this.layers.delete(topic)) { this.listLayers?.(this); this.invalidate(); } },
   clear() {
