@@ -140,8 +140,18 @@ def missions() -> None:
 @_program
 def viewer() -> None:
     """The live view."""
-    _parse(_parser("viewer", "The live view on one port (parameter port)."))
-    _run(_announced_viewer, ParameterOverrides())
+    parser = _parser("viewer", "The live view on one port (parameter port).")
+    _add_robot(parser)
+    parser.set_defaults(world=None)
+    given = _parse(parser)
+    own = ParameterOverrides()
+    if given.world or given.robot:  # else its frames are ROS 2's usual ones
+        given.world = given.world or "arena"
+        of_planner = _profile(_resolve(given), "planner").for_node("/planner")
+        for name in ("map_frame", "base_frame"):
+            if name in of_planner:
+                own.add("/**", {name: of_planner[name].value}, of_planner[name].origin)
+    _run(_announced_viewer, own)
 
 
 @_program
@@ -188,7 +198,7 @@ def _add_robot(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--world",
         default="arena",
-        help="a built-in world or a file; it may bring a robot (default: %(default)s)",
+        help="a built-in world (default: arena) or a file; it may bring a robot",
     )
     parser.add_argument(
         "--robot",

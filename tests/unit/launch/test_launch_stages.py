@@ -10,11 +10,13 @@ import pytest
 
 from navette.interop.process import RunningProgram, program_threads
 from navette.interop.targets import read_programs
-from navette.launch import stages
+from navette.launch import RunOptions, stages
+from navette.launch.scene import resolve_scene
 from navette.packages import find_package
 from navette.runtime import Context, Node, spin_until_future_complete
 from navette.runtime.context import new_graph
 from navette.runtime.graph import Graph
+from navette.runtime.overrides import ParameterOverrides
 from navette.runtime.parameter import parameter_value_to_python
 from navette.runtime.parameter_client import AsyncParameterClient
 
@@ -119,3 +121,32 @@ def test_every_stage_is_an_executable() -> None:
     for name in names:
         assert read_programs([name])[0].name == name
         assert read_programs(["navette", name, "--x"])[0].arguments == ("--x",)
+
+
+def test_the_live_view_knows_the_robots_frames(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seen = []
+
+    def run(make: object, profile: ParameterOverrides) -> None:
+        values = profile.for_node("/viewer")
+        seen.append({name: override.value for name, override in values.items()})
+
+    monkeypatch.setattr(stages, "_run", run)
+    for words in ("", "--robot course", "--robot husky"):
+        monkeypatch.setattr(sys, "argv", ["viewer", *words.split()])
+        stages.viewer()
+    assert seen == [{}, {"map_frame": "sim_world", "base_frame": "robot"}, {}]
+
+
+@pytest.mark.parametrize("robot", ["course", "husky", "jackal", "turtlebot3_burger"])
+def test_a_stage_gets_what_it_gets_in_one_process(robot: str) -> None:
+    resolved = resolve_scene(RunOptions(robot=robot))
+    together = ParameterOverrides()
+    resolved.override_parameters(together)
+    for name in ("sim", "costmap", "map_memory", "planner", "control", "missions"):
+        alone = stages._profile(resolved, name).for_node("/any/name")
+        expected = together.for_node(f"/{name}")
+        assert {k: v.value for k, v in alone.items()} == {
+            k: v.value for k, v in expected.items()
+        }
