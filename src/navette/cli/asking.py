@@ -7,7 +7,7 @@ from navette.cli.nearest import did_you_mean
 from navette.cli.session import fail, is_hidden, service_endpoints, wait_for
 
 if TYPE_CHECKING:
-    from navette.runtime import Node
+    from navette.runtime import Future, Node
 
 ANSWER_S = 2.0
 """Who has not answered by then hangs, or is stopped."""
@@ -33,23 +33,39 @@ class Answer(NamedTuple):
 def ask_all(
     node: "Node", questions: Sequence[Question], timeout_s: float = ANSWER_S
 ) -> list[Answer]:
-    """Ask all of them at the same time; an answer each, in that order."""
+    """Ask all of them at the same time; an answer each, in that order.
+
+    A service that nobody serves is not waited for.
+    """
     from navette.msgs import get_interface
 
-    futures = []
+    there = served(node)
+    futures: list[Future[Any] | None] = []
     for question in questions:
+        if question.service not in there:
+            futures.append(None)
+            continue
         client = node.create_client(get_interface(question.type_name), question.service)
         request = client.srv_type.Request(**question.fields)
         futures.append(client.call_async(request))
-    wait_for(node, lambda: all(future.done() for future in futures), timeout_s)
+    wait_for(node, lambda: all(f is None or f.done() for f in futures), timeout_s)
     return [
         answer(future, question.service)
         for future, question in zip(futures, questions, strict=True)
     ]
 
 
+def served(node: "Node") -> set[str]:
+    """Full names of the services that somebody serves."""
+    from navette.transports import EndpointKind
+
+    return {e.topic for e in service_endpoints(node, kind=EndpointKind.SERVICE)}
+
+
 def answer(future: Any, service: str) -> Answer:
-    """What a future of a response has come to."""
+    """What a future of a response has come to; None: nobody was asked."""
+    if future is None:
+        return Answer(None, f"nobody serves {service}")
     if not future.done():
         return Answer(None, f"service {service}: no answer")
     if future.exception() is not None:

@@ -5,7 +5,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from navette.cli.asking import ANSWER_S, Question, answer, ask_all
+from navette.cli.asking import ANSWER_S, Question, answer, ask_all, served
 from navette.cli.nearest import did_you_mean
 from navette.cli.param.text import type_word
 from navette.cli.session import fail, wait_for
@@ -31,10 +31,15 @@ class Dumped(NamedTuple):
 
 
 def names(here: "Node", nodes: Sequence[str], prefixes: Iterable[str] = ()) -> Listed:
-    """The names of all the nodes' parameters, sorted; all nodes are asked at once."""
+    """The names of all the nodes' parameters, sorted; all nodes are asked at once.
+
+    A node that does not serve its parameters has none.
+    """
     fields = {"prefixes": list(prefixes)}
     found: dict[str, list[str]] = {}
     silent: dict[str, str] = {}
+    there = served(here)
+    nodes = [node for node in nodes if f"{node}/list_parameters" in there]
     answers = ask_all(here, [_question(n, "list_parameters", fields) for n in nodes])
     for node, (response, reason) in zip(nodes, answers, strict=True):
         if response is None:

@@ -90,6 +90,8 @@ def list_(
         listed = values.names(here, nodes, prefixes or ())
         for name, reason in listed.silent.items():
             note(f"{name}: {reason}")
+        if node_name and nodes[0] not in {**listed.found, **listed.silent}:
+            fail(f"node {nodes[0]} has no parameter services")
         found = {
             node: [name for name in names if pattern is None or pattern.match(name)]
             for node, names in listed.found.items()
