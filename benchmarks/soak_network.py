@@ -1,0 +1,169 @@
+"""Some minutes of load between two processes: does memory stay flat?
+
+One process publishes images (1 MB at 20 Hz, reliable, read by the other), 500 small
+messages a second and a latched map once a second, makes and destroys a publisher and a
+subscription every second, and calls a service of the other at 20 Hz. Prints the
+resident memory of both every ten seconds, and by what it grew from the first to the
+last third of the run::
+
+    python benchmarks/soak_network.py --minutes 3
+"""
+
+import argparse
+import os
+import socket
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.msgs.sensor_msgs.msg import Image
+from navette.msgs.std_msgs.msg import Float64
+from navette.msgs.std_srvs.srv import Trigger
+from navette.runtime import (
+    Context,
+    DurabilityPolicy,
+    Executor,
+    Node,
+    QoSProfile,
+)
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+FLAT_MB = 3.0
+
+
+class Talker(Node):
+    """All the load there is."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__("talker", context=context)
+        self.image = Image(height=1, width=1 << 20, step=1 << 20, encoding="mono8")
+        self.image.data = bytes(1 << 20)
+        self.map = OccupancyGrid()
+        self.map.info.width = self.map.info.height = 300
+        self.map.data = bytes(90_000)
+        self.images = self.create_publisher(Image, "/image", 5)
+        self.maps = self.create_publisher(OccupancyGrid, "/map", LATCHED)
+        self.values = self.create_publisher(Float64, "/value", 100)
+        self.client = self.create_client(Trigger, "/ask")
+        self.answers = self.round = 0
+        self.create_timer(0.05, self.send_image)
+        self.create_timer(0.002, lambda: self.values.publish(Float64(data=1.0)))
+        self.create_timer(1.0, self.change)
+
+    def send_image(self) -> None:
+        self.images.publish(self.image)
+        if self.client.service_is_ready():
+            self.client.call_async(Trigger.Request()).add_done_callback(self.count)
+
+    def count(self, _: object) -> None:
+        self.answers += 1
+
+    def change(self) -> None:
+        self.maps.publish(self.map)
+        self.round += 1
+        publisher = self.create_publisher(Float64, f"/passing/round_{self.round}", 10)
+        subscription = self.create_subscription(
+            Float64, "/echoed", lambda message: None, 10
+        )
+        publisher.publish(Float64(data=2.0))
+        self.destroy_publisher(publisher)
+        self.destroy_subscription(subscription)
+
+
+class Listener(Node):
+    """Hears everything and answers."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__("listener", context=context)
+        self.heard = {"/image": 0, "/map": 0, "/value": 0}
+        for topic, kind, qos in (
+            ("/image", Image, 5),
+            ("/map", OccupancyGrid, LATCHED),
+            ("/value", Float64, 100),
+        ):
+            self.create_subscription(kind, topic, self.hearing(topic), qos)
+        self.create_service(Trigger, "/ask", self.answer)
+        self.create_timer(5.0, lambda: print(self.heard, flush=True))
+
+    def hearing(self, topic: str):  # type: ignore[no-untyped-def]
+        def hear(_: object) -> None:
+            self.heard[topic] += 1
+
+        return hear
+
+    def answer(
+        self, request: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        response.success = True
+        return response
+
+
+def spin(make: type[Node], seconds: float | None) -> Node:
+    context = Context(transport="zenoh")
+    context.init(args=[], initialize_logging=False)
+    node = make(context)
+    executor = Executor(context=context)
+    executor.add_node(node)
+    if seconds is None:
+        executor.spin()
+    else:
+        executor.spin_for(round(seconds * 1e9))
+    return node
+
+
+def resident_mb(pid: int) -> float:
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGESIZE") / 1e6
+
+
+def growth(samples: list[float]) -> float:
+    third = len(samples) // 3
+    return statistics.median(samples[-third:]) - statistics.median(samples[:third])
+
+
+def soak(minutes: float) -> None:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    env = {**os.environ, "NAVETTE_ROUTER": f"tcp/127.0.0.1:{port}"}
+    pipe = subprocess.PIPE
+    listener = subprocess.Popen(
+        [sys.executable, __file__, "--role", "listener"],
+        env=env,
+        stdout=pipe,
+        text=True,
+    )
+    talker = subprocess.Popen(
+        [sys.executable, __file__, "--role", "talker"], env=env, stdout=pipe, text=True
+    )
+    memory: dict[str, list[float]] = {"talker": [], "listener": []}
+    try:
+        time.sleep(15.0)  # imports, first allocations, Zenoh's pools
+        end = time.monotonic() + 60 * minutes
+        while time.monotonic() < end:
+            memory["talker"].append(resident_mb(talker.pid))
+            memory["listener"].append(resident_mb(listener.pid))
+            print(*(f"{who} {m[-1]:.1f} MB" for who, m in memory.items()), flush=True)
+            time.sleep(10.0)
+    finally:
+        for process in (talker, listener):
+            process.terminate()
+    assert listener.stdout is not None
+    print("heard", listener.stdout.read().splitlines()[-1])
+    for who, samples in memory.items():
+        grown = growth(samples)
+        print(f"{who}: grew {grown:+.1f} MB:", "flat" if grown < FLAT_MB else "GROWS")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=3.0)
+    parser.add_argument("--role", choices=("talker", "listener"))
+    given = parser.parse_args()
+    if given.role is None:
+        soak(given.minutes)
+    else:
+        spin(Talker if given.role == "talker" else Listener, None)
