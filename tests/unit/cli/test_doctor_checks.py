@@ -54,8 +54,10 @@ def test_nodes_that_are_well() -> None:
     (finding,) = check_nodes(seen)
     assert (finding.level, finding.text) == (
         Level.GOOD,
-        "2 nodes under names of their own and answer",
+        "2 nodes, each with a name of its own; all answer",
     )
+    (finding,) = check_nodes(Snapshot(nodes=("/a",), sim_time={"/a": False}))
+    assert finding.text == "1 node; it answers"
 
 
 def test_no_nodes_is_no_problem_but_says_what_to_do() -> None:

@@ -55,8 +55,12 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
     for name in silent:
         yield _silent(name, "is there, but does not answer")
     if not twice and not silent:
-        answered = " and answer" if seen.sim_time else ""
-        text = f"{plural(len(seen.nodes), 'node')} under names of their own{answered}"
+        several = len(seen.nodes) > 1
+        text = plural(len(seen.nodes), "node")
+        text += ", each with a name of its own" if several else ""
+        text += (
+            f"; {'all answer' if several else 'it answers'}" if seen.sim_time else ""
+        )
         yield Finding(
             Level.GOOD, NODES, "nodes", text, data={"nodes": sorted(seen.nodes)}
         )
