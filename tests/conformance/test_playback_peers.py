@@ -99,4 +99,4 @@ def test_the_page_controls_a_recording(playing: Playback) -> None:
     assert 14.0 < seen["paused"][0] < 20.0
     assert seen["ended"] == [20.0, 20.0]
     assert seen["again"][0] < 5.0
-    assert seen["rate"] == "2"
+    assert seen["rate"] == "1"

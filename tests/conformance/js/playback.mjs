@@ -27,8 +27,11 @@ try {
   await page.click('#playback [name="play"]');
   await status("playing");
   await until(() => parseFloat(document.querySelector("#playback output").textContent.split(":")[1]) > 0.4);
-  await page.selectOption('#playback [name="rate"]', "2");
-  await until(() => playback.speed === 2);
+  const setRate = async (rate) => {
+    await page.selectOption('#playback [name="rate"]', String(rate));
+    await until((wanted) => playback.answered === playback.requests && playback.speed === wanted, rate);
+  };
+  await setRate(0.5);
 
   const slider = await page.locator('#playback [name="place"]').boundingBox();
   await page.mouse.click(slider.x + slider.width * 0.75, slider.y + slider.height / 2);
@@ -38,9 +41,11 @@ try {
   await status("paused");
   const paused = await place();
   if (screenshot) await page.screenshot({ path: screenshot });
+  await setRate(50);
   await page.click('#playback [name="play"]');
   await status("ended");
   const ended = await place();
+  await setRate(1);
   await page.click('#playback [name="play"]');
   await status("playing");
   const again = await place();

@@ -126,7 +126,7 @@ def test_keys_on_a_real_terminal(terminal: Terminal) -> None:
     terminal.wait_for("×1.1\x1b")
     terminal.press(b" ")
     terminal.wait_for("playing")
-    terminal.wait_for(" 0.[3-9] / 60.0 s")
+    terminal.wait_for(r" (0\.[3-9]|[1-9][\d.]*) / 60\.0 s")
     terminal.press(b" ")
     terminal.wait_for("paused")
     terminal.press(b"\x1b[D")

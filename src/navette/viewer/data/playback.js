@@ -2,9 +2,10 @@
 "use strict";
 
 const PLAYING = 0, ENDED = 3, STEPS = 10000, SEEK_MS = 80;
+const REQUEST = `page-${Math.random().toString(36).slice(2)}-`; // answers go to every page
 
 const playback = {
-  begin: 0n, end: 0n, status: null, speed: 1, requests: 0, wanted: null, timer: null,
+  begin: 0n, end: 0n, status: null, speed: 1, requests: 0, answered: 0, wanted: null, timer: null,
   seeking: null, // id of the request that is under way: until its answer the slider stays where it was put
 
   start(bar, { sendText, sendBinary, onSeek }) {
@@ -42,6 +43,7 @@ const playback = {
     this.play.ariaLabel = this.play.title = label;
     const id = new TextDecoder().decode(new Uint8Array(view.buffer, 19, view.getUint32(15, true)));
     if (id === this.seeking) this.seeking = null;
+    if (id.startsWith(REQUEST)) this.answered = Number(id.slice(REQUEST.length));
     this.showRate();
     this.show(view.getBigUint64(2, true));
     if (view.getUint8(14)) this.onSeek();
@@ -75,7 +77,7 @@ const playback = {
     this.timer ??= setTimeout(() => { this.timer = null; this.control(this.status === PLAYING, this.wanted); }, SEEK_MS);
   },
   control(play, place = null) {
-    const name = `page-${++this.requests}`, id = new TextEncoder().encode(name);
+    const name = `${REQUEST}${++this.requests}`, id = new TextEncoder().encode(name);
     if (place !== null) this.seeking = name;
     const frame = new DataView(new ArrayBuffer(19 + id.length));
     frame.setUint8(0, 3);
