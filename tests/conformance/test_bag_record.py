@@ -10,11 +10,14 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from navette.bags import open_bag
 from navette.bags.checking import check_bag
+from navette.bags.message_types import Decoder
+from navette.msgs import register_definition
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Context, Executor, Node, Stopwatch
 from navette.runtime.qos import QoSDurabilityPolicy, QoSProfile
@@ -138,6 +141,25 @@ def test_what_runs_is_recorded_and_late_topics_too(
         assert topics["/chatter"].type_hash.startswith("RIHS01_")
         counts = {topic.name: count for topic, count in reader.counts().items()}
     assert counts["/word"] == counts["/late"] == 1
+
+
+def test_types_that_only_their_publisher_knows(
+    talker: Talker, router: str, tmp_path: Path
+) -> None:
+    text = "int32 volume\nstd_msgs/Header header\n"
+    beep: Any = register_definition("bag_record_case/msg/Beep", text)
+    publisher = talker.node.create_publisher(beep, "/beep", 10)
+    with recorder(router, "-a", "-o", "run.mcap", cwd=tmp_path) as process:
+        talker.until(lambda: publisher.get_subscription_count() > 0, "a recorder")
+        publisher.publish(beep(volume=11))
+        talker.start()
+        talker.until(lambda: talker.count >= 20, "20 numbers")
+        process.send_signal(signal.SIGINT)
+        assert process.wait(LIMIT_S) == 0
+    with open_bag(tmp_path / "run.mcap") as reader:
+        (message,) = reader.messages(["/beep"])
+        assert message.topic.definition.startswith(text)
+        assert Decoder(message.topic)(message.data).volume == 11
 
 
 def test_a_killed_recorder_loses_half_a_second_at_most(

@@ -19,7 +19,7 @@ from navette.bags.qos import parse_qos
 from navette.errors import DecodeError, FileFormatError
 
 MAGIC = b"SQLite format 3\0"
-_SMALLEST_ROW = 8  # bytes that a row takes at least; bounds how many there can be
+_SMALLEST_ROW = 16  # bytes that a row takes at least; bounds how many there can be
 _LOG_SUFFIX = "-wal"
 # A message of SQLite that holds bytes of a broken database may be no UTF-8.
 _ERRORS = (sqlite3.Error, UnicodeDecodeError, OverflowError)
@@ -279,7 +279,11 @@ class Db3Reader:
 
     def _readable_rows(self) -> Iterator[_Row]:
         query = "SELECT id, topic_id, timestamp FROM messages WHERE id = ?"
-        for number in range(1, self.size // _SMALLEST_ROW + 1):
+        highest = self._attempt("SELECT max(id) FROM messages WHERE id > ?", 0)
+        most = self.size // _SMALLEST_ROW
+        if highest is not None and isinstance(highest[0], int):
+            most = min(most, highest[0])
+        for number in range(1, most + 1):
             found = self._attempt(query, number)
             if found is not None and all(isinstance(each, int) for each in found):
                 yield _Row(*found)

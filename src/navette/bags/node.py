@@ -6,6 +6,7 @@ and by a timer on the same clock, so that the same run gives the same bytes, and
 killed process loses at most ``flush_period_s`` of the robot's time.
 """
 
+from collections import deque
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import partial
@@ -50,6 +51,10 @@ _QOS = QoSProfile(
     durability=QoSDurabilityPolicy.BEST_AVAILABLE,
     liveliness=QoSLivelinessPolicy.BEST_AVAILABLE,
 )
+
+
+_MOST_EARLY = 1000
+"""Messages that are kept while simulated time has not begun."""
 
 
 class RecorderNode(StageNode):
@@ -103,6 +108,7 @@ class RecorderNode(StageNode):
         self._message_count = 0
         self._payload_bytes = 0
         self._refreshing = False
+        self._early: deque[tuple[RecordedTopic, bytes]] = deque(maxlen=_MOST_EARLY)
         self._flush_timer = self._new_flush_timer()
         self.create_service(SetBool, "~/pause", self._on_pause)
         if isinstance(self._recording, Snapshots):
@@ -202,6 +208,8 @@ class RecorderNode(StageNode):
     def _record(self, recorded: RecordedTopic, payload: bytes) -> None:
         if self._recording is None or self.params.paused:
             return
+        if self._waits_for_clock(recorded, payload):
+            return
         if recorded.count == 0:
             self._announce(recorded)
         recorded.count += 1
@@ -211,6 +219,18 @@ class RecorderNode(StageNode):
             self._recording.write(recorded, self._clock.now_ns, payload)
         except OSError as error:
             self._end_early(error)
+
+    def _waits_for_clock(self, recorded: RecordedTopic, payload: bytes) -> bool:
+        """Keep what is heard before the first simulated time; it has no stamp yet."""
+        if not self._clock.ros_time_is_active:
+            return False
+        if self._clock.now_ns == 0:
+            self._early.append((recorded, payload))
+            return True
+        early, self._early = self._early, deque(maxlen=_MOST_EARLY)
+        for each in early:
+            self._record(*each)
+        return False
 
     def _new_flush_timer(self) -> Timer:
         # Simulated time may stand still; what was said must reach the disk all the

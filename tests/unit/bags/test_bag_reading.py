@@ -368,3 +368,57 @@ def test_other_encodings_are_told_apart(tmp_path: Path) -> None:
         assert next(reader.messages()).data == b"{}"
         with pytest.raises(FileFormatError, match="json messages are not ROS's"):
             Decoder(reader.topics[0])
+
+
+IDL = """
+module reading_idl {
+  module msg {
+    module Scene_Constants {
+      const int32 LARGE = 3;
+    };
+    struct Scene {
+      geometry_msgs::msg::Point corner;
+      sequence<float> heights;
+      double grid[4];
+      string name;
+    };
+  };
+};
+"""
+POINT_IDL = """
+module geometry_msgs { module msg {
+  struct Point { double x; double y; double z; };
+}; };
+"""
+
+
+def test_definitions_in_idl(tmp_path: Path) -> None:
+    line = "=" * 80
+    text = f"{line}\nIDL: reading_idl/msg/Scene\n{IDL}"
+    text += f"{line}\nIDL: geometry_msgs/msg/Point\n{POINT_IDL}"
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start("ros2", "test")
+        for name, definition in (
+            ("reading_idl/msg/Scene", text),
+            ("reading_idl/msg/Broken", "module {"),
+        ):
+            schema = writer.register_schema(name, "ros2idl", definition.encode())
+            channel = writer.register_channel(f"/{name}", "cdr", schema)
+            writer.add_message(channel, 1, bytes(4), 1)
+        writer.finish()
+    with open_bag(path) as reader:
+        broken, scene = sorted(reader.topics, key=lambda topic: topic.name)
+        assert broken.definition == ""
+        assert "/reading_idl/msg/Broken" in reader.problems[0]
+        assert len(list(reader.messages())) == 2
+    kind: Any = Decoder(scene).message_class
+    assert kind.LARGE == 3
+    assert list(kind.get_fields_and_field_types()) == [
+        "corner",
+        "heights",
+        "grid",
+        "name",
+    ]
+    assert len(kind().grid) == 4

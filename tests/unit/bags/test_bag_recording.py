@@ -11,6 +11,8 @@ from navette.bags.node import RecorderNode
 from navette.bags.recording import RecordedTopic, Snapshots
 from navette.errors import FileFormatError
 from navette.msgs import register_definition
+from navette.msgs.builtin_interfaces.msg import Time
+from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.std_srvs.srv import SetBool, Trigger
 from navette.runtime import Context, Executor, Node, Parameter, VirtualClock
@@ -191,3 +193,34 @@ def test_a_type_that_becomes_known_later(
     with open_bag(tmp_path / "a.mcap") as reader:
         (message,) = reader.messages(["/beep"])
     assert message.topic.definition == "int32 volume\n"
+
+
+def test_stamps_of_simulated_time(tmp_path: Path) -> None:
+    """What is heard before the first ``/clock`` gets its time, not none."""
+    context = Context()
+    executor = Executor(context=context)
+    talker = Node("talker", context=context)
+    publisher = talker.create_publisher(String, "/chatter", 10)
+    clock = talker.create_publisher(Clock, "/clock", 10)
+    path = tmp_path / "a.mcap"
+    overrides = [Parameter("use_sim_time", value=True)]
+    recorder = RecorderNode(path, context=context, parameter_overrides=overrides)
+    executor.add_node(talker)
+    executor.add_node(recorder)
+
+    def say(text: str) -> None:
+        publisher.publish(String(data=text))
+        for _ in range(20):  # all that is ready; in process nothing takes time
+            executor.spin_once(timeout_sec=0.0)
+
+    say("1")
+    assert recorder.message_count == 0
+    for seconds in (50, 51):
+        clock.publish(Clock(clock=Time(sec=seconds)))
+        say(f"{seconds}")
+    recorder.close()
+    context.shutdown()
+    assert chatter(path) == [1, 50, 51]
+    with open_bag(path) as reader:
+        stamps = [m.stamp_ns // SECOND for m in reader.messages(["/chatter"])]
+    assert stamps == [50, 50, 51]
