@@ -16,6 +16,20 @@ from navette.runtime.parameter_files import parse_value, read_parameter_file
 
 T = TypeVar("T")
 
+AllowableParameterValue = (
+    None
+    | bool
+    | int
+    | float
+    | str
+    | Sequence[bytes]
+    | Sequence[bool]
+    | Sequence[int]
+    | Sequence[float]
+    | Sequence[str]
+)
+"""For annotations: what a parameter may hold."""
+
 PARAMETER_SEPARATOR_STRING = "."
 
 

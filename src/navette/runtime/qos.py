@@ -6,6 +6,7 @@ from typing import Any
 from navette.errors import InvalidValueError
 from navette.runtime.time import Duration
 from navette.transports.qos import (
+    BEST_AVAILABLE_NS,
     INFINITE_NS,
     DurabilityPolicy,
     EndpointQos,
@@ -18,9 +19,11 @@ from navette.transports.qos import (
 )
 
 __all__ = [
+    "DeadlineBestAvailable",
     "DurabilityPolicy",
     "HistoryPolicy",
     "InvalidQoSProfileException",
+    "LivelinessLeaseDurationeBestAvailable",
     "LivelinessPolicy",
     "QoSDurabilityPolicy",
     "QoSHistoryPolicy",
@@ -51,6 +54,11 @@ QoSHistoryPolicy = HistoryPolicy
 QoSReliabilityPolicy = ReliabilityPolicy
 QoSDurabilityPolicy = DurabilityPolicy
 QoSLivelinessPolicy = LivelinessPolicy
+
+
+#: Whatever the other side has; the lease's name is spelt as in rclpy.
+DeadlineBestAvailable = Duration(nanoseconds=BEST_AVAILABLE_NS)
+LivelinessLeaseDurationeBestAvailable = Duration(nanoseconds=BEST_AVAILABLE_NS)
 
 
 class InvalidQoSProfileException(InvalidValueError):  # noqa: N818 - rclpy's name

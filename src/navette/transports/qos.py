@@ -11,6 +11,9 @@ from typing import Self
 INFINITE_NS = 2**63 - 1
 """RMW_DURATION_INFINITE in nanoseconds."""
 
+BEST_AVAILABLE_NS = INFINITE_NS - 1
+"""A deadline or lease that goes with whatever the other side has."""
+
 DEFAULT_DEPTH = 42
 """Queue depth where the profile leaves it open (as in rmw_zenoh)."""
 
@@ -162,7 +165,10 @@ def incompatible_policies(
             requested.durability == DurabilityPolicy.TRANSIENT_LOCAL
             and not offered.is_latched,
         ),
-        (QoSPolicyKind.DEADLINE, offered.deadline_ns > requested.deadline_ns),
+        (
+            QoSPolicyKind.DEADLINE,
+            _is_longer(offered.deadline_ns, requested.deadline_ns),
+        ),
         (
             QoSPolicyKind.LIVELINESS,
             requested.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
@@ -171,7 +177,13 @@ def incompatible_policies(
         ),
         (
             QoSPolicyKind.LIVELINESS_LEASE_DURATION,
-            offered.lease_ns > requested.lease_ns,
+            _is_longer(offered.lease_ns, requested.lease_ns),
         ),
     )
     return tuple(kind for kind, short in checks if short)
+
+
+def _is_longer(offered_ns: int, requested_ns: int) -> bool:
+    if BEST_AVAILABLE_NS in (offered_ns, requested_ns):
+        return False
+    return offered_ns > requested_ns

@@ -18,6 +18,8 @@ from navette.runtime import (
     qos_profile_system_default,
 )
 from navette.runtime.qos import (
+    DeadlineBestAvailable,
+    LivelinessLeaseDurationeBestAvailable,
     QoSCompatibility,
     QoSPolicyKind,
     QoSReliabilityPolicy,
@@ -318,3 +320,18 @@ def test_handlers_tell_what_there_are_callbacks_for(graph: GraphHarness) -> None
         "RCL_SUBSCRIPTION_MESSAGE_LOST",
     ]
     assert node.create_publisher(String, "news", 1).event_handlers == []
+
+
+def test_best_available_goes_with_every_deadline_and_lease() -> None:
+    best = QoSProfile(
+        depth=1,
+        deadline=DeadlineBestAvailable,
+        liveliness_lease_duration=LivelinessLeaseDurationeBestAvailable,
+    )
+    second = Duration(seconds=1)
+    strict = QoSProfile(depth=1, deadline=second, liveliness_lease_duration=second)
+    for publisher, subscription in ((best, strict), (strict, best), (best, best)):
+        found, text = qos_check_compatible(publisher, subscription)
+        assert found is QoSCompatibility.OK, text
+    found, _ = qos_check_compatible(QoSProfile(depth=1), best)
+    assert found is QoSCompatibility.OK

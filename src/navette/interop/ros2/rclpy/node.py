@@ -56,6 +56,7 @@ from navette.runtime.node import HIDDEN_NODE_PREFIX
 from navette.runtime.node_graph import NodeNameNonExistentError
 from navette.runtime.parameter import (
     PARAMETER_SEPARATOR_STRING,
+    AllowableParameterValue,
     validate_parameter_name,
 )
 from navette.runtime.parameter_service import ParameterService
@@ -89,6 +90,7 @@ from navette.runtime.type_support import SrvT as SrvType
 from navette.runtime.waitable import Waitable
 
 __all__ = [
+    "AllowableParameterValue",
     "CallbackGroup",
     "Client",
     "Clock",

@@ -4,6 +4,7 @@ from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
 from navette.msgs.rcl_interfaces.msg import ParameterType, ParameterValue
 from navette.runtime.parameter import (
     PARAMETER_SEPARATOR_STRING,
+    AllowableParameterValue,
     Parameter,
     get_parameter_value,
     parameter_dict_from_yaml_file,
@@ -11,6 +12,7 @@ from navette.runtime.parameter import (
 )
 
 __all__ = [
+    "AllowableParameterValue",
     "PARAMETER_SEPARATOR_STRING",
     "Parameter",
     "ParameterMsg",

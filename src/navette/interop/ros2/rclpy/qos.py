@@ -2,9 +2,11 @@
 
 from navette.runtime import Duration
 from navette.runtime.qos import (
+    DeadlineBestAvailable,
     DurabilityPolicy,
     HistoryPolicy,
     InvalidQoSProfileException,
+    LivelinessLeaseDurationeBestAvailable,
     LivelinessPolicy,
     QoSCompatibility,
     QoSDurabilityPolicy,
@@ -30,10 +32,12 @@ from navette.runtime.qos import (
 )
 
 __all__ = [
+    "DeadlineBestAvailable",
     "DurabilityPolicy",
     "Duration",
     "HistoryPolicy",
     "InvalidQoSProfileException",
+    "LivelinessLeaseDurationeBestAvailable",
     "LivelinessPolicy",
     "QoSCompatibility",
     "QoSDurabilityPolicy",
