@@ -133,3 +133,15 @@ def test_jumps_are_told_and_add_nothing() -> None:
             "gap in time: counting goes on from 60.000 s",
             "message at 61.000 s not used: no fix, or not a number",
         ]
+
+
+@pytest.mark.parametrize(("depth", "metres"), [(1, 2.0), (3, 4.0)])
+def test_a_longer_queue_keeps_the_bends_of_a_burst(depth: int, metres: float) -> None:
+    with GraphHarness() as graph:
+        _, distances = started(graph, queue_size=depth)
+        graph.publish("/gnss_driver/odometry", gps(0, 0.0))
+        graph.run_for(0.05)
+        for second, x in ((1, 3.0), (2, 2.0)):
+            graph.publish("/gnss_driver/odometry", gps(second * SECOND, x))
+        graph.run_for(0.2)
+        assert distances.last.data == pytest.approx(metres)

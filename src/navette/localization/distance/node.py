@@ -24,7 +24,7 @@ class OdomIntegratorNode(StageNode):
     """Sums the distance travelled, by position or by velocity."""
 
     PARAMS = DistanceParams
-    FIXED_AT_START = ("topic", "topic_type")
+    FIXED_AT_START = ("topic", "topic_type", "queue_size")
     INPUTS: ClassVar = (
         Input(
             topic="/gnss_driver/odometry",
@@ -53,8 +53,8 @@ class OdomIntegratorNode(StageNode):
 
     def inputs(self) -> tuple[Input, ...]:
         (usual,) = self.INPUTS
-        topic, kind = self.params.topic, self.params.topic_type
-        return (replace(usual, topic=topic, type=kind),)
+        p = self.params
+        return (replace(usual, topic=p.topic, type=p.topic_type, depth=p.queue_size),)
 
     @property
     def distance(self) -> float:

@@ -30,6 +30,12 @@ class DistanceParams(Params):
         "their type; NavSatFix has no velocity and TwistStamped no position",
         choices=(GPS, FIX, TWIST, ODOMETRY),
     )
+    queue_size: int = param(
+        1,
+        "how many messages may wait; of more the oldest are lost, and with them bends "
+        "of the way: take more where a bag is played fast",
+        at_least=1,
+    )
     max_gap_s: float = param(
         2.0,
         "longest time between two messages of one way; after a longer one (a bag was "
