@@ -8,6 +8,7 @@ import pytest
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.graph_checks import check_nodes, check_services, check_topics
 from navette.cli.doctor.machine import is_navette, left_running
+from navette.cli.doctor.module_checks import check_modules
 from navette.cli.doctor.network import Network, Router, check_network
 from navette.cli.doctor.ports import Process
 from navette.cli.doctor.report import report_lines, summary
@@ -263,6 +264,25 @@ def test_settings_that_keep_one_alone() -> None:
     findings = list(check_network(network, 0))
     assert of(findings, "transport").level is Level.PROBLEM
     assert "rmw_zenoh_cpp" in of(findings, "ROS 2").advice
+
+
+def test_modules() -> None:
+    calm = {"label": "sim", "state": "running", "restarts": 0, "reason": ""}
+    restless = {**calm, "label": "planner", "restarts": 3, "reason": "exit code 1"}
+    dead = {**calm, "label": "control", "state": "failed", "reason": "no such file"}
+    modules = [
+        {"module": "sim", "processes": [calm]},
+        {"module": "robot", "processes": [restless, dead]},
+    ]
+    assert list(check_modules([])) == []
+    (finding,) = check_modules(modules[:1])
+    assert (finding.level, finding.text) == (Level.GOOD, "1 module up: sim")
+    found = list(check_modules(modules))
+    assert [(each.what, each.level, each.text) for each in found] == [
+        ("planner", Level.WARNING, "was started again 3 times: exit code 1"),
+        ("control", Level.PROBLEM, "does not run: no such file"),
+    ]
+    assert found[0].advice == "navette logs robot"
 
 
 def test_programs_that_were_left_running() -> None:

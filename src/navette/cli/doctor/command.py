@@ -41,6 +41,7 @@ def doctor(
 def _findings() -> Iterator[Finding]:
     from navette.cli.doctor.look import look
     from navette.cli.doctor.machine import check_machine
+    from navette.cli.doctor.module_checks import check_modules, modules_here
     from navette.cli.doctor.network import NETWORK, check_network, look_at_network
     from navette.errors import NetworkError
 
@@ -61,6 +62,7 @@ def _findings() -> Iterator[Finding]:
     else:
         yield from check_network(network, domain)
         yield from _check_running(seen)
+    yield from check_modules(modules_here())
     yield from check_machine()
 
 
