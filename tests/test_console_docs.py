@@ -17,7 +17,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 BLOCK = re.compile(r"^```(\w+)(?: (\S+))?\n(.*?)^```", re.DOTALL | re.MULTILINE)
-PAGES = ["tutorials/3-distance.md", "howto/localise.md"]
+PAGES = ["tutorials/3-distance.md", "howto/localise.md", "howto/play.md"]
 
 
 def commands(block: str) -> list[tuple[str, list[str]]]:
