@@ -55,27 +55,33 @@ def read_metadata(folder: Path) -> Metadata:
 
 
 def _parse(found: Mapping[str, Any]) -> Metadata:
-    topics = [
-        (each["topic_metadata"], int(each["message_count"]))
-        for each in found.get("topics_with_message_count") or ()
-    ]
-    kind = str(found.get("compression_format") or "")
-    mode = str(found.get("compression_mode") or "").lower()
-    names = [str(path) for path in found["relative_file_paths"]]
+    topics: dict[tuple[str, str], tuple[Any, int]] = {}
+    for each in found.get("topics_with_message_count") or ():
+        topic = each["topic_metadata"]
+        key = _word(topic["name"]), _word(topic["type"])
+        topics[key] = topic, int(each["message_count"])
+    kind = _word(found.get("compression_format"))
+    mode = _word(found.get("compression_mode")).lower()
+    names = [_word(path) for path in found["relative_file_paths"]]
     return Metadata(
-        str(found["version"]),
-        tuple(Path(name).name for name in names if Path(name).name),
-        f"{kind} ({mode})" if kind and mode not in ("", "none") else "",
-        {(str(t["name"]), str(t["type"])): count for t, count in topics},
-        {
-            (str(t["name"]), str(t["type"])): t.get("offered_qos_profiles", "")
-            for t, _ in topics
-        },
-        {
-            (str(t["name"]), str(t["type"])): str(t.get("type_description_hash") or "")
-            for t, _ in topics
+        version=_word(found["version"]),
+        files=tuple(Path(name).name for name in names if Path(name).name),
+        compression=f"{kind} ({mode})" if kind and mode not in ("", "none") else "",
+        counts={key: count for key, (_, count) in topics.items()},
+        qos={key: t.get("offered_qos_profiles", "") for key, (t, _) in topics.items()},
+        hashes={
+            key: _word(t.get("type_description_hash")) for key, (t, _) in topics.items()
         },
     )
+
+
+def _word(found: object) -> str:
+    """A text or a number as text; a list of lists of lists might print for ever."""
+    if found is None:
+        return ""
+    if isinstance(found, str | int):
+        return str(found)
+    raise TypeError(f"{type(found).__name__} where a text should be")
 
 
 class FolderReader:

@@ -76,6 +76,7 @@ _NAMES = {
     ),
 }
 _LONGEST_TEXT = 1 << 16
+_MOST_OFFERS = 1000
 
 
 def parse_qos(text: object) -> tuple[OfferedQos, ...]:
@@ -93,7 +94,8 @@ def parse_qos(text: object) -> tuple[OfferedQos, ...]:
             return ()
     if not isinstance(text, list):
         return ()
-    return tuple(_offer(each) for each in text if isinstance(each, dict))
+    offers = text[:_MOST_OFFERS]
+    return tuple(_offer(each) for each in offers if isinstance(each, dict))
 
 
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)

@@ -422,3 +422,34 @@ def test_definitions_in_idl(tmp_path: Path) -> None:
         "name",
     ]
     assert len(kind().grid) == 4
+
+
+# Each list holds the one before nine times: 9 to the power of 11 when printed.
+BOMB = "  x0: &x0 [1]\n" + "".join(
+    f"  x{n}: &x{n} [{', '.join([f'*x{n - 1}'] * 9)}]\n" for n in range(1, 12)
+)
+INFORMATION = "rosbag2_bagfile_information:"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "3",
+        f"{INFORMATION} 3",
+        f"{INFORMATION} {{version: 8}}",
+        f"{INFORMATION}\n{BOMB}  version: *x11\n  relative_file_paths: []",
+        f"{INFORMATION} {{version: 8, relative_file_paths: [[a]]}}",
+        f"{INFORMATION} {{version: 8, relative_file_paths: [../a.mcap]}}",
+    ],
+)
+def test_metadata_that_are_none(tmp_path: Path, text: str) -> None:
+    """The file beside them is read all the same; nothing outside the folder is."""
+    write_sample(tmp_path / "b.mcap")
+    (tmp_path / "metadata.yaml").write_text(text, "utf-8")
+    try:
+        with open_bag(tmp_path) as reader:
+            assert "metadata.yaml" in reader.problems[0]
+            assert len(list(reader.messages())) == 6
+    except FileFormatError as error:
+        assert "a.mcap: cannot be opened" in str(error)  # noqa: PT017
