@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from bag_samples import sample, shrink_pages, write_sample
 
+from bag_samples import sample, shrink_pages, write_sample
 from navette.bags import BagMessage, Damage, open_bag
 from navette.bags.checking import check_bag
 from navette.errors import FileFormatError
