@@ -38,6 +38,8 @@ try {
   await page.keyboard.up("ArrowUp");
   await page.keyboard.up("ArrowLeft");
   const rows = await page.$$eval("#topics tr", (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  // The planner said how it is once, and never again.
+  await until(() => document.querySelector("#headline").textContent === "Planner is silent");
   const open = new URL(await page.getAttribute("#open", "href"));
   console.log(JSON.stringify({
     title: await page.title(), address: await text("#address"), foxglove: open.searchParams.get("ds.url"),
