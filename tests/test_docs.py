@@ -5,8 +5,13 @@ import io
 import re
 import runpy
 from pathlib import Path
+from typing import Any
 
 import pytest
+import typer
+
+import navette
+from navette.cli.app import app
 
 DOCS = Path(__file__).parent.parent / "docs"
 BLOCK = re.compile(r"```(python|text)\n(.*?)```", re.DOTALL)
@@ -33,3 +38,26 @@ def test_the_node_reference_is_up_to_date() -> None:
     generator = runpy.run_path(str(DOCS / "generate.py"))
     page = (DOCS / "reference" / "nodes.md").read_text(encoding="utf-8")
     assert page == generator["nodes_page"](), "run: python docs/generate.py"
+
+
+def test_the_idioms_name_what_there_is() -> None:
+    page = (DOCS / "reference" / "idioms.md").read_text(encoding="utf-8")
+    names = set(re.findall(r"navette\.([A-Za-z_]+)", page)) - {"msgs"}
+    assert len(names) > 15
+    assert [name for name in sorted(names) if not hasattr(navette, name)] == []
+    verbs = {tuple(words.split()) for words in re.findall(r"`navette ([a-z ]+)", page)}
+    root = typer.main.get_command(app)
+    assert [verb for verb in sorted(verbs) if not _is_command(root, verb)] == []
+
+
+def _is_command(root: Any, verb: tuple[str, ...]) -> bool:
+    """Whether the words lead to a command; what follows it is its arguments."""
+    command = root
+    for word in verb:
+        if not hasattr(command, "commands"):
+            return True
+        if word not in command.commands:
+            return False
+        command = command.commands[word]
+        command = command.load() if hasattr(command, "load") else command
+    return not hasattr(command, "commands")
