@@ -10,6 +10,7 @@ NavetteError
 ├── DecodeError (ValueError)            bytes that are not what they claim to be
 ├── TransformError                      a transform that cannot be given
 ├── NetworkError (ConnectionError)      the network cannot be joined or reached
+├── LockStepError                   a process of a lock-step is gone or silent
 ├── MissingPartError (ImportError)      an optional package is not installed
 └── CallbackError (RuntimeError)        a callback raised: node, topic, stamp; also of
                                         the original's class
@@ -72,6 +73,10 @@ class TransformError(NavetteError):
 
 class NetworkError(NavetteError, ConnectionError):
     """The network cannot be joined, or what was there is gone."""
+
+
+class LockStepError(NavetteError):
+    """A run in lock-step cannot go on: a process is gone, or does not answer."""
 
 
 class MissingPartError(NavetteError, ImportError):

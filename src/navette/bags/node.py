@@ -200,6 +200,8 @@ class RecorderNode(StageNode):
     def _announce(self, recorded: RecordedTopic) -> None:
         """At the first message: its publishers, and what they offer, are known."""
         endpoints = self.context.graph.endpoints(recorded.topic.name)
+        # Ids of endpoints of other processes are chance.
+        endpoints.sort(key=lambda endpoint: endpoint.node_full_name)
         offers = tuple(_offer(e) for e in endpoints if e.kind.name == "PUBLISHER")
         recorded.topic = replace(recorded.topic, qos=offers)
 

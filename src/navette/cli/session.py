@@ -142,11 +142,11 @@ def fail(message: str) -> Never:
 def _outside() -> "Context":
     """A context of its own that says on standard error only what went wrong."""
     from navette.errors import NetworkError
-    from navette.runtime import Context, LoggingSeverity
+    from navette.runtime import Context, LoggingSeverity, SystemClock
     from navette.runtime.context import current_scope
 
     is_set = "NAVETTE_TRANSPORT" in os.environ or current_scope.get().graph is not None
-    context = Context(transport=None if is_set else "zenoh")
+    context = Context(clock=SystemClock(), transport=None if is_set else "zenoh")
     try:
         context.init(args=[], console_level=LoggingSeverity.WARN)
     except NetworkError as error:

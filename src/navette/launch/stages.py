@@ -19,6 +19,7 @@ from navette.launch.overrides import check_reached
 from navette.packages import find_package
 from navette.packages.executables import BUILT_IN
 from navette.runtime import Context, Node, PacedClock, TimeSource
+from navette.runtime.lockstep import Conductor
 from navette.runtime.overrides import ParameterOverrides
 
 if TYPE_CHECKING:
@@ -46,7 +47,10 @@ def sim() -> None:
     parser = _parser("sim", "A robot in a world: takes /cmd_vel, gives sensors.")
     _add_robot(parser)
     parser.add_argument("--start", nargs=3, type=float, metavar=("X", "Y", "YAW_DEG"))
-    parser.add_argument("--speed", type=float, default=1.0, metavar="FACTOR")
+    parser.add_argument(
+        "--speed", type=float, metavar="FACTOR", help="times real time, at most"
+    )
+    _add_conducting(parser)
     given = _parse(parser)
     from navette.geometry import Pose2
     from navette.sim.node import SimNode
@@ -57,7 +61,7 @@ def sim() -> None:
     _run(
         lambda context: SimNode(resolved.scene, start=start, context=context),
         _profile(resolved, "sim"),
-        PacedClock(given.speed),
+        _clock_of_sim(given),
     )
 
 
@@ -204,6 +208,39 @@ def _add_robot(parser: argparse.ArgumentParser) -> None:
         "--robot",
         help="a built-in robot or a model file, whose parameters count; "
         "by default the world's own",
+    )
+
+
+def _add_conducting(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--lockstep",
+        metavar="NODE,…",
+        help="wait in each step for these nodes of other processes, which run with "
+        "NAVETTE_LOCKSTEP=follow; as fast as they can, unless --speed is given",
+    )
+    for name, default, text in (
+        ("step", 0.01, "length of a step"),
+        ("until", None, "simulated time at which the run ends for all"),
+        ("limit", 30.0, "time that a node may take for a step"),
+    ):
+        parser.add_argument(
+            f"--lockstep-{name}",
+            type=float,
+            default=default,
+            metavar="SECONDS",
+            help=text + ("" if default is None else " (default: %(default)s s)"),
+        )
+
+
+def _clock_of_sim(given: Any) -> TimeSource:
+    if given.lockstep is None:
+        return PacedClock(1.0 if given.speed is None else given.speed)
+    return Conductor(
+        given.lockstep.split(","),
+        step_s=given.lockstep_step,
+        speed=math.inf if given.speed is None else given.speed,
+        until_s=given.lockstep_until,
+        limit_s=given.lockstep_limit,
     )
 
 

@@ -30,6 +30,10 @@ class Wakeup:
     def clear(self) -> None:
         self._event.clear()
 
+    @property
+    def is_pending(self) -> bool:
+        return self._event.is_set()
+
     def wait(self, timeout_s: float | None) -> bool:
         """True if woken; False once ``timeout_s`` (None = for ever) is over."""
         deadline = None if timeout_s is None else time.perf_counter() + timeout_s
@@ -48,6 +52,9 @@ class TimeSource(ABC):
 
     #: Whether time stands still between events (nothing happens by waiting).
     is_virtual: bool = False
+    #: Whether other processes are on it: something may always come, and a run that has
+    #: nothing left to do waits for it.
+    is_shared: bool = False
 
     @property
     @abstractmethod

@@ -12,8 +12,9 @@ from weakref import WeakSet
 
 from navette.errors import InvalidValueError
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
-from navette.runtime.clock import SystemClock, TimeSource
+from navette.runtime.clock import TimeSource
 from navette.runtime.graph import Graph
+from navette.runtime.lockstep import LockStepClock, clock_of_environment
 from navette.runtime.log import LogHub, StdlibHandler
 from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.log_sinks import ConsoleSink, FileSink
@@ -35,7 +36,10 @@ _LONGEST_CALLBACK_S = 2.0
 
 
 class Context:
-    """What nodes share. ``clock`` decides how time passes (default: the system's).
+    """What nodes share. ``clock`` decides how time passes.
+
+    By default it is the system's, or that of the simulator of a lock-step
+    (``NAVETTE_LOCKSTEP=follow``).
 
     As in rclpy it becomes valid with :meth:`init`; a context that was made by hand
     initialises itself, without arguments, when its first node is made.
@@ -58,7 +62,7 @@ class Context:
         if transport is not None:
             checked_transport(transport, "Context")
         self._transport = transport
-        self.loop = EventLoop(clock or SystemClock())
+        self.loop = EventLoop(clock or clock_of_environment())
         scope = current_scope.get()
         graph = graph or scope.graph
         self._owns_graph = graph is None
@@ -197,7 +201,10 @@ class Context:
         # A graph that began without the network stays so, unless asked otherwise.
         if self._transport is None and self.graph.nodes():
             return
-        join_network(self.graph, self._domain_id, lambda: self.clock.now_ns)
+        lock_step = self.clock if isinstance(self.clock, LockStepClock) else None
+        if lock_step is not None:
+            lock_step.on_end = self.try_shutdown
+        join_network(self.graph, self._domain_id, lambda: self.clock.now_ns, lock_step)
 
     def _look_around(self) -> None:
         """Something came or went by another thread: a wait may be for just that."""

@@ -419,7 +419,7 @@ class EventLoop:
             if self.clock.now_ns >= until_ns:
                 return False
             target = until_ns if target is None else min(target, until_ns)
-        if target is None and self.clock.is_virtual:
+        if target is None and self.clock.is_virtual and not self.clock.is_shared:
             return False
         self.waiting = True
         try:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from navette.errors import InvalidValueError
 from navette.runtime.clock import PacedClock, TimeSource, VirtualClock
 from navette.runtime.graph import Graph
+from navette.runtime.lockstep import LockStepClock
 
 IN_PROCESS, ZENOH = "inprocess", "zenoh"
 TRANSPORTS = (IN_PROCESS, ZENOH)
@@ -31,8 +32,15 @@ def chosen_transport(asked: str | None, clock: TimeSource) -> str:
     tests under pytest stay alone, so that they do not meet each other.
 
     Raises:
-        InvalidValueError: the variable names no transport.
+        InvalidValueError: the variable names no transport, or one that cannot be.
     """
+    if clock.is_shared:
+        if IN_PROCESS in (asked, os.environ.get(VARIABLE)):
+            raise InvalidValueError(
+                f"transport {IN_PROCESS!r}: a lock-step with other processes needs "
+                f"{ZENOH!r}"
+            )
+        return ZENOH
     if asked is not None:
         return asked
     named = os.environ.get(VARIABLE)
@@ -44,23 +52,43 @@ def chosen_transport(asked: str | None, clock: TimeSource) -> str:
     return ZENOH
 
 
-def join_network(graph: Graph, domain_id: int, now_ns: Callable[[], int]) -> None:
+def join_network(
+    graph: Graph,
+    domain_id: int,
+    now_ns: Callable[[], int],
+    lock_step: LockStepClock | None = None,
+) -> None:
     """Add the network to the graph's transports, unless it is one of them.
+
+    Args:
+        graph: what is joined to it.
+        domain_id: separates systems on one network.
+        now_ns: the time here.
+        lock_step: the clock, where it is on one time with other processes.
 
     Raises:
         InvalidValueError: the graph has joined another domain, or has nodes already.
         NetworkError: the network cannot be joined.
     """
     with graph.joining:
-        _join(graph, domain_id, now_ns)
+        _join(graph, domain_id, now_ns, lock_step)
 
 
-def _join(graph: Graph, domain_id: int, now_ns: Callable[[], int]) -> None:
+def _join(
+    graph: Graph,
+    domain_id: int,
+    now_ns: Callable[[], int],
+    lock_step: LockStepClock | None,
+) -> None:
     # Imported here: who stays in process does not pay for it.
     from navette.transports.zenoh import ZenohTransport
 
     for transport in graph.transports:
         if isinstance(transport, ZenohTransport):
+            if lock_step is not None:
+                raise InvalidValueError(
+                    "lock-step: only one context of a process can take part"
+                )
             if transport.domain_id != domain_id:
                 raise InvalidValueError(
                     f"domain {domain_id}: the programs of this process share the "
@@ -70,4 +98,11 @@ def _join(graph: Graph, domain_id: int, now_ns: Callable[[], int]) -> None:
     if graph.nodes():
         names = ", ".join(info.full_name for info in graph.nodes())
         raise InvalidValueError(f"cannot join the network: there are nodes ({names})")
-    graph.add_transport(ZenohTransport(domain_id, now_ns))
+    if lock_step is None:
+        graph.add_transport(ZenohTransport(domain_id, now_ns))
+        return
+    from navette.transports.zenoh.lockstep import ZenohStepWire
+
+    transport = ZenohTransport(domain_id, now_ns, traffic=lock_step.traffic)
+    lock_step.join(ZenohStepWire(transport))
+    graph.add_transport(transport)

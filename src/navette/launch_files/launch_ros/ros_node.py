@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from navette.errors import CallbackError
-from navette.runtime import Context, Executor, Node
+from navette.runtime import Context, Executor, Node, SystemClock
 
 if TYPE_CHECKING:
     from navette.launch_files.launch import LaunchContext
@@ -25,7 +25,7 @@ class LaunchNode:
 
     def __init__(self, launch: "LaunchContext") -> None:
         self._launch = launch
-        self._context = Context(graph=launch.runner.graph)
+        self._context = Context(clock=SystemClock(), graph=launch.runner.graph)
         self._context.init(args=[], initialize_logging=False)
         self._node = Node(f"launch_ros_{os.getpid()}", context=self._context)
         self._executor = Executor(context=self._context)

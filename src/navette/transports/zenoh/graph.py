@@ -86,6 +86,15 @@ class RemoteGraph:
         with self._lock:
             return [e for e in self._endpoints.values() if e.kind in wanted]
 
+    def counts(self) -> dict[str, int]:
+        """Session → how many nodes and endpoints; the observers know of all of them."""
+        with self._telling:
+            while True:
+                self._tell()
+                with self._lock:
+                    if not self._events:
+                        return dict(self._count_of)
+
     def wait_until_known(self, keys: set[str], timeout_s: float) -> bool:
         """Whether all those tokens are here within the time."""
 

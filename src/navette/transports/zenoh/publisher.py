@@ -21,9 +21,18 @@ class ZenohPublisher(PublisherPort):
         qos: as it was announced.
         gid: as hashed from the liveliness token.
         closed: called once when the port is closed.
+        sent: in lock-step, told the number of each sample; and none may be dropped.
     """
 
-    __slots__ = ("_closed", "_gid", "_latched", "_publisher", "_put", "matches")
+    __slots__ = (
+        "_closed",
+        "_gid",
+        "_latched",
+        "_publisher",
+        "_put",
+        "_sent",
+        "matches",
+    )
 
     def __init__(
         self,
@@ -33,12 +42,14 @@ class ZenohPublisher(PublisherPort):
         gid: bytes,
         matches: Matches,
         closed: Callable[["ZenohPublisher"], None],
+        sent: Callable[[int], None] | None = None,
     ) -> None:
         self.matches = matches
         self._gid = gid
         self._latched = qos.is_latched
         self._closed = closed
-        self._publisher: Any = _declare(session, key, qos)
+        self._sent = sent
+        self._publisher: Any = _declare(session, key, qos, lossless=sent is not None)
         self._put = self._publisher.put
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
@@ -47,6 +58,8 @@ class ZenohPublisher(PublisherPort):
         attachment = Attachment(sequence, source_ns, self._gid)
         data = message.data if message.__class__ is Encoded else serialize(message)
         self._put(data, attachment=attachment.encode())
+        if self._sent is not None:
+            self._sent(sequence)
 
     @property
     def matched_count(self) -> int:
@@ -61,9 +74,11 @@ class ZenohPublisher(PublisherPort):
         publisher.undeclare()
 
 
-def _declare(session: zenoh.Session, key: str, qos: EndpointQos) -> Any:
-    reliable = qos.reliability == ReliabilityPolicy.RELIABLE
-    keeps_all = qos.history == HistoryPolicy.KEEP_ALL
+def _declare(
+    session: zenoh.Session, key: str, qos: EndpointQos, *, lossless: bool
+) -> Any:
+    reliable = lossless or qos.reliability == ReliabilityPolicy.RELIABLE
+    keeps_all = lossless or qos.history == HistoryPolicy.KEEP_ALL
     options: dict[str, Any] = {
         "reliability": (
             zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT

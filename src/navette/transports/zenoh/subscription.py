@@ -8,8 +8,9 @@ import zenoh
 from zenoh import ext
 
 from navette.errors import DecodeError
-from navette.transports.base import Sink, SubscriptionPort
+from navette.transports.base import Item, Sink, SubscriptionPort
 from navette.transports.encoded import Encoded
+from navette.transports.lockstep import Holding
 from navette.transports.qos import EndpointQos
 from navette.transports.zenoh.attachment import decode_attachment
 from navette.transports.zenoh.complaints import Complaints
@@ -31,11 +32,13 @@ class ZenohSubscription(SubscriptionPort):
         lost: told how many samples are missing before the one that came.
         now_ns: the time here, for the received stamp.
         closed: called once when the port is closed.
+        holding: in lock-step, where samples go instead of the sink; in any order.
     """
 
     __slots__ = (
         "_closed",
         "_complaints",
+        "_holding",
         "_is_open",
         "_last",
         "_longest",
@@ -62,6 +65,7 @@ class ZenohSubscription(SubscriptionPort):
         max_message_bytes: int,
         now_ns: Callable[[], int],
         closed: Callable[["ZenohSubscription"], None],
+        holding: Holding | None = None,
     ) -> None:
         self.matches = matches
         self._message_class = message_class
@@ -72,6 +76,7 @@ class ZenohSubscription(SubscriptionPort):
         self._longest = max_message_bytes
         self._now_ns = now_ns
         self._closed = closed
+        self._holding = holding
         #: Newest sequence number of each publisher, by gid.
         self._last: dict[bytes, int] = {}
         # Samples may come before the declaration returns.
@@ -90,6 +95,8 @@ class ZenohSubscription(SubscriptionPort):
         self._is_open = False
         self._closed(self)
         self._subscriber.undeclare()
+        if self._holding is not None:
+            self._holding.close()
 
     # -- on Zenoh's threads ------------------------------------------------------
 
@@ -97,15 +104,19 @@ class ZenohSubscription(SubscriptionPort):
         if not self._is_open:
             return
         try:
-            item = self._checked(sample)
+            gid, item = self._checked(sample)
         except DecodeError as error:
             self._complain(str(sample.source_info or ""), error)
             return
-        if item is not None:
+        if gid in self._own_gids or gid in self.matches.refused:
+            return
+        if self._holding is not None:
+            self._holding.take(gid, item)
+        elif self._is_next(gid, item[3]):
             self._sink(item)
 
-    def _checked(self, sample: zenoh.Sample) -> tuple[Any, int, int, int] | None:
-        """The item to deliver; None if it was delivered before."""
+    def _checked(self, sample: zenoh.Sample) -> tuple[bytes, Item]:
+        """Whose it is, and the item to deliver, unless it was delivered before."""
         payload, attachment = sample.payload, sample.attachment
         if len(payload) > self._longest:
             raise DecodeError(
@@ -120,19 +131,17 @@ class ZenohSubscription(SubscriptionPort):
         data = payload.to_bytes()
         if data[:2] not in _HEADERS:
             raise DecodeError(f"no plain CDR: header {data[:4].hex(' ')}")
-        if gid in self._own_gids or not self._is_next(gid, sequence):
-            return None
 
         def failed(error: DecodeError) -> None:
             self._complain(gid.hex(), error)
 
         message = Encoded(data, self._message_class, failed)
-        return message, source_ns, self._now_ns(), sequence
+        return gid, (message, source_ns, self._now_ns(), sequence)
 
     def _is_next(self, gid: bytes, sequence: int) -> bool:
-        """Whether it is newer than all before, and from one whose QoS fits."""
+        """Whether it is newer than all before."""
         last = self._last.get(gid)
-        if gid in self.matches.refused or sequence <= (-1 if last is None else last):
+        if sequence <= (-1 if last is None else last):
             return False
         if last is not None and sequence > last + 1:
             self._lost(sequence - last - 1)

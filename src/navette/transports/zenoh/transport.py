@@ -18,6 +18,7 @@ from navette.transports.base import (
     Transport,
     TransportObserver,
 )
+from navette.transports.lockstep import Holding, StepTraffic
 from navette.transports.service_ports import ReplySink, RequestSink
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.keys import data_key
@@ -44,6 +45,7 @@ class ZenohTransport(Transport):
     Args:
         domain_id: separates systems on one network.
         now_ns: the time here, for received stamps and replies.
+        traffic: in lock-step with other processes: holds and counts the samples.
 
     Raises:
         NetworkError: the network cannot be joined.
@@ -55,9 +57,12 @@ class ZenohTransport(Transport):
         domain_id: int,
         now_ns: Callable[[], int],
         settings: Settings | None = None,
+        *,
+        traffic: StepTraffic | None = None,
     ) -> None:
         self.domain_id = domain_id
         self._now_ns = now_ns
+        self._traffic = traffic
         self.session = Session(settings or Settings.from_environment(), domain_id)
         self._graph = self.session.graph
         self._ids = itertools.count()
@@ -109,8 +114,12 @@ class ZenohTransport(Transport):
         def make(token: EndpointToken, matches: Matches) -> ZenohPublisher:
             gid = gid_of(token.key())
             self._own_gids.add(gid)
-            key, session = self._key(token), self.session.zenoh
-            return ZenohPublisher(session, key, token.qos, gid, matches, self._leave)
+            key, session, sent = self._key(token), self.session.zenoh, None
+            if self._traffic is not None:
+                sent = self._traffic.tally.open(gid, endpoint.node_full_name)
+            return ZenohPublisher(
+                session, key, token.qos, gid, matches, self._leave, sent
+            )
 
         return self._open(endpoint, make)
 
@@ -127,6 +136,7 @@ class ZenohTransport(Transport):
                 own_gids=self._own_gids,
                 lost=partial(self._graph.lost, endpoint),
                 now_ns=self._now_ns,
+                holding=self._holding(endpoint, sink, matches),
                 **self._common(),
             )
 
@@ -163,6 +173,31 @@ class ZenohTransport(Transport):
         for port in ports:
             port.close()
         self.session.close()
+
+    # -- for a lock-step -------------------------------------------------------
+
+    def own_nodes(self) -> tuple[str, ...]:
+        """Full names of the nodes announced here."""
+        with self._lock:
+            return tuple(node.full_name for node in self._nodes)
+
+    def own_count(self) -> int:
+        """How many nodes and endpoints are announced here."""
+        with self._lock:
+            return sum(map(len, self._nodes.values())) + len(self._ports)
+
+    def _holding(
+        self, endpoint: Endpoint, sink: Sink, matches: Matches
+    ) -> Holding | None:
+        if self._traffic is None:
+            return None
+        return self._traffic.held.open(
+            endpoint.topic,
+            sink,
+            lambda: {e.gid: e for e in list(matches.remotes.values())},
+            is_latched=endpoint.qos.is_latched,
+            depth=endpoint.qos.queue_length,
+        )
 
     # -- inside ----------------------------------------------------------------
 

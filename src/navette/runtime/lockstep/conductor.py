@@ -1,0 +1,176 @@
+"""The simulator's clock: it goes on when everybody named has done the step."""
+
+import math
+from collections.abc import Sequence
+
+from navette.errors import InvalidValueError, LockStepError
+from navette.runtime.clock import PacedClock, TimeSource, VirtualClock, Wakeup
+from navette.runtime.lockstep.clock import LIMIT_S, LockStepClock
+from navette.transports.lockstep import Census, Grant, Report, Sent, StepWire
+
+STEP_S = 0.01
+_SAY_AFTER_S = 5.0
+
+
+class Conductor(LockStepClock):
+    """Grants time to the processes of the named nodes, step by step.
+
+    It begins when all of them are there and all know each other's endpoints, and ends
+    with an error that names who is gone or takes longer than the limit for a step.
+
+    Args:
+        nodes: full names (``/planner``; the slash may be left out) of nodes elsewhere.
+        step_s: how much virtual time a step is: the time that a message takes at most
+            from process to process.
+        speed: at most so many times real time.
+        until_s: the run ends for all when it is that time; None = never.
+        limit_s: wall time that a process may take for a step.
+
+    Raises:
+        InvalidValueError: no nodes, or a value that cannot be.
+    """
+
+    def __init__(
+        self,
+        nodes: Sequence[str],
+        *,
+        step_s: float = STEP_S,
+        speed: float = math.inf,
+        until_s: float | None = None,
+        limit_s: float = LIMIT_S,
+    ) -> None:
+        super().__init__(limit_s)
+        self.nodes = tuple("/" + name.strip().lstrip("/") for name in nodes)
+        if not self.nodes or "/" in self.nodes or len(set(self.nodes)) < len(nodes):
+            raise InvalidValueError(
+                f"lock-step with {', '.join(nodes) or 'nobody'}: wanted names of "
+                "nodes, each once"
+            )
+        self._step_ns = _nanoseconds(step_s, "lock-step: step")
+        self._end_ns = None
+        if until_s is not None:
+            self._end_ns = _nanoseconds(until_s, "lock-step: end")
+        self._pace: TimeSource = VirtualClock()
+        if speed != math.inf:
+            self._pace = PacedClock(speed)
+        self._reports: dict[str, Report] = {}
+        #: Session → its nodes that are waited for; empty before the first step.
+        self._roster: dict[str, tuple[str, ...]] = {}
+
+    def join(self, wire: StepWire) -> None:
+        self._wire = wire
+        wire.hear_reports(self._on_report)
+
+    def _on_report(self, session: str, report: Report) -> None:
+        """In another thread."""
+        self._reports[session] = report
+        if all(self._is_done(each) for each in self._roster):
+            self._wake()
+
+    def _is_done(self, session: str) -> bool:
+        report = self._reports.get(session)
+        return report is not None and report.step == self.step
+
+    def _await_others(self, census: Census, wakeup: Wakeup) -> None:
+        reports = dict(self._reports)
+        if not self.step:
+            roster, problems = self._gathered(census, reports)
+        else:
+            roster = self._roster
+            self._check_there(census)
+            problems = [_named(roster, s) for s in roster if not self._is_done(s)]
+        problems = problems or self._strangers(census, reports, roster)
+        if problems:
+            self._wait(problems, wakeup)
+        elif self._pace.go_to(self._granted_ns, wakeup):
+            self._roster = roster
+            self._grant(reports)
+
+    def _wait(self, problems: list[str], wakeup: Wakeup) -> None:
+        """For a report, or for somebody to come or go."""
+        listed = "; ".join(sorted(problems)[:20])
+        if not self.step:
+            if not wakeup.wait(_SAY_AFTER_S):
+                self._say(f"waiting for {listed}")
+        elif not wakeup.wait(self._patience_s):
+            raise LockStepError(
+                f"lock-step: no answer within {self.limit_s:g} s at "
+                f"{self.now_ns / 1e9:g} s: {listed}"
+            )
+
+    # -- who takes part --------------------------------------------------------
+
+    def _gathered(
+        self, census: Census, reports: dict[str, Report]
+    ) -> tuple[dict[str, tuple[str, ...]], list[str]]:
+        """Session → the named nodes it has; and who is missing."""
+        here = {s: r for s, r in reports.items() if s in census.seen}
+        roster: dict[str, tuple[str, ...]] = {}
+        problems: list[str] = []
+        for name in self.nodes:
+            having = [session for session, r in here.items() if name in r.nodes]
+            if len(having) > 1:
+                raise LockStepError(f"lock-step: {len(having)} processes have {name}")
+            if having:
+                roster[having[0]] = (*roster.get(having[0], ()), name)
+            elif name in census.others:
+                problems.append(f"{name} (there, but not with NAVETTE_LOCKSTEP=follow)")
+            else:
+                problems.append(name)
+        return roster, problems
+
+    def _check_there(self, census: Census) -> None:
+        gone = [_named(self._roster, s) for s in self._roster if s not in census.seen]
+        if gone:
+            raise LockStepError(
+                f"lock-step: gone at {self.now_ns / 1e9:g} s: {', '.join(gone)}"
+            )
+
+    def _strangers(
+        self,
+        census: Census,
+        reports: dict[str, Report],
+        roster: dict[str, tuple[str, ...]],
+    ) -> list[str]:
+        """Those of the lock-step that do not know all of each other's endpoints yet."""
+        own = {s: reports[s].own for s in roster}
+        own[self.wire.session] = census.own
+        seen = {s: reports[s].seen for s in roster}
+        seen[self.wire.session] = census.seen
+        return [
+            f"{_named(roster, one)} to see all of {_named(roster, other)}"
+            for one in own
+            for other in own
+            if one != other and seen[one].get(other) != own[other]
+        ]
+
+    # -- steps -----------------------------------------------------------------
+
+    def _grant(self, reports: dict[str, Report]) -> None:
+        sent: dict[bytes, Sent] = dict(self.traffic.tally.changed())
+        for session in self._roster:
+            sent.update(reports[session].sent)
+        is_last = self._end_ns is not None and self._granted_ns >= self._end_ns
+        until_ns = self._granted_ns + (0 if is_last else self._step_ns)
+        if self._end_ns is not None:
+            until_ns = min(until_ns, self._end_ns)
+        grant = Grant(
+            conductor=self.wire.session,
+            step=self.step + 1,
+            until_ns=until_ns,
+            roster=tuple(self._roster),
+            sent=sent,
+            is_last=is_last,
+        )
+        self.wire.grant(grant)
+        self._take(grant)
+
+
+def _named(roster: dict[str, tuple[str, ...]], session: str) -> str:
+    return ", ".join(roster.get(session, ("the simulator",)))
+
+
+def _nanoseconds(seconds: float, what: str) -> int:
+    if not 1e-6 <= seconds <= 1e9:
+        raise InvalidValueError(f"{what} of {seconds!r} s: wanted 0.000001 … 1e9 s")
+    return round(seconds * 1e9)
