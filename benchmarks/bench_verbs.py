@@ -48,7 +48,7 @@ VERBS = (
     ("lifecycle", "nodes"),
 )
 TARGET_MS = 500
-"""Issue 4: "each answers in under 0.5 s"."""
+"""What a person takes for at once."""
 
 
 @contextmanager

@@ -24,12 +24,12 @@ RESULTS = HERE / "results.json"
 PAGE = HERE.parent / "docs" / "performance.md"
 BENCHMARKS = (
     "planner", "inflation", "scan", "merge", "lidar", "physics",
-    "dispatch", "messages", "recording", "stack", "startup",
+    "dispatch", "network", "messages", "recording", "stack", "startup", "verbs",
 )  # fmt: skip
 LIBRARIES = (
     "navette", "numpy", "numba", "mujoco-core", "scipy", "opencv-python-headless",
     "scikit-image", "pyastar2d", "eclipse-zenoh", "rosbags", "mcap-ros2-support",
-    "ir-sim", "pybullet",
+    "ir-sim", "pybullet", "zenoh-ros2-sdk",
 )  # fmt: skip
 
 
