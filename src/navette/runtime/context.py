@@ -92,6 +92,8 @@ class Context:
         """Let time pass as ``clock`` says; only while the context has no nodes."""
         if clock is self.loop.clock:
             return
+        if self.loop.clock.is_shared and self._initialized:
+            raise InvalidValueError("the context is in lock-step: its clock stays")
         if self.nodes:
             raise InvalidValueError(
                 "the context's clock cannot change once it has nodes "

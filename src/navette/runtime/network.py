@@ -35,7 +35,7 @@ def chosen_transport(asked: str | None, clock: TimeSource) -> str:
         InvalidValueError: the variable names no transport, or one that cannot be.
     """
     if clock.is_shared:
-        if IN_PROCESS in (asked, os.environ.get(VARIABLE)):
+        if (asked or os.environ.get(VARIABLE)) == IN_PROCESS:
             raise InvalidValueError(
                 f"transport {IN_PROCESS!r}: a lock-step with other processes needs "
                 f"{ZENOH!r}"

@@ -1,15 +1,25 @@
 """The simulator's clock: it goes on when everybody named has done the step."""
 
+import logging
 import math
 from collections.abc import Sequence
 
 from navette.errors import InvalidValueError, LockStepError
-from navette.runtime.clock import PacedClock, TimeSource, VirtualClock, Wakeup
+from navette.runtime.clock import (
+    PacedClock,
+    Stopwatch,
+    TimeSource,
+    VirtualClock,
+    Wakeup,
+)
 from navette.runtime.lockstep.clock import LIMIT_S, LockStepClock
 from navette.transports.lockstep import Census, Grant, Report, Sent, StepWire
 
 STEP_S = 0.01
 _SAY_AFTER_S = 5.0
+_MOST_SESSIONS = 10_000
+
+_log = logging.getLogger(__name__)
 
 
 class Conductor(LockStepClock):
@@ -56,13 +66,16 @@ class Conductor(LockStepClock):
         self._reports: dict[str, Report] = {}
         #: Session → its nodes that are waited for; empty before the first step.
         self._roster: dict[str, tuple[str, ...]] = {}
+        self._run = Stopwatch()
 
     def join(self, wire: StepWire) -> None:
         self._wire = wire
         wire.hear_reports(self._on_report)
 
     def _on_report(self, session: str, report: Report) -> None:
-        """In another thread."""
+        """In another thread; of made-up sessions there may be many."""
+        if session not in self._reports and len(self._reports) >= _MOST_SESSIONS:
+            return
         self._reports[session] = report
         if all(self._is_done(each) for each in self._roster):
             self._wake()
@@ -151,6 +164,10 @@ class Conductor(LockStepClock):
         for session in self._roster:
             sent.update(reports[session].sent)
         is_last = self._end_ns is not None and self._granted_ns >= self._end_ns
+        if not self.step:
+            self._run = Stopwatch()
+        if is_last:
+            self._tell_end()
         until_ns = self._granted_ns + (0 if is_last else self._step_ns)
         if self._end_ns is not None:
             until_ns = min(until_ns, self._end_ns)
@@ -164,6 +181,16 @@ class Conductor(LockStepClock):
         )
         self.wire.grant(grant)
         self._take(grant)
+
+    def _tell_end(self) -> None:
+        wall_s, run_s = self._run.elapsed_s, self._granted_ns / 1e9
+        _log.info(
+            "lock-step: %d steps to %g s in %.1f s: %.1f × real time",
+            self.step,
+            run_s,
+            wall_s,
+            run_s / wall_s,
+        )
 
 
 def _named(roster: dict[str, tuple[str, ...]], session: str) -> str:
