@@ -51,22 +51,26 @@ class FakeWire(StepWire):
 
 
 class FakeWakeup(Wakeup):
-    """A wait ends at once: a long one by something, a short one by its end."""
+    """A wait ends at once: by something, or (``in_vain``) by its end."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, in_vain: bool = False) -> None:
         super().__init__()
-        self.waits_s: list[float | None] = []
+        self._in_vain = in_vain
 
     def wait(self, timeout_s: float | None) -> bool:
-        self.waits_s.append(timeout_s)
-        return self.is_pending or bool(timeout_s and timeout_s > 10.0)
+        return self.is_pending or not (self._in_vain or timeout_s == 0.0)
 
 
-def turns(clock: LockStepClock, target_ns: int | None = None, times: int = 1) -> None:
+def turns(
+    clock: LockStepClock,
+    target_ns: int | None = None,
+    times: int = 1,
+    *,
+    in_vain: bool = False,
+) -> None:
     """What a loop does that has nothing to run before ``target_ns``."""
     for _ in range(times):
-        wakeup = FakeWakeup()
-        clock.go_to(target_ns, wakeup)
+        clock.go_to(target_ns, FakeWakeup(in_vain=in_vain))
 
 
 # -- follower ------------------------------------------------------------------
@@ -216,8 +220,11 @@ def test_the_last_step_ends_the_run() -> None:
 def test_a_follower_that_waits_for_a_simulator_says_so(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    turns(Followed().clock, times=1)
-    assert "/planner: waiting for a simulator with --lockstep" in caplog.text
+    followed = Followed()
+    turns(followed.clock, times=4, in_vain=True)
+    assert caplog.text == ""
+    turns(followed.clock, times=4, in_vain=True)
+    assert caplog.text.count("/planner: waiting for a simulator with --lockst") == 1
 
 
 def test_a_follower_off_the_network_is_an_error() -> None:
@@ -296,9 +303,23 @@ def test_endpoints_that_come_later_are_waited_for() -> None:
 def test_the_conductor_says_who_is_missing(caplog: pytest.LogCaptureFixture) -> None:
     conducted = Conducted()
     conducted.wire.there = replace(conducted.wire.there, others=("/control",))
-    turns(conducted.clock)
+    turns(conducted.clock, times=7, in_vain=True)
     hint = "there, but not with NAVETTE_LOCKSTEP=follow"
     assert f"waiting for /control ({hint}); /planner" in caplog.text
+    assert len(caplog.records) == 1
+
+
+def test_what_got_lost_is_said_again() -> None:
+    conducted, followed = Conducted(), Followed()
+    conducted.begin()
+    turns(conducted.clock, times=2, in_vain=True)
+    assert conducted.wire.grants == [conducted.wire.grants[0]] * 3
+    for grant in conducted.wire.grants:
+        followed.wire.on_grant(grant)
+        turns(followed.clock, times=2)
+    assert followed.clock.step == 1
+    turns(followed.clock, times=2, in_vain=True)
+    assert [report.step for report in followed.wire.reports] == [1, 1]
 
 
 def test_two_processes_with_one_node_are_an_error() -> None:

@@ -17,6 +17,11 @@ from navette.transports.lockstep import Census, Grant, Report, StepTraffic, Step
 LIMIT_S = 30.0
 """Wall time that a process may take for a step before the run ends."""
 
+AGAIN_S = 1.0
+"""Wall time after which what was said is said again: a link may just have changed."""
+
+_SAY_AFTER = 5  # times
+
 _log = logging.getLogger(__name__)
 
 
@@ -45,6 +50,7 @@ class LockStepClock(TimeSource):
         self._next: Grant | None = None  # granted, but not all is here that was sent
         self._is_over = False
         self._waiting = Stopwatch()
+        self._fruitless = 0
         self._said = ""
 
     @property
@@ -132,7 +138,9 @@ class LockStepClock(TimeSource):
             self._wakeup.set()
 
     def _say(self, text: str) -> None:
-        if text != self._said:
+        """Log what is waited for, when it has been for a while, and once."""
+        self._fruitless += 1
+        if self._fruitless >= _SAY_AFTER and text != self._said:
             self._said = text
             _log.warning("lock-step: %s", text)
 

@@ -12,11 +12,10 @@ from navette.runtime.clock import (
     VirtualClock,
     Wakeup,
 )
-from navette.runtime.lockstep.clock import LIMIT_S, LockStepClock
+from navette.runtime.lockstep.clock import AGAIN_S, LIMIT_S, LockStepClock
 from navette.transports.lockstep import Census, Grant, Report, Sent, StepWire
 
 STEP_S = 0.01
-_SAY_AFTER_S = 5.0
 _MOST_SESSIONS = 10_000
 
 _log = logging.getLogger(__name__)
@@ -66,6 +65,7 @@ class Conductor(LockStepClock):
         self._reports: dict[str, Report] = {}
         #: Session → its nodes that are waited for; empty before the first step.
         self._roster: dict[str, tuple[str, ...]] = {}
+        self._last: Grant | None = None
         self._run = Stopwatch()
 
     def join(self, wire: StepWire) -> None:
@@ -102,10 +102,13 @@ class Conductor(LockStepClock):
     def _wait(self, problems: list[str], wakeup: Wakeup) -> None:
         """For a report, or for somebody to come or go."""
         listed = "; ".join(sorted(problems)[:20])
-        if not self.step:
-            if not wakeup.wait(_SAY_AFTER_S):
-                self._say(f"waiting for {listed}")
-        elif not wakeup.wait(self._patience_s):
+        if wakeup.wait(min(AGAIN_S, self._patience_s) if self.step else AGAIN_S):
+            return
+        if self._last is None:
+            self._say(f"waiting for {listed}")
+        elif self._patience_s > 0.0:
+            self.wire.grant(self._last)
+        else:
             raise LockStepError(
                 f"lock-step: no answer within {self.limit_s:g} s at "
                 f"{self.now_ns / 1e9:g} s: {listed}"
@@ -179,6 +182,7 @@ class Conductor(LockStepClock):
             sent=sent,
             is_last=is_last,
         )
+        self._last = grant
         self.wire.grant(grant)
         self._take(grant)
 

@@ -2,10 +2,8 @@
 
 from navette.errors import LockStepError
 from navette.runtime.clock import Wakeup
-from navette.runtime.lockstep.clock import LIMIT_S, LockStepClock
+from navette.runtime.lockstep.clock import AGAIN_S, LIMIT_S, LockStepClock
 from navette.transports.lockstep import Census, Grant, Report, StepWire
-
-_SAY_AFTER_S = 5.0
 
 
 class Follower(LockStepClock):
@@ -26,26 +24,34 @@ class Follower(LockStepClock):
         wire.hear_grants(self._on_grant)
 
     def _on_grant(self, grant: Grant) -> None:
-        """In another thread; steps of another conductor are not ours."""
-        if self._conductor not in ("", grant.conductor):
+        """In another thread; what another conductor says is not for us."""
+        if self._conductor not in ("", grant.conductor) or self._is_old(grant):
             return
         self._granted = grant
         self._wake()
 
     def _await_others(self, census: Census, wakeup: Wakeup) -> None:
-        grant, self._granted = self._granted, None
+        grant = self._granted
         if grant is not None:
-            self._follow(grant)
+            self._granted = None  # no other comes before our report
+            if not self._is_old(grant):
+                self._follow(grant)
             return
         self._check_conductor(census)
         report = self._own_report(census)
         if self._is_news(report):
             self._reported = report
             self.wire.report(report)
-        if wakeup.wait(None if self.step else _SAY_AFTER_S) or self.step:
+        if wakeup.wait(AGAIN_S):
             return
-        named = ", ".join(census.nodes) or "a process without nodes"
-        self._say(f"{named}: waiting for a simulator with --lockstep")
+        self._reported = None
+        if not self.step:
+            named = ", ".join(census.nodes) or "a process without nodes"
+            self._say(f"{named}: waiting for a simulator with --lockstep")
+
+    def _is_old(self, grant: Grant) -> bool:
+        """Whether it was said again though it was heard."""
+        return bool(self._conductor) and grant.step <= self.step
 
     def _is_news(self, report: Report) -> bool:
         """In a step the conductor needs no other report, unless endpoints changed."""
