@@ -1,16 +1,19 @@
 """Deep copies of messages, by code generated per class.
 
 A message handed to a subscriber is a copy, so this runs once per delivery: nested
-messages are copied inline, without a call for each.
+messages are copied inline, without a call for each. A copy is what would have come
+over a wire: float32 fields are rounded to what 32 bits hold, so that a run in one
+process and one in several are the same.
 """
 
+import struct
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 from navette.errors import MessageError
 from navette.msgs.base import Message
 from navette.msgs.classes import get_message_class
-from navette.msgs.interface import MessageSpec
+from navette.msgs.interface import Field, MessageSpec
 from navette.msgs.registry import get_message_spec
 from navette.msgs.validation import validate
 
@@ -29,7 +32,7 @@ def copy_message(msg: M) -> M:
     copier = _copiers.get(msg.__class__) or copier_of(msg.__class__)
     try:
         copied: M = copier(msg)
-    except (AttributeError, TypeError):
+    except (AttributeError, TypeError, struct.error):
         validate(msg)
         raise
     return copied
@@ -60,6 +63,7 @@ class _Emitter:
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.scope: dict[str, Any] = {"new": object.__new__}
+        self.scope |= {"pack": struct.pack, "unpack": struct.unpack}
         self._count = 0
 
     def message(self, spec: MessageSpec, source: str, cls: type) -> str:
@@ -69,7 +73,17 @@ class _Emitter:
         target = f"t{number}"
         self.scope[f"C{number}"] = cls
         self.lines.append(f" {target} = new(C{number})")
+        rounded = [f"_{f.name}" for f in spec.fields if _is_float32(f)]
+        if rounded:
+            layout = f'"{len(rounded)}f"'
+            values = ", ".join(f"{source}.{slot}" for slot in rounded)
+            targets = ", ".join(f"{target}.{slot}" for slot in rounded)
+            self.lines.append(
+                f" {targets}, = unpack({layout}, pack({layout}, {values}))"
+            )
         for field in spec.fields:
+            if _is_float32(field):
+                continue
             slot = f"_{field.name}"
             value = f"{source}.{slot}"
             if field.type.is_message and field.type.is_scalar:
@@ -86,3 +100,7 @@ class _Emitter:
                 value += ".copy()" if is_numpy else "[:]"
             self.lines.append(f" {target}.{slot} = {value}")
         return target
+
+
+def _is_float32(field: Field) -> bool:
+    return field.type.is_scalar and field.type.base == "float32"

@@ -11,13 +11,16 @@ from navette.msgs import (
     Message,
     copier_of,
     copy_message,
+    deserialize,
     fields,
     get_interface,
     interface_names,
     packages,
+    serialize,
 )
 from navette.msgs.geometry_msgs.msg import Point, Twist, Vector3
-from navette.msgs.sensor_msgs.msg import JointState
+from navette.msgs.sensor_msgs.msg import JointState, LaserScan
+from navette.msgs.std_msgs.msg import ColorRGBA
 from navette.msgs.visualization_msgs.msg import Marker
 from navette.testing.messages import random_message
 
@@ -71,3 +74,19 @@ def test_copier_and_subclasses() -> None:
     assert type(copy_message(command)) is Command
     assert copier_of(Twist)(Twist()) == Twist()
     assert copy_message(JointState(name=["a"])).name == ["a"]
+
+
+def test_a_copy_is_what_would_have_come_over_a_wire() -> None:
+    scan = LaserScan(angle_min=0.1, range_max=30.3, ranges=[0.1])
+    copied = copy_message(scan)
+    assert copied == deserialize(serialize(scan), LaserScan)
+    assert copied.angle_min == float(np.float32(0.1)) != 0.1
+    assert scan.angle_min == 0.1
+    marker = Marker(colors=[ColorRGBA(r=0.3)])
+    assert copy_message(marker).colors[0].r == float(np.float32(0.3))
+
+
+@pytest.mark.parametrize("value", [float("inf"), float("-inf"), float("nan"), 1e-45])
+def test_what_is_no_ordinary_number_is_copied_too(value: float) -> None:
+    copied = copy_message(LaserScan(range_max=value))
+    assert np.array_equal(copied.range_max, np.float32(value), equal_nan=True)
