@@ -81,14 +81,25 @@ class LockStepClock(TimeSource):
         self.now_ns = self._granted_ns
         if self._is_over:
             self.on_end()
-        elif self._next is not None:
-            self._await_samples(self._next, wakeup)
+        elif self._next is not None and self.traffic.held.is_complete():
+            self._begin(self._next)
         else:
-            # Taken first: a change that comes after it wakes us.
-            census = self.wire.census()
-            if not wakeup.is_pending:
-                self._await_others(census, wakeup)
+            self._await(self.wire.census(), wakeup)
         return False
+
+    def _await(self, census: Census, wakeup: Wakeup) -> None:
+        if wakeup.is_pending:  # what came with the census is looked at first
+            return
+        if self._next is None or not self._next.is_last:
+            self._check_there(census)
+        if self._next is None:
+            self._await_others(census, wakeup)
+        else:
+            self._await_samples(wakeup)
+
+    @abstractmethod
+    def _check_there(self, census: Census) -> None:
+        """Raise LockStepError if somebody that is needed is gone."""
 
     @abstractmethod
     def _await_others(self, census: Census, wakeup: Wakeup) -> None:
@@ -102,10 +113,8 @@ class LockStepClock(TimeSource):
         else:
             self._next = grant
 
-    def _await_samples(self, grant: Grant, wakeup: Wakeup) -> None:
-        if self.traffic.held.is_complete():
-            self._begin(grant)
-        elif not wakeup.wait(self._patience_s):
+    def _await_samples(self, wakeup: Wakeup) -> None:
+        if not wakeup.wait(self._patience_s):
             missing = ", ".join(
                 f"{m.samples} of {m.topic} by {m.node}"
                 for m in self.traffic.held.missing()[:10]

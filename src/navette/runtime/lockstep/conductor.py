@@ -90,7 +90,6 @@ class Conductor(LockStepClock):
             roster, problems = self._gathered(census, reports)
         else:
             roster = self._roster
-            self._check_there(census)
             problems = [_named(roster, s) for s in roster if not self._is_done(s)]
         problems = problems or self._strangers(census, reports, roster)
         if problems:
@@ -169,6 +168,7 @@ class Conductor(LockStepClock):
         is_last = self._end_ns is not None and self._granted_ns >= self._end_ns
         if not self.step:
             self._run = Stopwatch()
+            _log.info("lock-step: begins, with %s", ", ".join(self.nodes))
         if is_last:
             self._tell_end()
         until_ns = self._granted_ns + (0 if is_last else self._step_ns)

@@ -37,7 +37,6 @@ class Follower(LockStepClock):
             if not self._is_old(grant):
                 self._follow(grant)
             return
-        self._check_conductor(census)
         report = self._own_report(census)
         if self._is_news(report):
             self._reported = report
@@ -75,7 +74,7 @@ class Follower(LockStepClock):
         self._conductor = grant.conductor
         self._take(grant)
 
-    def _check_conductor(self, census: Census) -> None:
+    def _check_there(self, census: Census) -> None:
         if not self._conductor or self._conductor in census.seen:
             return
         if self._granted is None:  # its last grant came before it went

@@ -1,0 +1,84 @@
+"""The stack as processes in lock-step: two runs are one; who dies is named."""
+
+import os
+import signal
+import socket
+from pathlib import Path
+
+import pytest
+from fleet import STACK, Fleet, until
+
+from navette.bags import open_bag
+from navette.msgs import deserialize
+from navette.msgs.nav_msgs.msg import Odometry
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's"),
+]
+
+WORLD = ("--world", "course")
+FOLLOW = {"NAVETTE_LOCKSTEP": "follow"}
+GOAL = (-4.8, -2.2)
+UNTIL_S = 6.0
+
+
+def fleet_in(folder: Path) -> Fleet:
+    folder.mkdir()
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    return Fleet(folder, {"NAVETTE_ROUTER": f"tcp/127.0.0.1:{port}"})
+
+
+def follow(fleet: Fleet, name: str, *words: str) -> None:
+    fleet.start(name, "navette", name, *words, env=FOLLOW)
+
+
+def drive(folder: Path) -> bytes:
+    """Seven processes, one drive; the bag of it."""
+    bag = folder / "bag.mcap"
+    with fleet_in(folder) as fleet:
+        for stage in STACK:
+            follow(fleet, stage, *WORLD)
+        follow(fleet, "missions", *WORLD, "--goal", *map(str, GOAL))
+        follow(fleet, "recorder", str(bag))
+        names = ",".join(fleet.running)
+        run = ("--lockstep", names, "--lockstep-until", str(UNTIL_S))
+        fleet.start("sim", "navette", "sim", *WORLD, *run)
+        for name, process in fleet.running.items():
+            assert process.wait(60.0) == 0, fleet.said(name)
+        assert any("lock-step: 600 steps to 6 s" in line for line in fleet.said("sim"))
+    return bag.read_bytes()
+
+
+def test_two_drives_of_the_split_stack_are_the_same(tmp_path: Path) -> None:
+    """Byte by byte, /rosout and everything; and the robot arrives."""
+    first = drive(tmp_path / "first")
+    with open_bag(tmp_path / "first/bag.mcap") as bag:
+        last_data = list(bag.messages(["/ground_truth"]))[-1].data
+    last = deserialize(last_data, Odometry).pose.pose.position
+    assert ((last.x - GOAL[0]) ** 2 + (last.y - GOAL[1]) ** 2) ** 0.5 < 0.6
+    assert drive(tmp_path / "second") == first
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [(signal.SIGKILL, "gone at"), (signal.SIGSTOP, "no answer within 2 s")],
+)
+def test_who_dies_or_hangs_is_named(
+    kind: signal.Signals, said: str, tmp_path: Path
+) -> None:
+    with fleet_in(tmp_path / "run") as fleet:
+        for stage in ("planner", "control"):
+            follow(fleet, stage, *WORLD)
+        run = ("--lockstep", "planner,control", "--lockstep-limit", "2")
+        fleet.start("sim", "navette", "sim", *WORLD, *run)
+        until(lambda: "begins, with" in "".join(fleet.said("sim")), "the beginning")
+        fleet.running["control"].send_signal(kind)
+        assert fleet.running["sim"].wait(30.0) == 1
+        assert fleet.running["planner"].wait(30.0) == 1
+        (error,) = [line for line in fleet.said("sim") if "navette:" in line]
+        assert error.startswith(f"navette: lock-step: {said}")
+        assert "/control" in error  # and who waits for its messages
+        assert "the simulator is gone" in fleet.said("planner")[-1]
