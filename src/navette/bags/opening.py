@@ -44,6 +44,13 @@ def is_bag(path: Path) -> bool:
     return path.is_file() and name.endswith(SUFFIXES)
 
 
+def holds_bag(path: Path) -> bool:
+    """Whether a file begins as a recording, or is empty: what may be replaced."""
+    with path.open("rb") as file:
+        start = file.read(16)
+    return not start or start.startswith((DB3_MAGIC, b"#ROS", MCAP_MAGIC))
+
+
 def _open_file(path: Path) -> BagReader:
     try:
         with path.open("rb") as file:

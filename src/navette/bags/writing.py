@@ -6,7 +6,7 @@ from typing import Protocol
 
 from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.mcap_file import COMPRESSIONS
-from navette.bags.opening import is_bag
+from navette.bags.opening import holds_bag, is_bag
 from navette.bags.qos import qos_text
 from navette.bags.rosbags_writers import Db3Writer, Ros1Writer
 from navette.bags.writer import BagWriter
@@ -36,15 +36,17 @@ class TopicWriter(Protocol):
         """Finish the file."""
 
     def abandon(self) -> None:
-        """Give up."""
+        """Give up: no new file, and the one that it was to replace stays."""
 
 
 class McapWriter:
-    """Writes ``.mcap`` with ROS 2's profile."""
+    """Writes ``.mcap`` with ROS 2's profile; in its place once it is whole."""
 
     def __init__(self, path: Path, *, compression: str = "zstd") -> None:
         self.path = path
-        self._writer = BagWriter(path, compression=compression)
+        self._part = path.with_name(f".{path.name}.part")
+        self._part.unlink(missing_ok=True)
+        self._writer = BagWriter(self._part, compression=compression)
         self._channels: dict[BagTopic, int] = {}
 
     @property
@@ -76,14 +78,17 @@ class McapWriter:
     def close(self) -> None:
         try:
             self._writer.close()
+            self._part.replace(self.path)
         except OSError as error:
-            self._writer.abandon()
+            self.abandon()
             raise FileFormatError(
                 self.path, f"cannot be written: {error.strerror}"
             ) from error
 
     def abandon(self) -> None:
+        """Leave nothing behind."""
         self._writer.abandon()
+        self._part.unlink(missing_ok=True)
 
 
 def storage_of(path: Path, storage: str = "") -> str:
@@ -124,7 +129,7 @@ def open_writer(
     if path.exists():
         if not overwrite:
             raise FileFormatError(path, "exists already; --overwrite replaces it")
-        if not is_bag(path):
+        if not is_bag(path) or (path.is_file() and not holds_bag(path)):
             raise FileFormatError(path, "exists and is no bag; it is not replaced")
         if path.is_dir():
             shutil.rmtree(path)

@@ -70,13 +70,23 @@ def test_a_part_of_a_recording(tmp_path: Path) -> None:
         (Choice(expression="m.nothing"), "/chatter at .*AttributeError"),
     ],
 )
+@pytest.mark.parametrize("name", ["b.bag", "b.mcap", "b.db3"])
 def test_wrong_choices_leave_nothing(
-    tmp_path: Path, choice: Choice, reason: str
+    tmp_path: Path, choice: Choice, reason: str, name: str
 ) -> None:
     bag = write_sample(tmp_path / "a.mcap")
     with pytest.raises(InvalidValueError, match=reason):
-        made_of(bag, tmp_path / "b.bag", choice)
+        made_of(bag, tmp_path / name, choice)
     assert [each.name for each in tmp_path.iterdir()] == ["a.mcap"]
+
+
+@pytest.mark.parametrize("name", ["b.bag", "b.mcap", "b.db3"])
+def test_what_fails_replaces_nothing(tmp_path: Path, name: str) -> None:
+    bag, before = write_sample(tmp_path / "a.mcap"), write_sample(tmp_path / name)
+    data = before.read_bytes()
+    with open_bag(bag) as reader, pytest.raises(InvalidValueError):
+        copy(reader, open_writer(before, overwrite=True), Choice(expression="m.no"))
+    assert before.read_bytes() == data
 
 
 def test_merged_in_the_order_of_time(tmp_path: Path) -> None:
@@ -97,9 +107,10 @@ def test_nothing_is_replaced_unasked(tmp_path: Path) -> None:
     bag = write_sample(tmp_path / "a.mcap")
     with pytest.raises(FileFormatError, match="exists already"):
         open_writer(bag)
-    (tmp_path / "b.mcap").write_text("a letter", "utf-8")
-    with pytest.raises(FileFormatError, match="exists and is no bag"):
-        open_writer(tmp_path / "b.mcap", overwrite=True)
+    for name in ("b.mcap", "b.bag", "b.db3"):
+        (tmp_path / name).write_text("a letter", "utf-8")
+        with pytest.raises(FileFormatError, match="exists and is no bag"):
+            open_writer(tmp_path / name, overwrite=True)
     with pytest.raises(FileFormatError, match="no such folder"):
         open_writer(tmp_path / "no" / "c.bag")
     with pytest.raises(InvalidValueError, match=r"\.mcap, \.db3 or \.bag"):

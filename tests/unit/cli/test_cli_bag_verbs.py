@@ -165,6 +165,8 @@ def test_figures_in_words() -> None:
     assert duration_text(740.553) == "12:20 (740.55 s)"
     assert duration_text(3723.4) == "1:02:03 (3723.40 s)"
     assert stamp_text(13_960_000_000) == "13.960 s"
+    rounded = "2024-05-03 12:59:24.112 UTC (1714741164.112)"
+    assert stamp_text(1_714_741_164_111_822_142) == rounded
     assert stamp_text(10**30) == "1000000000000000000000.000"
     assert gap_text(None) == rate_text(None) == ""
     assert (gap_text(0.0333333), gap_text(2.04), gap_text(1234.6)) == (

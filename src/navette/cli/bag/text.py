@@ -30,14 +30,16 @@ def duration_text(seconds: float) -> str:
 
 def stamp_text(stamp_ns: int) -> str:
     """A date with the seconds since 1970, or the seconds of a robot's own time."""
-    seconds = stamp_ns / 1e9
+    milliseconds = round(stamp_ns / 1e6)
+    seconds = milliseconds / 1e3
     if abs(seconds) < _EPOCH_FROM_S:
         return f"{seconds:.3f} s"
+    whole, rest = divmod(milliseconds, 1000)
     try:
-        date = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S.%f")
+        date = datetime.fromtimestamp(whole, UTC).strftime("%Y-%m-%d %H:%M:%S")
     except (ValueError, OverflowError, OSError):
         return f"{seconds:.3f}"
-    return f"{date[:-3]} UTC ({seconds:.3f})"
+    return f"{date}.{rest:03} UTC ({seconds:.3f})"
 
 
 def gap_text(seconds: float | None) -> str:
