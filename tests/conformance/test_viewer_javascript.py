@@ -151,3 +151,4 @@ def test_the_page_works_in_a_browser(program: Program) -> None:
     speeds = robot_of(program).speeds
     assert (0.5, 0.8) in speeds
     assert speeds[-1] == (0.0, 0.0)
+    assert robot_of(program).get_parameter("speed_mps").value == 1.5

@@ -38,6 +38,10 @@ try {
   await page.keyboard.up("ArrowUp");
   await page.keyboard.up("ArrowLeft");
   const rows = await page.$$eval("#topics tr", (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  // A parameter by its slider, heard of by its node.
+  await page.selectOption("#node", "/robot");
+  await page.locator('input[aria-label="/robot.speed_mps, slider"]').fill("1.5");
+  await until(() => document.querySelector('input[aria-label="/robot.speed_mps"]').value === "1.5");
   // The planner said how it is once, and never again.
   await until(() => document.querySelector("#headline").textContent === "Planner is silent");
   const open = new URL(await page.getAttribute("#open", "href"));
