@@ -13,7 +13,9 @@ from navette.transports.zenoh.settings import Settings
 ASK_TIMEOUT_MS = 1000
 """A router that is stopped (SIGSTOP) still has its port: it is not waited for."""
 
-_OPEN_TIMEOUT_MS = 1500  # as long a link may take to open, and a session to close
+# So long a link may take to open. A peer is called once, when it is heard of: many
+# processes that start at once need longer than anybody would think.
+_OPEN_TIMEOUT_MS = 10_000
 
 # As in rmw_zenoh's default configurations, but for the retries: the router is in one
 # of the processes, and another one takes over at once.

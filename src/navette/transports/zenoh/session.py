@@ -1,6 +1,7 @@
 """The session of a process with the network: opened, looked around, closed."""
 
 import atexit
+import contextlib
 import os
 import threading
 import weakref
@@ -20,6 +21,8 @@ from navette.transports.zenoh.tokens import SPACE
 _LOOKS = 4
 _LOOK_S = 0.25
 _ASK_S = 2.0
+# Closing waits for links that are being opened, also to one that is stopped (Ctrl-Z).
+_CLOSE_S = 1.5
 # Tokens that wait to be read; who declares more at once waits for the reader.
 _CHANNEL = 10_000
 
@@ -73,10 +76,17 @@ class Session:
         """Leave the network; closing twice is harmless."""
         _open.discard(self)
         if not self.zenoh.is_closed():
-            self.zenoh.close()
+            closer = threading.Thread(target=self._close, daemon=True)
+            closer.start()
+            closer.join(_CLOSE_S)
         if self._reader is not threading.current_thread():
-            self._reader.join()
+            self._reader.join(_CLOSE_S)
         self._role.close()
+
+    def _close(self) -> None:
+        # In the end Zenoh stops waiting for those links, too; all is said by then.
+        with contextlib.suppress(zenoh.ZError):
+            self.zenoh.close()
 
     def _read(self) -> None:
         """Take tokens as they come and go, until the session is closed."""
