@@ -33,7 +33,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, ({0}, {0}))
 from navette.cli import main
 main()
 """
-NAVETTE = [sys.executable, "-m", "navette.cli"]
+NAVETTE = [sys.executable, "-m", "navette"]
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
 

@@ -107,7 +107,7 @@ class Starter:
 
     def __call__(self, *words: object) -> "subprocess.Popen[str]":
         process = subprocess.Popen(
-            [sys.executable, "-m", "navette.cli", *map(str, words)],
+            [sys.executable, "-m", "navette", *map(str, words)],
             env=self._environment,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,

@@ -184,7 +184,7 @@ def test_looking_and_changing(talker: Child, server: Child) -> None:
 @pytest.mark.slow
 def test_ctrl_c_cancels_the_goal(server: Child) -> None:
     goal = ("action", "send_goal", "/count", "{order: 1000}", "-f")
-    verb = Child("-m", "navette.cli", *goal)
+    verb = Child("-m", "navette", *goal)
     try:
         verb.wait_for("Feedback:")
         verb.process.send_signal(signal.SIGINT)
@@ -200,7 +200,7 @@ def test_bash_completes(talker: Child) -> None:
     bash = shutil.which("bash")
     if bash is None:
         pytest.skip("no bash here")
-    navette = f"{sys.executable} -m navette.cli"
+    navette = f"{sys.executable} -m navette"
     done = subprocess.run(
         [bash, "--norc", "-c", COMPLETE.format(navette=navette)],
         capture_output=True,

@@ -5,7 +5,7 @@ import queue
 import signal
 import threading
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from navette.bringup.arguments import (
@@ -92,7 +92,10 @@ def launch(
     Raises:
         NavetteError: the file or an argument is wrong.
     """
-    with _workspace_of(path), console(debug=debug):
+    own = SubprocessRunner()
+    with _workspace_of(path), console(debug=debug), closing(own):
+        if processes:
+            own.keeper.prepare()
         activate()
         source = _source(path)
         description = _load(source)
@@ -102,7 +105,7 @@ def launch(
             raise unknown_argument_error(unknown[0], known)
         service = LaunchService(
             argv=[f"{name}:={value}" for name, value in arguments.items()],
-            runner=SubprocessRunner() if processes else InProcessRunner(),
+            runner=own if processes else InProcessRunner(),
         )
         if unknown:
             service.check_after_start(lambda: _check_again(service, arguments))

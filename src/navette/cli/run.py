@@ -1,5 +1,7 @@
 """``navette run``: unmodified ROS 2 programs on Navette."""
 
+import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -20,9 +22,13 @@ OnNavette = Annotated[
     bool,
     typer.Option("--navette", help="On Navette even where ROS 2 is installed."),
 ]
+SearchPath = Annotated[
+    list[Path] | None,
+    typer.Option("--path", metavar="FOLDER", help="Look for modules here first."),
+]
 
 
-def run(words: Words, on_navette: OnNavette = False) -> None:
+def run(words: Words, on_navette: OnNavette = False, path: SearchPath = None) -> None:
     """Run ROS 2 programs as they are, without ROS 2.
 
     import rclpy, std_msgs.msg, tf2_ros, … mean Navette's modules. Where ROS 2 is
@@ -33,6 +39,7 @@ def run(words: Words, on_navette: OnNavette = False) -> None:
     from navette.interop.targets import read_programs
     from navette.packages import activate
 
+    sys.path[:0] = map(str, path or ())
     real = installed_rclpy()
     if real is None or on_navette:
         install(instead_of_ros=on_navette)

@@ -73,5 +73,6 @@ def _ready_contexts(scope: Scope) -> list[Context]:
     return [
         context
         for context in tuple(scope.contexts)
-        if context.nodes and context.loop.is_running
+        if context.loop.is_running
+        and context.nodes  # in this order: it may be half made
     ]

@@ -142,7 +142,7 @@ def _words(entry: Entry, variables: Variables) -> list[str]:
 
 def navette_words(*words: str) -> list[str]:
     """The command line of a ``navette`` command in a process of its own."""
-    return [sys.executable, "-u", "-m", "navette.cli", *words]
+    return [sys.executable, "-u", "-m", "navette", *words]
 
 
 def _run(

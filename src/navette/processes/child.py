@@ -31,6 +31,21 @@ class Listener(Protocol):
         """It ended; nothing comes after this. Negative: ended by that signal."""
 
 
+class Process(Protocol):
+    """As much of :class:`subprocess.Popen` as is needed here."""
+
+    @property
+    def pid(self) -> int: ...
+    @property
+    def stdin(self) -> IO[bytes] | None: ...
+    @property
+    def stdout(self) -> IO[bytes] | None: ...
+    @property
+    def stderr(self) -> IO[bytes] | None: ...
+    def poll(self) -> int | None: ...
+    def wait(self) -> int: ...
+
+
 class ChildProcess:
     """Made by :class:`Keeper`; threads read what it writes.
 
@@ -42,7 +57,7 @@ class ChildProcess:
 
     def __init__(
         self,
-        process: "subprocess.Popen[bytes]",
+        process: Process,
         listener: Listener,
         on_end: Callable[[], None],
     ) -> None:
@@ -71,8 +86,8 @@ class ChildProcess:
             if _POSIX:
                 os.killpg(self.pid, number)
             elif number == INTERRUPT:
-                self._process.send_signal(signal.CTRL_BREAK_EVENT)  # type: ignore[attr-defined]
-            else:
+                os.kill(self.pid, signal.CTRL_BREAK_EVENT)  # type: ignore[attr-defined]
+            elif isinstance(self._process, subprocess.Popen):
                 self._process.terminate()
 
     def write(self, data: bytes) -> None:

@@ -7,7 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from navette.errors import NavetteError
-from navette.processes.child import ChildProcess, Listener
+from navette.processes.child import ChildProcess, Listener, Process
+from navette.processes.forking import Forking, Wish
 from navette.processes.guard import Guard, marked
 from navette.processes.guard_program import GRACE_S, VARIABLE
 
@@ -50,6 +51,13 @@ class Keeper:
         self._hold = tuple(hold)
         self._grace_s = grace_s
         self._guard: Guard | None = None
+        self._forking: Forking | None = None
+
+    def prepare(self) -> None:
+        """Have programs of Navette start sooner, if there will be any; optional."""
+        guard = self.guard()
+        if guard is not None:
+            self._forking_of(guard).prepare(marked(os.environ, guard.token))
 
     def start(
         self, words: Sequence[str], listener: Listener, options: StartOptions
@@ -61,27 +69,24 @@ class Keeper:
         """
         guard = self.guard()
         env = os.environ if options.env is None else options.env
-        try:
-            process = subprocess.Popen(
-                " ".join(words) if options.shell else list(words),
-                shell=options.shell,
-                cwd=options.cwd,
-                env=dict(env) if guard is None else marked(env, guard.token),
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT if options.one_stream else subprocess.PIPE,
-                start_new_session=_POSIX,
-                pass_fds=options.pass_fds,
-                creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
-            )
-        except OSError as error:
-            raise ProcessError(_reason(words[0], options.cwd, error)) from error
-        except ValueError as error:  # a word or a variable that no process can have
-            raise ProcessError(f"cannot start {words[0]!r}: {error}") from error
         if guard is None:
-            return ChildProcess(process, listener, lambda: None)
-        guard.add(process.pid)
-        return ChildProcess(process, listener, lambda: guard.discard(process.pid))
+            return ChildProcess(_popen(words, options, env), listener, lambda: None)
+        env = marked(env, guard.token)
+        process: Process | None = None
+        if not options.shell:
+            process = self._forking_of(guard).start(
+                Wish(words, env, options.cwd, options.one_stream, options.pass_fds)
+            )
+        if process is None:
+            process = _popen(words, options, env)
+        pid = process.pid
+        guard.add(pid)
+        return ChildProcess(process, listener, lambda: guard.discard(pid))
+
+    def _forking_of(self, guard: Guard) -> Forking:
+        if self._forking is None:
+            self._forking = Forking(guard.add, guard.discard)
+        return self._forking
 
     @property
     def token(self) -> str:
@@ -112,9 +117,36 @@ class Keeper:
 
     def close(self) -> None:
         """End what there still is, and the guard."""
+        if self._forking is not None:
+            self._forking.close()
         if self._guard is not None:
             self._guard.close()
             self._guard = None
+        if self._forking is not None:
+            self._forking.join()
+            self._forking = None
+
+
+def _popen(
+    words: Sequence[str], options: StartOptions, env: Mapping[str, str]
+) -> "subprocess.Popen[bytes]":
+    try:
+        return subprocess.Popen(
+            " ".join(words) if options.shell else list(words),
+            shell=options.shell,
+            cwd=options.cwd,
+            env=dict(env),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT if options.one_stream else subprocess.PIPE,
+            start_new_session=_POSIX,
+            pass_fds=options.pass_fds,
+            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
+        )
+    except OSError as error:
+        raise ProcessError(_reason(words[0], options.cwd, error)) from error
+    except ValueError as error:  # a word or a variable that no process can have
+        raise ProcessError(f"cannot start {words[0]!r}: {error}") from error
 
 
 def _reason(program: str, cwd: str | None, error: OSError) -> str:

@@ -83,7 +83,7 @@ def launched(
     file.write_text(LAUNCH.format(body=body))
     source = str(Path(navette.__file__).parent.parent)
     process = subprocess.Popen(
-        [sys.executable, "-u", "-m", "navette.cli", "launch", *options, str(file)],
+        [sys.executable, "-u", "-m", "navette", "launch", *options, str(file)],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -102,14 +102,14 @@ def launched(
 
 
 def read_until(process: "subprocess.Popen[str]", words: str) -> str:
-    """Lines up to one with these words; bounded."""
+    """What it says until these words come; bounded."""
     assert process.stdout is not None
-    seen = ""
+    pipe, seen = process.stdout.fileno(), ""
     while words not in seen:
-        ready, _, _ = select.select([process.stdout], [], [], WAIT_S)
-        line = process.stdout.readline() if ready else ""
-        assert line, seen
-        seen += line
+        ready, _, _ = select.select([pipe], [], [], WAIT_S)
+        data = os.read(pipe, 65536) if ready else b""
+        assert data, seen
+        seen += data.decode()
     return seen
 
 

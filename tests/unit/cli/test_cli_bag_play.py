@@ -44,7 +44,7 @@ def bag(tmp_path: Path) -> Path:
 
 
 def command(*words: object) -> list[str]:
-    return [sys.executable, "-m", "navette.cli", "bag", "play", *map(str, words)]
+    return [sys.executable, "-m", "navette", "bag", "play", *map(str, words)]
 
 
 def environment() -> dict[str, str]:

@@ -229,7 +229,7 @@ def test_attached_to_the_end(bench: Any) -> None:
     )
     bench.up("a")
     wait_for(lambda: "a/hold: holding" in said(bench))
-    words = [sys.executable, "-u", "-m", "navette.cli", "up", "b", "--attach"]
+    words = [sys.executable, "-u", "-m", "navette", "up", "b", "--attach"]
     source = str(Path(package.__file__).parents[1])
     with subprocess.Popen(
         words,

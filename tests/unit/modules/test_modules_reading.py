@@ -12,7 +12,7 @@ from navette.modules.project import Project, find_project
 from navette.modules.reading import DEFAULT_FILE, read_project
 from navette.modules.specs import ModuleSpec
 
-RUN = (sys.executable, "-u", "-m", "navette.cli", "run")
+RUN = (sys.executable, "-u", "-m", "navette", "run")
 
 
 def test_a_node_with_everything(bench: Any) -> None:
@@ -97,7 +97,7 @@ def test_names_come_from_what_runs(bench: Any) -> None:
     assert second.processes[0].label == "node"
     launch, echo, shell = first.processes[5:]
     assert launch.words[3:] == (
-        *("navette.cli", "launch", "--processes", "it.launch.py", "speed:=1"),
+        *("navette", "launch", "--processes", "it.launch.py", "speed:=1"),
     )
     assert echo.words == ("echo", "hello there")
     assert not echo.tells_ready

@@ -135,15 +135,9 @@ def left_running(every: list[Process], here: int) -> Iterator[Finding]:
 
 def is_navette(process: Process) -> bool:
     """Whether it is the command ``navette``, or Python with the module of that name."""
-    words = process.words[:3]
+    words = [word for word in process.words if word != "-u"][:3]
     names = [Path(word).name for word in words]
     is_python = bool(names) and names[0].startswith("python")
     return names[:1] == ["navette"] or (
-        is_python
-        and (
-            names[1:2] == ["navette"]
-            or (
-                words[1:2] == ("-m",) and words[2:3] in (("navette",), ("navette.cli",))
-            )
-        )
+        is_python and (names[1:2] == ["navette"] or words[1:] == ["-m", "navette"])
     )

@@ -42,14 +42,11 @@ def program_words(program: PythonProgram) -> list[str]:
 
     ``navette run`` gives it ROS 2's module names.
     """
-    search = [str(folder) for folder in program.search]
-    code = (
-        f"import sys; sys.path[:0] = {search!r}; from navette.cli import main; main()"
-    )
     target = (
         str(program.file)
         if program.file is not None
         else f"{program.module}:{program.function}"
     )
+    search = [word for folder in program.search for word in ("--path", str(folder))]
     # -u: what a program prints is seen when it prints it.
-    return [sys.executable, "-u", "-c", code, "run", target]
+    return [sys.executable, "-u", "-m", "navette", "run", *search, target]
