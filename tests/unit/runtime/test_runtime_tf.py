@@ -172,6 +172,17 @@ def test_malformed_transforms(parent: str, child: str, transform: Transform3) ->
         BufferCore(S).set(parent, child, 0, transform, is_static=True)
 
 
+def test_a_refused_transform_leaves_no_trace(core: BufferCore) -> None:
+    known = core.lookup("map", "base", 2 * S)
+    zero = Transform3((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+    for child, is_static in (("new", False), ("base", False), ("base", True)):
+        with pytest.raises(InvalidArgumentException, match="norm"):
+            core.set("map", child, 3 * S, zero, is_static=is_static)
+    assert core.lookup("map", "base", 2 * S) == known
+    with pytest.raises(LookupException, match="'new' does not exist"):
+        core.lookup("map", "new", 0)
+
+
 def test_frames_in_a_circle_are_found_out() -> None:
     core = BufferCore(S)
     core.set("a", "b", 0, at(1), is_static=True)

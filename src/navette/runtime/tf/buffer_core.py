@@ -96,6 +96,7 @@ class BufferCore:
         parent, child = frame_name(parent), frame_name(child)
         if parent == child:
             raise InvalidArgumentException(f"frame {child!r} cannot be its own parent")
+        parent_T_child = _checked(parent_T_child, child)  # before it leaves a trace
         history = self._frames.get(child)
         if history is None or history.is_static != is_static:
             history = FrameHistory(child, self.cache_ns, is_static=is_static)
@@ -103,7 +104,7 @@ class BufferCore:
             self._ways.clear()
         elif history.parent != parent:
             self._ways.clear()
-        history.insert(stamp_ns, _checked(parent_T_child, child), parent)
+        history.insert(stamp_ns, parent_T_child, parent)
         self._parents.add(parent)
 
     def lookup(self, target: str, source: str, stamp_ns: int) -> tuple[Transform3, int]:
