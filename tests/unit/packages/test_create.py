@@ -51,7 +51,7 @@ def test_what_a_package_holds(tmp_path: Path) -> None:
         "setup.cfg",
         "setup.py",
         "test/test_averager_node.py",
-        "test/test_moving_average.py",
+        "test/test_my_robot_average.py",
     }
     manifest = read_manifest(made / "package.xml")
     assert manifest.build_type == "ament_python"
@@ -95,7 +95,8 @@ def test_the_tests_of_a_new_package_pass(tmp_path: Path) -> None:
     assert messages.name == "my_robot_msgs"
     assert "my_robot_msgs" in read_manifest(robot / "package.xml").dependencies
     assert "my_robot_msgs" in find_package("my_robot_msgs", robot).manifest().name
-    assert "6 passed" in run_tests(tmp_path)
+    create_package("other_robot", tmp_path, node="other", messages=True)
+    assert "12 passed" in run_tests(tmp_path)  # of the workspace: no name twice
 
 
 @pytest.mark.slow
