@@ -11,8 +11,9 @@ from transport_benches import free_endpoint, until
 
 from navette import Context, DurabilityPolicy, Node, QoSProfile
 from navette.errors import InvalidValueError, LockStepError
+from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import Int64, String
-from navette.runtime import Executor
+from navette.runtime import Executor, SystemClock
 from navette.runtime.context import new_graph
 from navette.runtime.lockstep import Conductor, Follower, LockStepClock
 from navette.transports.zenoh import ZenohTransport
@@ -136,6 +137,70 @@ def test_a_member_that_goes_is_named(stack: ExitStack) -> None:
     sim.context.shutdown()
     ear.wait()
     assert "the simulator is gone" in str(ear.error)
+
+
+def test_services_pass_as_they_come(stack: ExitStack) -> None:
+    """From a member and from outside, while steps go on."""
+    conductor = Conductor(["echo"])
+    sim, echo = Member("sim", conductor, stack), Member("echo", Follower(), stack)
+
+    def add(request: Any, response: Any) -> Any:
+        response.sum = request.a + request.b
+        return response
+
+    echo.node.create_service(AddTwoInts, "/add", add)
+    inside = sim.node.create_client(AddTwoInts, "/add")
+    outside = stack.enter_context(Context(clock=SystemClock(), transport="zenoh"))
+    node = Node("outside", context=outside)
+    client = node.create_client(AddTwoInts, "/add")
+    sim.start()
+    echo.start()
+    until(lambda: conductor.step > 3, "steps")
+    assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=10.0).sum == 3
+    asked = sim.context.loop.call_soon_threadsafe
+    futures: list[Any] = []
+    asked(lambda: futures.append(inside.call_async(AddTwoInts.Request(a=2, b=3))))
+    until(lambda: bool(futures) and futures[0].done(), "an answer")
+    assert futures[0].result().sum == 5
+
+
+def test_what_outsiders_say_is_heard(stack: ExitStack) -> None:
+    conductor = Conductor(["echo"])
+    sim, echo = Member("sim", conductor, stack), Member("echo", Follower(), stack)
+    echo.hear("/word", String)
+    outside = stack.enter_context(Context(clock=SystemClock(), transport="zenoh"))
+    publisher = Node("outside", context=outside).create_publisher(String, "/word", 10)
+    sim.start()
+    echo.start()
+    until(lambda: publisher.get_subscription_count() > 0, "a listener")
+    for word in "abc":
+        publisher.publish(String(data=word))
+    until(lambda: len(echo.heard) >= 3, "all words")
+    assert [text for text, _, _ in echo.heard] == ["/word a", "/word b", "/word c"]
+
+
+def test_a_listener_that_comes_on_the_way_hears_the_steps_after_it(
+    stack: ExitStack,
+) -> None:
+    conductor = Conductor(["ear"], until_s=1.0)
+    sim, ear = Member("sim", conductor, stack), Member("ear", Follower(), stack)
+    sim.count("/tick", 0.02)
+    sim.node.create_publisher(String, "/map", LATCHED).publish(String(data="map"))
+
+    def listen() -> None:
+        ear.hear("/tick")
+        ear.hear("/map", String, LATCHED)
+
+    ear.context.loop.call_at(500_000_000, listen)
+    sim.start()
+    ear.start()
+    sim.wait()
+    ear.wait()
+    assert sim.error is ear.error is None
+    # Made at 0.5 s, in the step that ends then; known to all before the next one.
+    assert ear.heard[0] == ("/map map", 500, 0)
+    assert ear.heard[1:3] == [("/tick 26", 520, 520), ("/tick 27", 540, 540)]
+    assert len(ear.heard) == 26
 
 
 def test_who_comes_later_learns_that_it_is_too_late(stack: ExitStack) -> None:
