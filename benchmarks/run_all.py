@@ -25,6 +25,7 @@ PAGE = HERE.parent / "docs" / "performance.md"
 BENCHMARKS = (
     "planner", "inflation", "scan", "merge", "lidar", "physics",
     "dispatch", "network", "messages", "recording", "stack", "startup", "verbs",
+    "fifty",
 )  # fmt: skip
 LIBRARIES = (
     "navette", "numpy", "numba", "mujoco-core", "scipy", "opencv-python-headless",

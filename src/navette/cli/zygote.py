@@ -13,7 +13,23 @@ import navette.msgs.std_msgs.msg
 import navette.packages
 import navette.runtime
 import navette.transports.zenoh.transport  # noqa: F401 - only loaded, all of them
+from navette.msgs import type_hash
 from navette.processes.zygote import main
 
+# Their definitions are read once for all.
+_OF_EVERY_NODE = (
+    "rcl_interfaces/msg/Log",
+    "rcl_interfaces/msg/ParameterEvent",
+    "rcl_interfaces/srv/DescribeParameters",
+    "rcl_interfaces/srv/GetParameterTypes",
+    "rcl_interfaces/srv/GetParameters",
+    "rcl_interfaces/srv/ListParameters",
+    "rcl_interfaces/srv/SetParameters",
+    "rcl_interfaces/srv/SetParametersAtomically",
+    "type_description_interfaces/srv/GetTypeDescription",
+)
+
 if __name__ == "__main__":
+    for name in _OF_EVERY_NODE:
+        type_hash(name)
     main()

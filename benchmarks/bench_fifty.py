@@ -1,0 +1,44 @@
+"""Fifty processes of four topics each: from ``navette launch`` until all know all.
+
+Each is a Python program under ``navette run`` with a session of its own with the
+network, linked to the other 49. The time is that of the last one to see 50 nodes and
+200 topics.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+from harness import Benchmark, Figure
+
+COUNT = 50
+TARGET_S = 5.0
+ROUNDS = 3
+CONFORMANCE = Path(__file__).parent.parent / "tests" / "conformance"
+
+
+def best_time() -> Figure:
+    """The quickest of some rounds: the machine may have other things to do."""
+    sys.path.append(str(CONFORMANCE))
+    from many import meet
+
+    times = []
+    for _ in range(ROUNDS):
+        with tempfile.TemporaryDirectory() as folder:
+            meeting = meet(COUNT, Path(folder), patience_s=60.0)
+        if len(meeting.complete) < COUNT:
+            raise SystemExit(f"not all know all: {meeting.last}")
+        times.append(max(meeting.complete.values()))
+    note = "best of " + ", ".join(f"{each:.1f}" for each in sorted(times))
+    name = f"{COUNT} processes, {COUNT * 4} topics"
+    return Figure(name, min(times), "s", TARGET_S, note=note)
+
+
+def main() -> None:
+    bench = Benchmark("fifty", __doc__)
+    bench.figure(best_time)
+    bench.main()
+
+
+if __name__ == "__main__":
+    main()

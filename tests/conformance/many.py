@@ -1,0 +1,84 @@
+"""Many processes that start at once, as one launch file, and find each other."""
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+
+from navette.runtime.clock import Stopwatch
+
+PROGRAM = Path(__file__).parent / "programs" / "one_of_many.py"
+DOMAIN = "93"
+_SAID = re.compile(r"(\d+) sees (all: )?(\d+) nodes (\d+) topics")
+_LAUNCH = """
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(executable={program!r}, arguments=[str(number), "{count}"])
+        for number in range({count})
+    ])
+"""
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """``complete``: seconds from the start until each saw all, by its number.
+
+    ``last``: the nodes and topics that each saw in the end. ``said``: all output.
+    """
+
+    complete: dict[int, float]
+    last: dict[int, tuple[int, int]]
+    said: str
+    code: int
+
+
+def meet(count: int, folder: Path, patience_s: float) -> Meeting:
+    """Launch so many processes of four topics each; ends when all see all."""
+    file = folder / "many.launch.py"
+    file.write_text(_LAUNCH.format(program=str(PROGRAM), count=count))
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    watch = Stopwatch()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "navette", "launch", "--processes", str(file)],
+        env={
+            **os.environ,
+            "NAVETTE_ROUTER": f"tcp/127.0.0.1:{port}",
+            "NAVETTE_TRANSPORT": "zenoh",
+            "ROS_DOMAIN_ID": DOMAIN,
+            "ROS_LOG_DIR": str(folder / "log"),
+        },
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    limit = threading.Timer(patience_s, process.send_signal, [signal.SIGINT])
+    limit.start()
+    complete: dict[int, float] = {}
+    last: dict[int, tuple[int, int]] = {}
+    lines = []
+    with process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            lines.append(line)
+            found = _SAID.search(line)
+            if found is None:
+                continue
+            number = int(found[1])
+            last[number] = int(found[3]), int(found[4])
+            if found[2] and number not in complete:
+                complete[number] = watch.elapsed_s
+                if len(complete) == count:
+                    limit.cancel()
+                    process.send_signal(signal.SIGINT)
+    limit.cancel()
+    return Meeting(complete, last, "".join(lines), process.returncode)
