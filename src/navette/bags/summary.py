@@ -23,6 +23,8 @@ class TopicSummary:
     count: int
     rate_hz: float | None
     """Median rate; None with fewer than two messages (or all at one time)."""
+    mean_rate_hz: float | None
+    """Over the time from its first to its last message."""
     longest_gap_s: float | None
     """Longest time between two messages."""
     gap_start_s: float | None
@@ -39,6 +41,7 @@ class TopicSummary:
             "encoding": self.topic.encoding,
             "messages": self.count,
             "rate_hz": self.rate_hz,
+            "mean_rate_hz": self.mean_rate_hz,
             "longest_gap_s": self.longest_gap_s,
             "longest_gap_start_s": self.gap_start_s,
             "qos": [vars(each) for each in self.topic.qos],
@@ -142,17 +145,19 @@ def _summarise_topic(
     parts: list[np.ndarray[Any, np.dtype[np.int64]]] | None,
     start_ns: int,
 ) -> TopicSummary:
-    rate = gap = gap_start = None
+    rate = mean = gap = gap_start = None
     if parts and sum(map(len, parts)) > 1:
         stamps = np.sort(np.concatenate(parts))
         steps = np.diff(stamps)
         longest = int(np.argmax(steps))
         gap = float(steps[longest]) / 1e9
         gap_start = float(stamps[longest] - start_ns) / 1e9
-        middle = float(np.median(steps))
+        middle, span = float(np.median(steps)), int(stamps[-1]) - int(stamps[0])
+        if span > 0:
+            mean = len(steps) * 1e9 / span
         if middle > 0:
             rate = 1e9 / middle
-    return TopicSummary(topic, count, rate, gap, gap_start, is_installed(topic))
+    return TopicSummary(topic, count, rate, mean, gap, gap_start, is_installed(topic))
 
 
 def is_installed(topic: BagTopic) -> bool:

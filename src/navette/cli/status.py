@@ -78,8 +78,10 @@ class StatusScreen:
         word = "interrupted" if interrupted else "done"
         good = summary.contacts == 0 and reached == len(self._options.goals)
         self._console.print(
-            Text(f"{word}: ", style="bold green" if good else "bold yellow")
-            + Text(", ".join(part for part in parts if part)),
+            Text.assemble(
+                (f"{word}: ", "bold green" if good else "bold yellow"),
+                ", ".join(part for part in parts if part),
+            ),
             soft_wrap=True,
         )
 
@@ -89,15 +91,19 @@ class StatusScreen:
 
     def _show_head(self, simulation: "Simulation") -> None:
         options = self._options
-        head = Text("Navette", style="bold cyan")
-        head += Text(f"  {options.world}", style="bold")
-        head += Text(f" · {simulation.resolved.robot_name} · seed {options.seed}")
+        head = Text.assemble(
+            ("Navette", "bold cyan"),
+            (f"  {options.world}", "bold"),
+            f" · {simulation.resolved.robot_name} · seed {options.seed}",
+        )
         self._console.print(head, soft_wrap=True)
         if simulation.viewer is not None:
             self._console.print(
-                Text("live view  ", style="dim")
-                + Text(simulation.viewer.url, style="underline bright_blue")
-                + Text("   Ctrl-C ends", style="dim"),
+                Text.assemble(
+                    ("live view  ", "dim"),
+                    (simulation.viewer.url, "underline bright_blue"),
+                    ("   Ctrl-C ends", "dim"),
+                ),
                 soft_wrap=True,
             )
 
@@ -136,7 +142,7 @@ class StatusScreen:
         longest = max(self._longest_m.get(progress.goal_id, 0.0), left, 1e-6)
         self._longest_m[progress.goal_id] = longest
         done = round(width * (1 - left / longest))
-        return Text("━" * done, style="green") + Text("─" * (width - done), style="dim")
+        return Text.assemble(("━" * done, "green"), ("─" * (width - done), "dim"))
 
 
 def _left(progress: "Progress") -> str:

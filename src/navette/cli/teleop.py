@@ -130,7 +130,7 @@ def _shown(
     console = Console(stderr=True, highlight=False)
     keys = Text()
     for key, meaning in _HELP:
-        keys += Text(f"{key} ", style="bold") + Text(f"{meaning}   ", style="dim")
+        keys.append(f"{key} ", style="bold").append(f"{meaning}   ", style="dim")
     console.print(keys, soft_wrap=True)
 
     def line() -> Text:

@@ -266,6 +266,7 @@ def test_gaps_and_rates(tmp_path: Path) -> None:
     with open_bag(path) as reader:
         (topic,) = summarise(reader).topics
     assert topic.rate_hz == pytest.approx(1.0)
+    assert topic.mean_rate_hz == pytest.approx(19 / 59)
     assert topic.longest_gap_s == pytest.approx(41.0)
     assert topic.gap_start_s == pytest.approx(9.0)
 

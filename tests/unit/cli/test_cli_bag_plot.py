@@ -146,3 +146,8 @@ def test_without_matplotlib_it_says_how_to_get_it(
     lines = series_of(bag, "/odom.pose.pose.position.x")
     with pytest.raises(MissingPartError, match=r"pip install 'navette\[plot\]'"):
         draw(lines, "run", tmp_path / "run.png")
+
+
+def test_help_names_the_extra() -> None:
+    shown = CliRunner().invoke(app, ["bag", "plot", "--help"]).output
+    assert "pip install 'navette[plot]'" in shown

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from bag_samples import START_NS, STEP_NS, write_sample
-from navette.bags import open_bag
+from bag_samples import POINT, START_NS, STEP_NS, sample, write_sample
+from navette.bags import BagMessage, open_bag
+from navette.bags.writing import open_writer
 from navette.cli.bag import bag
 from navette.cli.bag.text import (
     count_text,
@@ -57,6 +58,18 @@ def test_info_says_what_rosbag_says(sample_bag: Path) -> None:
         "/point|geometry_msgs/msg/PointStamped|10|5 Hz|200 ms",
     ]
     assert len({line.index("5 Hz") for line in table.splitlines()[1:]}) == 1
+
+
+def test_the_rate_of_bursts_is_their_mean(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path / "a.mcap")
+    data = sample(2)[1].data
+    for second in range(0, 31, 10):
+        for microsecond in range(11):
+            stamp_ns = START_NS + second * 10**9 + microsecond * 1000
+            writer.write(BagMessage(POINT, stamp_ns, data))
+    writer.close()
+    told = run("info", tmp_path / "a.mcap").stdout.splitlines()[-1]
+    assert re.split("  +", told)[2:5] == ["44", "~1.43 Hz", "10 s"]
 
 
 def test_one_figure_and_names_only(sample_bag: Path) -> None:

@@ -21,6 +21,8 @@ from navette.errors import UnknownNameError
 _FORMATS = {"mcap": "MCAP", "rosbag1": "ROS 1 bag", "sqlite3": "rosbag2 SQLite"}
 # A gap is worth a look when so many messages are missing in it.
 _GAP_MESSAGES = 5
+# Messages come in bursts where the median rate is so many times the mean one.
+_BURST = 10
 
 
 def show_info(summary: BagSummary, *, verbose: bool = False) -> None:
@@ -103,11 +105,24 @@ def _table(summary: BagSummary) -> Table:
             Text(each.topic.name, style="cyan"),
             Text(each.topic.type_name + ("" if each.known else " *")),
             Text(count_text(each.count), style="" if each.count else "dim"),
-            rate_text(each.rate_hz),
+            _rate(each),
             _gap(each),
             Text(_qos(each.topic.qos), style="dim"),
         )
     return table
+
+
+def _comes_in_bursts(each: TopicSummary) -> bool:
+    return each.mean_rate_hz is not None and (
+        each.rate_hz is None or each.rate_hz > _BURST * each.mean_rate_hz
+    )
+
+
+def _rate(each: TopicSummary) -> str:
+    """The median; of bursts, whose median says nothing, the mean."""
+    if _comes_in_bursts(each):
+        return f"~{rate_text(each.mean_rate_hz)}"
+    return rate_text(each.rate_hz)
 
 
 def _gap(each: TopicSummary) -> Text:
@@ -116,6 +131,7 @@ def _gap(each: TopicSummary) -> Text:
     silent = (
         each.longest_gap_s is not None
         and each.rate_hz is not None
+        and not _comes_in_bursts(each)
         and each.count > 2 * _GAP_MESSAGES
         and each.longest_gap_s * each.rate_hz > _GAP_MESSAGES
     )

@@ -105,13 +105,13 @@ class PlayScreen:
     def _bar(self, share: float, style: str) -> Text:
         width = max(0, min(_WIDTH, self._console.width - _BESIDE_BAR))
         done = round(width * share)
-        return Text("━" * done, style=style) + Text("─" * (width - done), style="dim")
+        return Text.assemble(("━" * done, style), ("─" * (width - done), "dim"))
 
 
 def _key_line() -> Text:
     line = Text()
     for key, meaning in _KEYS:
-        line += Text(f"{key} ", style="bold") + Text(f"{meaning}   ", style="dim")
+        line.append(f"{key} ", style="bold").append(f"{meaning}   ", style="dim")
     return line
 
 

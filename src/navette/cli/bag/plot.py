@@ -28,9 +28,9 @@ Picture = Annotated[
 
 
 def plot(bag: Bag, fields: Fields, output: Picture = None) -> None:
-    """Draw fields of a recording: over time, or one over the other.
+    r"""Draw fields of a recording: over time, or one over the other.
 
-    Needs matplotlib: pip install 'navette[plot]'.
+    Needs matplotlib: pip install 'navette\[plot]'.
     """
     from navette.bags import open_bag
     from navette.cli.bag.drawing import draw
