@@ -13,6 +13,7 @@ from typing import Any
 
 from navette import runtime
 from navette.errors import InvalidValueError
+from navette.interop.missing import advice
 
 SUCCEEDED = 0
 FAILED = 1
@@ -176,7 +177,11 @@ def _spin(node_class: Any, ros: Any) -> None:
 
 
 def _print_traceback(error: BaseException) -> None:
-    """Without the frames that led to the program."""
+    """Without the frames that led to the program, with what helps."""
+    if isinstance(error, ModuleNotFoundError) and error.name is not None:
+        said = advice(error.name)
+        if said is not None:
+            error.add_note(said)
     shown: TracebackType | None = error.__traceback__
     while shown is not None and shown.tb_frame.f_code.co_filename == __file__:
         shown = shown.tb_next

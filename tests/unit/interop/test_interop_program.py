@@ -74,6 +74,32 @@ def test_a_traceback_starts_in_the_program(
     assert lines[-1] == "ValueError: no wings"
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("import rospy", "docs/reference/idioms.md"),
+        ("from cv_bridge import CvBridge", "numpy.frombuffer"),
+        ("import cv_bridge.core", "numpy.frombuffer"),
+        ("from fleet_msgs.msg import Truck", "NAVETTE_INTERFACE_PATH"),
+    ],
+)
+def test_a_module_of_ros_that_is_not_here_says_what_to_do(
+    write: Write, capsys: pytest.CaptureFixture[str], line: str, said: str
+) -> None:
+    assert run(write(line)) == 1
+    error, advice = capsys.readouterr().err.splitlines()[-2:]
+    assert error.startswith("ModuleNotFoundError: No module named ")
+    assert said in advice
+
+
+def test_other_modules_that_are_not_here_are_pythons_business(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(write("import wings")) == 1
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[-1] == "ModuleNotFoundError: No module named 'wings'"
+
+
 def test_what_the_program_left_open_is_shut_down(write: Write) -> None:
     from navette.runtime import ok
 
