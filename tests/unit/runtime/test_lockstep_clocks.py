@@ -210,11 +210,29 @@ def test_the_last_step_ends_the_run() -> None:
     followed.granted(1, 10 * MS)
     turns(followed.clock, times=2)
     followed.granted(2, 10 * MS, is_last=True)
+    turns(followed.clock, times=3)
+    assert ended == []  # others may not have all that was sent to them
+    assert followed.wire.reports[-1].step == 2
     followed.wire.there = replace(followed.wire.there, seen={})
-    turns(followed.clock)
-    assert ended == []  # what came with it is to be run first
     turns(followed.clock, 20 * MS)
     assert ended == [10 * MS]
+
+
+def test_samples_of_the_last_step_are_waited_for_without_a_conductor() -> None:
+    followed, got, ended = Followed(), list[Any](), list[bool]()
+    followed.clock.on_end = lambda: ended.append(True)
+    gid, holding = hold_one(followed.clock, got)
+    followed.granted(1, 10 * MS, sent={gid: Sent("/n", 1, 0, 0)})
+    turns(followed.clock, times=2)
+    sent = {gid: Sent("/n", 1, 1, 1)}
+    followed.granted(2, 10 * MS, sent=sent, is_last=True)
+    followed.wire.there = replace(followed.wire.there, seen={})
+    turns(followed.clock, times=2)
+    holding.take(gid, ("message", 3 * MS, 0, 1))
+    turns(followed.clock)
+    assert (len(got), ended) == (1, [])
+    turns(followed.clock)
+    assert ended == [True]
 
 
 def test_a_follower_that_waits_for_a_simulator_says_so(
@@ -359,6 +377,10 @@ def test_the_run_ends_at_its_time_for_all() -> None:
         (15 * MS, False),
         (15 * MS, True),
     ]
+    conducted.told(ONE, 3)
+    turns(conducted.clock, 20 * MS)
+    assert ended == []  # one may not have heard of it
+    conducted.wire.there = replace(conducted.wire.there, seen={ONE: 3})
     turns(conducted.clock, 20 * MS)
     assert ended == [15 * MS]
 

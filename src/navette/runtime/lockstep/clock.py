@@ -79,9 +79,7 @@ class LockStepClock(TimeSource):
             self.now_ns = max(self.now_ns, target_ns)
             return True
         self.now_ns = self._granted_ns
-        if self._is_over:
-            self.on_end()
-        elif self._next is not None and self.traffic.held.is_complete():
+        if self._next is not None and self.traffic.held.is_complete():
             self._begin(self._next)
         else:
             self._await(self.wire.census(), wakeup)
@@ -90,7 +88,7 @@ class LockStepClock(TimeSource):
     def _await(self, census: Census, wakeup: Wakeup) -> None:
         if wakeup.is_pending:  # what came with the census is looked at first
             return
-        if self._next is None or not self._next.is_last:
+        if not (self._is_over or (self._next is not None and self._next.is_last)):
             self._check_there(census)
         if self._next is None:
             self._await_others(census, wakeup)

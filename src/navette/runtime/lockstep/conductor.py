@@ -85,6 +85,9 @@ class Conductor(LockStepClock):
         return report is not None and report.step == self.step
 
     def _await_others(self, census: Census, wakeup: Wakeup) -> None:
+        if self._is_over:
+            self._end(census, wakeup)
+            return
         reports = dict(self._reports)
         if not self.step:
             roster, problems = self._gathered(census, reports)
@@ -97,6 +100,15 @@ class Conductor(LockStepClock):
         elif self._pace.go_to(self._granted_ns, wakeup):
             self._roster = roster
             self._grant(reports)
+
+    def _end(self, census: Census, wakeup: Wakeup) -> None:
+        """When all have heard that it is over: that we are gone tells them to go."""
+        there = [session for session in self._roster if session in census.seen]
+        busy = [_named(self._roster, s) for s in there if not self._is_done(s)]
+        if busy:
+            self._wait(busy, wakeup)
+        else:
+            self.on_end()
 
     def _wait(self, problems: list[str], wakeup: Wakeup) -> None:
         """For a report, or for somebody to come or go."""

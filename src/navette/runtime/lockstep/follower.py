@@ -37,6 +37,10 @@ class Follower(LockStepClock):
             if not self._is_old(grant):
                 self._follow(grant)
             return
+        # Not sooner: what was sent may be on its way to the others still.
+        if self._is_over and self._conductor not in census.seen:
+            self.on_end()
+            return
         report = self._own_report(census)
         if self._is_news(report):
             self._reported = report
