@@ -81,12 +81,17 @@ def search_roots(start: Path | None = None) -> tuple[Path, ...]:
     Raises:
         FileFormatError: a folder of NAVETTE_PATH is not there.
     """
+    here = _workspace_root((start or Path.cwd()).resolve())[0]
+    return tuple(dict.fromkeys((here, *_named_roots())))
+
+
+def _named_roots() -> list[Path]:
+    """The folders of NAVETTE_PATH."""
     named = [Path(each).expanduser() for each in _variable(PATH_VARIABLE)]
     for root in named:
         if not root.is_dir():
             raise FileFormatError(root, f"no such folder; {PATH_VARIABLE} names it")
-    here = _workspace_root((start or Path.cwd()).resolve())[0]
-    return tuple(dict.fromkeys((here, *(root.resolve() for root in named))))
+    return [root.resolve() for root in named]
 
 
 def activate(start: Path | None = None) -> tuple[Path, ...]:
@@ -118,6 +123,8 @@ def _add_interfaces(package: Package) -> None:
 def _all(start: Path | None) -> Iterator[Package]:
     """Those of the nearest place first; a name may come several times."""
     here, depth = _workspace_root((start or Path.cwd()).resolve())
+    if here in _named_roots():  # then it is a workspace, whatever else it holds
+        depth = _DEPTH
     for root in search_roots(start):
         yield from _crawl(root, depth if root == here else _DEPTH)
     for prefix in installed_prefixes():

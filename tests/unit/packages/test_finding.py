@@ -90,6 +90,15 @@ def test_an_overlay_comes_first(
         find_packages(tmp_path)
 
 
+def test_a_named_folder_is_a_workspace_for_those_who_stand_in_it_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    deep = make(tmp_path / "repository" / "group" / "robot")
+    assert sources(tmp_path) == {}
+    monkeypatch.setenv("NAVETTE_PATH", str(tmp_path))
+    assert sources(tmp_path) == {"robot": deep}
+
+
 def test_two_of_one_name_are_refused(tmp_path: Path) -> None:
     make(tmp_path / "src" / "a", "robot")
     make(tmp_path / "src" / "b", "robot")
