@@ -34,6 +34,9 @@ _MESSAGE_HEAD = _MESSAGE.size - 9
 # Opcode, content length; channel, bytes of the entries that follow.
 _INDEX = struct.Struct("<BQHI")
 _FOOTER_START = struct.Struct("<BQQQ")
+# Bytes, at most: end of data, statistics, offsets and footer; an index of a chunk, and
+# what it and the statistics say of a channel.
+_INDEX_BASE, _CHUNK_INDEX_BASE, _PER_CHANNEL = 256, 90, 10
 
 
 class McapFile:
@@ -65,6 +68,7 @@ class McapFile:
         self._chunk_counts: list[dict[int, int]] = []
         self._parts: list[bytes] = []
         self._index: dict[int, list[int]] = {}
+        self._index_size = _INDEX_BASE
         #: Bytes of the chunk so far.
         self.chunk_size = 0
         self._write(MAGIC + _record(Header(profile=profile, library=library)))
@@ -79,12 +83,17 @@ class McapFile:
         """Bytes written, and those of the chunk so far, which may become fewer."""
         return self._position + self.chunk_size
 
+    @property
+    def index_size(self) -> int:
+        """Bytes, at most, that :meth:`finish` writes behind the last chunk."""
+        return self._index_size
+
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Gives the schema's number for :meth:`add_channel`."""
         number = len(self._schemas) + 1
         schema = Schema(id=number, name=name, encoding=encoding, data=data)
         self._schemas.append(schema)
-        self._add(_record(schema))
+        self._add_to_both(_record(schema))
         return number
 
     def add_channel(
@@ -101,7 +110,7 @@ class McapFile:
         )
         self._channels.append(channel)
         self._sequences.append(0)
-        self._add(_record(channel))
+        self._add_to_both(_record(channel))
         return number
 
     def add_message(self, channel: int, stamp_ns: int, payload: bytes) -> None:
@@ -148,6 +157,7 @@ class McapFile:
                 uncompressed_size=chunk.uncompressed_size,
             )
         )
+        self._index_size += _CHUNK_INDEX_BASE + _PER_CHANNEL * len(offsets)
         counts = {channel: len(index) // 2 for channel, index in self._index.items()}
         self._chunk_counts.append(counts)
         self._parts, self._index, self.chunk_size = [], {}, 0
@@ -239,9 +249,11 @@ class McapFile:
             schema_count=len(self._schemas),
         )
 
-    def _add(self, record: bytes) -> None:
+    def _add_to_both(self, record: bytes) -> None:
+        """To the chunk, and what the index repeats."""
         self._parts.append(record)
         self.chunk_size += len(record)
+        self._index_size += len(record) + _PER_CHANNEL
 
     def _write(self, data: bytes) -> None:
         self._stream.write(data)

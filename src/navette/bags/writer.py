@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import IO, cast
 
 from navette.bags.mcap_file import COMPRESSIONS, MAGIC, McapFile
+from navette.bags.reserve import Reserve
 from navette.errors import FileFormatError, InvalidValueError
 
 _CHUNK_BYTES = 256 * 1024
@@ -23,7 +24,7 @@ _CHUNK_BYTES = 256 * 1024
 _BUFFER_BYTES = 4 * 2**20
 _LIBRARY = "navette"
 _MOST_SACRIFICED = 4
-"""Chunks that are given up for the index when the disk is full."""
+"""Chunks given up for the index when the disk is full and the reserve too small."""
 
 
 class BagWriter:
@@ -59,6 +60,7 @@ class BagWriter:
             self._file, profile="ros2", library=_LIBRARY, compression=compression
         )
         self._schemas: dict[tuple[str, str], int] = {}
+        self._reserve = Reserve(path.parent)
 
     def add_channel(
         self,
@@ -105,22 +107,26 @@ class BagWriter:
         """Finish the chunk and hand it to the system: it outlives this process."""
         self._mcap.end_chunk()
         self._file.flush()
+        self._reserve.grow(self._mcap.index_size)
 
     def close(self) -> None:
         """Write the index and close; closing twice is harmless."""
         if not self._file.closed:
+            self._reserve.release()
             self._mcap.finish()
             self._file.close()
 
     def abandon(self) -> None:
         """Close after an ``OSError``; what was flushed stays readable.
 
-        Where the disk is full, the last chunk makes room for the index.
+        Room for the index is kept from the start: it is there on a full disk, too.
         """
         if self._file.closed:
+            self._reserve.release()
             return
         with suppress(OSError):  # the same error again; it is known already
             self._file.close()
+        self._reserve.release()
         with suppress(OSError):  # without an index it can be read all the same
             self._finish_what_is_there()
 

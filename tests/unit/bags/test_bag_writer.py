@@ -10,6 +10,7 @@ from rosbags.interfaces import QosDurability, QosReliability
 from rosbags.rosbag2.metadata import parse_qos
 
 from navette.bags import BagWriter, OfferedQos, RecorderParams, TopicSelection, qos_text
+from navette.bags.reserve import Reserve
 from navette.errors import FileFormatError, ParameterError
 from navette.msgs import definition_text, serialize, type_hash
 from navette.msgs.std_msgs.msg import String
@@ -123,6 +124,31 @@ def read_unfinished(path: Path) -> int:
         except EndOfFile:
             return count
     raise AssertionError("the file has an end, so it was finished")
+
+
+def test_room_for_the_index_is_kept(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    writer = BagWriter(path)
+    text = definition_text(STRING)
+    channels = [writer.add_channel(f"/chatter{n}", STRING, text) for n in range(9)]
+    for stamp in range(700):
+        for channel in channels:
+            writer.write(channel, stamp, b"\0\1\0\0\1\0\0\0\0")
+        writer.flush()
+    kept = writer._reserve.size
+    assert [each.name for each in tmp_path.iterdir()] == ["a.mcap"]
+    end_of_chunks = path.stat().st_size
+    writer.close()
+    index = path.stat().st_size - end_of_chunks
+    assert 100_000 < index <= writer._mcap.index_size < 1.1 * index
+    assert index <= kept
+
+
+def test_where_no_room_can_be_kept_none_is(tmp_path: Path) -> None:
+    reserve = Reserve(tmp_path / "no folder")
+    reserve.grow(1000)
+    assert reserve.size == 0
+    reserve.release()
 
 
 def test_a_file_that_cannot_be_made_is_named(tmp_path: Path) -> None:
