@@ -49,7 +49,7 @@ def entry_point(
     return Program(
         name or f"{module}:{attribute}",
         arguments,
-        lambda: _run_attribute(importlib.import_module(module), attribute),
+        lambda: _run_attribute(_import(module), attribute),
         (Path.cwd(),),
     )
 
@@ -108,6 +108,18 @@ def _run_file(path: Path) -> None:
     if threading.current_thread() is threading.main_thread():
         sys.modules["__main__"] = module  # where pickle looks for its classes
     _execute(path, module)
+
+
+def _import(name: str) -> ModuleType:
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name is None or not f"{name}.".startswith(f"{error.name}."):
+            raise  # found, and wants another one itself
+        raise InvalidValueError(
+            f"module {name!r} cannot be imported: {error} (looked for from "
+            f"{Path.cwd()}, in its workspace and among what is installed)"
+        ) from None
 
 
 def load_file(path: Path, name: str) -> ModuleType:
@@ -185,4 +197,7 @@ def _print_traceback(error: BaseException) -> None:
     shown: TracebackType | None = error.__traceback__
     while shown is not None and shown.tb_frame.f_code.co_filename == __file__:
         shown = shown.tb_next
+    if shown is None and isinstance(error, InvalidValueError):  # what was asked for
+        sys.stderr.write(f"navette: {error}\n")
+        return
     traceback.print_exception(type(error), error, shown or error.__traceback__)

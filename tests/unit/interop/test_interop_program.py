@@ -92,6 +92,22 @@ def test_a_module_of_ros_that_is_not_here_says_what_to_do(
     assert said in advice
 
 
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("no_such.nodes:Drive", "module 'no_such.nodes' cannot be imported: No module"),
+        ("{path}:Fly", "program:Fly: wanted a node class or a function; "),
+    ],
+)
+def test_a_program_that_is_not_there_is_told_in_a_line(
+    write: Write, capsys: pytest.CaptureFixture[str], word: str, said: str
+) -> None:
+    path = write("def walk(): pass\n")
+    assert run(word.format(path=path)) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"navette: {said}")
+
+
 def test_other_modules_that_are_not_here_are_pythons_business(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
