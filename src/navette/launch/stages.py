@@ -125,7 +125,7 @@ def control() -> None:
 
 @_program
 def missions() -> None:
-    """Sends goals, one after the other."""
+    """Sends goals, one after the other; ends with the last of those it was given."""
     parser = _parser("missions", "Goals, one after the other → /goal_point")
     _add_robot(parser)
     parser.add_argument(
@@ -133,12 +133,29 @@ def missions() -> None:
     )
     given = _parse(parser)
     from navette.missions.node import MissionNode
+    from navette.missions.sequence import REACHED
 
     profile = _profile(_resolve(given), "missions")
     if given.goal:
         goals = [value for goal in given.goal for value in goal]
         profile.add("missions", {"goals": goals}, "--goal")
-    _run(lambda context: MissionNode(context=context), profile)
+    made: list[MissionNode] = []
+
+    def make(context: Context) -> Node:
+        node = MissionNode(context=context)
+        made.append(node)
+        # In lock-step nobody leaves before the simulator does.
+        if given.goal and not context.loop.clock.is_shared:
+            node.on_done = context.try_shutdown
+        return node
+
+    _run(make, profile)
+    if made[0].on_done is not None:
+        missed = [each for each in made[0].standing if each.result != REACHED]
+        for goal in missed:
+            x, y = goal.goal
+            sys.stderr.write(f"navette: goal ({x:g}, {y:g}): {goal.result}\n")
+        raise SystemExit(1 if missed else 0)
 
 
 @_program

@@ -12,8 +12,17 @@ from navette.interop.process import RunningProgram, program_threads
 from navette.interop.targets import read_programs
 from navette.launch import RunOptions, stages
 from navette.launch.scene import resolve_scene
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from navette.msgs.geometry_msgs.msg import PointStamped
 from navette.packages import find_package
-from navette.runtime import Context, Node, spin_until_future_complete
+from navette.runtime import (
+    Context,
+    DurabilityPolicy,
+    Future,
+    Node,
+    QoSProfile,
+    spin_until_future_complete,
+)
 from navette.runtime.context import new_graph
 from navette.runtime.graph import Graph
 from navette.runtime.overrides import ParameterOverrides
@@ -113,6 +122,42 @@ def test_a_file_of_the_whole_stack_is_no_error_but_one_for_others_is(
     )
     stages.planner()
     assert made == ["dijkstra"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("results", "code"), [("reached", 0), ("no_path", 1)])
+def test_a_mission_ends_with_its_goals(results: str, code: int) -> None:
+    """A planner that says at once how each goal ended."""
+    graph = new_graph()
+    words = "missions --goal 1 2 --goal 3 4 --ros-args -p wait_for_map:=false"
+    (program,) = read_programs(words.split())
+    goals = []
+    with Context(graph=graph) as context, program_threads():
+        planner = Node("planner", context=context)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        status = planner.create_publisher(DiagnosticStatus, "/planner/status", latched)
+
+        def answer(goal: PointStamped) -> None:
+            goals.append((goal.point.x, goal.point.y))
+            number = KeyValue(key="goal_id", value=str(len(goals)))
+            status.publish(DiagnosticStatus(message=results, values=[number]))
+
+        planner.create_subscription(PointStamped, "/goal_point", answer, 10)
+        status.publish(DiagnosticStatus(message="idle"))
+        over = Future[None]()
+        mission = RunningProgram(
+            program,
+            graph,
+            lambda _: context.loop.call_soon_threadsafe(
+                lambda: over.set_result(None), "test"
+            ),
+        )
+        mission.start()
+        spin_until_future_complete(planner, over, timeout_sec=WAIT_S)
+        assert mission.join(WAIT_S)
+    assert mission.exit_code == code
+    assert goals == [(1.0, 2.0), (3.0, 4.0)]
+    graph.close()
 
 
 def test_every_stage_is_an_executable() -> None:
