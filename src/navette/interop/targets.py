@@ -41,13 +41,24 @@ def _read_program(words: Sequence[str]) -> Program:
         if place.endswith(".py"):
             return file_entry_point(_existing(Path(place)), attribute, arguments)
         return entry_point(place, attribute, arguments)
-    if target.endswith(".py") or Path(target).is_file():
+    if target.endswith(".py") or _names_file(target):
         return script(_existing(Path(target)), arguments)
     if arguments and not arguments[0].startswith("-"):
         return _executable(target, arguments[0], arguments[1:])
     if any(each.name == target for each in built_in_executables(BUILT_IN)):
         return _executable(BUILT_IN, target, arguments)
-    raise InvalidValueError(f"{target!r} is no program; wanted {_FORMS}")
+    hint = f" (./{target} runs the file)" if Path(target).is_file() else ""
+    raise InvalidValueError(f"{target!r} is no program{hint}; wanted {_FORMS}")
+
+
+def _names_file(target: str) -> bool:
+    """Whether it is a file and says so, by a suffix or a folder.
+
+    What happens to lie in the working folder takes no package's or stage's name.
+    """
+    path = Path(target)
+    is_said = bool(path.suffix) or "/" in target or path.name != target
+    return is_said and path.is_file()
 
 
 def _executable(package: str, name: str, arguments: tuple[str, ...]) -> Program:
@@ -81,7 +92,7 @@ def find_sources(words: Sequence[str]) -> list[Path]:
     """
     place, colon, attribute = words[0].rpartition(":")
     target = place if colon and attribute.isidentifier() else words[0]
-    if Path(target).is_file():
+    if _names_file(target):
         return [Path(target)]
     if colon:
         top = Path.cwd() / target.split(".")[0]

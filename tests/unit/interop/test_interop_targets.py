@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from navette.errors import InvalidValueError, UnknownNameError
-from navette.interop.targets import read_programs
+from navette.interop import targets
+from navette.interop.targets import find_sources, read_programs
 from navette.packages import create_package
 
 
@@ -31,6 +32,23 @@ def test_a_file_inside_a_package_finds_its_siblings_by_full_name(
     (package / "node.py").write_text("")
     (program,) = read_programs([str(package / "node.py")])
     assert program.path == (package, tmp_path)
+
+
+def test_a_file_takes_no_stages_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("planner", "drive"):
+        (tmp_path / name).write_text("raise LookupError('the file')")
+    (file,) = read_programs(["./planner"])
+    with pytest.raises(LookupError, match="the file"):
+        file.main()
+    monkeypatch.delattr(targets, "script")  # it is not asked for
+    assert read_programs(["planner"])[0].name == "planner"
+    assert find_sources(["planner"]) == []
+    assert find_sources(["./planner"]) == [Path("planner")]
+    with pytest.raises(InvalidValueError, match=r"no program \(./drive runs the file"):
+        read_programs(["drive"])
 
 
 def test_several_programs_each_with_its_arguments(talker: Path) -> None:
