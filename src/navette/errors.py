@@ -36,10 +36,11 @@ class InvalidNameError(InvalidValueError):
     """A node, topic, namespace or frame name breaks the naming rules."""
 
 
-class MessageError(InvalidValueError, TypeError):
+class MessageError(InvalidValueError, TypeError, AssertionError):
     """A message field got a value of the wrong type, range or length.
 
-    Also a ``TypeError``, because that is what rclpy users expect of a wrong type.
+    Also a ``TypeError`` and an ``AssertionError``: with rclpy, publishing a message of
+    another type raises the one, a field's value of another type the other.
     """
 
 

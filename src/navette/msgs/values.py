@@ -94,7 +94,9 @@ def _message_checker(where: str, message_class: type) -> Checker:
 
     def check(value: Any) -> Any:
         if not isinstance(value, message_class):
-            raise _refuse(where, value, allowed)
+            # Clocks' times and durations are the ones mistaken for their messages.
+            use = " (its to_msg() is one)" if hasattr(value, "to_msg") else ""
+            raise _refuse(where, value, allowed + use)
         return value
 
     return check

@@ -113,9 +113,16 @@ def get_global_executor(context: Context | None = None) -> Executor:
     return executor
 
 
+def _executor_of(node: Node) -> Executor:
+    if not isinstance(node, Node):
+        raise TypeError(f"wanted a node to spin, made of a node class; got {node!r}")
+    executor: Executor | None = node.executor
+    return executor or get_global_executor(node.context)
+
+
 def spin(node: Node, executor: Executor | None = None) -> None:
     """Run the node's callbacks until shutdown."""
-    executor = executor or node.executor or get_global_executor(node.context)
+    executor = executor or _executor_of(node)
     was_added = executor.add_node(node)
     try:
         executor.spin()
@@ -131,7 +138,7 @@ def spin_once(
     timeout_sec: float | None = None,
 ) -> None:
     """Run one event, waiting at most ``timeout_sec`` for it."""
-    executor = executor or node.executor or get_global_executor(node.context)
+    executor = executor or _executor_of(node)
     was_added = executor.add_node(node)
     try:
         executor.spin_once(timeout_sec=timeout_sec)
@@ -147,7 +154,7 @@ def spin_until_future_complete(
     timeout_sec: float | None = None,
 ) -> None:
     """Run until ``future`` is done or the time is over; also from a callback."""
-    executor = executor or node.executor or get_global_executor(node.context)
+    executor = executor or _executor_of(node)
     was_added = executor.add_node(node)
     try:
         executor.spin_until_future_complete(future, timeout_sec)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from navette.errors import InvalidValueError, NavetteError
 from navette.msgs.rcl_interfaces.msg import Log, ParameterEvent
@@ -51,6 +51,18 @@ class Node(NodeParameters, NodeTopics, NodeServices, NodeWaitables, NodeGraph):
 
     Args as in rclpy; ``parameter_overrides`` win over everything else.
     """
+
+    if not TYPE_CHECKING:  # else every name would be an attribute to type checkers
+
+        def __getattr__(self, name: str) -> NoReturn:
+            """Of what is not there: tell those who forgot ``super().__init__``."""
+            text = f"{type(self).__name__!r} object has no attribute {name!r}"
+            if "_destroyed" not in vars(self):
+                text += (
+                    ": the node is not initialised yet; call super().__init__('name') "
+                    "first in its __init__"
+                )
+            raise AttributeError(text, name=name, obj=self)
 
     def __init__(
         self,

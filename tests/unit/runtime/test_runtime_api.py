@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -423,3 +424,31 @@ def test_spin_once_on_a_context_that_is_over() -> None:
     navette.shutdown()
     with pytest.raises(ExternalShutdownException, match="shut down"):
         executor.spin_once()
+
+
+def test_a_node_that_did_not_call_its_base_class_is_told_to() -> None:
+    class Forgot(Node):
+        def __init__(self) -> None:
+            self.create_timer(1.0, lambda: None)
+
+    class Late(Node):
+        def __init__(self) -> None:
+            self.create_publisher(String, "t", 1)
+            super().__init__("late")
+
+    start()
+    for each in (Forgot, Late):
+        with pytest.raises(AttributeError, match=r"call super\(\).__init__\('name'\)"):
+            each()
+    with pytest.raises(AttributeError, match=r"'Node' .* no attribute 'publsher'$"):
+        Node("n").publsher  # type: ignore[attr-defined]  # noqa: B018
+    assert not hasattr(Node("n2"), "wings")
+
+
+@pytest.mark.parametrize("not_a_node", [Node, None, "talker"])
+def test_only_nodes_are_spun(not_a_node: Any) -> None:
+    start()
+    with pytest.raises(TypeError, match=r"wanted a node to spin, .*; got"):
+        navette.spin(not_a_node)
+    with pytest.raises(TypeError, match="wanted a node"):
+        navette.spin_once(not_a_node, timeout_sec=0)

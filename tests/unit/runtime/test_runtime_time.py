@@ -3,6 +3,7 @@
 import pytest
 
 from navette.msgs.rosgraph_msgs.msg import Clock as ClockMsg
+from navette.msgs.std_msgs.msg import Header
 from navette.runtime import (
     Clock,
     ClockType,
@@ -256,3 +257,8 @@ def test_forward_jumps_are_reported_from_the_threshold_on(
                 Time(nanoseconds=stamp, clock_type=ClockType.ROS_TIME)
             )
     assert jumps == [2 * S]
+
+
+def test_a_time_in_a_message_is_told_how_to_become_one() -> None:
+    with pytest.raises(AssertionError, match=r"is Time, wanted .* \(its to_msg\(\) is"):
+        Header(stamp=Time(seconds=1))
