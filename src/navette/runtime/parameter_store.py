@@ -101,7 +101,12 @@ class ParameterStore:
             if reason:
                 return SetParametersResult(successful=False, reason=reason)
         for callback in self.on_callbacks:
-            result = callback(parameters)
+            result: Any = callback(parameters)
+            if not isinstance(result, SetParametersResult):  # a forgotten return
+                raise AttributeError(
+                    f"on-set-parameters callback {callback!r} returned {result!r}, "
+                    "wanted a SetParametersResult"
+                )
             if not result.successful:
                 return result
         self._on_change(self._take_over(parameters, descriptors))

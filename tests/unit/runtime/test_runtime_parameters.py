@@ -390,3 +390,15 @@ def test_events_tell_what_changed(graph: GraphHarness) -> None:
     ]
     assert events.last.node == "/n"
     assert events.last.stamp.sec == 1
+
+
+def test_a_callback_that_forgets_to_return_is_named(node: Node) -> None:
+    node.declare_parameter("speed", 1.0)
+
+    def check(parameters: list[Parameter]) -> None:
+        pass
+
+    node.add_on_set_parameters_callback(check)  # type: ignore[arg-type]
+    with pytest.raises(AttributeError, match=r"check at .* returned None, wanted"):
+        node.set_parameters([Parameter("speed", value=2.0)])
+    assert node.get_parameter("speed").value == 1.0
