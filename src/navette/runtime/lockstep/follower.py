@@ -38,7 +38,8 @@ class Follower(LockStepClock):
                 self._follow(grant)
             return
         # Not sooner: what was sent may be on its way to the others still.
-        if self._is_over and self._conductor not in census.seen:
+        is_gone = self._conductor not in census.seen or not self._patience_s
+        if self._is_over and is_gone:
             self.on_end()
             return
         report = self._own_report(census)
