@@ -8,7 +8,7 @@ from navette.cli.output import note
 from navette.cli.peer_definitions import described_by_peers
 from navette.cli.session import endpoints, fail, wait_for
 from navette.errors import InvalidNameError, NavetteError, UnknownNameError
-from navette.msgs.registry import full_name
+from navette.msgs.registry import full_name, interface_names
 from navette.runtime import Node
 from navette.transports import Endpoint
 
@@ -100,10 +100,19 @@ def _class_from_outside(node: Node, name: str, of: list[Endpoint]) -> Any:
             + (
                 f", and those who use it do not describe it ({reason})"
                 if reason
-                else ""
+                else _near(name)
             )
         )
     return found
+
+
+def _near(name: str) -> str:
+    """What was probably meant, of the same package."""
+    package, kind, _ = name.split("/")
+    if package not in msgs.packages():
+        return ""
+    known = (f"{package}/{kind}/{each}" for each in interface_names(package, kind))
+    return did_you_mean(name, known)
 
 
 def _check_type(topic: str, given: str, found: list[Endpoint]) -> None:

@@ -167,6 +167,8 @@ def test_call_of_a_type_that_nobody_knows(here: World, adder: Node) -> None:
     done = here.run("service", "call", "/add", "no_such/srv/Type")
     assert done.code == 1
     assert done.err == "navette: type no_such/srv/Type is not known here\n"
+    done = here.run("service", "call", "/add", "std_srvs/srv/SetBol")
+    assert done.err.endswith(" known here; did you mean std_srvs/srv/SetBool?\n")
 
 
 def test_call_gives_up(here: World, adder: Node) -> None:
