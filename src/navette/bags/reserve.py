@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO
 
-_STEP_BYTES = 64 * 1024
+_STEP_BYTES = 8 * 1024
 
 
 class Reserve:
