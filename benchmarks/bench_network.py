@@ -13,7 +13,7 @@ import sys
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, ClassVar
 
 from harness import Benchmark, Figure, optional
 
@@ -129,6 +129,8 @@ def echo(way: str, size: int) -> None:
 class Loop:
     """A way with an echo in another process; calling it goes there and back once."""
 
+    children: ClassVar[list[subprocess.Popen[str]]] = []
+
     def __init__(self, way: str, size: int, stack: ExitStack) -> None:
         ends = [f"tcp/127.0.0.1:{free_port()}" for _ in range(2)]
         common = {
@@ -158,6 +160,7 @@ class Loop:
             stdout=subprocess.PIPE,
             text=True,
         )
+        self.children.append(self._process)
         stack.callback(self._end, close)
         assert self._process.stdout is not None
         while "ready" not in self._process.stdout.readline():
@@ -216,3 +219,7 @@ if __name__ == "__main__":
     else:
         with ExitStack() as everything:
             build(everything).main()
+            sys.stdout.flush()
+            for child in Loop.children:
+                child.kill()
+            os._exit(0)  # the peer's session does not always end when it is closed
