@@ -200,4 +200,6 @@ def _print_traceback(error: BaseException) -> None:
     if shown is None and isinstance(error, InvalidValueError):  # what was asked for
         sys.stderr.write(f"navette: {error}\n")
         return
-    traceback.print_exception(type(error), error, shown or error.__traceback__)
+    if shown is None and not isinstance(error, SyntaxError):  # a file's own has none
+        shown = error.__traceback__
+    traceback.print_exception(type(error), error, shown)

@@ -64,6 +64,16 @@ def test_exit_codes(
     assert capsys.readouterr().err == said
 
 
+def test_a_file_that_cannot_be_compiled_shows_its_own_line_only(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(write("x = 'two")) == 1
+    said = capsys.readouterr().err
+    assert said.splitlines()[1:2] == ["    x = 'two"]
+    assert "unterminated string" in said
+    assert "interop" not in said
+
+
 def test_a_traceback_starts_in_the_program(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
