@@ -28,7 +28,8 @@ ROOTS = {
 }
 
 
-def _modules_in(folder: Path) -> set[str]:
+def modules_in(folder: Path) -> set[str]:
+    """Names of the modules and packages in a folder."""
     return {
         path.stem
         for path in folder.iterdir()
@@ -42,7 +43,7 @@ def _modules_in(folder: Path) -> set[str]:
 PROVIDED = {
     name: f"navette.{root.replace('/', '.')}.{name}"
     for root, wanted in ROOTS.items()
-    for name in _modules_in(Path(__file__).parent.parent / root)
+    for name in modules_in(Path(__file__).parent.parent / root)
     if wanted is None or name in wanted
 }
 
@@ -212,7 +213,7 @@ class AliasLoader(_NavetteLoader, Loader):
 
     def _submodules(self) -> set[str]:
         path = Path(getattr(self._real, "__file__", None) or "")
-        return _modules_in(path.parent) if path.name == "__init__.py" else set()
+        return modules_in(path.parent) if path.name == "__init__.py" else set()
 
     def _attribute(self, name: str) -> Any:
         # rclpy's modules import each other, so that programs reach

@@ -11,6 +11,7 @@ from types import ModuleType
 import pytest
 
 from navette import interop, runtime
+from navette.interop import hook
 from navette.interop.hook import PROVIDED, AliasLoader, RealRosError
 from navette.msgs import add_interface_path
 from navette.msgs.std_msgs.msg import String
@@ -215,3 +216,15 @@ def test_the_pytest_plugin_installs_it(tmp_path: Path) -> None:
         check=False,
     )
     assert done.returncode == 0, done.stdout
+
+
+def test_no_two_folders_provide_the_same_package() -> None:
+    """One would hide the other, and nobody would notice."""
+    root = Path(hook.__file__).parent.parent
+    found = [
+        name
+        for folder, wanted in hook.ROOTS.items()
+        for name in sorted(hook.modules_in(root / folder))
+        if wanted is None or name in wanted
+    ]
+    assert sorted(found) == sorted(PROVIDED)

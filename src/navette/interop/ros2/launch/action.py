@@ -1,7 +1,0 @@
-"""Navette's ``launch.action``."""
-
-from navette.launch_files.launch.action import (
-    Action,
-)
-
-__all__ = ["Action"]

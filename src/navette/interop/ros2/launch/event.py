@@ -1,7 +1,0 @@
-"""Navette's ``launch.event``."""
-
-from navette.launch_files.launch.event import (
-    Event,
-)
-
-__all__ = ["Event"]

@@ -1,7 +1,0 @@
-"""Navette's ``launch.launch_service``."""
-
-from navette.launch_files.launch.launch_service import (
-    LaunchService,
-)
-
-__all__ = ["LaunchService"]

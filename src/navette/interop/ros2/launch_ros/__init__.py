@@ -1,3 +1,0 @@
-"""Navette's ``launch_ros``."""
-
-__all__ = []
