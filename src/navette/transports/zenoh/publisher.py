@@ -12,6 +12,7 @@ from navette.transports.encoded import Encoded
 from navette.transports.qos import EndpointQos, HistoryPolicy, ReliabilityPolicy
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.heard import Heard
 
 
 class ZenohPublisher(PublisherPort):
@@ -20,6 +21,7 @@ class ZenohPublisher(PublisherPort):
     Args:
         qos: as it was announced.
         gid: as hashed from the liveliness token.
+        heard: when something of the others came last.
         closed: called once when the port is closed.
         sent: in lock-step, told the number of each sample; and none may be dropped.
     """
@@ -27,6 +29,7 @@ class ZenohPublisher(PublisherPort):
     __slots__ = (
         "_closed",
         "_gid",
+        "_heard",
         "_latched",
         "_publisher",
         "_put",
@@ -41,11 +44,13 @@ class ZenohPublisher(PublisherPort):
         qos: EndpointQos,
         gid: bytes,
         matches: Matches,
+        heard: Heard,
         closed: Callable[["ZenohPublisher"], None],
         sent: Callable[[int], None] | None = None,
     ) -> None:
         self.matches = matches
         self._gid = gid
+        self._heard = heard
         self._latched = qos.is_latched
         self._closed = closed
         self._sent = sent
@@ -53,13 +58,23 @@ class ZenohPublisher(PublisherPort):
         self._put = self._publisher.put
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
-        if not self.matches.remotes and not self._latched:
+        if not (self.matches.remotes or self._latched or self._is_awaited(source_ns)):
             return
         attachment = Attachment(sequence, source_ns, self._gid)
         data = message.data if message.__class__ is Encoded else serialize(message)
         self._put(data, attachment=attachment.encode())
         if self._sent is not None:
             self._sent(sequence)
+
+    def _is_awaited(self, now_ns: int) -> bool:
+        """Whether somebody listens whose token has not been read yet (2 µs)."""
+        if not self._heard.is_recent(now_ns) or self._sent or self.matches.refused:
+            return False
+        publisher = self._publisher
+        try:
+            return publisher is not None and bool(publisher.matching_status.matching)
+        except zenoh.ZError:  # the session was closed: nobody listens
+            return False
 
     @property
     def matched_count(self) -> int:

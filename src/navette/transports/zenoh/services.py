@@ -20,6 +20,7 @@ from navette.transports.service_ports import (
 from navette.transports.zenoh.attachment import Attachment, decode_attachment
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.heard import Heard
 
 # Requests that wait for an answer at one server; more are refused.
 _MOST_PENDING = 100_000
@@ -33,12 +34,14 @@ class ZenohService(ServicePort):
 
     Args:
         now_ns: the time here, for the stamps.
+        heard: notes that something came.
         closed: called once when the port is closed.
     """
 
     __slots__ = (
         "_closed",
         "_complaints",
+        "_heard",
         "_key",
         "_longest",
         "_now_ns",
@@ -56,6 +59,7 @@ class ZenohService(ServicePort):
         matches: Matches,
         *,
         complaints: Complaints,
+        heard: Heard,
         max_message_bytes: int,
         now_ns: Callable[[], int],
         closed: Callable[["ZenohService"], None],
@@ -64,6 +68,7 @@ class ZenohService(ServicePort):
         self._key = key
         self._sink = sink
         self._complaints = complaints
+        self._heard = heard
         self._longest = max_message_bytes
         self._now_ns = now_ns
         self._closed = closed
@@ -111,6 +116,7 @@ class ZenohService(ServicePort):
             _refuse(query, str(error))
             return
         self._pending[request.id] = query
+        self._heard.last_ns = request.received_ns
         self._sink(request)
 
     def _checked(self, query: zenoh.Query) -> Request:

@@ -12,6 +12,7 @@ import zenoh
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.config import peer_config
 from navette.transports.zenoh.graph import RemoteGraph
+from navette.transports.zenoh.heard import Heard
 from navette.transports.zenoh.router import RouterRole, refuse
 from navette.transports.zenoh.settings import Settings
 from navette.transports.zenoh.tokens import SPACE
@@ -42,6 +43,7 @@ class Session:
     def __init__(self, settings: Settings, domain_id: int) -> None:
         self.settings = settings
         self.complaints = Complaints()
+        self.heard = Heard()
         self._tokens = f"{SPACE}/{domain_id}/**"
         self._role = RouterRole(settings)
         router = self._role.find_or_serve()

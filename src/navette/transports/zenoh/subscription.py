@@ -15,6 +15,7 @@ from navette.transports.qos import EndpointQos
 from navette.transports.zenoh.attachment import decode_attachment
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.heard import Heard
 
 _HEADER_SIZE = 4
 _HEADERS = (b"\x00\x01", b"\x00\x00")  # plain CDR, little and big endian
@@ -29,6 +30,7 @@ class ZenohSubscription(SubscriptionPort):
     Args:
         own_gids: publishers of this very session. Their samples come by another way; a
             query of the history brings them all the same, whatever its locality.
+        heard: notes that something came.
         lost: told how many samples are missing before the one that came.
         now_ns: the time here, for the received stamp.
         closed: called once when the port is closed.
@@ -38,6 +40,7 @@ class ZenohSubscription(SubscriptionPort):
     __slots__ = (
         "_closed",
         "_complaints",
+        "_heard",
         "_holding",
         "_is_open",
         "_last",
@@ -62,6 +65,7 @@ class ZenohSubscription(SubscriptionPort):
         own_gids: AbstractSet[bytes],
         lost: Callable[[int], None],
         complaints: Complaints,
+        heard: Heard,
         max_message_bytes: int,
         now_ns: Callable[[], int],
         closed: Callable[["ZenohSubscription"], None],
@@ -73,6 +77,7 @@ class ZenohSubscription(SubscriptionPort):
         self._own_gids = own_gids
         self._lost = lost
         self._complaints = complaints
+        self._heard = heard
         self._longest = max_message_bytes
         self._now_ns = now_ns
         self._closed = closed
@@ -110,6 +115,7 @@ class ZenohSubscription(SubscriptionPort):
             return
         if gid in self._own_gids or gid in self.matches.refused:
             return
+        self._heard.last_ns = item[2]
         if self._holding is not None:
             self._holding.take(gid, item)
         elif self._is_next(gid, item[3]):

@@ -118,7 +118,14 @@ class ZenohTransport(Transport):
             if self._traffic is not None:
                 sent = self._traffic.tally.open(gid, endpoint.node_full_name)
             return ZenohPublisher(
-                session, key, token.qos, gid, matches, self._leave, sent
+                session,
+                key,
+                token.qos,
+                gid,
+                matches,
+                self.session.heard,
+                self._leave,
+                sent,
             )
 
         return self._open(endpoint, make)
@@ -136,6 +143,7 @@ class ZenohTransport(Transport):
                 own_gids=self._own_gids,
                 lost=partial(self._graph.lost, endpoint),
                 now_ns=self._now_ns,
+                heard=self.session.heard,
                 holding=self._holding(endpoint, sink, matches),
                 **self._common(),
             )
@@ -146,7 +154,13 @@ class ZenohTransport(Transport):
         def make(token: EndpointToken, matches: Matches) -> ZenohService:
             key, session = self._key(token), self.session.zenoh
             return ZenohService(
-                session, key, sink, matches, now_ns=self._now_ns, **self._common()
+                session,
+                key,
+                sink,
+                matches,
+                heard=self.session.heard,
+                now_ns=self._now_ns,
+                **self._common(),
             )
 
         return self._open(endpoint, make)
