@@ -3,11 +3,13 @@
 import re
 import zlib
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from mcap.opcode import Opcode
 from mcap.records import Channel, Footer, Header, Schema, Statistics
 
+from navette.bags.binary_file import reason_of, walk
 from navette.bags.chunks import Chunk
 from navette.bags.mcap_records import (
     HEAD,
@@ -27,8 +29,6 @@ from navette.errors import DecodeError, FileFormatError
 _FOOTER_SIZE = HEAD.size + 20
 _LARGEST_SUMMARY = 1 << 30
 _BARE_BYTES = 1 << 20
-_BLOCK = 1 << 20
-_MOST_PROBLEMS = 100
 # Opcodes of the specification; those from 0x80 on are anybody's own.
 _OPCODES = frozenset(range(1, 0x10)) | frozenset(range(0x80, 0x100))
 _COMPRESSION = re.compile(rb"\x04\0\0\0zstd|\x03\0\0\0lz4")
@@ -62,9 +62,8 @@ def read_index(file: RecordFile) -> McapIndex:
     try:
         index = _read_summary(file)
     except (FileFormatError, DecodeError) as error:
-        reason = error.reason if isinstance(error, FileFormatError) else str(error)
         index = None
-        problems = [f"the summary cannot be read ({reason})"]
+        problems = [f"the summary cannot be read ({reason_of(error)})"]
     else:
         problems = [] if index is not None else ["there is no summary"]
     if index is None:
@@ -159,52 +158,33 @@ def scan(file: RecordFile) -> McapIndex:
     record it goes on at the next chunk that can be found.
     """
     index = McapIndex(counts={})
-    walk = _Walk(file, index)
-    position: int | None = len(MAGIC)
+    walker = _Walk(file, index)
+    start = len(MAGIC)
     try:
-        position = _read_header(file, index)
+        start = _read_header(file, index)
     except FileFormatError as error:
         index.problems.append(f"the header cannot be read ({error.reason})")
-    while position is not None and position < file.size:
-        try:
-            head = file.head(position)
-            if head.opcode in (Opcode.DATA_END, Opcode.FOOTER):
-                break
-            if head.opcode not in _OPCODES:
-                raise file.error(position, f"record of kind {head.opcode}")
-            walk.visit(head)
-            position = head.end
-        except (FileFormatError, DecodeError) as error:
-            reason = error.reason if isinstance(error, FileFormatError) else str(error)
-            position = _next_chunk(file, position + 1)
-            where = "the rest is lost" if position is None else f"on at {position}"
-            index.problems.append(f"broken record ({reason}); {where}")
-            if len(index.problems) > _MOST_PROBLEMS:
-                index.problems.append("too much is broken; given up")
-                break
+    walk(file, start, walker.visit, partial(_next_chunk, file), index.problems)
     return index
 
 
 def _next_chunk(file: RecordFile, start: int) -> int | None:
     """Where the next sound chunk head is, by the name of its compression."""
-    position = start
-    while position < file.size:
-        block = file.read(position, min(_BLOCK, file.size - position))
-        for found in _COMPRESSION.finditer(block):
-            candidate = position + found.start() - _TO_COMPRESSION
-            if candidate < start:
-                continue
-            try:
-                head = file.head(candidate)
-                if head.opcode == Opcode.CHUNK:
-                    chunk_head(file, head)
-                    return candidate
-            except FileFormatError:
-                continue
-        if position + len(block) >= file.size:
-            break
-        position += len(block) - 8  # a name may lie across
-    return None
+
+    def chunk_of(position: int) -> int | None:
+        candidate = position - _TO_COMPRESSION
+        if candidate < start:
+            return None
+        try:
+            head = file.head(candidate)
+            if head.opcode == Opcode.CHUNK:
+                chunk_head(file, head)
+                return candidate
+        except FileFormatError:
+            pass  # looked like one
+        return None
+
+    return file.find(start, _COMPRESSION, chunk_of)
 
 
 class _Walk:
@@ -214,14 +194,20 @@ class _Walk:
         self._file = file
         self._index = index
 
-    def visit(self, head: Head) -> None:
-        """Take in one record."""
+    def visit(self, position: int) -> int | None:
+        """Take in one record; the position behind it, None at the end of the data."""
+        head = self._file.head(position)
+        if head.opcode in (Opcode.DATA_END, Opcode.FOOTER):
+            return None
+        if head.opcode not in _OPCODES:
+            raise self._file.error(position, f"record of kind {head.opcode}")
         if head.opcode == Opcode.CHUNK:
             self._chunk(head)
         elif head.opcode == Opcode.MESSAGE:
             self._message(head)
         elif head.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
             _note(self._index, head.opcode, self._file.content(head))
+        return head.end
 
     def _chunk(self, head: Head) -> None:
         first, last, _, _, compression, _ = chunk_head(self._file, head)

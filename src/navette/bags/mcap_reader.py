@@ -30,14 +30,8 @@ class McapReader(ChunkedReader):
 
     def __init__(self, path: Path, *, ignore_summary: bool = False) -> None:
         super().__init__(path)
-        try:
-            stream = path.open("rb")
-            self.size = path.stat().st_size
-        except OSError as error:
-            raise FileFormatError(
-                path, f"cannot be opened: {error.strerror}"
-            ) from error
-        self._file = RecordFile(path, stream, self.size)
+        self._file = RecordFile(path)
+        self.size = self._file.size
         try:
             read = scan if ignore_summary else read_index
             self.index = read(self._file)

@@ -10,12 +10,13 @@ import zlib
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
+from navette.bags.binary_file import BinaryFile
 from navette.bags.chunks import Chunk, Entry
 from navette.bags.compression import LARGEST, unpack
 from navette.errors import DecodeError, FileFormatError
@@ -38,25 +39,8 @@ class Head(NamedTuple):
     end: int
 
 
-class RecordFile:
-    """Reads pieces of the file; a piece that is not there is a named error."""
-
-    def __init__(self, path: Path, stream: IO[bytes], size: int) -> None:
-        self.path = path
-        self.size = size
-        self._stream = stream
-
-    def read(self, position: int, length: int) -> bytes:
-        """Exactly ``length`` bytes."""
-        if position < 0 or length < 0 or position + length > self.size:
-            raise self.error(
-                position, f"wants {length} bytes; the file ends at {self.size}"
-            )
-        self._stream.seek(position)
-        found = self._stream.read(length)
-        if len(found) != length:
-            raise self.error(position, f"{len(found)} bytes of {length} could be read")
-        return found
+class RecordFile(BinaryFile):
+    """An MCAP file's records."""
 
     def head(self, position: int) -> Head:
         """The record that begins there."""
@@ -73,14 +57,6 @@ class RecordFile:
         if head.end - head.begin > limit:
             raise self.error(head.position, f"record of {head.end - head.begin} bytes")
         return self.read(head.begin, head.end - head.begin)
-
-    def error(self, position: int, reason: str) -> FileFormatError:
-        """Names file and byte."""
-        return FileFormatError(self.path, f"byte {position}: {reason}")
-
-    def close(self) -> None:
-        """Close the file."""
-        self._stream.close()
 
 
 def parse(kind: Any, content: bytes) -> Any:

@@ -4,8 +4,10 @@ import re
 import struct
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
+from navette.bags.binary_file import reason_of, walk
 from navette.bags.chunks import Chunk
 from navette.bags.ros1_records import (
     MAGIC,
@@ -24,8 +26,6 @@ from navette.bags.ros1_records import (
 from navette.errors import DecodeError, FileFormatError
 
 _MOST_RECORDS = 10_000_000
-_MOST_PROBLEMS = 100
-_BLOCK = 1 << 20
 _OP_CHUNK = re.compile(rb"\x04\0\0\0op=\x05")
 _LONGEST_HEADER = 64
 
@@ -66,9 +66,8 @@ def read_index(file: BagFile) -> BagIndex:
     try:
         index = _read_index_section(file)
     except (FileFormatError, DecodeError, struct.error) as error:
-        reason = error.reason if isinstance(error, FileFormatError) else str(error)
         index = None
-        problems = [f"the index cannot be read ({reason})"]
+        problems = [f"the index cannot be read ({reason_of(error)})"]
     else:
         problems = [] if index is not None else ["the bag is not indexed"]
     if index is None:
@@ -146,39 +145,22 @@ def scan(file: BagFile) -> BagIndex:
     next chunk that can be found.
     """
     index = BagIndex()
-    walk = _Walk(file, index)
-    position: int | None = len(MAGIC)
-    while position is not None and position < file.size:
-        try:
-            record = file.record(position)
-            walk.visit(record)
-            position = record.end
-        except (FileFormatError, DecodeError) as error:
-            reason = error.reason if isinstance(error, FileFormatError) else str(error)
-            position = _next_chunk(file, position + 1)
-            where = "the rest is lost" if position is None else f"on at {position}"
-            index.problems.append(f"broken record ({reason}); {where}")
-            if len(index.problems) > _MOST_PROBLEMS:
-                index.problems.append("too much is broken; given up")
-                break
+    walker = _Walk(file, index)
+    walk(file, len(MAGIC), walker.visit, partial(_next_chunk, file), index.problems)
     return index
 
 
 def _next_chunk(file: BagFile, start: int) -> int | None:
     """Where the next sound chunk begins, by the field that says it is one."""
-    position = start
-    while position < file.size:
-        block = file.read(position, min(_BLOCK, file.size - position))
-        for found in _OP_CHUNK.finditer(block):
-            # The field may be any of the header's three.
-            at = position + found.start()
-            for candidate in range(at - 4, max(start, at - _LONGEST_HEADER) - 1, -1):
-                if _is_chunk(file, candidate):
-                    return candidate
-        if position + len(block) >= file.size:
-            break
-        position += len(block) - 8  # a field may lie across
-    return None
+
+    def chunk_of(position: int) -> int | None:
+        # The field may be any of the header's three.
+        first = max(start, position - _LONGEST_HEADER)
+        return next(
+            (c for c in range(position - 4, first - 1, -1) if _is_chunk(file, c)), None
+        )
+
+    return file.find(start, _OP_CHUNK, chunk_of)
 
 
 def _is_chunk(file: BagFile, position: int) -> bool:
@@ -196,14 +178,16 @@ class _Walk:
         self._file = file
         self._index = index
 
-    def visit(self, record: Record) -> None:
-        """Take in one record."""
+    def visit(self, position: int) -> int:
+        """Take in one record; the position behind it."""
+        record = self._file.record(position)
         if record.op == Op.CHUNK:
             self._chunk(record)
         elif record.op == Op.CONNECTION:
             self._note(_connection(record, self._file.data(record)))
         elif record.op == Op.MESSAGE:
             self._message(record)
+        return record.end
 
     def _note(self, connection: Connection) -> None:
         self._index.connections.setdefault(connection.number, connection)
@@ -224,8 +208,7 @@ class _Walk:
                     self._note(_connection(each, data[each.begin : each.end]))
             entries = message_entries(self._file.path, chunk, data)
         except (FileFormatError, DecodeError) as error:
-            reason = error.reason if isinstance(error, FileFormatError) else str(error)
-            self._index.problems.append(reason)
+            self._index.problems.append(reason_of(error))
             return
         if not entries:
             return

@@ -17,7 +17,7 @@ from navette.bags.ros1_records import (
     read_chunk,
     uint32,
 )
-from navette.errors import DecodeError, FileFormatError, NavetteError
+from navette.errors import DecodeError, NavetteError
 
 _LATCHED = (OfferedQos(depth=1, durability="transient_local"),)
 
@@ -37,14 +37,8 @@ class Ros1Reader(ChunkedReader):
 
     def __init__(self, path: Path, *, ignore_index: bool = False) -> None:
         super().__init__(path)
-        try:
-            stream = path.open("rb")
-            self.size = path.stat().st_size
-        except OSError as error:
-            raise FileFormatError(
-                path, f"cannot be opened: {error.strerror}"
-            ) from error
-        self._file = BagFile(path, stream, self.size)
+        self._file = BagFile(path)
+        self.size = self._file.size
         try:
             self.index = scan(self._file) if ignore_index else read_index(self._file)
             self._take(self.index)

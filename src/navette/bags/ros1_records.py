@@ -7,8 +7,9 @@ import struct
 from collections.abc import Iterator
 from enum import IntEnum
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import NamedTuple
 
+from navette.bags.binary_file import BinaryFile
 from navette.bags.chunks import Chunk, Entry
 from navette.bags.compression import LARGEST, unpack
 from navette.errors import DecodeError, FileFormatError
@@ -43,25 +44,8 @@ class Record(NamedTuple):
     end: int
 
 
-class BagFile:
-    """Reads pieces of the file; a piece that is not there is a named error."""
-
-    def __init__(self, path: Path, stream: IO[bytes], size: int) -> None:
-        self.path = path
-        self.size = size
-        self._stream = stream
-
-    def read(self, position: int, length: int) -> bytes:
-        """Exactly ``length`` bytes."""
-        if length < 0 or position + length > self.size:
-            raise self.error(
-                position, f"wants {length} bytes; the file ends at {self.size}"
-            )
-        self._stream.seek(position)
-        found = self._stream.read(length)
-        if len(found) != length:
-            raise self.error(position, f"{len(found)} bytes of {length} could be read")
-        return found
+class BagFile(BinaryFile):
+    """A ROS 1 bag's records."""
 
     def record(self, position: int, *, wanted: Op | None = None) -> Record:
         """The record that begins there; its data is not read."""
@@ -87,14 +71,6 @@ class BagFile:
     def data(self, record: Record) -> bytes:
         """What is in the record."""
         return self.read(record.begin, record.end - record.begin)
-
-    def error(self, position: int, reason: str) -> FileFormatError:
-        """Names file and byte."""
-        return FileFormatError(self.path, f"byte {position}: {reason}")
-
-    def close(self) -> None:
-        """Close the file."""
-        self._stream.close()
 
 
 def parse_fields(header: bytes | memoryview) -> Fields:
