@@ -109,6 +109,16 @@ class UnwatchGraph:
 
 
 @dataclass(frozen=True)
+class WatchNodes:
+    """How the nodes are, and what parameters mean: of Navette's own page only."""
+
+
+@dataclass(frozen=True)
+class UnwatchNodes:
+    pass
+
+
+@dataclass(frozen=True)
 class FetchAsset:
     uri: str
     request_id: int
@@ -149,6 +159,8 @@ ClientFrame = (
     | UnwatchParameters
     | WatchGraph
     | UnwatchGraph
+    | WatchNodes
+    | UnwatchNodes
     | FetchAsset
     | CallService
     | ControlPlayback
@@ -332,6 +344,8 @@ _TEXT: dict[str, Callable[[_Fields], ClientFrame]] = {
     ),
     "subscribeConnectionGraph": lambda _: WatchGraph(),
     "unsubscribeConnectionGraph": lambda _: UnwatchGraph(),
+    "subscribeNodes": lambda _: WatchNodes(),
+    "unsubscribeNodes": lambda _: UnwatchNodes(),
     "stepPlayback": lambda _: StepPlayback(),
     "fetchAsset": lambda f: FetchAsset(f.text("uri"), f.identifier("requestId")),
 }

@@ -13,13 +13,16 @@ from navette.errors import DecodeError
 from navette.viewer import frames, replies
 from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, WireParameter
+from navette.viewer.heartbeats import NodeReport
+from navette.viewer.memory import LastMessages
 from navette.viewer.outbox import Outbox
+from navette.viewer.parameters import ParameterText
 from navette.viewer.playback import PlaybackState
 from navette.viewer.replies import Channel, Graph, Level
 from navette.viewer.session import Robot, Session, Topic, Watch
 
 _MAX_CLIENT_CHANNELS = 256
-_TIME = "time"
+_TIME, _NODES = "time", "nodes"
 
 
 class Hub:
@@ -43,6 +46,7 @@ class Hub:
         self._channels: dict[int, Channel] = {}
         self._topics: dict[Topic, Channel] = {}
         self._watchers: dict[Watch, set[int]] = {}
+        self._last = LastMessages()
         self._graph = replies.EMPTY_GRAPH
         self._client_ids = itertools.count(1)
         self._channel_ids = itertools.count(1)
@@ -55,6 +59,11 @@ class Hub:
     @property
     def channels(self) -> tuple[Channel, ...]:
         return tuple(self._channels.values())
+
+    @property
+    def is_curious(self) -> bool:
+        """Whether a client wants to know what only the nodes themselves can tell."""
+        return any(session.is_curious for session in self._sessions.values())
 
     # -- clients ---------------------------------------------------------------
 
@@ -113,6 +122,8 @@ class Hub:
                 )
                 self._topics[topic] = self._channels[channel.id] = channel
                 added.append(channel)
+                if topic.is_kept:
+                    self._keep(channel)
         if added:
             self._broadcast(replies.advertise(added))
 
@@ -123,10 +134,16 @@ class Hub:
             subscription_id = session.subscription_by_channel[channel_id]
             frame = replies.message_data(subscription_id, stamp_ns, payload)
             session.outbox.put_data(subscription_id, frame)
+        if channel_id in self._last:
+            self._last.take(channel_id, stamp_ns, payload)
+            self._drop_unwatched(watch)
 
     def set_graph(self, graph: Graph) -> None:
         update = replies.graph_update(self._graph, graph)
         self._graph = graph
+        for channel in self._channels.values():
+            if channel.topic not in graph.published:  # who said it is gone
+                self._last.forget(channel.id)
         if update is not None:
             for session in self._sessions.values():
                 if session.wants_graph:
@@ -147,6 +164,8 @@ class Hub:
         """Tell the clients where the recording is; newcomers hear of it too."""
         frame = replies.playback_state(state, did_seek=did_seek, request_id=request_id)
         self._playback = replies.playback_state(state, did_seek=False, request_id="")
+        if did_seek:
+            self._last.forget()
         for session in self._sessions.values():
             if did_seek:  # what still waits is from another place
                 for subscription_id in session.channel_by_subscription:
@@ -169,6 +188,22 @@ class Hub:
             wanted = [p for p in changed if session.wants_parameter(p.name)]
             if wanted:
                 session.send(replies.parameter_values(wanted, None))
+
+    def describe(
+        self, texts: Iterable[ParameterText], client: int | None = None
+    ) -> None:
+        """What parameters mean: to one client, or to all that want to know."""
+        frame = replies.parameter_texts(texts)
+        for session in self._sessions.values():
+            if session.wants_nodes and client in (None, session.id):
+                session.send(frame)
+
+    def set_nodes(self, reports: Iterable[NodeReport], hangs_s: float) -> None:
+        """Tell how the nodes are; only the newest waits for a slow client."""
+        frame = replies.nodes(reports, hangs_s)
+        for session in self._sessions.values():
+            if session.wants_nodes:
+                session.outbox.put_data(_NODES, frame, depth=1)
 
     def complain(self, client: int, message: str, level: Level = Level.ERROR) -> None:
         session = self._sessions.get(client)
@@ -210,9 +245,7 @@ class Hub:
         watch = _watch_of(session, self._channels[channel_id])
         watchers = self._watchers[watch]
         watchers.discard(session.id)
-        if not watchers:
-            del self._watchers[watch]
-            self._robot.unwatch(watch)
+        self._drop_unwatched(watch)
 
     def _add_watcher(self, session: Session, channel: Channel) -> None:
         watch = _watch_of(session, channel)
@@ -220,8 +253,26 @@ class Hub:
         if watchers is None:
             self._watchers[watch] = {session.id}
             self._robot.watch(watch)
-        else:
-            watchers.add(session.id)
+            return
+        watchers.add(session.id)
+        last = self._last.last(channel.id)
+        if last is not None:
+            subscription_id = session.subscription_by_channel[channel.id]
+            frame = replies.message_data(subscription_id, *last)
+            session.outbox.put_data(subscription_id, frame)
+
+    def _keep(self, channel: Channel) -> None:
+        """Listen, though nobody watches yet."""
+        watch = Watch(channel, None)
+        self._last.open(channel.id)
+        self._watchers[watch] = set()
+        self._robot.watch(watch)
+
+    def _drop_unwatched(self, watch: Watch) -> None:
+        """No longer listen to what nobody watches, unless it is kept for newcomers."""
+        if not self._watchers[watch] and watch.channel.id not in self._last:
+            del self._watchers[watch]
+            self._robot.unwatch(watch)
 
     def _advertise(self, session: Session, request: frames.Advertise) -> None:
         for channel in request.channels:
@@ -281,6 +332,14 @@ class Hub:
     def _unwatch_graph(self, session: Session, _request: frames.UnwatchGraph) -> None:
         session.wants_graph = False
 
+    def _watch_nodes(self, session: Session, _request: frames.WatchNodes) -> None:
+        session.wants_nodes = True
+        session.pending += 1
+        self._robot.describe_parameters(session.id)
+
+    def _unwatch_nodes(self, session: Session, _request: frames.UnwatchNodes) -> None:
+        session.wants_nodes = False
+
     def _fetch_asset(self, session: Session, request: frames.FetchAsset) -> None:
         try:
             data = self._assets.read(request.uri)
@@ -316,10 +375,15 @@ class Hub:
     # -- inside ----------------------------------------------------------------
 
     def _remove_channel(self, channel: Channel) -> None:
+        is_kept = channel.id in self._last
+        self._last.close(channel.id)
         for session in self._sessions.values():
             subscription_id = session.subscription_by_channel.get(channel.id)
             if subscription_id is not None:
                 self._unsubscribe(session, subscription_id)
+        watch = Watch(channel, None)
+        if is_kept and watch in self._watchers:  # nobody watched it
+            self._drop_unwatched(watch)
         del self._channels[channel.id]
 
     def _broadcast(self, frame: str | bytes) -> None:
@@ -339,6 +403,8 @@ _HANDLERS: dict[type, Callable[..., None]] = {
     frames.UnwatchParameters: Hub._unwatch_parameters,
     frames.WatchGraph: Hub._watch_graph,
     frames.UnwatchGraph: Hub._unwatch_graph,
+    frames.WatchNodes: Hub._watch_nodes,
+    frames.UnwatchNodes: Hub._unwatch_nodes,
     frames.FetchAsset: Hub._fetch_asset,
     frames.CallService: Hub._call_service,
     frames.ControlPlayback: Hub._control_playback,

@@ -5,7 +5,9 @@ turns the hub's wishes (socket thread) into events of the executor, and what goe
 clients passes through the server's queue. Neither thread waits for the other.
 
 Before any topic exists it shows none; topics appear as the graph changes. A topic
-that no client watches is not subscribed.
+that no client watches is not subscribed, but for those whose last message is kept
+(:mod:`navette.viewer.memory`). Nodes of other processes are asked for their parameters
+and whether they live while a client wants to know.
 """
 
 import importlib.resources
@@ -20,6 +22,8 @@ from navette.errors import NavetteError, ParameterError, UnknownNameError
 from navette.msgs import definition_text, get_interface
 from navette.msgs.rcl_interfaces.msg import ParameterEvent, SetParametersResult
 from navette.params import Params
+from navette.runtime.client import Client
+from navette.runtime.clock import Stopwatch
 from navette.runtime.context import Context
 from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
@@ -32,20 +36,20 @@ from navette.runtime.qos import (
 from navette.runtime.stage import StageNode
 from navette.runtime.subscription import Subscription
 from navette.viewer.assets import AssetFolders
+from navette.viewer.beats import Beats
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
-from navette.viewer.parameters import from_wire, split_name, to_wire, wire_name
+from navette.viewer.parameter_desk import ParameterDesk
 from navette.viewer.params import ViewerParams
 from navette.viewer.playback import Playback
 from navette.viewer.publishing import decode_message
+from navette.viewer.questions import Questions
+from navette.viewer.remote_parameters import LIST, RemoteParameters
 from navette.viewer.server import ViewerServer
 from navette.viewer.session import Watch
 from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
 from navette.viewer.web import Gate, Site
-
-# Parameters of other processes' nodes that are remembered.
-_MOST_TOLD = 10_000
 
 
 class ViewerNode(StageNode):
@@ -76,7 +80,6 @@ class ViewerNode(StageNode):
         self._watched: dict[Watch, Subscription[Any]] = {}
         self._opened: dict[tuple[int, int], tuple[str, Publisher[Any]]] = {}
         self._definitions: dict[str, str | None] = {}
-        self._told: dict[str, WireParameter] = {}
         self._refreshing = False
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
@@ -90,6 +93,7 @@ class ViewerNode(StageNode):
             assets=AssetFolders(asset_folders or {}),
             playback_range=None if playback is None else _range(playback),
         )
+        self._look_after_nodes()
         try:
             self._server = self._make_server()
             self._server.start()
@@ -155,6 +159,7 @@ class ViewerNode(StageNode):
         topics = topics_of(ends, self._definition)
         self._server.call(self._hub.set_topics, topics)
         self._server.call(self._hub.set_graph, graph_of(ends))
+        self._remote.set_nodes(self._serving_elsewhere())
 
     def _frame(self, parameter: str, default: str) -> str:
         """The viewer's own parameter, else what the first node that has it says."""
@@ -191,25 +196,7 @@ class ViewerNode(StageNode):
         return self._definitions[type_name]
 
     def _on_parameter_event(self, event: ParameterEvent) -> None:
-        changed = [
-            _to_wire(event.node, Parameter.from_parameter_msg(parameter))
-            for parameter in (*event.new_parameters, *event.changed_parameters)
-        ]
-        changed += [
-            WireParameter(wire_name(event.node, parameter.name), None)
-            for parameter in event.deleted_parameters
-        ]
-        here = (node.get_fully_qualified_name() for node in self.context.nodes)
-        if event.node not in here:
-            self._remember(changed)
-        self._server.call(self._hub.parameters_changed, changed)
-
-    def _remember(self, told: list[WireParameter]) -> None:
-        for parameter in told:
-            if parameter.value is None:
-                self._told.pop(parameter.name, None)
-            elif len(self._told) < _MOST_TOLD or parameter.name in self._told:
-                self._told[parameter.name] = parameter
+        self.desk.on_event(event)
 
     # -- what clients want (executor thread) ---------------------------------------
 
@@ -252,45 +239,6 @@ class ViewerNode(StageNode):
         if opened is not None:
             encoding, publisher = opened
             publisher.publish(decode_message(encoding, publisher.msg_type, data))
-
-    def get_wire_parameters(self, names: tuple[str, ...]) -> list[WireParameter]:
-        """The named parameters, or all; names that nobody has are left out.
-
-        Of nodes that are not here (elsewhere, or in a recording that is played) as far
-        as they told them.
-        """
-        found = self._told | {
-            parameter.name: parameter
-            for node in self.context.nodes
-            for parameter in _parameters_of(node)
-        }
-        if not names:
-            return list(found.values())
-        wanted = (wire_name(*split_name(name)) for name in names)
-        return [found[name] for name in wanted if name in found]
-
-    def set_wire_parameter(self, wire: WireParameter) -> None:
-        """Set one parameter of any node.
-
-        Raises:
-            ParameterError: no such parameter, or the node refuses the value.
-        """
-        node_name, name = split_name(wire.name)
-        for node in self.context.nodes:
-            if node.get_fully_qualified_name() == node_name and node.has_parameter(
-                name
-            ):
-                break
-        else:
-            raise ParameterError(f"parameter {wire.name!r:.120}: nobody has it")
-        value = from_wire(wire, node.get_parameter(name).value)
-        try:
-            parameter: Parameter[Any] = Parameter(name, value=value)
-        except (TypeError, ValueError) as error:
-            raise ParameterError(f"parameter {wire.name!r}: {error}") from None
-        (result,) = node.set_parameters([parameter])
-        if not result.successful:
-            raise ParameterError(f"parameter {wire.name!r}: {result.reason}")
 
     def control_playback(self, request: ControlPlayback) -> None:
         """Do what a client's playback bar asks for; all clients hear of it."""
@@ -341,13 +289,64 @@ class ViewerNode(StageNode):
         finally:
             self._server.call(self._hub.done, client)
 
-    def send_parameters(
-        self, client: int, names: tuple[str, ...], request_id: str | None
-    ) -> None:
-        values = self.get_wire_parameters(names)
-        self._server.call(self._hub.parameters, client, values, request_id)
-
     # -- inside --------------------------------------------------------------------
+
+    def _look_after_nodes(self) -> None:
+        """What asks the nodes of other processes, and answers for those here."""
+        wall = Stopwatch()
+
+        def now_s() -> float:
+            return wall.elapsed_s
+
+        def call(function: Callable[..., None], *args: Any) -> None:
+            self._server.call(function, *args)
+
+        def client_of(service: str, type_name: str) -> Client:
+            return self.create_client(get_interface(type_name), service)
+
+        questions = Questions(client_of, now_s)
+        self._remote = RemoteParameters(
+            questions,
+            lambda name, value: _parameter(name, value).to_parameter_msg(),
+            now_s,
+            changed=partial(call, self._hub.parameters_changed),
+            described=partial(call, self._hub.describe),
+        )
+        nodes_here = self._context_nodes
+        self.desk = ParameterDesk(self._hub, call, nodes_here, self._remote, _parameter)
+        self._beats = Beats(
+            self._hub,
+            call,
+            self.run_soon,
+            self._who_is_there,
+            questions,
+            self._remote,
+            now_s,
+        )
+
+    def _context_nodes(self) -> list[Node]:
+        return self.context.nodes
+
+    def _who_is_there(self) -> tuple[set[str], dict[str, bool]]:
+        here = {node.get_fully_qualified_name() for node in self.context.nodes}
+        names = {info.full_name for info in self.context.graph.nodes()}
+        others = {name: self._remote.serves(name) for name in names - here}
+        return (
+            {name for name in here if not _is_hidden(name)},
+            {name: asked for name, asked in others.items() if not _is_hidden(name)},
+        )
+
+    def _serving_elsewhere(self) -> dict[str, bytes]:
+        """Nodes of other processes that serve their parameters; an id of each."""
+        here = {node.get_fully_qualified_name() for node in self.context.nodes}
+        return {
+            end.node_full_name: end.gid
+            for end in self.context.graph.service_endpoints()
+            if end.type_name == LIST
+            and end.kind.name == "SERVICE"
+            and end.topic == f"{end.node_full_name}/list_parameters"
+            and end.node_full_name not in here
+        }
 
     def _make_server(self) -> ViewerServer:
         params = self.params
@@ -369,6 +368,7 @@ class ViewerNode(StageNode):
             host=params.host,
             port=params.port,
             now_ns=self._now_ns,
+            on_beat=self._beats.on_beat,
             time_rate_hz=params.time_rate_hz,
             max_clients=params.max_clients,
         )
@@ -407,8 +407,8 @@ class _Bridge:
     def get_parameters(
         self, client: int, names: tuple[str, ...], request_id: str | None
     ) -> None:
-        send = partial(self._node.send_parameters, client, names, request_id)
-        self._ask(client, send)
+        ask = partial(self._node.desk.get, client, names, request_id)
+        self._node.run_soon(ask, "request")
 
     def set_parameters(
         self,
@@ -416,17 +416,12 @@ class _Bridge:
         parameters: tuple[WireParameter, ...],
         request_id: str | None,
     ) -> None:
-        def work() -> None:
-            try:
-                for parameter in parameters:
-                    self._node.set_wire_parameter(parameter)
-            finally:
-                # The values as they are now tell what was taken and what refused.
-                if request_id is not None:
-                    names = tuple(parameter.name for parameter in parameters)
-                    self._node.send_parameters(client, names, request_id)
+        ask = partial(self._node.desk.set, client, parameters, request_id)
+        self._node.run_soon(ask, "request")
 
-        self._ask(client, work)
+    def describe_parameters(self, client: int) -> None:
+        ask = partial(self._node.desk.describe, client)
+        self._node.run_soon(ask, "request")
 
     def control_playback(self, client: int, request: ControlPlayback) -> None:
         self._ask(client, partial(self._node.control_playback, request))
@@ -438,14 +433,15 @@ class _Bridge:
         self._node.run_soon(partial(self._node.answer, client, work), "request")
 
 
-def _parameters_of(node: Node) -> list[WireParameter]:
-    own = node.get_fully_qualified_name()
-    found = node.get_parameters_by_prefix("").values()
-    return [_to_wire(own, parameter) for parameter in found]
+def _parameter(name: str, value: Any) -> Parameter[Any]:
+    try:
+        return Parameter(name, value=value)
+    except (TypeError, ValueError) as error:
+        raise ParameterError(str(error)) from None
 
 
-def _to_wire(node: str, parameter: Parameter[Any]) -> WireParameter:
-    return to_wire(wire_name(node, parameter.name), parameter.value)
+def _is_hidden(name: str) -> bool:
+    return any(part.startswith("_") for part in name.split("/"))
 
 
 def _range(playback: Playback) -> tuple[int, int]:

@@ -44,7 +44,7 @@ class Outbox:
         self.overflowed = self._control_size > self._control_limit
 
     def put_data(
-        self, stream: Hashable, frame: bytes, *, depth: int | None = None
+        self, stream: Hashable, frame: Frame, *, depth: int | None = None
     ) -> None:
         waiting = self._streams.get(stream)
         if waiting is None:
@@ -85,5 +85,5 @@ class _Stream:
     __slots__ = ("frames", "size")
 
     def __init__(self) -> None:
-        self.frames: deque[bytes] = deque()
+        self.frames: deque[Frame] = deque()
         self.size = 0

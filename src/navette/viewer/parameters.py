@@ -4,6 +4,7 @@ import base64
 import binascii
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -99,3 +100,76 @@ def _bytes_of(parameter: WireParameter) -> list[bytes]:
     except (binascii.Error, TypeError, ValueError):
         raise ParameterError(f"parameter {parameter.name!r}: is not base64") from None
     return [bytes([byte]) for byte in data]
+
+
+_FIELDS = {
+    1: "bool_value",
+    2: "integer_value",
+    3: "double_value",
+    4: "string_value",
+    5: "byte_array_value",
+    6: "bool_array_value",
+    7: "integer_array_value",
+    8: "double_array_value",
+    9: "string_array_value",
+}
+
+
+def value_of(message: Any) -> Any:
+    """The value in an rcl_interfaces/msg/ParameterValue; None: unset, or no known type.
+
+    Fields by rcl_interfaces/msg/ParameterType.
+    """
+    name = _FIELDS.get(message.type)
+    value = None if name is None else getattr(message, name)
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value
+
+
+_LONGEST_TEXT = 500
+
+
+@dataclass(frozen=True)
+class ParameterText:
+    """What a parameter means and takes, as its node describes it.
+
+    Args:
+        name: as :func:`wire_name` makes it.
+        meaning: a line of text.
+        allowed: the values that it takes, in words.
+        read_only: it cannot be set.
+        low, high: ends of its range, where it has one.
+        step: of the range; 0: any value in it.
+    """
+
+    name: str
+    meaning: str = ""
+    allowed: str = ""
+    read_only: bool = False
+    low: float | None = None
+    high: float | None = None
+    step: float = 0.0
+
+    @classmethod
+    def of(cls, name: str, descriptor: Any) -> "ParameterText":
+        """Of an rcl_interfaces/msg/ParameterDescriptor; a range that is none is left
+        out."""
+        low = high = None
+        step = 0.0
+        for bounds in (*descriptor.floating_point_range, *descriptor.integer_range):
+            ends = float(bounds.from_value), float(bounds.to_value)
+            # An infinity in JSON would be unreadable.
+            if all(map(math.isfinite, ends)) and ends[0] < ends[1]:
+                low, high = ends
+                width = float(bounds.step)
+                step = width if 0.0 < width <= high - low else 0.0
+        return cls(
+            name,
+            descriptor.description[:_LONGEST_TEXT],
+            descriptor.additional_constraints[:_LONGEST_TEXT],
+            bool(descriptor.read_only),
+            low,
+            high,
+            step,
+        )

@@ -7,11 +7,13 @@ playback control the SDK's (foxglove/foxglove-sdk, rust/foxglove/src/protocol).
 import json
 import struct
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import IntEnum
 from typing import Any
 
 from navette.viewer.frames import WireParameter
+from navette.viewer.heartbeats import NodeReport
+from navette.viewer.parameters import ParameterText
 from navette.viewer.playback import PlaybackState
 
 # A capability that is declared must work; playback control is declared by who plays.
@@ -183,6 +185,19 @@ def _changed(
     old: Mapping[str, tuple[str, ...]], new: Mapping[str, tuple[str, ...]]
 ) -> dict[str, tuple[str, ...]]:
     return {topic: nodes for topic, nodes in new.items() if old.get(topic) != nodes}
+
+
+def nodes(reports: Iterable[NodeReport], hangs_s: float) -> str:
+    """``hangs_s``: how long the program has run no callback, where that is long."""
+    document = [
+        {"name": each.name, "state": each.state, "since": round(each.since_s, 1)}
+        for each in reports
+    ]
+    return _json(op="nodes", nodes=document, hangs=round(hangs_s, 1))
+
+
+def parameter_texts(texts: Iterable[ParameterText]) -> str:
+    return _json(op="parameterTexts", parameters=[asdict(text) for text in texts])
 
 
 def asset(request_id: int, data: bytes) -> bytes:

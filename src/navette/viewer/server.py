@@ -23,6 +23,7 @@ from websockets.typing import Subprotocol
 
 from navette.errors import InvalidValueError, NavetteError
 from navette.viewer.frames import SUBPROTOCOLS
+from navette.viewer.heartbeats import PERIOD_S
 from navette.viewer.hub import Hub
 from navette.viewer.offers import OfferQueue
 from navette.viewer.outbox import Outbox
@@ -49,6 +50,7 @@ class ViewerServer:
         host: address to bind.
         port: TCP port; 0 takes a free one, see :attr:`port`.
         now_ns: the program's time, asked from the socket thread.
+        on_beat: called there every ``PERIOD_S`` of wall time.
     """
 
     def __init__(
@@ -60,6 +62,7 @@ class ViewerServer:
         host: str,
         port: int,
         now_ns: Callable[[], int],
+        on_beat: Callable[[], None],
         time_rate_hz: float,
         max_clients: int,
     ) -> None:
@@ -69,6 +72,7 @@ class ViewerServer:
         self._host = host
         self.port = port
         self._now_ns = now_ns
+        self._on_beat = on_beat
         self._tick_s = 1.0 / time_rate_hz
         self._max_clients = max_clients
         self._loop = asyncio.new_event_loop()
@@ -148,6 +152,7 @@ class ViewerServer:
         self.port = _port_of(server)
         self._started.set_result(None)
         self._tick()
+        self._beat()
         await self._stop.wait()
         await self._end(server)
 
@@ -220,6 +225,12 @@ class ViewerServer:
             self._wake_clients()
         if not self._stop.is_set():
             self._loop.call_later(self._tick_s, self._tick)
+
+    def _beat(self) -> None:
+        self._on_beat()
+        self._wake_clients()
+        if not self._stop.is_set():
+            self._loop.call_later(PERIOD_S, self._beat)
 
 
 def _offers_subprotocol(headers: Headers) -> bool:

@@ -5,6 +5,7 @@ from typing import Protocol
 
 from navette.viewer import replies
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
+from navette.viewer.memory import STATE_TYPES
 from navette.viewer.outbox import Outbox
 from navette.viewer.replies import Channel, Level
 
@@ -17,6 +18,11 @@ class Topic:
     type_name: str
     definition: str
     latched: bool = False
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether newcomers are given the last message from here."""
+        return not self.latched and self.type_name in STATE_TYPES
 
 
 @dataclass(frozen=True)
@@ -52,6 +58,7 @@ class Robot(Protocol):
         parameters: tuple[WireParameter, ...],
         request_id: str | None,
     ) -> None: ...
+    def describe_parameters(self, client: int) -> None: ...
     def control_playback(self, client: int, request: ControlPlayback) -> None: ...
     def step_playback(self, client: int) -> None: ...
 
@@ -68,6 +75,7 @@ class Session:
     parameter_names: set[str] = field(default_factory=set)
     all_parameters: bool = False
     wants_graph: bool = False
+    wants_nodes: bool = False
     pending: int = 0
 
     def send(self, frame: str | bytes) -> None:
@@ -75,6 +83,11 @@ class Session:
 
     def complain(self, message: str, level: Level = Level.ERROR) -> None:
         self.send(replies.status(level, message))
+
+    @property
+    def is_curious(self) -> bool:
+        """Whether it wants to know of what only the nodes themselves can tell."""
+        return self.wants_nodes or self.all_parameters or bool(self.parameter_names)
 
     def wants_parameter(self, name: str) -> bool:
         return self.all_parameters or name in self.parameter_names

@@ -42,6 +42,9 @@ class RecordingRobot:
     ) -> None:
         self.calls.append(("set", client, parameters, request_id))
 
+    def describe_parameters(self, client: int) -> None:
+        self.calls.append(("describe", client))
+
     def control_playback(self, client: int, request: ControlPlayback) -> None:
         self.calls.append(("playback", client, request))
 

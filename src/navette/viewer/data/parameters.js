@@ -3,58 +3,80 @@
 
 const parameters = {
   values: new Map(), // "/node.name" → { value, type }
-  rows: new Map(),   // "/node.name" → { input, slider }
-  node: null,
+  texts: new Map(),  // "/node.name" → { meaning, allowed, read_only, low, high, step }
+  rows: new Map(),   // "/node.name" → { input, slider, refusal }
+  node: null,        // as a person chose it; it may be gone for a while
 
   /** @param set called with the full name, the value and its wire type */
   start(select, table, set) {
     this.select = select; this.table = table; this.set = set;
     select.onchange = () => { this.node = select.value; this.list(); };
   },
-  clear() { this.values.clear(); this.list(); },
+  clear() { this.values.clear(); this.texts.clear(); this.list(); },
 
   take(list) {
     let isNew = false;
     for (const { name, value, type } of list) {
-      if (value === undefined) { isNew ||= this.values.delete(name); continue; }
-      isNew ||= !this.values.has(name);
+      if (value === undefined) { isNew = this.values.delete(name) || isNew; continue; }
+      isNew = !this.values.has(name) || isNew;
       this.values.set(name, { value, type });
       if (!isNew) this.show(name);
     }
     if (isNew) this.list();
   },
-
-  list() {
-    const nodes = [...new Set([...this.values.keys()].map((name) => name.slice(0, name.indexOf("."))))].sort();
-    if (!nodes.includes(this.node)) this.node = nodes.find((name) => name === "/control") ?? nodes[0] ?? null;
-    this.select.replaceChildren(...nodes.map((name) => new Option(name, name, false, name === this.node)));
-    const names = [...this.values.keys()].filter((name) => name.startsWith(`${this.node}.`) && !name.endsWith(".use_sim_time")).sort();
-    this.rows.clear();
-    this.table.replaceChildren(...names.map((name) => this.row(name)));
+  /** What parameters mean and which values they take. */
+  describe(list) {
+    for (const text of list) this.texts.set(text.name, text);
+    if (list.some(({ name }) => this.rows.has(name)) && !this.table.contains(document.activeElement)) this.list();
   },
 
-  row(name) {
-    const { value } = this.values.get(name), line = document.createElement("tr");
-    line.insertCell().textContent = name.slice(this.node.length + 1);
-    const input = document.createElement("input"), cell = line.insertCell(), side = line.insertCell();
-    const row = { input };
+  list() {
+    const names = [...this.values.keys()], nodes = [...new Set(names.map(nodeOf))].sort();
+    this.node ??= nodes.find((name) => name === "/control") ?? null;
+    const shown = this.node ?? nodes[0] ?? null;
+    const options = nodes.map((name) => new Option(name, name, false, name === shown));
+    if (shown !== null && !nodes.includes(shown)) options.push(new Option(`${shown} (gone)`, shown, true, true));
+    this.select.replaceChildren(...options);
+    this.select.hidden = options.length === 0;
+    this.rows.clear();
+    const own = names.filter((name) => nodeOf(name) === shown && !name.endsWith(".use_sim_time")).sort();
+    this.table.replaceChildren(...own.map((name) => this.row(name, shown)));
+  },
+
+  row(name, node) {
+    const { value } = this.values.get(name), text = this.texts.get(name) ?? {}, line = document.createElement("tr");
+    line.title = [text.meaning, text.allowed && `Allowed: ${text.allowed}`, text.read_only && "Read only"].filter(Boolean).join("\n");
+    line.insertCell().textContent = name.slice(node.length + 1);
+    const choices = typeof value === "string" && /^one of (.+)/.exec(text.allowed ?? "")?.[1].split(", ");
+    const input = document.createElement(choices ? "select" : "input"), cell = line.insertCell(), side = line.insertCell();
+    const row = { input, refusal: Object.assign(document.createElement("p"), { className: "hint bad", hidden: true }) };
     input.setAttribute("aria-label", name);
-    input.type = typeof value === "boolean" ? "checkbox" : "text";
+    if (choices) input.append(...choices.map((choice) => new Option(choice)));
+    else input.type = typeof value === "boolean" ? "checkbox" : "text";
+    input.disabled = Boolean(text.read_only);
     input.onchange = () => this.send(name, input.type === "checkbox" ? input.checked : input.value);
     if (typeof value === "number") {
-      const most = value === 0 ? 1 : 2 * Math.abs(value), whole = this.isWhole(name);
-      row.slider = Object.assign(document.createElement("input"), {
-        type: "range", min: value < 0 ? -most : 0, max: most, step: whole ? 1 : most / 200,
-      });
-      row.slider.setAttribute("aria-label", `${name}, slider`);
-      row.slider.oninput = () => { input.value = this.text(Number(row.slider.value)); };
-      row.slider.onchange = () => this.send(name, row.slider.value);
+      row.slider = this.slider(name, text, input);
       cell.append(row.slider);
     }
-    side.append(input);
+    side.append(input, row.refusal);
     this.rows.set(name, row);
     this.show(name);
     return line;
+  },
+
+  /** Over the range that the node tells, or from nothing to twice the value. */
+  slider(name, { low, high, step, read_only }, input) {
+    const { value } = this.values.get(name), whole = this.isWhole(name);
+    const most = value === 0 ? 1 : 2 * Math.abs(value), has = Number.isFinite(low) && Number.isFinite(high);
+    const [min, max] = has ? [low, high] : [value < 0 ? -most : 0, most];
+    const slider = Object.assign(document.createElement("input"), {
+      type: "range", min, max, step: step || (whole ? 1 : (max - min) / 200), disabled: Boolean(read_only),
+    });
+    slider.setAttribute("aria-label", `${name}, slider`);
+    slider.oninput = () => { input.value = this.text(Number(slider.value)); };
+    slider.onchange = () => this.send(name, slider.value);
+    return slider;
   },
 
   isWhole(name) {
@@ -68,20 +90,33 @@ const parameters = {
     if (!row || document.activeElement === row.slider) return;
     const { value } = this.values.get(name);
     if (typeof value === "boolean") row.input.checked = value;
-    else if (document.activeElement !== row.input) row.input.value = this.text(value);
+    else if (document.activeElement !== row.input || row.input.tagName === "SELECT") row.input.value = this.text(value);
     if (row.slider) row.slider.value = value;
   },
 
   /** What was typed, as the kind of value that the parameter has. */
   send(name, typed) {
-    const { value, type } = this.values.get(name);
+    const { value, type } = this.values.get(name), row = this.rows.get(name);
     let wanted = typed;
+    row.refusal.hidden = true;
     if (typeof value === "number") {
       wanted = Number(String(typed).trim().replace(",", ".").replace("−", "-"));
-      if (!Number.isFinite(wanted)) return this.show(name);
+      if (!Number.isFinite(wanted)) return this.refuse(name, `${typed} is no number`);
     } else if (typeof value === "object") {
-      try { wanted = JSON.parse(typed); } catch { return this.show(name); }
+      try { wanted = JSON.parse(typed); } catch { return this.refuse(name, "no list: [1, 2]"); }
     }
     this.set(name, wanted, type);
   },
+  /** Why it was not set, beside it, and what it is instead; false where it is not shown. */
+  refuse(name, reason) {
+    const row = this.rows.get(name);
+    if (!row) return false;
+    row.refusal.textContent = reason;
+    row.refusal.hidden = false;
+    const { value } = this.values.get(name);
+    if (typeof value === "boolean") row.input.checked = value; else row.input.value = this.text(value);
+    if (row.slider) row.slider.value = value;
+    return true;
+  },
 };
+const nodeOf = (name) => name.slice(0, name.indexOf("."));

@@ -32,6 +32,11 @@ const playback = {
     if (plays) { this.begin = ns(dataStartTime); this.end = ns(dataEndTime); }
     this.bar.hidden = !plays;
   },
+  get isThere() { return !this.bar.hidden; },
+  /** How it goes, in words. */
+  get said() {
+    return ["Playing a recording", "Recording, paused", "Recording, loading", "Recording, at its end"][this.status] ?? "A recording";
+  },
   leave() { this.bar.hidden = true; this.status = this.seeking = null; },
 
   /** A playback state frame. */

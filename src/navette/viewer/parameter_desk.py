@@ -1,0 +1,185 @@
+"""What clients see and set of the parameters of all nodes, here and elsewhere.
+
+All methods belong to the executor's thread; answers go to the hub by its ``call``.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any, Protocol
+
+from navette.errors import ParameterError
+from navette.viewer.frames import WireParameter
+from navette.viewer.hub import Hub
+from navette.viewer.parameters import (
+    ParameterText,
+    from_wire,
+    split_name,
+    to_wire,
+    value_of,
+    wire_name,
+)
+from navette.viewer.remote_parameters import RemoteParameters
+
+Call = Callable[..., None]
+"""Runs a method of the hub on the socket thread."""
+
+
+class LocalNode(Protocol):
+    """What is needed of a node of this process."""
+
+    def get_fully_qualified_name(self) -> str: ...
+    def has_parameter(self, name: str) -> bool: ...
+    def get_parameter(self, name: str) -> Any: ...
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Any]: ...
+    def describe_parameters(self, names: list[str]) -> list[Any]: ...
+    def set_parameters(self, parameters: list[Any]) -> Sequence[Any]: ...
+
+
+class ParameterDesk:
+    """Answers clients' requests about parameters.
+
+    Args:
+        nodes: those of this process, now.
+        remote: knows those of other processes.
+        parameter: makes a parameter of name and value; ParameterError for no value.
+    """
+
+    def __init__(
+        self,
+        hub: Hub,
+        call: Call,
+        nodes: Callable[[], Iterable[LocalNode]],
+        remote: RemoteParameters,
+        parameter: Callable[[str, Any], Any],
+    ) -> None:
+        self._hub = hub
+        self._call = call
+        self._nodes = nodes
+        self._remote = remote
+        self._parameter = parameter
+
+    def get(self, client: int, names: tuple[str, ...], request_id: str | None) -> None:
+        """Send the named parameters, or all, once all nodes have answered.
+
+        Names that nobody has are left out; so are nodes that do not answer.
+        """
+
+        def send() -> None:
+            self._send(client, names, request_id)
+            self._call(self._hub.done, client)
+
+        for name in names:
+            try:
+                split_name(name)
+            except ParameterError as error:
+                self._call(self._hub.complain, client, str(error))
+        self._remote.fetch(send)
+
+    def set(
+        self,
+        client: int,
+        parameters: tuple[WireParameter, ...],
+        request_id: str | None,
+    ) -> None:
+        """Set some, of any nodes; the client is told what was refused, and why."""
+        left = len(parameters)
+
+        def end() -> None:
+            # The values as they are now tell what was taken and what refused.
+            if request_id is not None:
+                names = tuple(parameter.name for parameter in parameters)
+                self._send(client, names, request_id)
+            self._call(self._hub.done, client)
+
+        def one_is_done(name: str, reason: str) -> None:
+            nonlocal left
+            left -= 1
+            if reason:
+                # A page tells by the first words where it belongs.
+                is_whole = reason.startswith("parameter ") and name in reason
+                text = reason if is_whole else f"parameter {name!r:.120}: {reason}"
+                self._call(self._hub.complain, client, text)
+            if not left:
+                end()
+
+        for wire in parameters:
+            self._set_one(wire, partial(one_is_done, wire.name))
+        if not parameters:
+            end()
+
+    def describe(self, client: int) -> None:
+        """Tell what parameters mean, as far as it is known now."""
+        texts = [text for node in self._nodes() for text in _texts_of(node)]
+        texts += self._remote.texts.values()
+        self._call(self._hub.describe, texts, client)
+        self._call(self._hub.done, client)
+
+    def on_event(self, event: Any) -> None:
+        """An rcl_interfaces/msg/ParameterEvent."""
+        changed = (*event.new_parameters, *event.changed_parameters)
+        values = [(each.name, each.value) for each in changed]
+        deleted = [each.name for each in event.deleted_parameters]
+        if self._node_here(event.node) is None:
+            self._remote.take(event.node, values)
+            self._remote.drop(event.node, deleted)
+            return
+        told = [to_wire(wire_name(event.node, n), value_of(v)) for n, v in values]
+        told += [WireParameter(wire_name(event.node, n), None) for n in deleted]
+        self._call(self._hub.parameters_changed, told)
+
+    def _send(
+        self, client: int, names: tuple[str, ...], request_id: str | None
+    ) -> None:
+        found = self._remote.values | {
+            parameter.name: parameter
+            for node in self._nodes()
+            for parameter in _parameters_of(node)
+        }
+        wanted = [n if n.startswith("/") else f"/{n}" for n in names] or list(found)
+        values = [found[name] for name in wanted if name in found]
+        self._call(self._hub.parameters, client, values, request_id)
+
+    def _set_one(self, wire: WireParameter, done: Callable[[str], None]) -> None:
+        """``done`` takes why it was not set."""
+        try:
+            node_name, name = split_name(wire.name)
+            node = self._node_here(node_name)
+            if node is not None and node.has_parameter(name):
+                self._set_here(node, name, wire)
+            elif self._remote.serves(node_name):
+                whole = replace(wire, name=wire_name(node_name, name))
+                self._remote.set(whole, done)
+                return
+            else:
+                raise ParameterError("nobody has it")
+        except ParameterError as error:
+            done(str(error))
+        else:
+            done("")
+
+    def _set_here(self, node: LocalNode, name: str, wire: WireParameter) -> None:
+        """Raises ParameterError with the node's reason."""
+        value = from_wire(wire, node.get_parameter(name).value)
+        (result,) = node.set_parameters([self._parameter(name, value)])
+        if not result.successful:
+            raise ParameterError(result.reason or "refused")
+
+    def _node_here(self, full_name: str) -> LocalNode | None:
+        for node in self._nodes():
+            if node.get_fully_qualified_name() == full_name:
+                return node
+        return None
+
+
+def _parameters_of(node: LocalNode) -> list[WireParameter]:
+    own = node.get_fully_qualified_name()
+    found = node.get_parameters_by_prefix("").values()
+    return [to_wire(wire_name(own, each.name), each.value) for each in found]
+
+
+def _texts_of(node: LocalNode) -> list[ParameterText]:
+    own = node.get_fully_qualified_name()
+    names = list(node.get_parameters_by_prefix(""))
+    found = zip(names, node.describe_parameters(names), strict=True)
+    return [ParameterText.of(wire_name(own, name), text) for name, text in found]
