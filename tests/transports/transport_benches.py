@@ -14,6 +14,7 @@ from navette.runtime.clock import Stopwatch
 from navette.transports import (
     Encoded,
     Endpoint,
+    Expiring,
     InProcessTransport,
     Item,
     NodeInfo,
@@ -49,6 +50,8 @@ def zenoh_environment(router: str, **more: str) -> dict[str, str]:
 def message_of(item: Item) -> Any:
     """The message of a delivered sample, decoded if it came as bytes."""
     message = item[0]
+    if isinstance(message, Expiring):
+        message = message.message
     return message.decode() if isinstance(message, Encoded) else message
 
 

@@ -30,17 +30,30 @@ _OPPOSITE = {
 class Matches:
     """The remote endpoints that an endpoint here exchanges samples with.
 
-    ``remotes`` (by token) and ``refused`` (gids of those whose QoS does not fit) change
-    while others read them.
+    ``remotes`` (by token), ``by_gid`` (the same) and ``refused`` (gids of those whose
+    QoS does not fit) change while others read them.
     """
 
-    __slots__ = ("endpoint", "refused", "remotes", "type_hash")
+    __slots__ = ("by_gid", "endpoint", "refused", "remotes", "type_hash")
 
     def __init__(self, endpoint: Endpoint, type_hash: str) -> None:
         self.endpoint = endpoint
         self.type_hash = type_hash
         self.remotes: dict[str, Endpoint] = {}
+        self.by_gid: dict[bytes, Endpoint] = {}
         self.refused: set[bytes] = set()
+
+    def add(self, key: str, remote: Endpoint) -> None:
+        """One more, by its token."""
+        self.remotes[key] = remote
+        self.by_gid[remote.gid] = remote
+
+    def remove(self, key: str) -> bool:
+        """Whether it was one of them."""
+        remote = self.remotes.pop(key, None)
+        if remote is not None:
+            self.by_gid.pop(remote.gid, None)
+        return remote is not None
 
 
 class RemoteGraph:
@@ -130,6 +143,7 @@ class RemoteGraph:
             for remote in matches.remotes.values():
                 self._queue_match(matches.endpoint, remote, up=False)
             matches.remotes.clear()
+            matches.by_gid.clear()
         self._tell()
 
     # -- inside, under the lock --------------------------------------------------
@@ -199,7 +213,7 @@ class RemoteGraph:
         opposite = _OPPOSITE[endpoint.kind], endpoint.topic
         for matches in self._locals.get(opposite, ()):
             matches.refused.discard(endpoint.gid)
-            if matches.remotes.pop(key, None) is not None:
+            if matches.remove(key):
                 self._queue_match(matches.endpoint, endpoint, up=False)
 
     def _meet(self, matches: Matches, key: str, remote: Endpoint) -> None:
@@ -212,12 +226,12 @@ class RemoteGraph:
         if local.kind in (EndpointKind.SERVICE, EndpointKind.CLIENT):
             short += incompatible_policies(subscription.qos, publisher.qos)
             if not short:
-                matches.remotes[key] = remote
+                matches.add(key, remote)
         elif short:
             matches.refused.add(remote.gid)
             self._queue("incompatible_qos", publisher, subscription, short)
         else:
-            matches.remotes[key] = remote
+            matches.add(key, remote)
             self._queue_match(local, remote, up=True)
 
     def _queue_match(self, local: Endpoint, remote: Endpoint, *, up: bool) -> None:

@@ -8,8 +8,9 @@ import zenoh
 from zenoh import ext
 
 from navette.errors import DecodeError
-from navette.transports.base import Item, Sink, SubscriptionPort
+from navette.transports.base import Endpoint, Item, Sink, SubscriptionPort
 from navette.transports.encoded import Encoded
+from navette.transports.expiring import Lifespans
 from navette.transports.lockstep import Holding
 from navette.transports.qos import EndpointQos
 from navette.transports.zenoh.attachment import decode_attachment
@@ -44,6 +45,7 @@ class ZenohSubscription(SubscriptionPort):
         "_holding",
         "_is_open",
         "_last",
+        "_lifespans",
         "_longest",
         "_lost",
         "_message_class",
@@ -82,6 +84,7 @@ class ZenohSubscription(SubscriptionPort):
         self._now_ns = now_ns
         self._closed = closed
         self._holding = holding
+        self._lifespans = Lifespans(matches.by_gid, self._complain_of_age)
         #: Newest sequence number of each publisher, by gid.
         self._last: dict[bytes, int] = {}
         # Samples may come before the declaration returns.
@@ -116,6 +119,7 @@ class ZenohSubscription(SubscriptionPort):
         if gid in self._own_gids or gid in self.matches.refused:
             return
         self._heard.last_ns = item[2]
+        item = self._lifespans.limited(gid, item)
         if self._holding is not None:
             self._holding.take(gid, item)
         elif self._is_next(gid, item[3]):
@@ -155,6 +159,12 @@ class ZenohSubscription(SubscriptionPort):
             del self._last[next(iter(self._last))]
         self._last[gid] = sequence
         return True
+
+    def _complain_of_age(self, publisher: Endpoint, text: str) -> None:
+        topic = self.matches.endpoint.topic
+        self._complaints.once(
+            ("age", topic, publisher.gid.hex()), f"topic {topic}: {text}"
+        )
 
     def _complain(self, peer: str, error: DecodeError) -> None:
         topic = self.matches.endpoint.topic
