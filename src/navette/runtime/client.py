@@ -16,6 +16,7 @@ from navette.runtime.exceptions import (
     InvalidHandle,
     ROSInterruptException,
     ServiceFailedError,
+    ServiceTimeoutError,
 )
 from navette.runtime.future import Future
 from navette.runtime.qos import QoSProfile
@@ -202,8 +203,9 @@ class Client:
         if future is None:
             return
         if reply.message is None:
+            error = ServiceTimeoutError if reply.timed_out else ServiceFailedError
             future.set_exception(
-                ServiceFailedError(f"service {self.srv_name} failed: {reply.failure}")
+                error(f"service {self.srv_name} failed: {reply.failure}")
             )
         else:
             self._events.report(

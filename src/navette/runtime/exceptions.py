@@ -38,6 +38,10 @@ class ServiceFailedError(NavetteError, RuntimeError):
     """A service's callback raised: there will be no response to the request."""
 
 
+class ServiceTimeoutError(ServiceFailedError, TimeoutError):
+    """A server in another process has not answered in the time that is waited for."""
+
+
 class ShutdownException(NavetteError):
     """The executor was shut down."""
 

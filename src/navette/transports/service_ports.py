@@ -22,11 +22,15 @@ class Request(NamedTuple):
 
 
 class Reply(NamedTuple):
-    """One reply as the client gets it; without a message, why there is none."""
+    """One reply as the client gets it; without a message, why there is none.
+
+    ``timed_out``: nobody answered in the time that the transport waits.
+    """
 
     message: Any
     sequence: int
     failure: str = ""
+    timed_out: bool = False
 
 
 RequestSink = Callable[[Request], None]

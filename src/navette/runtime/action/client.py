@@ -12,6 +12,7 @@ from navette.msgs.action_msgs.srv import CancelGoal
 from navette.msgs.builtin_interfaces.msg import Time as TimeMsg
 from navette.msgs.unique_identifier_msgs.msg import UUID
 from navette.runtime.action.goal_states import STATUS_NAMES, is_active
+from navette.runtime.action.result_request import ResultRequest
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.exceptions import ROSInterruptException
 from navette.runtime.future import Future
@@ -209,9 +210,11 @@ class ActionClient(Waitable[Any]):
         """See :meth:`ClientGoalHandle.get_result_async`."""
         key = bytes(goal_handle.goal_id.uuid)
         request = self._action_type.Impl.GetResultService.Request
-        future: Future[Any] = self._result_client.call_async(
-            request(goal_id=goal_handle.goal_id)
-        )
+        future = ResultRequest(
+            self._result_client,
+            request(goal_id=goal_handle.goal_id),
+            self._loop.clock,
+        ).future
         future.add_done_callback(lambda _: self._feedback_callbacks.pop(key, None))
         return future
 

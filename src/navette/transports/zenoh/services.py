@@ -24,9 +24,9 @@ from navette.transports.zenoh.heard import Heard
 
 # Requests that wait for an answer at one server; more are refused.
 _MOST_PENDING = 100_000
-# An action's result may take as long as the action does.
-_LONGEST_S, _LONGEST_RESULT_S = 600.0, 1e7
 _LONGEST_REASON = 2000
+# What Zenoh tells in place of a reply when the time is over.
+_TIMEOUT = b"Timeout"
 
 
 class ZenohService(ServicePort):
@@ -144,6 +144,8 @@ class ZenohClient(ClientPort):
 
     Args:
         gid: as hashed from the liveliness token.
+        timeout_s: so long an answer is waited for. Zenoh keeps 0.8 kB of every request
+            until then, also of one that has been answered.
         closed: called once when the port is closed.
     """
 
@@ -155,6 +157,7 @@ class ZenohClient(ClientPort):
         "_longest",
         "_session",
         "_sink",
+        "_timeout_s",
         "matches",
     )
 
@@ -168,6 +171,7 @@ class ZenohClient(ClientPort):
         *,
         complaints: Complaints,
         max_message_bytes: int,
+        timeout_s: float,
         closed: Callable[["ZenohClient"], None],
     ) -> None:
         self.matches = matches
@@ -177,6 +181,7 @@ class ZenohClient(ClientPort):
         self._sink = sink
         self._complaints = complaints
         self._longest = max_message_bytes
+        self._timeout_s = timeout_s
         self._closed = closed
 
     def request(self, message: Any, source_ns: int, sequence: int) -> None:
@@ -195,13 +200,12 @@ class ZenohClient(ClientPort):
             if not answered and self._session is not None:
                 self._sink(Reply(None, sequence, "the server went away"))
 
-        is_result = self.matches.endpoint.topic.endswith("/_action/get_result")
         self._session.get(
             self._key,
             zenoh.handlers.Callback(on_reply, on_end, indirect=False),
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
-            timeout=_LONGEST_RESULT_S if is_result else _LONGEST_S,
+            timeout=self._timeout_s,
             payload=serialize(message),
             attachment=attachment.encode(),
             allowed_destination=zenoh.Locality.REMOTE,
@@ -221,6 +225,8 @@ class ZenohClient(ClientPort):
 
     def _reply(self, reply: zenoh.Reply, sequence: int) -> Reply:
         if reply.err is not None:
+            if reply.err.payload.to_bytes() == _TIMEOUT:
+                return Reply(None, sequence, self._time_is_over(), timed_out=True)
             text = reply.err.payload.to_bytes()[:_LONGEST_REASON]
             return Reply(None, sequence, text.decode(errors="replace"))
         try:
@@ -230,6 +236,9 @@ class ZenohClient(ClientPort):
             text_ = f"service {name}: reply ignored: {error}"
             self._complaints.once(("reply", name), text_)
             return Reply(None, sequence, f"malformed reply: {error}")
+
+    def _time_is_over(self) -> str:
+        return f"no answer in {self._timeout_s:g} s (NAVETTE_SERVICE_TIMEOUT)"
 
     def _checked(self, sample: zenoh.Sample | None, sequence: int) -> Any:
         if sample is None or sample.attachment is None:

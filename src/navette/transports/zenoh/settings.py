@@ -1,5 +1,6 @@
 """What the environment says about the network; loopback only where it says nothing."""
 
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ DEFAULT_LISTEN = "tcp/127.0.0.1:0"
 SECURE_ROUTER = "tls/127.0.0.1:7447"
 SECURE_LISTEN = "tls/127.0.0.1:0"
 DEFAULT_MAX_MESSAGE_BYTES = 128 * 1024 * 1024
+DEFAULT_SERVICE_TIMEOUT_S = 600.0
+_SERVICE_TIMEOUTS_S = 0.1, 1e7
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,8 @@ class Settings:
         explicit: which of ``router`` and ``listen`` were asked for: they win over
             what a file says.
         max_message_bytes: longer messages of others are rejected.
+        service_timeout_s: so long an answer of another process is waited for; an
+            action's result is asked for again then.
         security: credentials that every link is asked for; None: none.
     """
 
@@ -36,6 +41,7 @@ class Settings:
     router_file: Path | None = None
     explicit: frozenset[str] = frozenset()
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
+    service_timeout_s: float = DEFAULT_SERVICE_TIMEOUT_S
     security: Path | None = None
 
     @classmethod
@@ -44,7 +50,8 @@ class Settings:
     ) -> "Settings":
         """Read ``NAVETTE_ROUTER``, ``NAVETTE_LISTEN`` (several apart by commas),
         ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_ROUTER_CONFIG_URI``,
-        ``NAVETTE_SECURITY`` and ``NAVETTE_MAX_MESSAGE_BYTES``.
+        ``NAVETTE_SECURITY``, ``NAVETTE_MAX_MESSAGE_BYTES`` and
+        ``NAVETTE_SERVICE_TIMEOUT``.
 
         Raises:
             InvalidValueError: names variable, value and what is allowed.
@@ -64,6 +71,9 @@ class Settings:
             explicit=frozenset(name for name, value in asked.items() if value),
             max_message_bytes=_positive(
                 environment, "NAVETTE_MAX_MESSAGE_BYTES", DEFAULT_MAX_MESSAGE_BYTES
+            ),
+            service_timeout_s=_seconds(
+                environment, "NAVETTE_SERVICE_TIMEOUT", DEFAULT_SERVICE_TIMEOUT_S
             ),
         )
 
@@ -98,3 +108,19 @@ def _positive(environment: Mapping[str, str], name: str, default: int) -> int:
     if not (text.isascii() and text.isdigit() and int(text) > 0):
         raise InvalidValueError(f"{name} {text!r}: wanted a number of bytes > 0")
     return int(text)
+
+
+def _seconds(environment: Mapping[str, str], name: str, default: float) -> float:
+    text = environment.get(name, "")
+    if not text:
+        return default
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    least, most = _SERVICE_TIMEOUTS_S
+    if not least <= seconds <= most:  # not a number is neither
+        raise InvalidValueError(
+            f"{name} {text!r}: wanted a number of seconds from {least:g} to {most:g}"
+        )
+    return seconds

@@ -169,7 +169,10 @@ class ZenohTransport(Transport):
         def make(token: EndpointToken, matches: Matches) -> ZenohClient:
             key, session = self._key(token), self.session.zenoh
             gid = gid_of(token.key())
-            return ZenohClient(session, key, gid, sink, matches, **self._common())
+            timeout_s = self.session.settings.service_timeout_s
+            return ZenohClient(
+                session, key, gid, sink, matches, timeout_s=timeout_s, **self._common()
+            )
 
         return self._open(endpoint, make)
 
@@ -208,7 +211,7 @@ class ZenohTransport(Transport):
         return self._traffic.held.open(
             endpoint.topic,
             sink,
-            lambda: {e.gid: e for e in list(matches.remotes.values())},
+            lambda: dict(matches.by_gid),
             is_latched=endpoint.qos.is_latched,
             depth=endpoint.qos.queue_length,
         )

@@ -1,0 +1,134 @@
+"""Answers that do not come in time, and results that take longer than that."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from transport_benches import ZenohPair, free_endpoint, until
+
+from navette import ActionClient, ActionServer, Context, Future, Node
+from navette.errors import InvalidValueError
+from navette.msgs.example_interfaces.action import Fibonacci
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.runtime import Executor
+from navette.runtime.exceptions import ServiceTimeoutError
+from navette.transports import Endpoint, EndpointKind, EndpointQos, Reply, Request
+from navette.transports.zenoh import Settings
+
+TIMEOUT_S = 0.2
+
+
+@pytest.fixture
+def pair() -> Iterator[ZenohPair]:
+    pair = ZenohPair(service_timeout_s=TIMEOUT_S)
+    yield pair
+    pair.close()
+
+
+def test_who_does_not_answer_in_time_is_named_by_the_clients_transport(
+    pair: ZenohPair,
+) -> None:
+    requests: list[Request] = []
+    replies: list[Reply] = []
+
+    def end(kind: EndpointKind) -> Endpoint:
+        name = "example_interfaces/srv/AddTwoInts"
+        return Endpoint(kind, "/s", name, EndpointQos(), "n", "/", b"")
+
+    server = pair.near.serve(end(EndpointKind.SERVICE), requests.append)
+    client = pair.far.connect(end(EndpointKind.CLIENT), replies.append)
+    pair.settle()
+    client.request(AddTwoInts.Request(), 0, 1)
+    until(lambda: bool(replies), "the end of its time")
+    reason = "no answer in 0.2 s (NAVETTE_SERVICE_TIMEOUT)"
+    assert replies == [Reply(None, 1, reason, timed_out=True)]
+    server.reply(requests[0].id, AddTwoInts.Response(sum=1))  # too late
+    client.request(AddTwoInts.Request(), 0, 2)
+    until(lambda: len(requests) == 2, "the next request")
+    server.reply(requests[1].id, AddTwoInts.Response(sum=2))
+    until(lambda: len(replies) == 2, "the next reply")
+    assert replies[1].message.sum == 2
+
+
+class Two:
+    """A node here and one there, with a network between them."""
+
+    def __init__(self, here: Context, there: Context) -> None:
+        self.here, self.there = Node("here", context=here), Node("there", context=there)
+        self._executors = [Executor(context=here), Executor(context=there)]
+        for executor, node in zip(
+            self._executors, (self.here, self.there), strict=True
+        ):
+            executor.add_node(node)
+
+    def until(self, condition: Any, what: str) -> None:
+        def look() -> bool:
+            for executor in self._executors:
+                executor.spin_once(timeout_sec=0.0)
+            return bool(condition())
+
+        until(look, what)
+
+
+@pytest.fixture
+def two(monkeypatch: pytest.MonkeyPatch) -> Iterator[Two]:
+    monkeypatch.setenv("NAVETTE_ROUTER", free_endpoint())
+    monkeypatch.setenv("NAVETTE_SERVICE_TIMEOUT", str(TIMEOUT_S))
+    with Context(transport="zenoh") as here, Context(transport="zenoh") as there:
+        yield Two(here, there)
+
+
+def test_an_actions_result_may_take_longer(two: Two) -> None:
+    is_over: Future[None] = Future()
+
+    async def execute(goal: Any) -> Any:
+        await is_over
+        goal.succeed()
+        return Fibonacci.Result(sequence=[7])
+
+    server = ActionServer(two.there, Fibonacci, "count", execute)
+    client = ActionClient(two.here, Fibonacci, "count")
+    two.until(client.server_is_ready, "the server")
+    sent = client.send_goal_async(Fibonacci.Goal(order=1))
+    two.until(sent.done, "the goal's acceptance")
+    handle = sent.result()
+    assert handle is not None
+    result = handle.get_result_async()
+    waiting = server._result_service.ports[1]._pending
+    two.until(lambda: len(waiting) >= 3, "the third request")
+    is_over.set_result(None)
+    two.until(result.done, "the result")
+    assert list(result.result().result.sequence) == [7]
+    assert waiting == {}
+
+
+def test_a_caller_is_told_that_the_time_is_over(two: Two) -> None:
+    gate: Future[None] = Future()
+    ended: list[int] = []
+
+    async def late(request: Any, response: Any) -> Any:
+        await gate
+        ended.append(request.a)
+        return response
+
+    two.there.create_service(AddTwoInts, "add", late)
+    client = two.here.create_client(AddTwoInts, "add")
+    two.until(client.service_is_ready, "the server")
+    future = client.call_async(AddTwoInts.Request())
+    two.until(future.done, "the end of its time")
+    with pytest.raises(ServiceTimeoutError, match=r"/add failed: no answer in 0\.2 s"):
+        future.result()
+    gate.set_result(None)
+    two.until(lambda: ended, "the answer that nobody hears")
+
+
+@pytest.mark.parametrize("text", ["x", "0", "-1", "nan", "inf", "0.01", "1e9"])
+def test_the_timeout_is_checked(text: str) -> None:
+    with pytest.raises(InvalidValueError, match=r"TIMEOUT '.*' *: wanted .*0\.1 to"):
+        Settings.from_environment({"NAVETTE_SERVICE_TIMEOUT": text})
+
+
+def test_the_timeout_is_ten_minutes_unless_told_otherwise() -> None:
+    assert Settings.from_environment({}).service_timeout_s == 600.0
+    environment = {"NAVETTE_SERVICE_TIMEOUT": "2.5"}
+    assert Settings.from_environment(environment).service_timeout_s == 2.5

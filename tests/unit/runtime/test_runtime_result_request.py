@@ -1,0 +1,82 @@
+"""A result is asked for again when the time of a request is over."""
+
+from typing import Any, cast
+
+import pytest
+
+from navette.runtime import Future, VirtualClock
+from navette.runtime.action.result_request import ResultRequest
+from navette.runtime.client import Client
+from navette.runtime.clock import Wakeup
+from navette.runtime.exceptions import ServiceFailedError, ServiceTimeoutError
+
+SECOND = 1_000_000_000
+
+
+class Asked:
+    """In the place of a client: what was asked, and is there a server."""
+
+    def __init__(self) -> None:
+        self.futures: list[Future[Any]] = []
+        self.is_served = True
+
+    def call_async(self, request: Any) -> Future[Any]:
+        self.futures.append(Future())
+        return self.futures[-1]
+
+    def service_is_ready(self) -> bool:
+        return self.is_served
+
+
+class Bench:
+    def __init__(self) -> None:
+        self.asked = Asked()
+        self.clock = VirtualClock()
+        client = cast("Client", self.asked)
+        self.future = ResultRequest(client, "result?", self.clock).future
+
+    def time_is_over(self, after_ns: int) -> None:
+        self.clock.go_to(self.clock.now_ns + after_ns, Wakeup())
+        self.asked.futures[-1].set_exception(ServiceTimeoutError("no answer"))
+
+
+def test_it_is_asked_again_until_there_is_an_answer() -> None:
+    bench = Bench()
+    for _ in range(3):
+        bench.time_is_over(600 * SECOND)
+        assert not bench.future.done()
+    assert len(bench.asked.futures) == 4
+    bench.asked.futures[-1].set_result("result")
+    assert bench.future.result() == "result"
+
+
+def test_it_is_given_up_when_there_is_no_server() -> None:
+    bench = Bench()
+    bench.asked.is_served = False
+    bench.time_is_over(600 * SECOND)
+    with pytest.raises(ServiceTimeoutError, match="no answer"):
+        bench.future.result()
+
+
+def test_a_server_that_always_says_time_is_over_is_not_asked_without_end() -> None:
+    bench = Bench()
+    bench.time_is_over(1)
+    with pytest.raises(ServiceTimeoutError):
+        bench.future.result()
+    assert len(bench.asked.futures) == 1
+
+
+def test_a_failure_is_passed_on() -> None:
+    bench = Bench()
+    bench.asked.futures[0].set_exception(ServiceFailedError("the server went away"))
+    with pytest.raises(ServiceFailedError, match="went away"):
+        bench.future.result()
+
+
+def test_cancelled_at_either_end() -> None:
+    given_up, destroyed = Bench(), Bench()
+    given_up.time_is_over(600 * SECOND)
+    given_up.future.cancel()
+    assert given_up.asked.futures[-1].cancelled()
+    destroyed.asked.futures[0].cancel()
+    assert destroyed.future.cancelled()
