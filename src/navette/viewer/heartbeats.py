@@ -125,11 +125,15 @@ def _service(node: str) -> str:
 def _report(
     name: str, record: _Record, now_s: float, silent_after_s: float
 ) -> NodeReport:
+    silence_s = now_s - record.heard_s
     if record.gone_s is not None:
+        # One that was silent falls out of the graph when its connection times out.
+        was_silent = record.gone_s - record.heard_s > silent_after_s
+        if record.can_answer and was_silent:
+            return NodeReport(name, NodeState.SILENT, silence_s)
         return NodeReport(name, NodeState.GONE, now_s - record.gone_s)
     if not record.can_answer:
         return NodeReport(name, NodeState.UNKNOWN)
-    silence_s = now_s - record.heard_s
     if silence_s > silent_after_s:
         return NodeReport(name, NodeState.SILENT, silence_s)
     return NodeReport(name, NodeState.ALIVE)

@@ -1,6 +1,9 @@
 """The command: look everywhere, print what was found."""
 
+import logging
+import os
 from collections.abc import Iterator
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -27,24 +30,30 @@ def doctor(
     """
     from navette.cli.doctor import report
 
-    findings = list(_findings())
-    if as_json:
-        show_json(report.as_json(findings))
-    else:
-        lines = report.report_lines(findings, everything=not quiet)
-        for line in (*lines, *([""] if lines else []), report.summary(findings)):
-            show(line)
+    # Leaving the network takes a while where somebody on it is frozen: report first.
+    with ExitStack() as joined:
+        findings = list(_findings(joined))
+        if as_json:
+            show_json(report.as_json(findings))
+        else:
+            lines = report.report_lines(findings, everything=not quiet)
+            for line in (*lines, *([""] if lines else []), report.summary(findings)):
+                show(line)
     if count(findings, Level.PROBLEM):
         raise typer.Exit(FAILED)
 
 
-def _findings() -> Iterator[Finding]:
+def _findings(joined: ExitStack) -> Iterator[Finding]:
+    """``joined`` holds what is to be left in the end."""
     from navette.cli.doctor.look import look
-    from navette.cli.doctor.machine import check_machine
+    from navette.cli.doctor.machine import check_machine, stopped
     from navette.cli.doctor.module_checks import check_modules, modules_here
     from navette.cli.doctor.network import NETWORK, check_network, look_at_network
+    from navette.cli.doctor.ports import processes
     from navette.errors import NetworkError
 
+    # What Zenoh's side has to complain of is in the report, in other words.
+    logging.getLogger("navette.transports").setLevel(logging.ERROR)
     # Before anything joins: a program that finds no router serves as one itself.
     network = look_at_network()
     if any(router.is_stopped for router in network.routers):
@@ -52,15 +61,17 @@ def _findings() -> Iterator[Finding]:
         yield from check_machine()
         return
     try:
-        with connect() as here:
-            domain = here.context.get_domain_id()
-            known = {} if network.is_alone else network.nodes or {}
-            seen = look(here, known.get(domain, ()))
+        here = joined.enter_context(connect())
+        domain = here.context.get_domain_id()
+        known = {} if network.is_alone else network.nodes or {}
+        published = network.published.get(domain, {})
+        seen = look(here, known.get(domain, ()), published)
     except NetworkError as error:
         yield from check_network(network, None)
         yield Finding(Level.PROBLEM, NETWORK, "joining", str(error))
     else:
         yield from check_network(network, domain)
+        yield from stopped(processes(), os.getpid())
         yield from _check_running(seen)
     yield from check_modules(modules_here())
     yield from check_machine()

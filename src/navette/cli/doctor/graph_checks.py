@@ -1,11 +1,13 @@
 """Checks of the graph: who is there, and does what is said reach those who listen?"""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import product
 
+from navette.cli.doctor.chain import consequence, explained, missing_links
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.snapshot import Snapshot, is_own
+from navette.cli.session import is_of_every_node
 from navette.transports import Endpoint, EndpointKind, QoSPolicyKind
 from navette.transports.qos import incompatible_policies
 
@@ -30,7 +32,20 @@ _MENDS = {
 def check_nodes(seen: Snapshot) -> Iterator[Finding]:
     """Are there nodes, under names of their own, and do they answer?"""
     for name in seen.unreached:
-        yield _silent(name, "is known to the router, but cannot be reached")
+        topics = seen.unreached_topics.get(name, ())
+        how = "is known to the router, but cannot be reached"
+        yield _silent(name, how + consequence(seen, topics), topics)
+    for link in missing_links(seen):
+        yield Finding(
+            Level.PROBLEM,
+            NODES,
+            link.stage,
+            f"is missing: nobody makes {link.makes} of {link.reads}"
+            + consequence(seen, [link.makes]),
+            f"it has ended, or was never started: navette ps; navette run navette"
+            f" {link.stage}",
+            {"missing": link.stage, "reads": link.reads, "makes": link.makes},
+        )
     if not seen.nodes:
         yield Finding(
             Level.NOTE,
@@ -53,7 +68,9 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
         )
     silent = sorted(name for name, answer in seen.sim_time.items() if answer is None)
     for name in silent:
-        yield _silent(name, "is there, but does not answer")
+        makes = seen.published_by(name)
+        how = "is there, but does not answer"
+        yield _silent(name, how + consequence(seen, makes), makes)
     if not twice and not silent:
         several = len(seen.nodes) > 1
         text = plural(len(seen.nodes), "node")
@@ -66,9 +83,10 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
         )
 
 
-def _silent(name: str, how: str) -> Finding:
+def _silent(name: str, how: str, topics: Iterable[str]) -> Finding:
     advice = "its program is stopped (Ctrl-Z), hangs in a callback, or is cut off"
-    return Finding(Level.PROBLEM, NODES, name, how, advice)
+    data = {"silent": name, "publishes": sorted(topics)}
+    return Finding(Level.PROBLEM, NODES, name, how, advice, data)
 
 
 def check_topics(seen: Snapshot) -> Iterator[Finding]:
@@ -101,6 +119,23 @@ def _type_trouble(seen: Snapshot, topic: str) -> Iterator[Finding]:
             "they do not hear each other; give one of them another topic, or the"
             " same type",
         )
+        return
+    # Of nodes in this process nothing is known; before Jazzy there was a word instead.
+    hashed = [e for e in ends if e.type_hash.startswith("RIHS")]
+    versions: dict[str, set[str]] = {}
+    for end in hashed:
+        versions.setdefault(end.type_hash, set()).add(end.node_full_name)
+    if len(versions) > 1:
+        who = " | ".join(sorted(listed(names) for names in versions.values()))
+        yield Finding(
+            Level.PROBLEM,
+            TOPICS,
+            topic,
+            f"{next(iter(types))} has {len(versions)} definitions: {who}",
+            "they do not hear each other: install the same version of its package"
+            " on both sides",
+            {"hashes": {each: sorted(names) for each, names in versions.items()}},
+        )
 
 
 def _qos_trouble(seen: Snapshot, topic: str) -> Iterator[Finding]:
@@ -129,7 +164,8 @@ def _policies(kinds: tuple[QoSPolicyKind, ...]) -> str:
 def _lonely(seen: Snapshot) -> Iterator[Finding]:
     """Topics with one side only: a wrong name shows here."""
     unread = [t for t in seen.topics if not seen.subscriptions(t)]
-    unsaid = [t for t in seen.topics if not seen.publishers(t) and t not in _BY_HAND]
+    known = _BY_HAND | explained(seen)
+    unsaid = [t for t in seen.topics if not seen.publishers(t) and t not in known]
     for topic in unsaid:
         wanted = seen.subscriptions(topic)[0]
         yield _unsaid(seen, wanted, [t for t in unread if _is_of(seen, t, wanted)])
@@ -169,7 +205,9 @@ def _unsaid(seen: Snapshot, wanted: Endpoint, instead: list[str]) -> Finding:
 
 def check_services(seen: Snapshot) -> Iterator[Finding]:
     """Is there a server for every client, and one only?"""
-    every = [e for e in seen.services if not is_own(e.topic)]
+    every = [
+        e for e in seen.services if not (is_own(e.topic) or is_of_every_node(e.topic))
+    ]
     names = sorted({e.topic for e in every})
     served = Counter(e.topic for e in every if e.kind is EndpointKind.SERVICE)
     for name in names:

@@ -1,74 +1,102 @@
 """Looking at what runs for a moment: the graph, its answers, heartbeats and clock."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from navette.cli.asking import Question, ask_all, node_names
+from navette.cli.asking import node_names
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
 from navette.cli.session import endpoints, is_hidden, service_endpoints, wait_for
 from navette.transports import Endpoint, EndpointKind
 
 if TYPE_CHECKING:
-    from navette.runtime import Node
+    from navette.runtime import Future, Node
 
-ANSWER_S = 1.0
-HEARTBEAT_S = 1.2  # over two periods of a stage's status
+LOOK_S = 1.2  # over two periods of a stage's status; who lives has answered by then
 
 _STATUS = "diagnostic_msgs/msg/DiagnosticStatus"
+_ODOMETRY = "nav_msgs/msg/Odometry"
 _GET = "rcl_interfaces/srv/GetParameters"
 _SANE_AGE_S = 3600.0  # older than that, a stamp is of another clock
 
 
-def look(here: "Node", known: Sequence[str]) -> Snapshot:
-    """Ask and listen; about as long as the slowest node needs, 2.2 s at most.
+def look(
+    here: "Node",
+    known: Sequence[str],
+    published: Mapping[str, Sequence[str]] | None = None,
+) -> Snapshot:
+    """Ask and listen; about as long as the slowest node needs, 1.2 s at most.
 
     Args:
         known: full names of the nodes that the router knows.
+        published: of each → topics.
     """
     nodes = node_names(here, hidden=True)
     topics = endpoints(here)
     services = service_endpoints(here)
     listening = _Listening(here, topics)
-    sim_time = _ask_for_sim_time(here, services)
-    wait_for(here, listening.is_settled, HEARTBEAT_S if topics else 0.0)
+    asked = _ask_for_sim_time(here, services)
+
+    def is_all_said() -> bool:
+        answered = all(future.done() for future in asked.values())
+        return answered and listening.is_settled()
+
+    wait_for(here, is_all_said, LOOK_S if topics or asked else 0.0)
+    unreached = sorted(n for n in {*known} - {*nodes} if not is_hidden(n))
     return Snapshot(
         nodes=tuple(nodes),
         endpoints=tuple(topics),
         services=tuple(services),
-        sim_time=sim_time,
-        unreached=tuple(sorted(n for n in {*known} - {*nodes} if not is_hidden(n))),
+        sim_time={name: _is_simulated(future) for name, future in asked.items()},
+        unreached=tuple(unreached),
+        unreached_topics={
+            name: tuple(sorted(set((published or {}).get(name, ()))))
+            for name in unreached
+        },
+        speed_mps=listening.speed_mps,
         clock_ticks=listening.clock_ns is not None,
         heartbeats=tuple(listening.heartbeats()),
     )
 
 
-def _ask_for_sim_time(here: "Node", services: list[Endpoint]) -> dict[str, bool | None]:
+def _ask_for_sim_time(
+    here: "Node", services: list[Endpoint]
+) -> "dict[str, Future[Any]]":
     """Every node that serves parameters is asked: that tells whether it lives, too."""
+    from navette.msgs import get_interface
+
     served = {
         end.node_full_name
         for end in services
         if end.type_name == _GET and end.kind is EndpointKind.SERVICE
     }
-    names = sorted(served)
-    questions = [
-        Question(f"{name}/get_parameters", _GET, {"names": ["use_sim_time"]})
-        for name in names
-    ]
-    answers = ask_all(here, questions, ANSWER_S)
-    return {
-        name: None if response is None else any(v.bool_value for v in response.values)
-        for name, (response, _) in zip(names, answers, strict=True)
-    }
+    asked = {}
+    for name in sorted(served):
+        client = here.create_client(get_interface(_GET), f"{name}/get_parameters")
+        request = client.srv_type.Request(names=["use_sim_time"])
+        asked[name] = client.call_async(request)
+    return asked
+
+
+def _is_simulated(future: "Future[Any]") -> bool | None:
+    """What a node answered; None: nothing."""
+    if not future.done() or future.exception() is not None:
+        return None
+    response = future.result()
+    return response is not None and any(v.bool_value for v in response.values)
 
 
 class _Listening:
-    """Hears /clock and every status topic."""
+    """Hears /clock, the odometry and every status topic."""
 
     def __init__(self, here: "Node", topics: list[Endpoint]) -> None:
         self._here = here
         #: The newest time that /clock told.
         self.clock_ns: int | None = None
         self._has_clock = False
+        #: How fast the robot drives; None: not heard.
+        self.speed_mps: float | None = None
+        self._has_odometry = False
         self._last: dict[str, tuple[Any, int]] = {}
         self._count: dict[str, int] = {}
         for end in topics:
@@ -76,13 +104,17 @@ class _Listening:
                 continue
             if end.topic == "/clock" and not self._has_clock:
                 self._hear_clock()
+            elif _is_odometry(end) and not self._has_odometry:
+                self._hear_odometry(end)
             elif _is_heartbeat(end) and end.topic not in self._count:
                 self._hear_status(end)
 
     def is_settled(self) -> bool:
         """Whether longer listening would tell nothing new."""
         waits_for_clock = self._has_clock and self.clock_ns is None
-        return not waits_for_clock and all(map(self._is_alive, self._count))
+        waits_for_speed = self._has_odometry and self.speed_mps is None
+        waits = waits_for_clock or waits_for_speed
+        return not waits and all(map(self._is_alive, self._count))
 
     def heartbeats(self) -> list[Heartbeat]:
         beats = []
@@ -108,6 +140,19 @@ class _Listening:
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._here.create_subscription(Clock, "/clock", hear, qos)
 
+    def _hear_odometry(self, end: Endpoint) -> None:
+        from navette.msgs.nav_msgs.msg import Odometry
+        from navette.runtime import qos_profile_sensor_data
+
+        def hear(message: Any) -> None:
+            velocity = message.twist.twist.linear
+            self.speed_mps = math.hypot(velocity.x, velocity.y)
+
+        self._has_odometry = True
+        self._here.create_subscription(
+            Odometry, end.topic, hear, qos_profile_sensor_data
+        )
+
     def _hear_status(self, end: Endpoint) -> None:
         from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
         from navette.runtime import QoSProfile
@@ -122,7 +167,7 @@ class _Listening:
 
     def _is_alive(self, topic: str) -> bool:
         age_s = self._age_s(topic)
-        return age_s is not None and age_s < HEARTBEAT_S
+        return age_s is not None and age_s < LOOK_S
 
     def _age_s(self, topic: str) -> float | None:
         """By the clock that the sender's stamp is of; unknown: one beat tells nothing
@@ -136,6 +181,10 @@ class _Listening:
         if sane:
             return max(0.0, min(sane))
         return 0.0 if self._count[topic] > 1 else None
+
+
+def _is_odometry(end: Endpoint) -> bool:
+    return end.topic == "/odom/filtered" and end.type_name == _ODOMETRY
 
 
 def _is_heartbeat(end: Endpoint) -> bool:

@@ -11,7 +11,14 @@ from pathlib import Path
 
 from navette._version import __version__
 from navette.cli.doctor.findings import Finding, Level
-from navette.cli.doctor.ports import Process, answers, listener, processes
+from navette.cli.doctor.graph_checks import NODES
+from navette.cli.doctor.ports import (
+    Process,
+    answers,
+    has_nodes,
+    listener,
+    processes,
+)
 
 MACHINE = "This machine"
 OLDEST_PYTHON = (3, 11)
@@ -129,6 +136,28 @@ def left_running(every: list[Process], here: int) -> Iterator[Finding]:
                 f"{process.command} runs without the terminal or program that"
                 " started it",
                 f"if nobody needs it: kill {process.pid}",
+                {"pid": process.pid, "command": process.command},
+            )
+
+
+def stopped(every: list[Process], here: int) -> Iterator[Finding]:
+    """Programs with nodes that are stopped: to the others they look frozen.
+
+    Args:
+        every: all processes.
+        here: the id of the process that asks.
+    """
+    for process in every:
+        if process.pid == here or not process.is_stopped:
+            continue
+        if has_nodes(process):
+            yield Finding(
+                Level.PROBLEM,
+                NODES,
+                f"process {process.pid}",
+                f"{process.command} is stopped (Ctrl-Z, SIGSTOP): its nodes are frozen",
+                f"let it go on: fg in its terminal, or kill -CONT {process.pid}; or end"
+                f" it: kill -KILL {process.pid}",
                 {"pid": process.pid, "command": process.command},
             )
 

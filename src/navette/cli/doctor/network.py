@@ -1,11 +1,16 @@
 """Checks of the way to the others: transport, router, domain."""
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from navette.cli.doctor.findings import Finding, Level, plural
 from navette.cli.doctor.ports import Process, answers, listener
+from navette.transports import EndpointKind
+
+if TYPE_CHECKING:
+    from navette.transports.zenoh.tokens import Token
 
 NETWORK = "Network"
 
@@ -46,6 +51,7 @@ class Network:
         routers: one per endpoint.
         nodes: full names by domain, of those that the router knows; None: no router
             told.
+        published: by domain and full name of the node: topics.
         session_file: of ZENOH_SESSION_CONFIG_URI.
         middleware: RMW_IMPLEMENTATION, for ROS 2's programs.
     """
@@ -53,6 +59,7 @@ class Network:
     transport: str = ""
     routers: tuple[Router, ...] = ()
     nodes: Mapping[int, Sequence[str]] | None = field(default_factory=dict)
+    published: Mapping[int, Mapping[str, Sequence[str]]] = field(default_factory=dict)
     session_file: str = ""
     middleware: str = ""
 
@@ -66,16 +73,37 @@ def look_at_network() -> Network:
     """Try the router's endpoints and ask it who is there."""
     from navette.transports.zenoh import Settings
     from navette.transports.zenoh.config import router_endpoints
-    from navette.transports.zenoh.survey import nodes_by_domain
+    from navette.transports.zenoh.survey import known_to_router
 
     settings = Settings.from_environment()
+    known = known_to_router(settings)
+    nodes, published = _by_domain(known or ())
     return Network(
         os.environ.get("NAVETTE_TRANSPORT", ""),
         tuple(_router(endpoint) for endpoint in router_endpoints(settings)),
-        nodes_by_domain(settings),
+        None if known is None else nodes,
+        published,
         os.environ.get("ZENOH_SESSION_CONFIG_URI", ""),
         os.environ.get("RMW_IMPLEMENTATION", ""),
     )
+
+
+def _by_domain(
+    tokens: "Iterable[Token]",
+) -> tuple[dict[int, list[str]], dict[int, dict[str, list[str]]]]:
+    """Names of nodes, and what each publishes."""
+    from navette.transports.zenoh.tokens import EndpointToken
+
+    nodes: dict[int, list[str]] = {}
+    published: dict[int, dict[str, list[str]]] = {}
+    for token in tokens:
+        name, domain = token.node.full_name, token.domain_id
+        if not isinstance(token, EndpointToken):
+            nodes.setdefault(domain, []).append(name)
+        elif token.kind is EndpointKind.PUBLISHER:
+            topics = published.setdefault(domain, {})
+            topics.setdefault(name, []).append(token.topic)
+    return {domain: sorted(nodes[domain]) for domain in sorted(nodes)}, published
 
 
 def _router(endpoint: str) -> Router:

@@ -4,6 +4,7 @@ Linux only (proc(5), tcp(7)): elsewhere the port is known to be in use, not by w
 """
 
 import contextlib
+import os
 import socket
 from pathlib import Path
 from typing import NamedTuple
@@ -11,6 +12,8 @@ from typing import NamedTuple
 _PROC = Path("/proc")
 _LISTEN = "0A"
 _STOPPED = {"T", "t"}
+# Programs that differ in one of these do not meet, or not in the same place.
+_MEETING = ("ROS_DOMAIN_ID", "NAVETTE_ROUTER")
 
 
 class Process(NamedTuple):
@@ -31,6 +34,8 @@ class Process(NamedTuple):
         words = list(self.words)
         if words and Path(words[0]).name.startswith("python"):
             words = words[1:]
+            while words[:1] in (["-u"], ["-I"], ["-P"], ["-s"]):
+                words = words[1:]
         if words[:1] == ["-m"]:
             words = words[1:]
         return " ".join([Path(words[0]).name, *words[1:]]) if words else "?"
@@ -75,6 +80,18 @@ def processes() -> list[Process]:
                 )
             )
     return sorted(found)
+
+
+def has_nodes(process: Process) -> bool:
+    """Whether a program has Zenoh loaded, and is set to meet those started here."""
+    folder = _PROC / str(process.pid)
+    with contextlib.suppress(OSError):
+        if "zenoh" not in (folder / "maps").read_text(errors="replace"):
+            return False
+        entries = (folder / "environ").read_bytes().decode(errors="replace")
+        theirs = dict(entry.partition("=")[::2] for entry in entries.split("\0"))
+        return all(theirs.get(name) == os.environ.get(name) for name in _MEETING)
+    return False
 
 
 def _listening_sockets(port: int) -> set[str]:

@@ -31,6 +31,8 @@ class Snapshot:
         sim_time: full names of the nodes that were asked → what their use_sim_time
             is; None if they did not answer in time.
         unreached: full names of nodes that the router knows, but that are not seen.
+        unreached_topics: of each of these → what it publishes.
+        speed_mps: how fast the robot drives, by its odometry; None: nobody says.
         clock_ticks: whether a message came on /clock.
         heartbeats: of every status topic.
     """
@@ -40,11 +42,19 @@ class Snapshot:
     services: tuple[Endpoint, ...] = ()
     sim_time: Mapping[str, bool | None] = field(default_factory=dict)
     unreached: tuple[str, ...] = ()
+    unreached_topics: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    speed_mps: float | None = None
     clock_ticks: bool = False
     heartbeats: tuple[Heartbeat, ...] = ()
 
     def publishers(self, topic: str) -> list[Endpoint]:
         return self._of(topic, EndpointKind.PUBLISHER)
+
+    def published_by(self, node: str) -> list[str]:
+        """Topics, by the full name of a node that is seen."""
+        kind = EndpointKind.PUBLISHER
+        found = (e for e in self.endpoints if e.kind is kind)
+        return sorted({e.topic for e in found if e.node_full_name == node})
 
     def subscriptions(self, topic: str) -> list[Endpoint]:
         return self._of(topic, EndpointKind.SUBSCRIPTION)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from navette.cli.doctor.chain import and_the_robot, robot
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
 
@@ -50,6 +51,9 @@ def check_stages(seen: Snapshot) -> Iterator[Finding]:
     """Are the stages' heartbeats fresh, and do they say that all is well?"""
     for beat in seen.heartbeats:
         yield _heartbeat(beat, seen)
+    if seen.speed_mps is not None:
+        data = {"speed_mps": round(seen.speed_mps, 3)}
+        yield Finding(Level.NOTE, STAGES, "robot", robot(seen.speed_mps), data=data)
 
 
 def _heartbeat(beat: Heartbeat, seen: Snapshot) -> Finding:
@@ -61,9 +65,12 @@ def _heartbeat(beat: Heartbeat, seen: Snapshot) -> Finding:
             Level.PROBLEM,
             STAGES,
             beat.topic,
-            f"{age}, last state {beat.state or 'unknown'}",
-            f"{who} hangs or is stopped; the robot stops where it listens to this",
+            f"{age}, last state {beat.state or 'unknown'}{and_the_robot(seen)}",
+            f"{who} hangs, is stopped or cut off: nobody drives on old words",
             data,
         )
     level = Level.GOOD if beat.level == 0 else Level.WARNING
-    return Finding(level, STAGES, beat.topic, beat.state or "no state", data=data)
+    text = beat.state or "no state"
+    if beat.state.startswith("stale_"):
+        text += f": nothing new from that side{and_the_robot(seen)}"
+    return Finding(level, STAGES, beat.topic, text, data=data)

@@ -1,19 +1,21 @@
 """Who is on the network at all, whatever the domain; for reports to people."""
 
 import contextlib
+from itertools import islice
 
 import zenoh
 
 from navette.errors import DecodeError
 from navette.transports.zenoh.config import client_config
 from navette.transports.zenoh.settings import Settings
-from navette.transports.zenoh.tokens import SPACE, parse_token
+from navette.transports.zenoh.tokens import SPACE, Token, parse_token
 
 _ASK_S = 1.0
+_MOST = 100_000
 
 
-def nodes_by_domain(settings: Settings) -> dict[int, list[str]] | None:
-    """Domain → full names of the nodes that the router knows; None: no router.
+def known_to_router(settings: Settings) -> list[Token] | None:
+    """All nodes and endpoints that the router knows; None: no router.
 
     Those are also such as cannot be reached from here.
     """
@@ -21,13 +23,12 @@ def nodes_by_domain(settings: Settings) -> dict[int, list[str]] | None:
         session = zenoh.open(client_config(settings))
     except zenoh.ZError:
         return None
-    found: dict[int, list[str]] = {}
+    found: list[Token] = []
     with session:
-        replies = session.liveliness().get(f"{SPACE}/*/*/*/*/NN/**", timeout=_ASK_S)
-        keys = [str(reply.ok.key_expr) for reply in replies if reply.ok]
+        replies = session.liveliness().get(f"{SPACE}/**", timeout=_ASK_S)
+        keys = [str(r.ok.key_expr) for r in islice(replies, _MOST) if r.ok]
     for key in keys:
         # Hostile or foreign ones are complained of by the graph.
         with contextlib.suppress(DecodeError):
-            token = parse_token(key)
-            found.setdefault(token.domain_id, []).append(token.node.full_name)
-    return {domain: sorted(found[domain]) for domain in sorted(found)}
+            found.append(parse_token(key))
+    return found
