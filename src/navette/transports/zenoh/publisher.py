@@ -13,6 +13,7 @@ from navette.transports.qos import EndpointQos, HistoryPolicy, ReliabilityPolicy
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.heard import Heard
+from navette.transports.zenoh.recovery import Kept, Retention
 
 
 class ZenohPublisher(PublisherPort):
@@ -22,6 +23,7 @@ class ZenohPublisher(PublisherPort):
         qos: as it was announced.
         gid: as hashed from the liveliness token.
         heard: when something of the others came last.
+        retention: what is kept for those that miss something; None: nothing is.
         closed: called once when the port is closed.
         sent: in lock-step, told the number of each sample; and none may be dropped.
     """
@@ -33,6 +35,7 @@ class ZenohPublisher(PublisherPort):
         "_latched",
         "_publisher",
         "_put",
+        "_retention",
         "_sent",
         "matches",
     )
@@ -45,12 +48,14 @@ class ZenohPublisher(PublisherPort):
         gid: bytes,
         matches: Matches,
         heard: Heard,
+        retention: Retention | None,
         closed: Callable[["ZenohPublisher"], None],
         sent: Callable[[int], None] | None = None,
     ) -> None:
         self.matches = matches
         self._gid = gid
         self._heard = heard
+        self._retention = retention
         self._latched = qos.is_latched
         self._closed = closed
         self._sent = sent
@@ -58,11 +63,17 @@ class ZenohPublisher(PublisherPort):
         self._put = self._publisher.put
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
-        if not (self.matches.remotes or self._latched or self._is_awaited(source_ns)):
+        retention, remotes = self._retention, self.matches.remotes
+        is_kept = retention is not None and retention.admits(sequence, remotes)
+        if not (is_kept or remotes or self._latched or self._is_awaited(source_ns)):
             return
-        attachment = Attachment(sequence, source_ns, self._gid)
-        data = message.data if message.__class__ is Encoded else serialize(message)
-        self._put(data, attachment=attachment.encode())
+        attachment = Attachment(sequence, source_ns, self._gid).encode()
+        data: Any = message.data if message.__class__ is Encoded else serialize(message)
+        if is_kept and retention is not None:
+            # Zenoh's own, so that what is kept and what is sent are the same bytes.
+            size, data = len(data), zenoh.ZBytes(data)
+            retention.add(Kept(sequence, attachment, data, size))
+        self._put(data, attachment=attachment)
         if self._sent is not None:
             self._sent(sequence)
 
@@ -85,6 +96,7 @@ class ZenohPublisher(PublisherPort):
             return
         publisher, self._publisher = self._publisher, None
         self._latched = False
+        self._retention = None
         self._closed(self)  # nothing matches from here on: nothing is sent
         publisher.undeclare()
 

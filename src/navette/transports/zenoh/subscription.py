@@ -17,41 +17,38 @@ from navette.transports.zenoh.attachment import decode_attachment
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.heard import Heard
+from navette.transports.zenoh.recovery import Arrivals, Wants
 
 _HEADER_SIZE = 4
 _HEADERS = (b"\x00\x01", b"\x00\x00")  # plain CDR, little and big endian
-
-# Publishers remembered at most; those that are not listed in the graph come to it.
-_MOST_PUBLISHERS = 4096
 
 
 class ZenohSubscription(SubscriptionPort):
     """Gives each sample to the sink as :class:`Encoded`, in the publisher's order.
 
     Args:
+        wants: where to ask for what is missing; None: nowhere.
         own_gids: publishers of this very session. Their samples come by another way; a
             query of the history brings them all the same, whatever its locality.
         heard: notes that something came.
-        lost: told how many samples are missing before the one that came.
+        lost: told how many samples were missing and will not come.
         now_ns: the time here, for the received stamp.
         closed: called once when the port is closed.
         holding: in lock-step, where samples go instead of the sink; in any order.
     """
 
     __slots__ = (
+        "_arrivals",
         "_closed",
         "_complaints",
         "_heard",
         "_holding",
         "_is_open",
-        "_last",
         "_lifespans",
         "_longest",
-        "_lost",
         "_message_class",
         "_now_ns",
         "_own_gids",
-        "_sink",
         "_subscriber",
         "matches",
     )
@@ -64,6 +61,7 @@ class ZenohSubscription(SubscriptionPort):
         sink: Sink,
         matches: Matches,
         *,
+        wants: Wants | None,
         own_gids: AbstractSet[bytes],
         lost: Callable[[int], None],
         complaints: Complaints,
@@ -75,9 +73,7 @@ class ZenohSubscription(SubscriptionPort):
     ) -> None:
         self.matches = matches
         self._message_class = message_class
-        self._sink = sink
         self._own_gids = own_gids
-        self._lost = lost
         self._complaints = complaints
         self._heard = heard
         self._longest = max_message_bytes
@@ -85,13 +81,19 @@ class ZenohSubscription(SubscriptionPort):
         self._closed = closed
         self._holding = holding
         self._lifespans = Lifespans(matches.by_gid, self._complain_of_age)
-        #: Newest sequence number of each publisher, by gid.
-        self._last: dict[bytes, int] = {}
+        self._arrivals = Arrivals(
+            matches, sink, lost=lost, checked=self._checked, wants=wants
+        )
         # Samples may come before the declaration returns.
         self._is_open = True
         self._subscriber: Any = _declare(
             session, key, matches.endpoint.qos, self._on_sample
         )
+
+    @property
+    def arrivals(self) -> Arrivals:
+        """Who puts the samples in order."""
+        return self._arrivals
 
     @property
     def matched_count(self) -> int:
@@ -103,30 +105,36 @@ class ZenohSubscription(SubscriptionPort):
         self._is_open = False
         self._closed(self)
         self._subscriber.undeclare()
+        self._arrivals.close()
         if self._holding is not None:
             self._holding.close()
 
     # -- on Zenoh's threads ------------------------------------------------------
 
     def _on_sample(self, sample: zenoh.Sample) -> None:
-        if not self._is_open:
+        found = self._checked(sample)
+        if found is None:
             return
+        self._heard.last_ns = found[1][2]
+        if self._holding is None:
+            self._arrivals.take(*found)
+        else:
+            self._holding.take(*found)
+
+    def _checked(self, sample: zenoh.Sample) -> tuple[bytes, Item] | None:
+        """Whose it is, and the item to deliver; None where it is none."""
+        if not self._is_open:
+            return None
         try:
-            gid, item = self._checked(sample)
+            gid, item = self._decoded(sample)
         except DecodeError as error:
             self._complain(str(sample.source_info or ""), error)
-            return
+            return None
         if gid in self._own_gids or gid in self.matches.refused:
-            return
-        self._heard.last_ns = item[2]
-        item = self._lifespans.limited(gid, item)
-        if self._holding is not None:
-            self._holding.take(gid, item)
-        elif self._is_next(gid, item[3]):
-            self._sink(item)
+            return None
+        return gid, self._lifespans.limited(gid, item)
 
-    def _checked(self, sample: zenoh.Sample) -> tuple[bytes, Item]:
-        """Whose it is, and the item to deliver, unless it was delivered before."""
+    def _decoded(self, sample: zenoh.Sample) -> tuple[bytes, Item]:
         payload, attachment = sample.payload, sample.attachment
         if len(payload) > self._longest:
             raise DecodeError(
@@ -147,18 +155,6 @@ class ZenohSubscription(SubscriptionPort):
 
         message = Encoded(data, self._message_class, failed)
         return gid, (message, source_ns, self._now_ns(), sequence)
-
-    def _is_next(self, gid: bytes, sequence: int) -> bool:
-        """Whether it is newer than all before."""
-        last = self._last.get(gid)
-        if sequence <= (-1 if last is None else last):
-            return False
-        if last is not None and sequence > last + 1:
-            self._lost(sequence - last - 1)
-        if gid not in self._last and len(self._last) >= _MOST_PUBLISHERS:
-            del self._last[next(iter(self._last))]
-        self._last[gid] = sequence
-        return True
 
     def _complain_of_age(self, publisher: Endpoint, text: str) -> None:
         topic = self.matches.endpoint.topic

@@ -19,11 +19,13 @@ from navette.transports.base import (
     TransportObserver,
 )
 from navette.transports.lockstep import Holding, StepTraffic
+from navette.transports.qos import EndpointQos, ReliabilityPolicy
 from navette.transports.service_ports import ReplySink, RequestSink
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.keys import data_key
 from navette.transports.zenoh.publisher import ZenohPublisher
 from navette.transports.zenoh.qos_text import announced
+from navette.transports.zenoh.recovery import Recovery, Retention
 from navette.transports.zenoh.services import ZenohClient, ZenohService
 from navette.transports.zenoh.session import Session
 from navette.transports.zenoh.settings import Settings
@@ -65,6 +67,8 @@ class ZenohTransport(Transport):
         self._traffic = traffic
         self.session = Session(settings or Settings.from_environment(), domain_id)
         self._graph = self.session.graph
+        # In lock-step nothing is lost, and every sample is counted.
+        self._recovery = None if traffic is not None else self._make_recovery()
         self._ids = itertools.count()
         self._nodes: dict[NodeInfo, list[tuple[int, zenoh.LivelinessToken]]] = {}
         self._announced: dict[bytes, EndpointToken] = {}
@@ -124,6 +128,7 @@ class ZenohTransport(Transport):
                 gid,
                 matches,
                 self.session.heard,
+                self._retention(gid, token.qos, matches),
                 self._leave,
                 sent,
             )
@@ -134,12 +139,14 @@ class ZenohTransport(Transport):
         self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
     ) -> ZenohSubscription:
         def make(token: EndpointToken, matches: Matches) -> ZenohSubscription:
-            return ZenohSubscription(
+            recovery = self._recovery_of(token.qos)
+            port = ZenohSubscription(
                 self.session.zenoh,
                 self._key(token),
                 message_class,
                 sink,
                 matches,
+                wants=None if recovery is None else recovery.wants,
                 own_gids=self._own_gids,
                 lost=partial(self._graph.lost, endpoint),
                 now_ns=self._now_ns,
@@ -147,6 +154,9 @@ class ZenohTransport(Transport):
                 holding=self._holding(endpoint, sink, matches),
                 **self._common(),
             )
+            if recovery is not None:
+                recovery.wants.add(gid_of(token.key()), port.arrivals)
+            return port
 
         return self._open(endpoint, make)
 
@@ -187,9 +197,13 @@ class ZenohTransport(Transport):
     def close(self) -> None:
         with self._lock:
             ports = list(self._ports)
+        if self._recovery is not None:
+            self._recovery.farewell()
         for port in ports:
             port.close()
         self.session.close()
+        if self._recovery is not None:
+            self._recovery.join()
 
     # -- for a lock-step -------------------------------------------------------
 
@@ -215,6 +229,33 @@ class ZenohTransport(Transport):
             is_latched=endpoint.qos.is_latched,
             depth=endpoint.qos.queue_length,
         )
+
+    # -- what is lost on the way -------------------------------------------------
+
+    def _make_recovery(self) -> Recovery:
+        session = self.session
+        recovery = Recovery(
+            session.zenoh, session.zid, self.domain_id, session.complaints
+        )
+        self._graph.observers.append(recovery)
+        return recovery
+
+    def _recovery_of(self, qos: EndpointQos) -> Recovery | None:
+        """Ready for an endpoint; None where it takes what comes."""
+        if self._recovery is None or qos.reliability != ReliabilityPolicy.RELIABLE:
+            return None
+        self._recovery.open()
+        return self._recovery
+
+    def _retention(
+        self, gid: bytes, qos: EndpointQos, matches: Matches
+    ) -> Retention | None:
+        recovery = self._recovery_of(qos)
+        if recovery is None:
+            return None
+        retention = Retention(qos.queue_length)
+        recovery.offers.add(gid, matches, retention)
+        return retention
 
     # -- inside ----------------------------------------------------------------
 
@@ -264,6 +305,8 @@ class ZenohTransport(Transport):
             port = make(token, matches)
             declared = self._declare_token(token.key())
         except zenoh.ZError as error:
+            if self._recovery is not None:
+                self._recovery.leave(matches)
             self._graph.remove_local(matches)
             raise NetworkError(
                 f"{endpoint.kind.name.lower()} of {endpoint.topic} (node "
@@ -284,6 +327,8 @@ class ZenohTransport(Transport):
         with self._lock:
             token = self._ports.pop(port)
         self._own_gids.discard(port.matches.endpoint.gid)
+        if self._recovery is not None:
+            self._recovery.leave(port.matches)
         self._graph.remove_local(port.matches)
         if not self.session.zenoh.is_closed():
             token.undeclare()

@@ -1,0 +1,298 @@
+"""Recovery between the sessions of Navette: letters, asks and answers, and a tick."""
+
+import atexit
+import contextlib
+import os
+import threading
+import weakref
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import zenoh
+
+from navette.errors import DecodeError
+from navette.transports.base import Endpoint, TransportObserver
+from navette.transports.zenoh.complaints import Complaints
+from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.recovery.errands import Errands
+from navette.transports.zenoh.recovery.mail import (
+    Ask,
+    End,
+    Kind,
+    Letter,
+    ask_key,
+    mail_key,
+    parse_ask,
+    parse_end,
+    parse_letter,
+    parse_sender,
+)
+from navette.transports.zenoh.recovery.offers import Offers
+from navette.transports.zenoh.recovery.wants import Wants
+
+_TICK_S = 1.0
+# An answer with a long message on a slow link takes its time; a lost link ends it
+# at once.
+_ANSWER_S = 120.0
+_JOIN_S = 1.5
+# Sessions and endpoints remembered; a hostile peer may make up any number.
+_MOST_REMEMBERED = 20_000
+
+_open: "weakref.WeakSet[Recovery]" = weakref.WeakSet()
+
+
+class Recovery(TransportObserver):
+    """What a session does so that what is reliable and was lost on the way comes still.
+
+    ``offers`` are the reliable publishers here, ``wants`` what the reliable
+    subscriptions here miss. Nothing is declared and no thread runs before the first
+    of them.
+
+    Args:
+        zid: of ``session``.
+    """
+
+    def __init__(
+        self, session: zenoh.Session, zid: str, domain_id: int, complaints: Complaints
+    ) -> None:
+        self._session = session
+        self._zid = zid
+        self._domain_id = domain_id
+        self._complaints = complaints
+        self._errands = Errands("navette-recovery")
+        self.offers = Offers(self)
+        self.wants = Wants(self._get, self.post, self._errands)
+        self._peers: dict[str, None] = {}
+        self._closed: dict[bytes, None] = {}
+        self._left: dict[str, None] = {}
+        self._stop = threading.Event()
+        self._ticker: threading.Thread | None = None
+        self._declared: list[Any] = []
+        self._lock = threading.Lock()
+
+    def open(self) -> None:
+        """Be reachable from now on; opening twice is harmless."""
+        with self._lock:
+            if self._declared or self._stop.is_set():
+                return
+            remote = zenoh.Locality.REMOTE
+            box = mail_key(self._domain_id, self._zid, "*")
+            desk = ask_key(self._domain_id, self._zid)
+            self._declared = [
+                self._session.declare_subscriber(
+                    box, _direct(self._on_letter), allowed_origin=remote
+                ),
+                self._session.declare_queryable(
+                    desk, _direct(self._on_ask), complete=True, allowed_origin=remote
+                ),
+            ]
+            _open.add(self)
+
+    def leave(self, matches: Matches) -> None:
+        """That endpoint here is about to close."""
+        self.offers.remove(matches.endpoint)
+        self.wants.remove(matches.endpoint)
+
+    def farewell(self) -> None:
+        """All endpoints here are about to close; said while the session is open."""
+        if self._stop.is_set():
+            return
+        self._stop.set()
+        _open.discard(self)
+        for session in list(self._peers):
+            self.post(session, Letter(Kind.BYE))
+
+    def join(self) -> None:
+        """Wait for the threads, after the session was closed."""
+        self._errands.close(_JOIN_S)
+        if self._ticker is not None:
+            self._ticker.join(_JOIN_S)
+
+    # -- matches, in the thread that reads the graph -----------------------------
+
+    def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        self._on_match(publisher, subscription, up=True)
+
+    def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        self._on_match(publisher, subscription, up=False)
+
+    def _on_match(
+        self, publisher: Endpoint, subscription: Endpoint, *, up: bool
+    ) -> None:
+        if publisher.is_remote:
+            self.wants.on_match(publisher, subscription, up=up)
+        else:
+            self.offers.on_match(publisher)
+
+    # -- letters ---------------------------------------------------------------
+
+    def post(self, to: str, letter: Letter) -> None:
+        """Send a letter; it may be lost."""
+        if letter.kind != Kind.BYE:
+            if self._stop.is_set():
+                return  # all has been said
+            self._start_ticking()
+        # Closed by now, at the exit of the process: nobody reads it.
+        with contextlib.suppress(zenoh.ZError):
+            self._session.put(
+                mail_key(self._domain_id, to, self._zid),
+                letter.encode(),
+                congestion_control=zenoh.CongestionControl.DROP,
+                allowed_destination=zenoh.Locality.REMOTE,
+            )
+
+    def may_return(self, session: str, gid: bytes) -> bool:
+        """Whether an endpoint that is not seen any more is one of Navette's that has
+        not said that it is closed."""
+        return (
+            session in self._peers
+            and session not in self._left
+            and gid not in self._closed
+        )
+
+    def _on_letter(self, sample: zenoh.Sample) -> None:
+        try:
+            sender = parse_sender(str(sample.key_expr))
+            letter = parse_letter(sample.payload.to_bytes())
+        except DecodeError as error:
+            text = f"recovery: letter ignored: {error}"
+            self._complaints.once(("letter",), text)
+            return
+        is_new = _remember(self._peers, sender)
+        if letter.kind == Kind.MATCHED:
+            if is_new:
+                self.post(sender, Letter(Kind.HELLO))
+            for head in letter.entries:
+                self.wants.on_matched(sender, head)
+        elif letter.kind == Kind.HEADS:
+            for head in letter.entries:
+                self.wants.on_head(sender, head)
+        elif letter.kind == Kind.CLOSED:
+            gids = [head.gid for head in letter.entries]
+            for gid in gids:
+                _remember(self._closed, gid)
+            self.offers.on_closed(gids)
+            self.wants.on_closed(gids)
+        elif letter.kind == Kind.BYE:
+            _remember(self._left, sender)
+            self.offers.on_bye(sender)
+            self.wants.on_bye(sender)
+
+    # -- asks and answers --------------------------------------------------------
+
+    def _get(
+        self,
+        session: str,
+        ask: Ask,
+        take: Callable[[zenoh.Sample], None],
+        ended: Callable[[End | None], None],
+    ) -> None:
+        answer = _Answer(take, ended)
+        priority = zenoh.Priority.DATA_LOW if ask.takes_long else zenoh.Priority.DATA
+        try:
+            self._session.get(
+                ask_key(self._domain_id, session),
+                zenoh.handlers.Callback(answer.take, answer.end, indirect=False),
+                consolidation=zenoh.ConsolidationMode.NONE,
+                timeout=_ANSWER_S,
+                payload=ask.encode(),
+                priority=priority,
+                allowed_destination=zenoh.Locality.REMOTE,
+            )
+        except zenoh.ZError:  # closed
+            answer.end()
+
+    def _on_ask(self, query: zenoh.Query) -> None:
+        """Leave it to another thread: an answer may have to wait for the link."""
+        try:
+            payload = query.payload
+            ask = parse_ask(b"" if payload is None else payload.to_bytes())
+        except DecodeError as error:
+            text = f"recovery: ask ignored: {error}"
+            self._complaints.once(("ask",), text)
+            query.drop()
+            return
+        if not self._errands.do(partial(self._answer, query, ask)):
+            query.drop()  # and it is asked again
+
+    def _answer(self, query: zenoh.Query, ask: Ask) -> None:
+        samples, end = self.offers.answer(ask)
+        key = ask_key(self._domain_id, self._zid)
+        # The link may be lost in the middle, or the session closed: asked again.
+        with query, contextlib.suppress(zenoh.ZError):
+            for sample in samples:
+                query.reply(key, sample.payload, attachment=sample.attachment)
+            query.reply(key, end.encode())
+
+    # -- the tick --------------------------------------------------------------
+
+    def _start_ticking(self) -> None:
+        if self._ticker is not None:
+            return
+        with self._lock:
+            if self._ticker is None and not self._stop.is_set():
+                self._ticker = threading.Thread(
+                    target=self._tick, name="navette-recovery", daemon=True
+                )
+                self._ticker.start()
+
+    def _tick(self) -> None:
+        while not self._stop.wait(_TICK_S):
+            self.offers.tick()
+            self.wants.tick()
+
+
+class _Answer:
+    """Takes the replies to one ask; the last one is its end."""
+
+    def __init__(
+        self,
+        take: Callable[[zenoh.Sample], None],
+        ended: Callable[[End | None], None],
+    ) -> None:
+        self._take = take
+        self._ended: Callable[[End | None], None] | None = ended
+        self._end: End | None = None
+
+    def take(self, reply: zenoh.Reply) -> None:
+        sample = reply.ok
+        if sample is None:  # out of time
+            return
+        if sample.attachment is not None:
+            self._take(sample)
+            return
+        # What is no end is as good as none: it is asked again.
+        with contextlib.suppress(DecodeError):
+            self._end = parse_end(sample.payload.to_bytes())
+
+    def end(self) -> None:
+        ended, self._ended = self._ended, None
+        if ended is not None:
+            ended(self._end)
+
+
+def _remember(known: dict[Any, None], what: Any) -> bool:
+    """Whether it is new; the oldest is forgotten where there are too many."""
+    if what in known:
+        return False
+    if len(known) >= _MOST_REMEMBERED:
+        known.pop(next(iter(known)), None)
+    known[what] = None
+    return True
+
+
+def _direct(callback: Callable[[Any], None]) -> Any:
+    return zenoh.handlers.Callback(callback, indirect=False)
+
+
+# A forked child has none of the threads, and nothing to say.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_open.clear)
+
+
+@atexit.register
+def _farewell_all() -> None:
+    """Before the sessions are closed: theirs was registered first."""
+    for recovery in list(_open):
+        recovery.farewell()

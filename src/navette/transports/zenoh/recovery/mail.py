@@ -1,0 +1,158 @@
+"""What sessions tell each other about their samples, and how they ask for some.
+
+A letter goes to ``@navette/<domain>/<to>/mail/<from>``: a byte that says its kind, then
+its entries. An ask goes to ``@navette/<domain>/<to>/recover``. Who is not Navette never
+hears of either.
+"""
+
+import re
+import struct
+from collections.abc import Iterable
+from enum import IntEnum
+from typing import NamedTuple
+
+from navette.errors import DecodeError
+
+SPACE = "@navette"
+_ZID = re.compile(r"[0-9a-f]{1,32}")
+_HEAD = struct.Struct("<16sq")
+_GID = struct.Struct("<16s")
+_ASK = struct.Struct("<16sqq?")
+_END = struct.Struct("<q?")
+
+MOST_ENTRIES = 2000
+_MOST_BYTES = 1 + MOST_ENTRIES * _HEAD.size
+
+
+class Kind(IntEnum):
+    """What a letter says."""
+
+    #: You listen to these publishers; you are owed what comes after these numbers.
+    MATCHED = 1
+    #: These publishers have come to these numbers.
+    HEADS = 2
+    #: Here is one who listens and can ask: the answer to the first letter.
+    HELLO = 3
+    #: These publishers and subscriptions are closed, not lost.
+    CLOSED = 4
+    #: The session ends, with all that is in it.
+    BYE = 5
+
+
+class Head(NamedTuple):
+    """How far a publisher has come."""
+
+    gid: bytes
+    number: int
+
+
+class Letter(NamedTuple):
+    """Entries of one kind; where only gids are told the numbers are 0."""
+
+    kind: Kind
+    entries: tuple[Head, ...] = ()
+
+    def encode(self) -> bytes:
+        if self.kind == Kind.CLOSED:
+            parts = [_GID.pack(entry.gid) for entry in self.entries]
+        else:
+            parts = [_HEAD.pack(*entry) for entry in self.entries]
+        return b"".join((bytes([self.kind]), *parts))
+
+
+class Ask(NamedTuple):
+    """Samples of a publisher, by number, both ends included.
+
+    Long ones only where ``takes_long``: that ask, and its answer, give way to what else
+    is on the link.
+    """
+
+    gid: bytes
+    first: int
+    last: int
+    takes_long: bool
+
+    def encode(self) -> bytes:
+        return _ASK.pack(*self)
+
+
+class End(NamedTuple):
+    """The end of an answer: there is nothing more up to the number ``covered``.
+
+    ``is_long``: the next one is there, but long.
+    """
+
+    covered: int
+    is_long: bool = False
+
+    def encode(self) -> bytes:
+        return _END.pack(*self)
+
+
+def mail_key(domain_id: int, to: str, sender: str) -> str:
+    """Where a letter goes; the mailbox is that of all senders, ``*``."""
+    return f"{SPACE}/{domain_id}/{to}/mail/{sender}"
+
+
+def ask_key(domain_id: int, to: str) -> str:
+    """Where that session is asked."""
+    return f"{SPACE}/{domain_id}/{to}/recover"
+
+
+def parse_sender(key: str) -> str:
+    """Whose letter it is, by its key.
+
+    Raises:
+        DecodeError: no session.
+    """
+    sender = key.rpartition("/")[2]
+    if not _ZID.fullmatch(sender):
+        raise DecodeError(f"{sender[:100]!r} is no session")
+    return sender
+
+
+def parse_letter(data: bytes) -> Letter:
+    """The inverse of :meth:`Letter.encode`.
+
+    Raises:
+        DecodeError: it is no letter.
+    """
+    if not 1 <= len(data) <= _MOST_BYTES:
+        raise DecodeError(f"letter of {len(data)} bytes, wanted 1 … {_MOST_BYTES}")
+    if data[0] not in {*Kind}:
+        raise DecodeError(f"letter of kind {data[0]}, wanted {[*map(int, Kind)]}")
+    kind = Kind(data[0])
+    layout = _GID if kind == Kind.CLOSED else _HEAD
+    if (len(data) - 1) % layout.size:
+        raise DecodeError(f"{kind.name} of {len(data)} bytes is cut off")
+    entries = layout.iter_unpack(data[1:])
+    return Letter(kind, tuple(Head(each[0], (*each, 0)[1]) for each in entries))
+
+
+def parse_ask(data: bytes) -> Ask:
+    """The inverse of :meth:`Ask.encode`.
+
+    Raises:
+        DecodeError: it is no ask.
+    """
+    if len(data) != _ASK.size:
+        raise DecodeError(f"ask of {len(data)} bytes, wanted {_ASK.size}")
+    return Ask(*_ASK.unpack(data))
+
+
+def parse_end(data: bytes) -> End:
+    """The inverse of :meth:`End.encode`.
+
+    Raises:
+        DecodeError: it is no end of an answer.
+    """
+    if len(data) != _END.size:
+        raise DecodeError(f"end of an answer of {len(data)} bytes, wanted {_END.size}")
+    return End(*_END.unpack(data))
+
+
+def letters(kind: Kind, entries: Iterable[Head]) -> list[Letter]:
+    """As many letters as the entries take."""
+    every = tuple(entries)
+    step = MOST_ENTRIES
+    return [Letter(kind, every[i : i + step]) for i in range(0, len(every), step)]

@@ -1,0 +1,277 @@
+"""The subscriptions' side: whom to ask for what is missing, and when to stop asking."""
+
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Protocol
+
+import zenoh
+
+from navette.transports.base import Endpoint
+from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.recovery.errands import Errands
+from navette.transports.zenoh.recovery.mail import Ask, End, Head, Kind, Letter
+
+# A publisher that cannot be reached is waited for as long as it keeps its samples.
+_GRACE_TICKS = 60
+# One that can be reached and does not answer is asked so often, a tick apart.
+_MOST_TRIES = 3
+# Publishers whose session is remembered.
+_MOST_HOMES = 20_000
+
+
+class Hearer(Protocol):
+    """A reliable subscription."""
+
+    matches: Matches
+
+    def start_after(self, gid: bytes, number: int) -> None:
+        """What comes after that number is owed to it; any thread."""
+
+    def reach(self, gid: bytes, number: int) -> None:
+        """The publisher has come to that number; any thread."""
+
+    def missing(self, gid: bytes) -> tuple[int, int] | None:
+        """First and last number of the first gap."""
+
+    def recover(self, gid: bytes, sample: zenoh.Sample) -> None:
+        """A sample that was asked for."""
+
+    def give_up(self, gid: bytes, number: int | None) -> None:
+        """What is missing up to that number (None: all) is lost."""
+
+
+class Want:
+    """Something is missing of a publisher at a subscription."""
+
+    __slots__ = ("gid", "hearer", "is_parked", "takes_long", "ticks", "tries")
+
+    def __init__(self, hearer: Hearer, gid: bytes) -> None:
+        self.hearer = hearer
+        self.gid = gid
+        self.tries = 0
+        self.ticks = 0
+        self.takes_long = False
+        self.is_parked = False
+
+
+Get = Callable[
+    [str, Ask, Callable[[zenoh.Sample], None], Callable[[End | None], None]], None
+]
+
+
+class Wants:
+    """Asks each session for one thing at a time.
+
+    Args:
+        get: asks a session; calls back with samples, then once with the end of the
+            answer, None where it did not come.
+        post: sends a letter.
+    """
+
+    def __init__(
+        self, get: Get, post: Callable[[str, Letter], None], errands: Errands
+    ) -> None:
+        self._get = get
+        self._post = post
+        self._errands = errands
+        #: Endpoint → gid and subscription.
+        self._hearers: dict[int, tuple[bytes, Hearer]] = {}
+        #: Publisher → those that hear it now; and its session, also when it is away.
+        self._heard: dict[bytes, set[Hearer]] = {}
+        self._homes: dict[bytes, str] = {}
+        # Heads of publishers that nobody here knows yet.
+        self._early: dict[bytes, Head] = {}
+        self._wants: dict[tuple[Hearer, bytes], Want] = {}
+        self._lines: dict[str, deque[Want]] = {}
+        self._busy: set[str] = set()
+        self._lock = threading.Lock()
+
+    def add(self, gid: bytes, hearer: Hearer) -> None:
+        """A subscription is open, from before it is announced."""
+        with self._lock:
+            self._hearers[id(hearer.matches.endpoint)] = gid, hearer
+            for publisher in list(hearer.matches.remotes.values()):
+                self._heard.setdefault(publisher.gid, set()).add(hearer)
+
+    def remove(self, endpoint: object) -> None:
+        """That subscription is about to close: nobody is to keep anything for it."""
+        with self._lock:
+            own_gid, hearer = self._hearers.pop(id(endpoint), (b"", None))
+            if hearer is None:
+                return
+            heard = [gid for gid, by in self._heard.items() if hearer in by]
+            sessions = {self._homes[gid] for gid in heard if gid in self._homes}
+            for gid in heard:
+                self._unhear(gid, hearer)
+            for key in [key for key in self._wants if key[0] is hearer]:
+                del self._wants[key]
+        for session in sessions:
+            self._post(session, Letter(Kind.CLOSED, (Head(own_gid, 0),)))
+
+    def on_match(self, publisher: Endpoint, endpoint: object, *, up: bool) -> None:
+        """That subscription hears that publisher from now on, or no longer."""
+        with self._lock:
+            _, hearer = self._hearers.get(id(endpoint), (b"", None))
+            if hearer is None:
+                return
+            if not up:
+                self._unhear(publisher.gid, hearer)
+                return
+            self._heard.setdefault(publisher.gid, set()).add(hearer)
+            early = self._early.pop(publisher.gid, None)
+        if early is not None:
+            hearer.start_after(*early)
+
+    # -- what the others tell --------------------------------------------------
+
+    def on_matched(self, session: str, head: Head) -> None:
+        """A publisher of that session knows that it is heard here."""
+        with self._lock:
+            if len(self._homes) >= _MOST_HOMES:
+                del self._homes[next(iter(self._homes))]
+            self._homes[head.gid] = session
+            hearers = list(self._heard.get(head.gid, ()))
+            if not hearers and len(self._early) < _MOST_HOMES:
+                self._early[head.gid] = head
+        for hearer in hearers:
+            hearer.start_after(*head)
+        self._retry(lambda want: want.gid == head.gid)
+
+    def on_head(self, session: str, head: Head) -> None:
+        """A publisher of that session has come so far."""
+        with self._lock:
+            if self._homes.get(head.gid) != session:
+                return
+            hearers = list(self._heard.get(head.gid, ()))
+        for hearer in hearers:
+            hearer.reach(*head)
+
+    def on_closed(self, gids: Iterable[bytes]) -> None:
+        """Those publishers do not come back."""
+        gone = set(gids)
+        self._forsake(lambda want: want.gid in gone)
+
+    def on_bye(self, session: str) -> None:
+        """That session does not come back."""
+        self._forsake(lambda want: self._homes.get(want.gid) == session)
+
+    # -- asking ----------------------------------------------------------------
+
+    def knows(self, gid: bytes) -> bool:
+        """Whether there is somebody to ask for samples of that publisher."""
+        return gid in self._homes
+
+    def want(self, hearer: Hearer, gid: bytes) -> None:
+        """Something is missing there; nothing new where it is asked for already."""
+        with self._lock:
+            if (hearer, gid) not in self._wants:
+                want = self._wants[hearer, gid] = Want(hearer, gid)
+                self._queue(want)
+
+    def tick(self) -> None:
+        """A second has gone by."""
+        hopeless = []
+        with self._lock:
+            for want in [w for w in self._wants.values() if w.is_parked]:
+                want.ticks += 1
+                is_heard = want.hearer in self._heard.get(want.gid, ())
+                if is_heard and want.tries < _MOST_TRIES:
+                    self._queue(want)
+                elif is_heard or want.ticks >= _GRACE_TICKS:
+                    hopeless.append(want)
+        self._forsake(lambda want: want in hopeless)
+
+    def _queue(self, want: Want) -> None:
+        session = self._homes.get(want.gid)
+        want.is_parked = session is None
+        if session is None:
+            return
+        self._lines.setdefault(session, deque()).append(want)
+        if session not in self._busy:
+            self._busy.add(session)
+            self._go_on(session)
+
+    def _go_on(self, session: str) -> None:
+        if not self._lines.get(session):
+            self._lines.pop(session, None)
+            self._busy.discard(session)
+        elif not self._errands.do(partial(self._ask_next, session)):
+            # At the end of all, or with too much to do: the next tick tries again.
+            self._busy.discard(session)
+            for want in self._lines.pop(session, ()):
+                want.is_parked = True
+
+    def _ask_next(self, session: str) -> None:
+        """Ask for the next thing that is still missing; in a thread of the errands."""
+        while True:
+            with self._lock:
+                line = self._lines.get(session)
+                if not line:
+                    self._lines.pop(session, None)
+                    self._busy.discard(session)
+                    return
+                want = line.popleft()
+            gap = self._still_missing(want)
+            if gap is None:
+                continue
+            ask = Ask(want.gid, *gap, want.takes_long)
+            take = partial(want.hearer.recover, want.gid)
+            self._get(session, ask, take, partial(self._ended, session, want, ask))
+            return
+
+    def _ended(self, session: str, want: Want, ask: Ask, end: End | None) -> None:
+        """The answer is over; on any thread."""
+        if end is None or not _is_progress(ask, end):
+            want.tries += 1
+        else:
+            want.tries = 0
+            want.takes_long = end.is_long
+            want.hearer.give_up(want.gid, min(end.covered, ask.last))
+        gap = self._still_missing(want)
+        with self._lock:
+            if gap is not None and want.tries:
+                want.is_parked = True
+                want.ticks = 0
+            elif gap is not None:
+                self._lines.setdefault(session, deque()).append(want)
+            self._go_on(session)
+
+    def _still_missing(self, want: Want) -> tuple[int, int] | None:
+        """What to ask for; the want is over where there is nothing."""
+        key = want.hearer, want.gid
+        with self._lock:
+            if self._wants.get(key) is not want:
+                return None  # closed or forsaken meanwhile
+            del self._wants[key]
+        gap = want.hearer.missing(want.gid)
+        if gap is None:
+            return None
+        with self._lock:
+            # What came up in between has a want of its own.
+            return gap if self._wants.setdefault(key, want) is want else None
+
+    def _retry(self, is_back: Callable[[Want], bool]) -> None:
+        with self._lock:
+            for want in [w for w in self._wants.values() if w.is_parked and is_back(w)]:
+                want.tries = 0
+                self._queue(want)
+
+    def _forsake(self, is_hopeless: Callable[[Want], bool]) -> None:
+        with self._lock:
+            hopeless = [want for want in self._wants.values() if is_hopeless(want)]
+            for want in hopeless:
+                del self._wants[want.hearer, want.gid]
+        for want in hopeless:
+            want.hearer.give_up(want.gid, None)
+
+    def _unhear(self, gid: bytes, hearer: Hearer) -> None:
+        heard = self._heard.get(gid, set())
+        heard.discard(hearer)
+        if not heard:
+            self._heard.pop(gid, None)
+
+
+def _is_progress(ask: Ask, end: End) -> bool:
+    return end.covered >= ask.first or (end.is_long and not ask.takes_long)
