@@ -288,7 +288,7 @@ def test_hostile_tokens_are_ignored_and_told_once(
 def test_a_session_cannot_fill_the_graph(pair: ZenohPair) -> None:
     graph = pair.near_zenoh.session.graph
     for number in range(MOST_TOKENS_OF_A_SESSION + 10):
-        graph.on_token(f"@ros2_lv/7/abc/{number}/{number}/NN/%/%/n", alive=True)
+        graph.on_tokens([(f"@ros2_lv/7/abc/{number}/{number}/NN/%/%/n", True)])
     assert len(graph.nodes()) == MOST_TOKENS_OF_A_SESSION
 
 

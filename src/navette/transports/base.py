@@ -52,6 +52,9 @@ class EndpointKind(Enum):
     SERVICE = 3
     CLIENT = 4
 
+    # Each is one object; Enum's own hashes the name, in Python, at every look-up.
+    __hash__ = object.__hash__
+
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:

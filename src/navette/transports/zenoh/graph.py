@@ -14,7 +14,7 @@ from navette.transports.base import (
 )
 from navette.transports.qos import QoSPolicyKind, incompatible_policies
 from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.tokens import EndpointToken, gid_of, parse_token
+from navette.transports.zenoh.tokens import EndpointToken, Token, gid_of, parse_token
 
 # What is listed of one session; nobody has as many, except to do harm.
 MOST_TOKENS_OF_A_SESSION = 20_000
@@ -80,12 +80,24 @@ class RemoteGraph:
 
     # -- the others ------------------------------------------------------------
 
-    def on_token(self, key: str, *, alive: bool) -> None:
-        """A token has come or gone; anything that is no token is reported once."""
-        if alive:
-            self._add(key)
-        else:
-            self._remove(key)
+    def on_tokens(self, changes: Iterable[tuple[str, bool]]) -> None:
+        """Tokens have come (true) or gone; what is no token is reported once.
+
+        That the graph has changed is told once for all of them.
+        """
+        read = [
+            (key, alive, self._token(key) if alive else None) for key, alive in changes
+        ]
+        changed = False
+        with self._lock:
+            for key, alive, token in read:
+                if token is not None:
+                    changed |= self._add(key, token)
+                elif not alive:
+                    changed |= self._remove(key)
+            if changed:
+                self._events.append(self._tell_changed)
+                self._lock.notify_all()
         self._tell()
 
     def nodes(self) -> list[NodeInfo]:
@@ -146,34 +158,34 @@ class RemoteGraph:
             matches.by_gid.clear()
         self._tell()
 
-    # -- inside, under the lock --------------------------------------------------
-
-    def _add(self, key: str) -> None:
+    def _token(self, key: str) -> Token | None:
+        """None: one of our own, or none at all."""
         try:
             token = parse_token(key)
         except DecodeError as error:
             peer = "/".join(key[:200].split("/")[:3])
             self._complaints.once(("token", peer), f"token ignored: {error}")
-            return
-        if token.zid == self._own_zid:
-            return
-        with self._lock:
-            if key in self._nodes or key in self._endpoints:
-                return
-            if self._count_of[token.zid] >= MOST_TOKENS_OF_A_SESSION:
-                self._complaints.once(
-                    ("tokens", token.zid),
-                    f"session {token.zid} has more than {MOST_TOKENS_OF_A_SESSION} "
-                    "nodes and endpoints: the others are ignored",
-                )
-                return
-            self._count_of[token.zid] += 1
-            if isinstance(token, EndpointToken):
-                self._add_endpoint(key, token)
-            else:
-                self._nodes[key] = token.node
-            self._events.append(self._tell_changed)
-            self._lock.notify_all()
+            return None
+        return None if token.zid == self._own_zid else token
+
+    # -- inside, under the lock --------------------------------------------------
+
+    def _add(self, key: str, token: Token) -> bool:
+        if key in self._nodes or key in self._endpoints:
+            return False
+        if self._count_of[token.zid] >= MOST_TOKENS_OF_A_SESSION:
+            self._complaints.once(
+                ("tokens", token.zid),
+                f"session {token.zid} has more than {MOST_TOKENS_OF_A_SESSION} "
+                "nodes and endpoints: the others are ignored",
+            )
+            return False
+        self._count_of[token.zid] += 1
+        if isinstance(token, EndpointToken):
+            self._add_endpoint(key, token)
+        else:
+            self._nodes[key] = token.node
+        return True
 
     def _add_endpoint(self, key: str, token: EndpointToken) -> None:
         endpoint = Endpoint(
@@ -191,19 +203,17 @@ class RemoteGraph:
         for matches in self._locals.get((_OPPOSITE[token.kind], token.topic), ()):
             self._meet(matches, key, endpoint)
 
-    def _remove(self, key: str) -> None:
-        with self._lock:
-            endpoint = self._endpoints.pop(key, None)
-            if endpoint is not None:
-                self._part(key, endpoint)
-            elif self._nodes.pop(key, None) is None:
-                return
-            zid = key.split("/", 3)[2]
-            self._count_of[zid] -= 1
-            if not self._count_of[zid]:
-                del self._count_of[zid]
-            self._events.append(self._tell_changed)
-            self._lock.notify_all()
+    def _remove(self, key: str) -> bool:
+        endpoint = self._endpoints.pop(key, None)
+        if endpoint is not None:
+            self._part(key, endpoint)
+        elif self._nodes.pop(key, None) is None:
+            return False
+        zid = key.split("/", 3)[2]
+        self._count_of[zid] -= 1
+        if not self._count_of[zid]:
+            del self._count_of[zid]
+        return True
 
     def _part(self, key: str, endpoint: Endpoint) -> None:
         name = endpoint.kind, endpoint.topic

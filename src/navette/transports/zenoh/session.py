@@ -26,6 +26,7 @@ _ASK_S = 2.0
 _CLOSE_S = 1.5
 # Tokens that wait to be read; who declares more at once waits for the reader.
 _CHANNEL = 10_000
+_FIRST_PAUSE_S, _LONGEST_PAUSE_S = 0.002, 0.032
 
 _open: "weakref.WeakSet[Session]" = weakref.WeakSet()
 
@@ -56,6 +57,7 @@ class Session:
         self.graph = RemoteGraph(self.zid, self.complaints)
         # Through a channel: a callback would run in the thread that declares a token
         # here, and a Ctrl-C that came just then would be lost in it.
+        self._closing = threading.Event()
         self._samples: Any = self.zenoh.liveliness().declare_subscriber(
             self._tokens, zenoh.handlers.FifoChannel(_CHANNEL), history=True
         )
@@ -77,6 +79,7 @@ class Session:
     def close(self) -> None:
         """Leave the network; closing twice is harmless."""
         _open.discard(self)
+        self._closing.set()
         if not self.zenoh.is_closed():
             closer = threading.Thread(target=self._close, daemon=True)
             closer.start()
@@ -91,14 +94,29 @@ class Session:
             self.zenoh.close()
 
     def _read(self) -> None:
-        """Take tokens as they come and go, until the session is closed."""
-        while True:
-            try:
-                sample = self._samples.recv()
-            except zenoh.ZError:
-                return
-            alive = sample.kind == zenoh.SampleKind.PUT
-            self.graph.on_token(str(sample.key_expr), alive=alive)
+        """Take tokens as they come and go, until the session is closed.
+
+        One that comes after a silence is taken at once. Then there is a pause, after
+        which those that came meanwhile are taken together: each time costs two changes
+        of threads, here and in who waits for news of the graph.
+        """
+        pause_s = 0.0
+        with contextlib.suppress(zenoh.ZError):
+            while True:
+                first = self._samples.try_recv()
+                if first is None:
+                    pause_s = _FIRST_PAUSE_S
+                    first = self._samples.recv()
+                self.graph.on_tokens(map(_change, self._all(first)))
+                self._closing.wait(pause_s)
+                pause_s = min(2 * pause_s, _LONGEST_PAUSE_S)
+
+    def _all(self, first: zenoh.Sample) -> list[zenoh.Sample]:
+        """It, and those that wait behind it."""
+        samples = [first]
+        while (more := self._samples.try_recv()) is not None:
+            samples.append(more)
+        return samples
 
     def _look_around(self, router: zenoh.Session) -> None:
         """Wait until all that the router knows of are known here."""
@@ -107,6 +125,10 @@ class Session:
             known = {str(reply.ok.key_expr) for reply in replies if reply.ok}
             if self.graph.wait_until_known(known, _LOOK_S):
                 return
+
+
+def _change(sample: zenoh.Sample) -> tuple[str, bool]:
+    return str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
 
 
 # A forked child has the sessions but not their threads: closing one would never end.

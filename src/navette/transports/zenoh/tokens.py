@@ -5,7 +5,8 @@ Node: ``@ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<name>``; e
 """
 
 import re
-from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import xxhash
 
@@ -41,8 +42,7 @@ _NODE_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _HASH = re.compile(r"\w{1,128}", re.ASCII)
 
 
-@dataclass(frozen=True, slots=True)
-class NodeToken:
+class NodeToken(NamedTuple):
     """A node of the session ``zid``, the ``nid``-th."""
 
     domain_id: int
@@ -55,8 +55,7 @@ class NodeToken:
         return _head(self, self.nid, "NN")
 
 
-@dataclass(frozen=True, slots=True)
-class EndpointToken:
+class EndpointToken(NamedTuple):
     """An endpoint of a node: the ``eid``-th entity of its session."""
 
     domain_id: int
@@ -105,15 +104,9 @@ def parse_token(key: str) -> Token:
     parts = key.split("/")
     if len(parts) not in (_NODE, _ENDPOINT) or parts[0] != SPACE:
         raise DecodeError(f"{key!r} is no token of a node or endpoint")
-    domain = int(_checked(_DOMAIN, parts[1], "domain id"))
-    zid = _checked(_ZID, parts[2], "session id")
-    nid = int(_checked(_ID, parts[3], "node id"))
+    domain, zid, nid = _session(parts[1], parts[2], parts[3])
     eid = int(_checked(_ID, parts[4], "entity id"))
-    node = NodeInfo(
-        name=_checked(_NODE_NAME, parts[8], "node name"),
-        namespace="/" if parts[7] == "%" else demangled_name(parts[7]),
-        enclave=_checked(_ENCLAVE, parts[6], "enclave").replace("%", "/"),
-    )
+    node = _node(parts[6], parts[7], parts[8])
     if len(parts) == _NODE:
         if parts[5] != "NN":
             raise DecodeError(f"{key!r}: entity {parts[5]!r} with a node's parts")
@@ -128,10 +121,42 @@ def parse_token(key: str) -> Token:
         _KINDS[parts[5]],
         node,
         demangled_name(parts[9]),
-        ros_type_name(parts[10]),
-        _checked(_HASH, parts[11], "type hash"),
-        parse_qos(parts[12]),
+        _type_name(parts[10], parts[11]),
+        parts[11],
+        _qos(parts[12]),
     )
+
+
+# Many processes have thousands of tokens of few sessions, nodes, types and QoS.
+_once = lru_cache(4096)
+
+
+@_once
+def _session(domain: str, zid: str, nid: str) -> tuple[int, str, int]:
+    """Domain, session and number of the node."""
+    return (
+        int(_checked(_DOMAIN, domain, "domain id")),
+        _checked(_ZID, zid, "session id"),
+        int(_checked(_ID, nid, "node id")),
+    )
+
+
+@_once
+def _node(enclave: str, namespace: str, name: str) -> NodeInfo:
+    return NodeInfo(
+        name=_checked(_NODE_NAME, name, "node name"),
+        namespace="/" if namespace == "%" else demangled_name(namespace),
+        enclave=_checked(_ENCLAVE, enclave, "enclave").replace("%", "/"),
+    )
+
+
+@_once
+def _type_name(dds_name: str, type_hash: str) -> str:
+    _checked(_HASH, type_hash, "type hash")
+    return ros_type_name(dds_name)
+
+
+_qos = _once(parse_qos)
 
 
 def _head(token: Token, eid: int, kind: str) -> str:
