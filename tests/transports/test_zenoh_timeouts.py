@@ -94,12 +94,12 @@ def test_an_actions_result_may_take_longer(two: Two) -> None:
     handle = sent.result()
     assert handle is not None
     result = handle.get_result_async()
-    waiting = server._result_service.ports[1]._pending
+    waiting = server._result_service.ports[1].waiting
     two.until(lambda: len(waiting) >= 3, "the third request")
     is_over.set_result(None)
     two.until(result.done, "the result")
     assert list(result.result().result.sequence) == [7]
-    assert waiting == {}
+    assert len(waiting) == 0
 
 
 def test_a_caller_is_told_that_the_time_is_over(two: Two) -> None:

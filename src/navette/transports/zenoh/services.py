@@ -1,5 +1,6 @@
-"""Services: a query for every request, a reply with the same number and gid."""
+"""Servers of services: a query stays open until its request is answered."""
 
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -7,11 +8,7 @@ import zenoh
 
 from navette.errors import DecodeError
 from navette.msgs import deserialize, get_interface, serialize
-from navette.transports.base import Endpoint
 from navette.transports.service_ports import (
-    ClientPort,
-    Reply,
-    ReplySink,
     Request,
     RequestId,
     RequestSink,
@@ -22,15 +19,15 @@ from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.heard import Heard
 
-# Requests that wait for an answer at one server; more are refused.
-_MOST_PENDING = 100_000
+# Requests that wait at one server, and how many of the longest ones; more are refused.
+# Whoever may ask can fill a slow server, but not the memory.
+MOST_WAITING = 10_000
+MOST_OF_THE_LONGEST = 2
 _LONGEST_REASON = 2000
-# What Zenoh tells in place of a reply when the time is over.
-_TIMEOUT = b"Timeout"
 
 
 class ZenohService(ServicePort):
-    """A queryable; queries stay open until they are answered.
+    """A queryable that hands requests on and remembers whose they are.
 
     Args:
         now_ns: the time here, for the stamps.
@@ -45,10 +42,10 @@ class ZenohService(ServicePort):
         "_key",
         "_longest",
         "_now_ns",
-        "_pending",
         "_queryable",
         "_sink",
         "matches",
+        "waiting",
     )
 
     def __init__(
@@ -59,12 +56,13 @@ class ZenohService(ServicePort):
         matches: Matches,
         *,
         complaints: Complaints,
-        heard: Heard,
         max_message_bytes: int,
+        heard: Heard,
         now_ns: Callable[[], int],
         closed: Callable[["ZenohService"], None],
     ) -> None:
         self.matches = matches
+        self.waiting = Waiting(MOST_OF_THE_LONGEST * max_message_bytes)
         self._key = key
         self._sink = sink
         self._complaints = complaints
@@ -72,7 +70,6 @@ class ZenohService(ServicePort):
         self._longest = max_message_bytes
         self._now_ns = now_ns
         self._closed = closed
-        self._pending: dict[RequestId, zenoh.Query] = {}
         self._queryable: Any = session.declare_queryable(
             key,
             zenoh.handlers.Callback(self._on_query, indirect=False),
@@ -81,7 +78,7 @@ class ZenohService(ServicePort):
         )
 
     def reply(self, request_id: RequestId, message: Any) -> None:
-        query = self._pending.pop(request_id, None)
+        query = self.waiting.take(request_id)
         if query is None:  # of a client in this process, or answered already
             return
         attachment = Attachment(
@@ -91,7 +88,7 @@ class ZenohService(ServicePort):
             query.reply(self._key, serialize(message), attachment=attachment.encode())
 
     def fail(self, request_id: RequestId, reason: str) -> None:
-        query = self._pending.pop(request_id, None)
+        query = self.waiting.take(request_id)
         if query is not None:
             _refuse(query, reason)
 
@@ -101,21 +98,21 @@ class ZenohService(ServicePort):
         queryable, self._queryable = self._queryable, None
         self._closed(self)
         queryable.undeclare()
-        while self._pending:
-            _refuse(self._pending.popitem()[1], "the server was closed")
+        for query in self.waiting.take_all():
+            _refuse(query, "the server was closed")
 
     # -- on Zenoh's threads ------------------------------------------------------
 
     def _on_query(self, query: zenoh.Query) -> None:
         try:
             request = self._checked(query)
+            self.waiting.add(request.id, query, len(query.payload or b""))
         except DecodeError as error:
             name = self.matches.endpoint.topic
             text = f"service {name}: request ignored: {error}"
             self._complaints.once(("request", name), text)
             _refuse(query, str(error))
             return
-        self._pending[request.id] = query
         self._heard.last_ns = request.received_ns
         self._sink(request)
 
@@ -128,135 +125,66 @@ class ZenohService(ServicePort):
                 f"{len(payload)} bytes: longer than {self._longest} "
                 "(NAVETTE_MAX_MESSAGE_BYTES)"
             )
+        self.waiting.check_room(len(payload))
         sequence, source_ns, gid = decode_attachment(attachment.to_bytes())
-        request_id = RequestId(gid, sequence)
-        if request_id in self._pending:
-            raise DecodeError(f"request {sequence} is under way already")
-        if len(self._pending) >= _MOST_PENDING:
-            raise DecodeError(f"{_MOST_PENDING} requests wait already")
-        request_class = _class_of(self.matches.endpoint).Request
-        message = deserialize(payload.to_bytes(), request_class)
-        return Request(message, source_ns, self._now_ns(), request_id)
+        interface: Any = get_interface(self.matches.endpoint.type_name)
+        message = deserialize(payload.to_bytes(), interface.Request)
+        return Request(message, source_ns, self._now_ns(), RequestId(gid, sequence))
 
 
-class ZenohClient(ClientPort):
-    """Asks all remote servers; tells why where none of them answered.
+class Waiting:
+    """Queries that are not answered yet, and the bytes that they hold.
 
     Args:
-        gid: as hashed from the liveliness token.
-        timeout_s: so long an answer is waited for. Zenoh keeps 0.8 kB of every request
-            until then, also of one that has been answered.
-        closed: called once when the port is closed.
+        most_bytes: of all together.
     """
 
-    __slots__ = (
-        "_closed",
-        "_complaints",
-        "_gid",
-        "_key",
-        "_longest",
-        "_session",
-        "_sink",
-        "_timeout_s",
-        "matches",
-    )
+    def __init__(self, most_bytes: int) -> None:
+        self._most_bytes = most_bytes
+        self._queries: dict[RequestId, tuple[zenoh.Query, int]] = {}
+        self._bytes = 0
+        self._lock = threading.Lock()
 
-    def __init__(
-        self,
-        session: zenoh.Session,
-        key: str,
-        gid: bytes,
-        sink: ReplySink,
-        matches: Matches,
-        *,
-        complaints: Complaints,
-        max_message_bytes: int,
-        timeout_s: float,
-        closed: Callable[["ZenohClient"], None],
-    ) -> None:
-        self.matches = matches
-        self._session: zenoh.Session | None = session
-        self._key = key
-        self._gid = gid
-        self._sink = sink
-        self._complaints = complaints
-        self._longest = max_message_bytes
-        self._timeout_s = timeout_s
-        self._closed = closed
+    def __len__(self) -> int:
+        return len(self._queries)
 
-    def request(self, message: Any, source_ns: int, sequence: int) -> None:
-        if self._session is None or not self.matches.remotes:
-            return
-        attachment = Attachment(sequence, source_ns, self._gid)
-        answered = False
+    def check_room(self, size: int) -> None:
+        """Whether one more fits, before it is decoded.
 
-        def on_reply(reply: zenoh.Reply) -> None:
-            nonlocal answered
-            answered = True
-            if self._session is not None:
-                self._sink(self._reply(reply, sequence))
-
-        def on_end() -> None:
-            if not answered and self._session is not None:
-                self._sink(Reply(None, sequence, "the server went away"))
-
-        self._session.get(
-            self._key,
-            zenoh.handlers.Callback(on_reply, on_end, indirect=False),
-            target=zenoh.QueryTarget.ALL_COMPLETE,
-            consolidation=zenoh.ConsolidationMode.NONE,
-            timeout=self._timeout_s,
-            payload=serialize(message),
-            attachment=attachment.encode(),
-            allowed_destination=zenoh.Locality.REMOTE,
-        )
-
-    @property
-    def server_count(self) -> int:
-        return len(self.matches.remotes)
-
-    def close(self) -> None:
-        if self._session is None:
-            return
-        self._session = None
-        self._closed(self)
-
-    # -- on Zenoh's threads ------------------------------------------------------
-
-    def _reply(self, reply: zenoh.Reply, sequence: int) -> Reply:
-        if reply.err is not None:
-            if reply.err.payload.to_bytes() == _TIMEOUT:
-                return Reply(None, sequence, self._time_is_over(), timed_out=True)
-            text = reply.err.payload.to_bytes()[:_LONGEST_REASON]
-            return Reply(None, sequence, text.decode(errors="replace"))
-        try:
-            return Reply(self._checked(reply.ok, sequence), sequence)
-        except DecodeError as error:
-            name = self.matches.endpoint.topic
-            text_ = f"service {name}: reply ignored: {error}"
-            self._complaints.once(("reply", name), text_)
-            return Reply(None, sequence, f"malformed reply: {error}")
-
-    def _time_is_over(self) -> str:
-        return f"no answer in {self._timeout_s:g} s (NAVETTE_SERVICE_TIMEOUT)"
-
-    def _checked(self, sample: zenoh.Sample | None, sequence: int) -> Any:
-        if sample is None or sample.attachment is None:
-            raise DecodeError("without an attachment")
-        if len(sample.payload) > self._longest:
+        Raises:
+            DecodeError: too many wait already.
+        """
+        if len(self._queries) >= MOST_WAITING or self._bytes + size > self._most_bytes:
             raise DecodeError(
-                f"{len(sample.payload)} bytes: longer than {self._longest} "
-                "(NAVETTE_MAX_MESSAGE_BYTES)"
+                f"{len(self._queries)} requests with {self._bytes} bytes wait already"
             )
-        attachment = decode_attachment(sample.attachment.to_bytes())
-        if (attachment.sequence, attachment.gid) != (sequence, self._gid):
-            raise DecodeError(f"number {attachment.sequence} instead of {sequence}")
-        response_class = _class_of(self.matches.endpoint).Response
-        return deserialize(sample.payload.to_bytes(), response_class)
 
+    def add(self, request_id: RequestId, query: zenoh.Query, size: int) -> None:
+        """Remember it until it is taken.
 
-def _class_of(endpoint: Endpoint) -> Any:
-    return get_interface(endpoint.type_name)
+        Raises:
+            DecodeError: there is one of that client under that number.
+        """
+        with self._lock:
+            if request_id in self._queries:
+                raise DecodeError(f"request {request_id.sequence} is under way already")
+            self._queries[request_id] = query, size
+            self._bytes += size
+
+    def take(self, request_id: RequestId) -> zenoh.Query | None:
+        """Remember it no longer; None: it was not there."""
+        with self._lock:
+            query, size = self._queries.pop(request_id, (None, 0))
+            self._bytes -= size
+        return query
+
+    def take_all(self) -> list[zenoh.Query]:
+        """Remember none of them any longer."""
+        with self._lock:
+            queries = [query for query, _ in self._queries.values()]
+            self._queries.clear()
+            self._bytes = 0
+        return queries
 
 
 def _refuse(query: zenoh.Query, reason: str) -> None:

@@ -21,12 +21,13 @@ from navette.transports.base import (
 from navette.transports.lockstep import Holding, StepTraffic
 from navette.transports.qos import EndpointQos, ReliabilityPolicy
 from navette.transports.service_ports import ReplySink, RequestSink
+from navette.transports.zenoh.clients import ZenohClient
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.keys import data_key
 from navette.transports.zenoh.publisher import ZenohPublisher
 from navette.transports.zenoh.qos_text import announced
 from navette.transports.zenoh.recovery import Recovery, Retention
-from navette.transports.zenoh.services import ZenohClient, ZenohService
+from navette.transports.zenoh.services import ZenohService
 from navette.transports.zenoh.session import Session
 from navette.transports.zenoh.settings import Settings
 from navette.transports.zenoh.subscription import ZenohSubscription

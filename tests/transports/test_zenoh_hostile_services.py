@@ -1,0 +1,142 @@
+"""Servers and clients among those that err, pretend, flood or never end."""
+
+import logging
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import zenoh
+from transport_benches import ZenohPair, until
+
+from navette.msgs import serialize, type_hash
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.rcl_interfaces.srv import GetParameters
+from navette.transports import Endpoint, EndpointKind, EndpointQos, Reply, Request
+from navette.transports.zenoh import ZenohTransport
+from navette.transports.zenoh.attachment import Attachment
+from navette.transports.zenoh.complaints import Complaints
+from navette.transports.zenoh.keys import data_key
+
+ADD, GET = "example_interfaces/srv/AddTwoInts", "rcl_interfaces/srv/GetParameters"
+MAX_BYTES = 1000
+
+
+@pytest.fixture
+def pair() -> Iterator[ZenohPair]:
+    pair = ZenohPair(max_message_bytes=MAX_BYTES)
+    yield pair
+    pair.close()
+
+
+def serve(transport: Any, type_name: str) -> tuple[list[Request], Any]:
+    requests: list[Request] = []
+    end = Endpoint(EndpointKind.SERVICE, "/s", type_name, EndpointQos(), "n", "/", b"")
+    return requests, transport.serve(end, requests.append)
+
+
+def connect(transport: Any, type_name: str) -> tuple[list[Reply], Any]:
+    replies: list[Reply] = []
+    end = Endpoint(EndpointKind.CLIENT, "/s", type_name, EndpointQos(), "n", "/", b"")
+    return replies, transport.connect(end, replies.append)
+
+
+class FalseServer:
+    """Answers at once what others are asked, and has told nobody that it is there."""
+
+    def __init__(self, pair: ZenohPair, response: bytes, times: int) -> None:
+        self._response, self._times = response, times
+        self.asked = 0
+        self.transport = ZenohTransport(7, lambda: 0, pair.near_zenoh.session.settings)
+        key = data_key(7, "/s", ADD, type_hash(ADD))
+        self._queryable: Any = self.transport.session.zenoh.declare_queryable(
+            key, zenoh.handlers.Callback(self._answer, indirect=False), complete=True
+        )
+
+    def _answer(self, query: zenoh.Query) -> None:
+        assert query.attachment is not None
+        with query:
+            for _ in range(self._times):
+                query.reply(query.key_expr, self._response, attachment=query.attachment)
+        self.asked += 1
+
+
+@pytest.mark.parametrize(
+    ("response", "times"),
+    [(b"\x00\x01\x00\x00", 1), (serialize(AddTwoInts.Response(sum=666)), 500)],
+    ids=["malformed", "forged"],
+)
+def test_who_only_pretends_to_serve_does_not_outrun_the_server(
+    pair: ZenohPair, response: bytes, times: int
+) -> None:
+    requests, server = serve(pair.near, ADD)
+    replies, client = connect(pair.far, ADD)
+    false = FalseServer(pair, response, times)
+    pair.settle()
+    sequence = 0
+
+    def both_were_asked() -> bool:
+        nonlocal sequence
+        if sequence == len(requests):
+            sequence += 1
+            client.request(AddTwoInts.Request(a=sequence), 0, sequence)
+        return false.asked > 0 and sequence == len(requests)
+
+    until(both_were_asked, "the false server's link")
+    pair.settle()
+    assert replies == []
+    for request in requests:
+        server.reply(request.id, AddTwoInts.Response(sum=request.message.a))
+    until(lambda: len(replies) >= sequence, "the replies")
+    pair.settle()
+    assert [(r.sequence, r.message.sum) for r in replies] == [
+        (each + 1, each + 1) for each in range(sequence)
+    ]
+    false.transport.close()
+
+
+def test_requests_that_wait_do_not_fill_the_memory(pair: ZenohPair) -> None:
+    requests, server = serve(pair.near, GET)
+    replies, client = connect(pair.far, GET)
+    pair.settle()
+    long = GetParameters.Request(names=["x" * 800])
+    for sequence in (1, 2, 3):
+        client.request(long, 0, sequence)
+    until(lambda: len(replies) == 1, "the refusal")
+    assert replies[0].failure == "2 requests with 1626 bytes wait already"
+    assert [request.id.sequence for request in requests] == [1, 2]
+    server.fail(requests[0].id, "no")
+    client.request(long, 0, 4)
+    until(lambda: len(requests) == 3, "the request that fits again")
+
+
+def test_a_number_that_is_under_way_is_not_taken_twice(pair: ZenohPair) -> None:
+    requests, server = serve(pair.near, ADD)
+    replies, client = connect(pair.far, ADD)
+    pair.settle()
+    client.request(AddTwoInts.Request(a=1), 0, 1)
+    until(lambda: len(requests) == 1, "the request")
+    (answer,) = pair.far_zenoh.session.zenoh.get(
+        data_key(7, "/s", ADD, type_hash(ADD)),
+        payload=serialize(AddTwoInts.Request(a=2)),
+        attachment=Attachment(1, 0, requests[0].id.client_gid).encode(),
+    )
+    assert answer.err is not None
+    assert answer.err.payload.to_string() == "request 1 is under way already"
+    server.reply(requests[0].id, AddTwoInts.Response(sum=1))
+    until(lambda: len(replies) == 1, "the reply")
+    assert (replies[0].message.sum, len(requests)) == (1, 1)
+
+
+def test_who_calls_itself_something_else_each_time_is_told_of_a_few_times(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    complaints = Complaints()
+    with caplog.at_level(logging.WARNING):
+        for number in range(2000):
+            complaints.once(("sample", "/flooded", str(number)), "bad")
+            complaints.once(("sample", "/flooded", "the same"), "bad")
+        complaints.once(("sample", "/other", "somebody"), "bad elsewhere")
+    told = [record.getMessage() for record in caplog.records]
+    assert told[:4] == ["bad"] * 4
+    assert told[4].startswith("bad (nothing more")
+    assert told[5:] == ["bad elsewhere"]
