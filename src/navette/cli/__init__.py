@@ -1,5 +1,13 @@
 """The command line: ``navette demo``, ``navette sim``."""
 
-from navette.cli.app import main
+from navette.cli.interruption import dying_on_signals
 
 __all__ = ["main"]
+
+
+def main() -> None:
+    """Entry point of the ``navette`` command; quiet at Ctrl-C from here on."""
+    with dying_on_signals():
+        from navette.cli.app import main as run
+
+        run()

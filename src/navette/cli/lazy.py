@@ -11,6 +11,8 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_group
 
+from navette.cli.interruption import raise_at_interrupt
+
 _PLAIN = (str, int, float, bool)
 
 
@@ -18,10 +20,12 @@ class Later(NamedTuple):
     """A command, or a group of them, that is not here yet.
 
     ``add`` adds it to the app that it is given; ``help`` is the first line of its help.
+    ``only_looks``: Ctrl-C may end it at any time, until it joins what runs.
     """
 
     help: str
     add: Callable[[typer.Typer], object]
+    only_looks: bool = False
 
 
 class _Placeholder(TyperCommand):
@@ -30,6 +34,7 @@ class _Placeholder(TyperCommand):
     def __init__(self, name: str, later: Later) -> None:
         super().__init__(name, help=later.help)
         self._later = later
+        self.only_looks = later.only_looks
 
     def load(self) -> Any:
         app = typer.Typer(add_completion=False, rich_markup_mode="rich")
@@ -52,8 +57,11 @@ def lazy_group(verbs: Mapping[str, Later]) -> type[TyperGroup]:
 
         def resolve_command(self, ctx: Any, args: list[str]) -> Any:
             name, command, rest = super().resolve_command(ctx, args)
+            only_looks = isinstance(command, _Placeholder) and command.only_looks
             if isinstance(command, _Placeholder) and name is not None:
                 command = self.commands[name] = command.load()
+            if not only_looks:
+                raise_at_interrupt()
             return name, command, rest
 
     return LazyGroup

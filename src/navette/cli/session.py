@@ -10,14 +10,17 @@
 """
 
 import os
-import signal
-import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Never
 
 import typer
 
+from navette.cli.interruption import (
+    dying_on_signals,
+    ending_on_signals,
+    interruptible,
+)
 from navette.errors import CallbackError
 
 if TYPE_CHECKING:
@@ -35,8 +38,6 @@ _EVERY_NODE_SERVES = {
 }
 
 FAILED = 1
-INTERRUPTED = 128 + signal.SIGINT
-TERMINATED = 128 + signal.SIGTERM
 
 
 @contextmanager
@@ -54,8 +55,15 @@ def connect(
     """
     from navette.runtime import Executor, Node
 
-    with _ending_on_signals():
-        joined = context if context is not None else _outside()
+    with ExitStack() as leaving:
+        if context is None:
+            # Nothing is to be cleaned up while it joins, and nothing should wait for
+            # the network to hear of it when it leaves.
+            leaving.enter_context(dying_on_signals())
+            joined = _outside()
+            leaving.callback(joined.try_shutdown)
+        else:
+            joined = context
         node = Node(
             node_name or f"_navette_{os.getpid()}",
             context=joined,
@@ -63,19 +71,17 @@ def connect(
             enable_rosout=False,
             start_parameter_services=False,
         )
+        leaving.callback(node.destroy_node)
         executor = Executor(context=joined)
         executor.add_node(node)
         try:
-            yield node
+            with ending_on_signals():
+                yield node
         except CallbackError as error:
             # The verb's own callbacks: where they hang is no news to anybody.
             if isinstance(error.__cause__, Exception):
                 raise error.__cause__ from None
             raise
-        finally:
-            node.destroy_node()
-            if context is None:
-                joined.try_shutdown()
 
 
 def wait_for(
@@ -87,8 +93,15 @@ def wait_for(
     nothing is left to happen).
     """
     timeout_ns = None if timeout_s is None else round(timeout_s * 1e9)
-    holds: bool = node.executor.spin_until_complete(condition, timeout_ns)
-    return holds
+    executor = node.executor
+
+    def spin(is_interrupted: Callable[[], bool]) -> None:
+        executor.spin_until_complete(
+            lambda: is_interrupted() or condition(), timeout_ns
+        )
+
+    interruptible(spin, executor.wake)
+    return condition()
 
 
 def follow_clock(node: "Node") -> None:
@@ -152,24 +165,3 @@ def _outside() -> "Context":
     except NetworkError as error:
         fail(str(error))
     return context
-
-
-@contextmanager
-def _ending_on_signals() -> Iterator[None]:
-    """Make exit codes of Ctrl-C and SIGTERM; only a main thread can."""
-    code = INTERRUPTED
-
-    def interrupt(signum: int, frame: object) -> None:
-        nonlocal code
-        code = TERMINATED
-        raise KeyboardInterrupt
-
-    in_main = threading.current_thread() is threading.main_thread()
-    before = signal.signal(signal.SIGTERM, interrupt) if in_main else None
-    try:
-        yield
-    except KeyboardInterrupt:
-        raise typer.Exit(code) from None
-    finally:
-        if in_main:
-            signal.signal(signal.SIGTERM, before)

@@ -135,24 +135,38 @@ VERBS = {
     ),
     "teleop": Later("Drive a robot with the keys of this terminal.", _teleop),
     "topic": Later(
-        "Look into topics: list, info, echo, hz, bw, delay; and publish.", _topic
+        "Look into topics: list, info, echo, hz, bw, delay; and publish.",
+        _topic,
+        only_looks=True,
     ),
-    "node": Later("Look at the nodes that run.", _node),
-    "param": Later("Read and change the parameters of nodes that run.", _param),
+    "node": Later("Look at the nodes that run.", _node, only_looks=True),
+    "param": Later(
+        "Read and change the parameters of nodes that run.", _param, only_looks=True
+    ),
     "service": Later(
-        "Look into services: list, type, find, info, echo; and call them.", _service
+        "Look into services: list, type, find, info, echo; and call them.",
+        _service,
+        only_looks=True,
     ),
     "action": Later(
-        "Look into actions: list, type, find, info; and send goals.", _action
+        "Look into actions: list, type, find, info; and send goals.",
+        _action,
+        only_looks=True,
     ),
     "interface": Later(
-        "Show messages, services and actions, and how they are defined.", _interface
+        "Show messages, services and actions, and how they are defined.",
+        _interface,
+        only_looks=True,
     ),
     "lifecycle": Later(
-        "Look at managed nodes, and take them from state to state.", _lifecycle
+        "Look at managed nodes, and take them from state to state.",
+        _lifecycle,
+        only_looks=True,
     ),
     "component": Later(
-        "Load nodes into containers that run, and take them out.", _component
+        "Load nodes into containers that run, and take them out.",
+        _component,
+        only_looks=True,
     ),
     "bag": Later(
         "Recordings (.mcap, .bag, .db3): record, play, look into, repair, rework.", _bag
@@ -162,8 +176,14 @@ VERBS = {
         _pkg,
     ),
     "keys": Later("Keys and certificates for links with mutual TLS.", _keys),
-    "doctor": Later("Find what is wrong here, and say what to do about it.", _doctor),
+    "doctor": Later(
+        "Find what is wrong here, and say what to do about it.",
+        _doctor,
+        only_looks=True,
+    ),
     "completion": Later(
-        "Teach the shell to complete navette's words at Tab.", _completion
+        "Teach the shell to complete navette's words at Tab.",
+        _completion,
+        only_looks=True,
     ),
 }
