@@ -91,7 +91,8 @@ Json = Annotated[
     bool, typer.Option("--json", help="Print one JSON object about the run on stdout.")
 ]
 Port = Annotated[
-    int, typer.Option(min=1, max=65535, help="Port of the live view on 127.0.0.1.")
+    int,
+    typer.Option(min=0, max=65535, help="Port of the live view; 0 takes a free one."),
 ]
 
 
@@ -208,3 +209,13 @@ def main() -> None:
     except NavetteError as error:
         typer.secho(f"navette: {error}", fg="red", err=True)
         raise SystemExit(USAGE_ERROR) from None
+    except SystemExit as end:
+        _end_at_once(end.code)
+        raise
+
+
+def _end_at_once(exit_code: object) -> None:
+    """Not waiting for what closes slowly, if there is such a thing by now."""
+    leaving = sys.modules.get("navette.transports.leaving")
+    if leaving is not None and isinstance(exit_code, int):
+        leaving.end_with(exit_code)

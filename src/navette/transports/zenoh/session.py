@@ -9,6 +9,7 @@ from typing import Any
 
 import zenoh
 
+from navette.transports.leaving import wait_for_at_end
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.config import peer_config
 from navette.transports.zenoh.graph import RemoteGraph
@@ -65,6 +66,7 @@ class Session:
             target=self._read, name="navette-graph", daemon=True
         )
         self._reader.start()
+        wait_for_at_end(self._reader)
         self._role.watch(self.zenoh)
         if router is not None:
             self._look_around(router)
@@ -83,6 +85,7 @@ class Session:
         if not self.zenoh.is_closed():
             closer = threading.Thread(target=self._close, daemon=True)
             closer.start()
+            wait_for_at_end(closer)
             closer.join(_CLOSE_S)
         if self._reader is not threading.current_thread():
             self._reader.join(_CLOSE_S)
