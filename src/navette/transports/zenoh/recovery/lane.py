@@ -9,6 +9,11 @@ T = TypeVar("T")
 MOST_HELD = 4096
 MOST_HELD_BYTES = 64 * 1024 * 1024
 
+# Nothing is late or missing by as much: the publisher counts anew, or somebody has
+# used its name with a number of his own, which must not shut it out.
+FAR_BEHIND = 10_000
+FAR_AHEAD = 1_000_000
+
 _NEVER = -1
 
 
@@ -49,7 +54,8 @@ class Lane(Generic[T]):
 
     def reach(self, number: int) -> None:
         """The publisher has come to ``number``; nothing where it has not started."""
-        if self._next != _NEVER:
+        self._settle()
+        if self._next != _NEVER and number < self._next + FAR_AHEAD:
             self._newest = max(self._newest, number)
 
     def take(self, number: int, sample: T, size: int) -> list[T]:
@@ -57,6 +63,8 @@ class Lane(Generic[T]):
         self._settle()
         if self._next == _NEVER or (number < self._next and not self._begun):
             self._next = number
+        if not self._next - FAR_BEHIND <= number < self._next + FAR_AHEAD:
+            return self._begin_anew(number, sample)
         if number < self._next or number in self._held:
             return []
         self._newest = max(self._newest, number)
@@ -92,6 +100,11 @@ class Lane(Generic[T]):
     def give_up_all(self) -> tuple[int, list[T]]:
         """Wait for nothing that is missing by now."""
         return self.give_up(self._newest)
+
+    def _begin_anew(self, number: int, sample: T) -> list[T]:
+        held = [self._unhold(each) for each in sorted(self._held)]
+        self._next, self._newest = number + 1, number
+        return [*held, sample, *self._released()]
 
     def _hold(self, number: int, sample: T, size: int) -> None:
         if len(self._held) < MOST_HELD and self._bytes + size <= MOST_HELD_BYTES:

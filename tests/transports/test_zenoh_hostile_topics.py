@@ -1,0 +1,81 @@
+"""Listeners among those who use others' names, and numbers as they like."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from transport_benches import ZenohPair, message_of
+
+from navette.msgs import serialize, type_hash
+from navette.msgs.std_msgs.msg import String
+from navette.transports import (
+    Endpoint,
+    EndpointKind,
+    EndpointQos,
+    Item,
+    ReliabilityPolicy,
+)
+from navette.transports.zenoh.attachment import Attachment
+from navette.transports.zenoh.keys import data_key
+from navette.transports.zenoh.recovery.lane import FAR_AHEAD, FAR_BEHIND, Lane
+
+TYPE = "std_msgs/msg/String"
+KEY = data_key(7, "/t", TYPE, type_hash(TYPE))
+QOS = {
+    "reliable": EndpointQos(),
+    "best effort": EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT),
+    "latched": EndpointQos.latched(),
+}
+
+
+@pytest.fixture
+def pair() -> Iterator[ZenohPair]:
+    pair = ZenohPair()
+    yield pair
+    pair.close()
+
+
+@pytest.mark.parametrize("qos", QOS.values(), ids=list(QOS))
+@pytest.mark.parametrize("number", [2**63 - 1, 2**62, FAR_AHEAD + 10])
+def test_a_number_in_anothers_name_does_not_shut_it_out(
+    pair: ZenohPair, qos: EndpointQos, number: int
+) -> None:
+    items: list[Item] = []
+    ear = Endpoint(EndpointKind.SUBSCRIPTION, "/t", TYPE, qos, "ear", "/", b"")
+    pair.near.subscribe(ear, String, items.append, shared=False)
+    mouth = Endpoint(EndpointKind.PUBLISHER, "/t", TYPE, qos, "mouth", "/", b"")
+    publisher: Any = pair.far.advertise(mouth, String)
+    pair.settle()
+    (seen,) = pair.near.endpoints()
+    publisher.send(String(data="1"), 0, 1)
+    for sequence in (2, 3):
+        pair.settle()
+        pair.far_zenoh.session.zenoh.put(
+            KEY,
+            serialize(String(data="forged")),
+            attachment=Attachment(number, 0, seen.gid).encode(),
+        )
+        pair.settle()
+        publisher.send(String(data=str(sequence)), 0, sequence)
+    pair.settle()
+    heard = [message_of(item).data for item in items]
+    assert [text for text in heard if text != "forged"] == ["1", "2", "3"]
+
+
+def test_a_head_that_cannot_be_is_not_waited_for() -> None:
+    lane: Lane[str] = Lane()
+    assert lane.take(1, "a", 1) == ["a"]
+    lane.reach(2**63 - 1)
+    assert lane.missing() is None
+    lane.reach(4)
+    assert lane.missing() == (2, 4)
+
+
+def test_what_is_held_goes_before_a_publisher_that_counts_anew() -> None:
+    lane: Lane[str] = Lane()
+    lane.take(FAR_BEHIND + 2, "a", 1)
+    assert lane.take(FAR_BEHIND + 5, "held", 1) == []
+    assert lane.take(3, "late", 1) == []
+    assert lane.take(2, "anew", 1) == ["held", "anew"]
+    assert lane.passes(3)
+    assert not lane.is_waiting
