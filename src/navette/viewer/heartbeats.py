@@ -72,14 +72,14 @@ class Heartbeats:
             others: nodes of other processes, and whether they can be asked.
         """
         now_s = self._now_s()
-        slept = now_s - self._last_s > _LONGEST_GAP_S
-        self._last_s = now_s
+        gap_s, self._last_s = now_s - self._last_s, now_s
+        if gap_s > _LONGEST_GAP_S:
+            for record in self._records.values():
+                record.heard_s += gap_s
         self._note_who_is_there(now_s, others)
         period_s = max(PERIOD_S, _SHARE_S * len(others)) * 0.9
         reports = [NodeReport(name, NodeState.ALIVE) for name in here]
         for name, record in self._records.items():
-            if slept and record.waits:
-                record.heard_s = now_s  # in dubio pro reo
             asks = record.gone_s is None and record.can_answer and not record.waits
             if asks and now_s - record.asked_s >= period_s:
                 self._ask(name, record, now_s)

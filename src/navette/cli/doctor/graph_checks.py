@@ -42,8 +42,8 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
             link.stage,
             f"is missing: nobody makes {link.makes} of {link.reads}"
             + consequence(seen, [link.makes]),
-            f"it has ended, or was never started: navette ps; navette run navette"
-            f" {link.stage}",
+            "it has ended, is cut off, or was never started: navette ps;"
+            f" navette run navette {link.stage}",
             {"missing": link.stage, "reads": link.reads, "makes": link.makes},
         )
     if not seen.nodes:

@@ -111,7 +111,7 @@ const parameters = {
   refuse(name, reason) {
     const row = this.rows.get(name);
     if (!row) return false;
-    row.refusal.textContent = reason;
+    row.refusal.textContent = reason.replace(/^parameter '[^']*': /, "");
     row.refusal.hidden = false;
     const { value } = this.values.get(name);
     if (typeof value === "boolean") row.input.checked = value; else row.input.value = this.text(value);
