@@ -9,6 +9,7 @@ from transport_benches import ZenohPair, message_of
 from navette.msgs import serialize, type_hash
 from navette.msgs.std_msgs.msg import String
 from navette.transports import (
+    Encoded,
     Endpoint,
     EndpointKind,
     EndpointQos,
@@ -79,3 +80,20 @@ def test_what_is_held_goes_before_a_publisher_that_counts_anew() -> None:
     assert lane.take(2, "anew", 1) == ["held", "anew"]
     assert lane.passes(3)
     assert not lane.is_waiting
+
+
+def test_an_answer_to_what_is_no_longer_asked_for_begins_nothing_anew(
+    pair: ZenohPair,
+) -> None:
+    items: list[Item] = []
+    ear = Endpoint(EndpointKind.SUBSCRIPTION, "/t", TYPE, EndpointQos(), "e", "/", b"")
+    port: Any = pair.near.subscribe(ear, String, items.append, shared=False)
+
+    def numbered(number: Any) -> tuple[bytes, Item]:
+        return bytes(16), (Encoded(b"", String, print), 0, 0, number)
+
+    port.arrivals._checked = numbered
+    port.arrivals.take(*numbered(5 * FAR_BEHIND))
+    port.arrivals.recover(bytes(16), FAR_BEHIND)
+    port.arrivals.take(*numbered(5 * FAR_BEHIND + 1))
+    assert [item[3] for item in items] == [5 * FAR_BEHIND, 5 * FAR_BEHIND + 1]

@@ -103,9 +103,17 @@ class Arrivals:
             return None if lane is None else lane.missing()
 
     def recover(self, gid: bytes, sample: zenoh.Sample) -> None:
-        """A sample that was asked for."""
+        """A sample that was asked for.
+
+        Answers are in order: what was asked for and is before it is not there any more.
+        """
         found = self._checked(sample)
-        if found is not None and found[0] == gid:
+        gap = self.missing(gid)
+        if found is None or found[0] != gid or gap is None:
+            return
+        number = found[1][3]
+        if gap[0] <= number <= gap[1]:  # else it has come meanwhile
+            self.give_up(gid, number - 1)
             self.take(*found)
 
     def give_up(self, gid: bytes, number: int | None) -> None:
