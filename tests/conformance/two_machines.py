@@ -1,11 +1,12 @@
 """Two machines on this one: network namespaces, and a wire between them that can fail.
 
 Each namespace has a TUN device; a thread carries the IP packets from one to the other,
-late, not at all (a share of them, by a seed), or none while the wire is cut.
+late, slowly, not at all (a share of them, by a seed), or none while the wire is cut.
 """
 
 import fcntl
 import heapq
+import math
 import os
 import select
 import struct
@@ -20,6 +21,8 @@ ROBOT, LAPTOP = "10.77.0.1", "10.77.0.2"
 
 _TUNSETIFF, _IFF_TUN, _IFF_NO_PI = 0x400454CA, 0x0001, 0x1000
 _MTU = 1500
+# A slow wire has so much on it at most; what is more is lost, as at a router's queue.
+_LONGEST_QUEUE_S = 0.2
 
 
 def why_not() -> str:
@@ -41,9 +44,11 @@ class Wire:
     def __init__(self, ends: tuple[int, int], *, seed: int = 0) -> None:
         self.delay_s = 0.0
         self.loss = 0.0
+        self.bytes_per_s = math.inf
         self.is_cut = False
         self.carried = self.lost = 0
         self._ends = ends
+        self._free_at = [0.0, 0.0]
         self._rng = np.random.default_rng(seed)
         self._stop_read, self._stop_write = os.pipe()
         self._thread = threading.Thread(target=self._carry, name="wire")
@@ -67,16 +72,26 @@ class Wire:
             ready, _, _ = select.select([*self._ends, self._stop_read], [], [], timeout)
             if self._stop_read in ready:
                 return
-            now = _now()
             for end in ready:
                 packet = os.read(end, _MTU + 100)
-                if self.is_cut or self._rng.random() < self.loss:
+                arrival = self._arrival(self._ends.index(end), len(packet))
+                if arrival is None:
                     self.lost += 1
                     continue
                 self.carried += 1
                 number += 1
                 other = self._ends[1 - self._ends.index(end)]
-                heapq.heappush(waiting, (now + self.delay_s, number, other, packet))
+                heapq.heappush(waiting, (arrival, number, other, packet))
+
+    def _arrival(self, way: int, size: int) -> float | None:
+        """When a packet that is sent now is there; None: never."""
+        now = _now()
+        start = max(now, self._free_at[way])
+        is_lost = self.is_cut or self._rng.random() < self.loss
+        if is_lost or start - now > _LONGEST_QUEUE_S:
+            return None
+        self._free_at[way] = start + size / self.bytes_per_s
+        return self._free_at[way] + self.delay_s
 
 
 class Machines:

@@ -4,6 +4,8 @@ import threading
 from collections import deque
 from collections.abc import Callable
 
+from navette.transports.leaving import wait_for_at_end
+
 _MOST_THREADS = 8
 _MOST_WAITING = 1000
 
@@ -30,6 +32,7 @@ class Errands:
                 )
                 self._threads.add(thread)
                 thread.start()
+                wait_for_at_end(thread)
             return True
 
     def close(self, timeout_s: float) -> None:

@@ -13,6 +13,7 @@ import zenoh
 
 from navette.errors import DecodeError
 from navette.transports.base import Endpoint, TransportObserver
+from navette.transports.leaving import wait_for_at_end
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.recovery.errands import Errands
@@ -236,6 +237,7 @@ class Recovery(TransportObserver):
                     target=self._tick, name="navette-recovery", daemon=True
                 )
                 self._ticker.start()
+                wait_for_at_end(self._ticker)
 
     def _tick(self) -> None:
         while not self._stop.wait(_TICK_S):

@@ -137,7 +137,7 @@ class Wants:
                 self._early[head.gid] = head
         for hearer in hearers:
             hearer.start_after(*head)
-        self._retry(lambda want: want.gid == head.gid)
+        self._retry(head.gid)
 
     def on_head(self, session: str, head: Head) -> None:
         """A publisher of that session has come so far."""
@@ -252,11 +252,14 @@ class Wants:
             # What came up in between has a want of its own.
             return gap if self._wants.setdefault(key, want) is want else None
 
-    def _retry(self, is_back: Callable[[Want], bool]) -> None:
+    def _retry(self, gid: bytes) -> None:
+        """A publisher is back."""
         with self._lock:
-            for want in [w for w in self._wants.values() if w.is_parked and is_back(w)]:
-                want.tries = 0
-                self._queue(want)
+            for want in [w for w in self._wants.values() if w.is_parked]:
+                if want.gid == gid and want.tries < _MOST_TRIES:
+                    # A long sample that never gets through must not be tried for ever.
+                    want.tries = want.tries if want.takes_long else 0
+                    self._queue(want)
 
     def _forsake(self, is_hopeless: Callable[[Want], bool]) -> None:
         with self._lock:
