@@ -15,6 +15,7 @@ import pytest
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from navette.msgs.sensor_msgs.msg import Image, LaserScan
 from navette.msgs.std_msgs.msg import Header, String
 from navette.runtime import Context, Node
@@ -34,7 +35,9 @@ class Robot(Node):
 
     def __init__(self, context: Context) -> None:
         super().__init__("robot", context=context)
-        self.declare_parameter("speed_mps", 1.0)
+        bounds = FloatingPointRange(from_value=0.5, to_value=2.0)
+        text = ParameterDescriptor(floating_point_range=[bounds])
+        self.declare_parameter("speed_mps", 1.0, text)
         self.goal = threading.Event()
         self.goals: list[PointStamped] = []
         self.chatter = self.create_publisher(String, "/chatter", 10)
@@ -143,6 +146,8 @@ def test_the_page_works_in_a_browser(program: Program) -> None:
     # A camera is left alone until somebody asks.
     assert rows["/camera"][3] == "measure"
     assert "/robot" in seen["nodes"]
+    assert seen["slider"] == ["0.5", "2"]
+    assert "9.0" in seen["refusal"]
     assert_goal_arrived(program)
     assert seen["layers"] == ["/map", "/lidar"]
     clicked = robot_of(program).goals[1].point

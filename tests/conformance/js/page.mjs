@@ -15,11 +15,17 @@ try {
   page.on("console", (message) => { if (message.type() === "error") problems.push(message.text()); });
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("request", (request) => { if (!request.url().startsWith(url) && !request.url().startsWith("data:")) problems.push(request.url()); });
+  // Each headline, however short it was to be seen on a busy machine.
+  await page.addInitScript(() => {
+    window.headlines = new Set();
+    const look = () => window.headlines.add(document.querySelector("#headline")?.textContent);
+    new MutationObserver(look).observe(document, { childList: true, subtree: true, characterData: true });
+  });
   await page.goto(url);
   const text = async (selector) => (await page.textContent(selector)).trim();
   const until = (check) => page.waitForFunction(check, null, { timeout: 10_000 });
   await until(() => document.querySelector("#link").className === "live");
-  await until(() => document.querySelector("#headline").textContent === "Waiting for goal");
+  await until(() => window.headlines.has("Waiting for goal"));
   await until(() => /Hz/.test([...document.querySelectorAll("#topics tr")].find((row) => row.cells[0].textContent === "/chatter")?.cells[3].textContent));
   await page.fill("#x", "6");
   await page.fill("#y", "-12,5");
@@ -42,12 +48,17 @@ try {
   await page.selectOption("#node", "/robot");
   await page.locator('input[aria-label="/robot.speed_mps, slider"]').fill("1.5");
   await until(() => document.querySelector('input[aria-label="/robot.speed_mps"]').value === "1.5");
+  const slider = await page.$eval('input[aria-label="/robot.speed_mps, slider"]', ({ min, max }) => [min, max]);
+  await page.fill('input[aria-label="/robot.speed_mps"]', "9");
+  await page.press('input[aria-label="/robot.speed_mps"]', "Enter");
+  await page.locator(".parameters .hint:visible").waitFor();
+  const refusal = await page.textContent(".parameters .hint:visible");
   // The planner said how it is once, and never again.
   await until(() => document.querySelector("#headline").textContent === "Planner is silent");
   const open = new URL(await page.getAttribute("#open", "href"));
   console.log(JSON.stringify({
     title: await page.title(), address: await text("#address"), foxglove: open.searchParams.get("ds.url"),
-    position: await text("#position"), rows, place, layers, nodes: await text("#nodes"), problems,
+    position: await text("#position"), rows, place, layers, nodes: await text("#nodes"), slider, refusal, problems,
   }));
 } finally {
   await browser.close();

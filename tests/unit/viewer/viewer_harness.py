@@ -29,9 +29,10 @@ class Program:
         *make_nodes: Callable[[Context], Node],
         asset_folders: Mapping[str, Path] | None = None,
         playback: Playback | None = None,
+        transport: str | None = None,
         **params: Any,
     ) -> None:
-        self.context = Context(clock=SystemClock())
+        self.context = Context(clock=SystemClock(), transport=transport)
         self.executor = Executor(context=self.context)
         self.nodes = [make(self.context) for make in make_nodes]
         overrides = [Parameter(k, value=v) for k, v in {"port": 0, **params}.items()]

@@ -71,7 +71,7 @@ const parameters = {
     const most = value === 0 ? 1 : 2 * Math.abs(value), has = Number.isFinite(low) && Number.isFinite(high);
     const [min, max] = has ? [low, high] : [value < 0 ? -most : 0, most];
     const slider = Object.assign(document.createElement("input"), {
-      type: "range", min, max, step: step || (whole ? 1 : (max - min) / 200), disabled: Boolean(read_only),
+      type: "range", min, max, step: step || (whole ? 1 : roundStep(max - min)), disabled: Boolean(read_only),
     });
     slider.setAttribute("aria-label", `${name}, slider`);
     slider.oninput = () => { input.value = this.text(Number(slider.value)); };
@@ -119,4 +119,9 @@ const parameters = {
     return true;
   },
 };
+/** A 1, 2 or 5 and its zeros: some 100 to 250 steps over the span. */
+function roundStep(span) {
+  const least = span / 250, unit = 10 ** Math.floor(Math.log10(least));
+  return Number(([1, 2, 5].find((digit) => digit * unit >= least) ?? 10) * unit).toPrecision(1);
+}
 const nodeOf = (name) => name.slice(0, name.indexOf("."));

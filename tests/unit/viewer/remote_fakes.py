@@ -1,0 +1,78 @@
+"""Nodes of other processes, as services that answer when a test lets them."""
+
+from collections.abc import Callable
+from typing import Any
+
+from navette.errors import InvalidValueError
+from navette.msgs import get_interface
+from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
+from navette.runtime import Future, Parameter
+from navette.viewer.questions import Questions
+
+Answer = Callable[[Any], Any]
+
+
+class Clock:
+    """Wall time that a test moves."""
+
+    def __init__(self) -> None:
+        self.now_s = 100.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+class Call:
+    """A request that waits."""
+
+    def __init__(self, service: str, request: Any) -> None:
+        self.service = service
+        self.request = request
+        self.future: Future[Any] = Future()
+
+
+class World:
+    """Services by name; what has no answer of its own stays unanswered."""
+
+    def __init__(self) -> None:
+        self.clock = Clock()
+        self.questions = Questions(self.connect, self.clock)
+        self.answers: dict[str, Answer] = {}
+        self.calls: list[Call] = []
+        self.clients: list[str] = []
+
+    def connect(self, service: str, type_name: str) -> "_Client":
+        if service.startswith("/bad/"):
+            raise InvalidValueError(f"service {service}: is of another type")
+        self.clients.append(service)
+        return _Client(self, service, get_interface(type_name))
+
+    def asked(self) -> list[str]:
+        """Services that were called since the last look."""
+        calls, self.calls = self.calls, []
+        return [call.service for call in calls]
+
+
+class _Client:
+    def __init__(self, world: World, service: str, srv_type: Any) -> None:
+        self.srv_type = srv_type
+        self._world = world
+        self._service = service
+
+    def call_async(self, request: Any) -> Future[Any]:
+        call = Call(self._service, request)
+        self._world.calls.append(call)
+        answer = self._world.answers.get(self._service)
+        if answer is not None:
+            call.future.set_result(answer(request))
+        return call.future
+
+    def remove_pending_request(self, future: Future[Any]) -> None:
+        """Nobody waits for it any more."""
+
+    def destroy(self) -> None:
+        self._world.clients.remove(self._service)
+
+
+def encoded(name: str, value: Any) -> ParameterMsg:
+    return Parameter(name, value=value).to_parameter_msg()

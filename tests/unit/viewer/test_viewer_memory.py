@@ -1,0 +1,121 @@
+"""The last message for latecomers: kept, given first, dropped when it means nothing."""
+
+import struct
+from pathlib import Path
+from typing import Any
+
+import pytest
+from test_viewer_hub import Bench
+from viewer_fakes import sent
+
+from navette.viewer.playback import PlaybackState, PlaybackStatus
+from navette.viewer.replies import Graph, message_data
+from navette.viewer.session import Topic, Watch
+
+PATH = Topic("/path", "nav_msgs/msg/Path", "float64[] x")
+SCAN = Topic("/lidar", "sensor_msgs/msg/LaserScan", "float32[] ranges")
+SAID = Graph({"/path": ("/planner",)}, {})
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Bench:
+    bench = Bench(tmp_path)
+    bench.hub.set_topics([PATH, SCAN])
+    bench.hub.set_graph(SAID)
+    return bench
+
+
+def say(bench: Bench, stamp_ns: int, payload: bytes = b"way") -> None:
+    bench.hub.message(Watch(bench.channel("/path"), None), stamp_ns, payload)
+
+
+def latecomer(bench: Bench) -> list[Any]:
+    """What a new client is given when it subscribes."""
+    return bench.subscribe(bench.join(), 7, bench.channel("/path").id)
+
+
+def test_a_state_is_listened_to_before_anybody_watches(bench: Bench) -> None:
+    assert bench.robot.take() == [("watch", "/path", None)]
+
+
+def test_latecomers_are_given_the_last_message(bench: Bench) -> None:
+    assert latecomer(bench) == []
+    say(bench, 1)
+    say(bench, 2, b"newer")
+    assert latecomer(bench) == [message_data(7, 2, b"newer")]
+    assert latecomer(bench) == [message_data(7, 2, b"newer")]
+
+
+def test_it_is_listened_to_on_when_the_last_client_leaves(bench: Bench) -> None:
+    session = bench.join()
+    bench.subscribe(session, 1, bench.channel("/path").id)
+    bench.robot.take()
+    bench.hub.leave(session)
+    assert bench.robot.take() == []
+    say(bench, 3)
+    assert latecomer(bench) == [message_data(7, 3, b"way")]
+
+
+def test_what_the_gone_have_said_is_not_kept(bench: Bench) -> None:
+    say(bench, 1)
+    bench.hub.set_graph(Graph({}, {"/path": ("/control",)}))
+    assert latecomer(bench) == []
+
+
+def test_after_a_jump_in_a_recording_nothing_holds(bench: Bench) -> None:
+    say(bench, 1)
+    state = PlaybackState(PlaybackStatus.PLAYING, 5, 1.0)
+    bench.hub.set_playback(state, did_seek=True, request_id="")
+    assert latecomer(bench) == []
+
+
+def test_a_stream_is_let_go_unless_somebody_watches(bench: Bench) -> None:
+    bench.robot.take()
+    for number in range(20):
+        say(bench, number * 100_000_000)
+    assert bench.robot.take() == [("unwatch", "/path", None)]
+    assert latecomer(bench) == []  # the next one comes soon
+
+
+def test_a_stream_that_is_watched_goes_on(bench: Bench) -> None:
+    session = bench.join()
+    bench.subscribe(session, 1, bench.channel("/path").id)
+    bench.robot.take()
+    for number in range(30):
+        say(bench, number * 100_000_000)
+    assert bench.robot.take() == []
+    assert len([f for f in sent(session.outbox) if isinstance(f, bytes)]) == 16
+    bench.hub.leave(session)
+    assert bench.robot.take() == [("unwatch", "/path", None)]
+
+
+def test_a_clock_that_is_set_back_makes_no_stream(bench: Bench) -> None:
+    bench.robot.take()
+    for _ in range(20):
+        for second in range(0, 30, 10):
+            say(bench, second * 1_000_000_000)
+    assert bench.robot.take() == []
+
+
+def test_huge_messages_are_not_kept(bench: Bench) -> None:
+    bench.robot.take()
+    say(bench, 1, bytes(5_000_000))
+    assert bench.robot.take() == [("unwatch", "/path", None)]
+
+
+def test_a_topic_that_goes_is_not_listened_to(bench: Bench) -> None:
+    bench.robot.take()
+    bench.hub.set_topics([SCAN])
+    assert bench.robot.take() == [("unwatch", "/path", None)]
+
+
+def test_latched_topics_keep_themselves(bench: Bench) -> None:
+    bench.robot.take()
+    bench.hub.set_topics([Topic("/map", "nav_msgs/msg/OccupancyGrid", "", True)])
+    assert ("watch", "/map", None) not in bench.robot.take()
+
+
+def test_the_stamp_is_that_of_its_time(bench: Bench) -> None:
+    say(bench, 5)
+    ((frame),) = latecomer(bench)
+    assert struct.unpack_from("<BIQ", frame) == (1, 7, 5)

@@ -1,0 +1,187 @@
+"""Parameters of nodes elsewhere: read, described, set, refused, gone."""
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from remote_fakes import World, encoded
+
+from navette.msgs.rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from navette.viewer.frames import WireParameter
+from navette.viewer.parameters import ParameterText
+from navette.viewer.remote_parameters import RemoteParameters
+
+ID = bytes(16)
+
+
+class Far(World):
+    """A node ``/far`` with two parameters, and what the live view knows of it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.have = {"speed": 1.0, "method": "a"}
+        self.refusal = ""
+        self.changed: list[WireParameter] = []
+        self.texts: list[ParameterText] = []
+        self.remote = RemoteParameters(
+            self.questions, encoded, self.clock, self.changed.extend, self.texts.extend
+        )
+        self.answers = {
+            "/far/list_parameters": self.on_list,
+            "/far/get_parameters": self.on_get,
+            "/far/describe_parameters": self.on_describe,
+            "/far/set_parameters": self.on_set,
+        }
+        self.remote.set_nodes({"/far": ID})
+
+    def on_list(self, _request: Any) -> Any:
+        return SimpleNamespace(result=SimpleNamespace(names=list(self.have)))
+
+    def on_get(self, request: Any) -> Any:
+        values = [encoded(name, self.have[name]).value for name in request.names]
+        return SimpleNamespace(values=values)
+
+    def on_describe(self, request: Any) -> Any:
+        bounds = FloatingPointRange(from_value=0.0, to_value=2.0)
+        speed = ParameterDescriptor(description="how fast [m/s]")
+        speed.floating_point_range = [bounds]
+        method = ParameterDescriptor(additional_constraints="one of a, b")
+        known = {"speed": speed, "method": method}
+        return SimpleNamespace(descriptors=[known[name] for name in request.names])
+
+    def on_set(self, request: Any) -> Any:
+        result = SetParametersResult(successful=not self.refusal, reason=self.refusal)
+        return SimpleNamespace(results=[result])
+
+    def set(self, name: str, value: Any, kind: str | None = None) -> list[str]:
+        said: list[str] = []
+        self.remote.set(WireParameter(name, value, kind), said.append)
+        return said
+
+
+@pytest.fixture
+def far() -> Far:
+    return Far()
+
+
+def test_values_and_texts_are_read_once(far: Far) -> None:
+    done: list[bool] = []
+    far.remote.fetch(lambda: done.append(True))
+    assert done == [True]
+    assert far.remote.values["/far.speed"] == WireParameter(
+        "/far.speed", 1.0, "float64"
+    )
+    assert [wire.value for wire in far.changed] == [1.0, "a"]
+    assert far.texts[0] == ParameterText(
+        "/far.speed", "how fast [m/s]", low=0.0, high=2.0
+    )
+    assert far.texts[1].allowed == "one of a, b"
+    assert len(far.asked()) == 3
+    far.remote.fetch()
+    assert far.asked() == []
+
+
+def test_two_who_wait_for_the_same_ask_once(far: Far) -> None:
+    answer = far.answers.pop("/far/list_parameters")
+    done: list[int] = []
+    for number in (1, 2):
+        far.remote.fetch(lambda number=number: done.append(number))  # type: ignore[misc]
+    (call,) = far.calls
+    assert done == []
+    call.future.set_result(answer(None))
+    assert done == [1, 2]
+
+
+def test_a_frozen_node_is_waited_for_a_second_and_asked_again_later(far: Far) -> None:
+    del far.answers["/far/list_parameters"]
+    done: list[bool] = []
+    far.remote.fetch(lambda: done.append(True))
+    far.clock.now_s += 1.1
+    far.questions.give_up_old()
+    assert done == [True]
+    far.asked()
+    far.remote.fetch()
+    assert far.asked() == []
+    far.clock.now_s += 2.0
+    far.remote.fetch()
+    assert far.asked() == ["/far/list_parameters"]
+
+
+def test_setting_takes_the_kind_that_the_parameter_has(far: Far) -> None:
+    assert far.set("/far.speed", 2) == [""]  # read first, to know the kind
+    request = far.calls[-1].request
+    (message,) = request.parameters
+    assert (message.name, message.value.double_value) == ("speed", 2.0)
+    assert far.remote.values["/far.speed"].value == 2.0
+
+
+def test_a_refusal_is_in_the_nodes_words(far: Far) -> None:
+    far.refusal = "too fast"
+    assert far.set("/far.speed", 9.0) == ["too fast"]
+    assert far.remote.values["/far.speed"].value == 1.0
+    del far.answers["/far/set_parameters"]
+    said = far.set("/far.speed", 1.5)
+    far.clock.now_s += 1.1
+    far.questions.give_up_old()
+    assert said == ["node /far: no answer in 1 s"]
+    assert "no number" in far.set("/far.speed", "fast", "float64")[0]
+
+
+def test_a_node_that_is_gone_takes_its_parameters_along(far: Far) -> None:
+    far.remote.fetch()
+    far.changed.clear()
+    far.remote.set_nodes({})
+    assert {(wire.name, wire.value) for wire in far.changed} == {
+        ("/far.speed", None),
+        ("/far.method", None),
+    }
+    assert not far.remote.values
+    assert not far.remote.serves("/far")
+
+
+def test_its_successor_of_the_same_name_is_read_anew(far: Far) -> None:
+    far.remote.fetch()
+    far.have = {"speed": 0.5}
+    far.remote.set_nodes({"/far": b"another one's id"})
+    far.remote.fetch()
+    assert {n: w.value for n, w in far.remote.values.items()} == {"/far.speed": 0.5}
+
+
+def test_who_waits_for_a_node_that_goes_is_told(far: Far) -> None:
+    del far.answers["/far/list_parameters"]
+    said = far.set("/far.speed", 1.5)
+    far.remote.set_nodes({})
+    assert said == ["node /far is gone"]
+
+
+def test_what_nodes_tell_is_kept_also_of_unknown_ones(far: Far) -> None:
+    far.remote.take("/player", [("rate", encoded("rate", 2.0).value)])
+    assert far.remote.values["/player.rate"].value == 2.0
+    far.remote.drop("/player", ["rate"])
+    assert far.changed[-1] == WireParameter("/player.rate", None)
+    assert "/player.rate" not in far.remote.values
+
+
+@pytest.mark.parametrize(
+    ("low", "high"), [(math.nan, 1.0), (0.0, math.inf), (2.0, 1.0), (1.0, 1.0)]
+)
+def test_a_range_that_is_none_is_left_out(low: float, high: float) -> None:
+    bounds = FloatingPointRange(from_value=low, to_value=high)
+    text = ParameterText.of("/a.b", ParameterDescriptor(floating_point_range=[bounds]))
+    assert (text.low, text.high) == (None, None)
+
+
+def test_a_range_of_whole_numbers_has_its_step() -> None:
+    bounds = IntegerRange(from_value=0, to_value=10, step=5)
+    descriptor = ParameterDescriptor(
+        integer_range=[bounds], read_only=True, description="x" * 10_000
+    )
+    text = ParameterText.of("/a.b", descriptor)
+    assert (text.low, text.high, text.step, text.read_only) == (0.0, 10.0, 5.0, True)
+    assert len(text.meaning) == 500
