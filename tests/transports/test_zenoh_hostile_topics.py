@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import ZenohPair, message_of
+from transport_benches import ZenohPair, message_of, until
 
 from navette.msgs import serialize, type_hash
 from navette.msgs.std_msgs.msg import String
@@ -97,3 +97,23 @@ def test_an_answer_to_what_is_no_longer_asked_for_begins_nothing_anew(
     port.arrivals.recover(bytes(16), FAR_BEHIND)
     port.arrivals.take(*numbered(5 * FAR_BEHIND + 1))
     assert [item[3] for item in items] == [5 * FAR_BEHIND, 5 * FAR_BEHIND + 1]
+
+
+def test_what_is_far_too_long_is_not_even_put_together() -> None:
+    pair = ZenohPair(max_message_bytes=1000)
+    items: list[Item] = []
+    ear = Endpoint(EndpointKind.SUBSCRIPTION, "/t", TYPE, EndpointQos(), "e", "/", b"")
+    pair.near.subscribe(ear, String, items.append, shared=False)
+    sizes: list[int] = []
+    pair.near_zenoh.session.zenoh.declare_subscriber(
+        KEY, lambda sample: sizes.append(len(sample.payload))
+    )
+    pair.settle()
+    publisher = pair.far_zenoh.session.zenoh.declare_publisher(KEY)
+    fine = serialize(String(data="fine"))
+    for payload in (bytes(3_000_000), fine):
+        publisher.put(payload, attachment=Attachment(1, 0, bytes(16)).encode())
+    until(lambda: len(items) == 1, "what is not too long")
+    until(lambda: len(sizes) == 1, "the same")
+    assert sizes == [len(fine)]
+    pair.close()

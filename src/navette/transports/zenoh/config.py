@@ -17,6 +17,9 @@ ASK_TIMEOUT_MS = 1000
 # processes that start at once need longer than anybody would think.
 _OPEN_TIMEOUT_MS = 10_000
 
+# What a message has around it; one that is too long by less is complained of.
+_ROOM_BYTES = 1024 * 1024
+
 # As in rmw_zenoh's default configurations, but for the retries: the router is in one
 # of the processes, and another one takes over at once.
 _COMMON: dict[str, Any] = {
@@ -71,6 +74,9 @@ def peer_config(settings: Settings) -> zenoh.Config:
         config.insert_json5("connect/endpoints", json.dumps(settings.router))
     if settings.session_file is None or "listen" in settings.explicit:
         config.insert_json5("listen/endpoints", json.dumps(settings.listen))
+    # Zenoh drops those without a word, but does not even put them together.
+    longest = _ROOM_BYTES + 2 * settings.max_message_bytes
+    config.insert_json5("transport/link/rx/max_message_size", str(longest))
     return config
 
 
