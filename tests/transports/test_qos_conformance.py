@@ -9,9 +9,22 @@ from transport_benches import free_endpoint, until
 
 from navette import Context, DurabilityPolicy, Node, QoSProfile
 from navette.msgs.std_msgs.msg import String
-from navette.runtime import Duration, Executor, Subscription, VirtualClock
+from navette.runtime import (
+    Duration,
+    Executor,
+    LivelinessPolicy,
+    Subscription,
+    VirtualClock,
+)
 from navette.runtime.context import new_graph
+from navette.runtime.qos_events import (
+    PublisherEventCallbacks,
+    QoSCountInfo,
+    QoSLivelinessChangedInfo,
+    SubscriptionEventCallbacks,
+)
 
+Changed = QoSLivelinessChangedInfo
 STEP_NS = 10_000_000
 
 
@@ -21,7 +34,7 @@ class Ends:
     def __init__(self, stack: ExitStack, *, over_zenoh: bool) -> None:
         self.clock = VirtualClock()
         self._stack = stack
-        self._over_zenoh = over_zenoh
+        self.over_zenoh = over_zenoh
         self._shared = new_graph()
         stack.callback(self._shared.close)
         self._executors: list[Executor] = []
@@ -29,7 +42,7 @@ class Ends:
 
     def node(self, name: str, clock: Any = None) -> Node:
         where: dict[str, Any] = {"graph": self._shared}
-        if self._over_zenoh:
+        if self.over_zenoh:
             where = {"transport": "zenoh"}
         context = self._stack.enter_context(Context(clock=clock or self.clock, **where))
         node = Node(name, context=context)
@@ -72,6 +85,7 @@ def test_what_expires_in_the_queue_is_dropped(ends: Ends, latched: bool) -> None
         String, "/news", lambda m: heard.append(m.data), 10
     )
     until(lambda: publisher.get_subscription_count() == 1, "the match")
+    until(lambda: subscription.get_publisher_count() == 1, "the match")
     ends.clock.now_ns = 5_000_000_000
     publisher.publish(String(data="old"))
     ends.clock.now_ns += 900_000_000
@@ -93,6 +107,7 @@ def test_late_joiners_get_no_expired_samples(ends: Ends) -> None:
         String, "/news", lambda m: heard.append(m.data), news(latched=True)
     )
     arrived(subscription, 2)
+    until(lambda: subscription.get_publisher_count() == 1, "the match")
     ends.pass_time(0.01)
     assert heard == ["young"]
 
@@ -116,3 +131,140 @@ def test_a_publisher_that_is_not_known_yet_has_a_lifespan_all_the_same(
     ends.clock.now_ns += 1_000_000_000
     ends.pass_time(0.01)
     assert heard == ["old"]
+
+
+def test_deadlines_of_both_ends(ends: Ends) -> None:
+    qos = QoSProfile(depth=10, deadline=Duration(seconds=0.6))
+    offered: list[Any] = []
+    requested: list[Any] = []
+    publisher = ends.near.create_publisher(
+        String,
+        "/t",
+        qos,
+        event_callbacks=PublisherEventCallbacks(deadline=offered.append),
+    )
+    subscription = ends.far.create_subscription(
+        String,
+        "/t",
+        lambda m: None,
+        qos,
+        event_callbacks=SubscriptionEventCallbacks(deadline=requested.append),
+    )
+    until(lambda: publisher.get_subscription_count() == 1, "the match")
+    ends.pass_time(2.0)
+    assert offered == requested == []  # they begin with the first message
+    for _ in range(2):
+        publisher.publish(String())
+        arrived(subscription, 1)
+        ends.pass_time(0.5)
+    assert offered == requested == []
+    ends.pass_time(0.4)
+    missed = [QoSCountInfo(1, 1), QoSCountInfo(2, 1)]
+    assert offered == requested == missed[:1]
+    ends.pass_time(0.4)
+    assert offered == requested == missed
+    publisher.publish(String())
+    arrived(subscription, 1)
+    ends.pass_time(0.5)
+    assert offered == requested == missed
+
+
+class Manual:
+    """A publisher that asserts itself, and what a subscription is told of it."""
+
+    def __init__(self, ends: Ends, lease_s: float = 1.0, **qos: Any) -> None:
+        self.ends = ends
+        self.qos = QoSProfile(
+            depth=10,
+            liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+            liveliness_lease_duration=Duration(seconds=lease_s),
+            **qos,
+        )
+        self.matched: list[Any] = []
+        callbacks = PublisherEventCallbacks(matched=self.matched.append)
+        self.publisher = ends.near.create_publisher(
+            String, "/t", self.qos, event_callbacks=callbacks
+        )
+        self.subscription, self.changes = self.listen()
+
+    def listen(self) -> tuple[Subscription[Any], list[Changed]]:
+        changes: list[Changed] = []
+        subscription = self.ends.far.create_subscription(
+            String,
+            "/t",
+            lambda m: None,
+            self.qos,
+            event_callbacks=SubscriptionEventCallbacks(liveliness=changes.append),
+        )
+        until(lambda: subscription.get_publisher_count() == 1, "the match")
+        until(lambda: self.publisher.get_subscription_count() >= 1, "the match")
+        return subscription, changes
+
+    def publish(self) -> None:
+        self.publisher.publish(String())
+        arrived(self.subscription, 1)
+
+
+def test_a_publisher_that_asserts_itself_lives_by_its_messages(ends: Ends) -> None:
+    manual = Manual(ends)
+    ends.pass_time(3.0)
+    assert manual.changes == []  # it has not said anything yet
+    for _ in range(3):
+        manual.publish()
+        ends.pass_time(0.9)
+    assert manual.changes == [Changed(1, 0, 1, 0)]
+    _, late = manual.listen()
+    ends.pass_time(0.09)
+    assert late == [Changed(1, 0, 1, 0)]  # known to be alive
+    ends.pass_time(0.1)
+    lapsed = Changed(0, 1, -1, 1)
+    assert (manual.changes[1:], late[1:]) == ([lapsed], [lapsed])
+    ends.pass_time(5.0)
+    manual.publish()
+    ends.pass_time(0.1)
+    assert manual.changes[2:] == [Changed(1, 0, 1, -1)]
+    manual.publisher.destroy()
+    until(lambda: manual.subscription.get_publisher_count() == 0, "the parting")
+    ends.pass_time(3.0)
+    assert manual.changes[3:] == [Changed(0, 0, -1, 0)]
+
+
+def test_one_that_is_gone_while_it_was_silent_is_no_longer_counted(ends: Ends) -> None:
+    manual = Manual(ends)
+    manual.publish()
+    ends.pass_time(2.0)
+    manual.publisher.destroy()
+    until(lambda: manual.subscription.get_publisher_count() == 0, "the parting")
+    ends.pass_time(0.1)
+    assert manual.changes[-1] == Changed(0, 0, 0, -1)
+
+
+def test_a_history_is_no_sign_of_life(ends: Ends) -> None:
+    """What was kept for latecomers may be of a publisher that hangs by now."""
+    manual = Manual(ends, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    manual.publish()
+    ends.pass_time(2.0)
+    late, changes = manual.listen()
+    arrived(late, 1)
+    ends.pass_time(0.1)
+    assert changes == []
+
+
+def test_assertions_without_messages_stay_in_the_process(ends: Ends) -> None:
+    """And a warning says so, once."""
+    manual = Manual(ends)
+    ends.pass_time(0.1)
+    said: list[str] = []
+
+    def is_told() -> bool:
+        ends.pass_time(0.01)
+        return bool(manual.matched)
+
+    until(is_told, "the match")
+    ends.near.context.log.sinks.append(lambda record: said.append(record.message))
+    for _ in range(2):
+        manual.publisher.assert_liveliness()
+        ends.pass_time(0.1)
+    warnings = [text for text in said if "assert_liveliness() is heard" in text]
+    assert len(warnings) == ends.over_zenoh
+    assert manual.changes == ([] if ends.over_zenoh else [Changed(1, 0, 1, 0)])

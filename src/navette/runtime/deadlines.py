@@ -1,5 +1,6 @@
 """Deadlines and leases: what to do when nothing has happened for a while."""
 
+import threading
 from collections.abc import Callable
 
 from navette.runtime.events import Call
@@ -9,10 +10,19 @@ from navette.runtime.loop import EventLoop
 class Watchdog:
     """Calls back when :meth:`restart` has not been called for ``period_ns``.
 
-    It starts with the first restart, and goes on calling back every period.
+    It starts with the first restart, and goes on calling back every period. Restarted
+    and stopped from any thread; it calls back in the loop's.
     """
 
-    __slots__ = ("_call", "_due_ns", "_expired", "_loop", "_node", "_period_ns")
+    __slots__ = (
+        "_call",
+        "_due_ns",
+        "_expired",
+        "_lock",
+        "_loop",
+        "_node",
+        "_period_ns",
+    )
 
     def __init__(
         self,
@@ -27,18 +37,22 @@ class Watchdog:
         self._node = node
         self._due_ns = 0
         self._call: Call | None = None
+        self._lock = threading.Lock()
 
     def restart(self) -> None:
         """Count from now; cheap: the alarm under way moves on when it comes."""
         self._due_ns = self._loop.clock.now_ns + self._period_ns
         if self._call is None:
-            self._arm()
+            with self._lock:
+                if self._call is None:
+                    self._arm()
 
     def stop(self) -> None:
         """Call back no more; :meth:`restart` starts it again."""
-        if self._call is not None:
-            self._call.cancel()
-            self._call = None
+        with self._lock:
+            if self._call is not None:
+                self._call.cancel()
+                self._call = None
 
     def _arm(self) -> None:
         self._call = self._loop.call_at(
@@ -46,8 +60,12 @@ class Watchdog:
         )
 
     def _look(self) -> None:
-        if self._loop.clock.now_ns >= self._due_ns:
-            self._due_ns += self._period_ns
-            self._expired()
-        if self._call is not None:  # not stopped by the callback
+        with self._lock:
+            if self._call is None:
+                return
+            is_over = self._loop.clock.now_ns >= self._due_ns
+            if is_over:
+                self._due_ns += self._period_ns
             self._arm()
+        if is_over:
+            self._expired()

@@ -31,6 +31,7 @@ class Graph(TransportObserver):
         self._on_lost: list[Callable[[Endpoint, int], None]] = []
         self._on_match: list[Callable[[Endpoint, Endpoint, bool], None]] = []
         self._on_liveliness: list[Callable[[Endpoint, bool], None]] = []
+        self._on_assertion: list[Callable[[Endpoint, Endpoint], None]] = []
         #: Gids of the publishers that assert themselves and whose lease holds.
         self.manually_alive: set[bytes] = set()
         self._gids = itertools.count(1)
@@ -75,6 +76,13 @@ class Graph(TransportObserver):
         """Call back with a publisher and whether its lease holds or has lapsed."""
         self._on_liveliness.append(callback)
         return lambda: self._on_liveliness.remove(callback)
+
+    def on_assertion(
+        self, callback: Callable[[Endpoint, Endpoint], None]
+    ) -> Callable[[], None]:
+        """Call back with a remote publisher that asserts itself and who heard it."""
+        self._on_assertion.append(callback)
+        return lambda: self._on_assertion.remove(callback)
 
     # -- what transports and nodes report --------------------------------------
 
@@ -124,6 +132,10 @@ class Graph(TransportObserver):
     def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
         for callback in tuple(self._on_match):
             callback(publisher, subscription, False)
+
+    def asserted(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        for callback in tuple(self._on_assertion):
+            callback(publisher, subscription)
 
     def report_liveliness(self, publisher: Endpoint, *, alive: bool) -> None:
         """A publisher's lease holds from now on, or has lapsed."""

@@ -1,37 +1,42 @@
 """Who is alive: leases that publishers keep, and what subscriptions see of it.
 
 A publisher that asserts itself (MANUAL_BY_TOPIC) is alive for its lease after each
-message or assertion; every other one for as long as it is there, and so is every one of
-another process: what Zenoh tells of it is whether it is there.
+message or assertion; every other one for as long as it is there. The lease of one in
+another process is kept by the subscriptions here that hear it, with its messages: an
+assertion without a message does not go over the network (rmw_zenoh has no place for
+it).
 """
 
+import threading
 from collections.abc import Callable
 
 from navette.runtime.deadlines import Watchdog
 from navette.runtime.graph import Graph
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos_events import QoSCountInfo, QoSLivelinessChangedInfo
-from navette.transports import INFINITE_NS, Endpoint, EndpointQos, LivelinessPolicy
-
-
-def has_lease(qos: EndpointQos) -> bool:
-    """Whether a publisher of that QoS has to assert itself."""
-    manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
-    return manual and qos.lease_ns < INFINITE_NS
+from navette.transports import Endpoint
 
 
 class Lease:
-    """A publisher's: tells the graph when it lapses and when it is taken up again."""
+    """A publisher's: tells the graph when it lapses and when it is taken up again.
+
+    Args:
+        lost: told when it lapses; for a publisher of another process nobody.
+    """
 
     def __init__(
         self,
         endpoint: Endpoint,
         graph: Graph,
         loop: EventLoop,
-        lost: Callable[[QoSCountInfo], None],
+        lost: Callable[[QoSCountInfo], None] | None = None,
     ) -> None:
         self._endpoint = endpoint
         self._graph = graph
+        self._clock = loop.clock
+        self._until_ns = 0
+        # Renewed in any thread, lapses in the loop's.
+        self._lock = threading.Lock()
         self._lost = lost
         self._count = 0
         self._is_alive = False
@@ -41,22 +46,29 @@ class Lease:
 
     def renew(self) -> None:
         """A message or an assertion."""
-        if not self._is_alive:
-            self._is_alive = True
-            self._graph.report_liveliness(self._endpoint, alive=True)
-        self._dog.restart()
+        with self._lock:
+            self._until_ns = self._clock.now_ns + self._endpoint.qos.lease_ns
+            if not self._is_alive:
+                self._is_alive = True
+                self._graph.report_liveliness(self._endpoint, alive=True)
+            self._dog.restart()
 
     def stop(self) -> None:
         """The publisher goes."""
-        self._dog.stop()
-        self._graph.manually_alive.discard(self._endpoint.gid)
+        with self._lock:
+            self._dog.stop()
+            self._graph.manually_alive.discard(self._endpoint.gid)
 
     def _lapse(self) -> None:
-        self._dog.stop()
-        self._is_alive = False
-        self._count += 1
-        self._graph.report_liveliness(self._endpoint, alive=False)
-        self._lost(QoSCountInfo(self._count, 1))
+        with self._lock:
+            if self._clock.now_ns < self._until_ns:  # renewed just now
+                return
+            self._dog.stop()
+            self._is_alive = False
+            self._count += 1
+            self._graph.report_liveliness(self._endpoint, alive=False)
+            if self._lost is not None:
+                self._lost(QoSCountInfo(self._count, 1))
 
 
 class LivelinessView:
@@ -78,8 +90,7 @@ class LivelinessView:
             self._move(gid, alive=False, lapsed=False)
             return
         self._matched.add(gid)
-        asserts_itself = has_lease(publisher.qos) and not publisher.is_remote
-        if not asserts_itself or gid in self._graph.manually_alive:
+        if not publisher.qos.asserts_itself or gid in self._graph.manually_alive:
             self._move(gid, alive=True, lapsed=False)
 
     def on_liveliness(self, publisher: Endpoint, alive: bool) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from navette.runtime.context import Context
 from navette.runtime.deadlines import Watchdog
-from navette.runtime.liveliness import Lease, LivelinessView, has_lease
+from navette.runtime.liveliness import Lease, LivelinessView
 from navette.runtime.log import Logger
 from navette.runtime.qos_events import (
     EventCallbacks,
@@ -34,6 +34,7 @@ class EndpointWatch:
         logger: Logger,
         call_soon: CallSoon,
     ) -> None:
+        self._context = context
         self._endpoint = endpoint
         self._callbacks = callbacks or EventCallbacks()
         self._logger = logger
@@ -43,9 +44,13 @@ class EndpointWatch:
         self._lost = 0
         self._missed = 0
         self._match = QoSMatchedInfo()
+        self._far = 0  # matched subscriptions of other processes
+        self._has_warned = False
         self._deadline: Watchdog | None = None
         self._lease: Lease | None = None
         self._view: LivelinessView | None = None
+        #: Of publishers in other processes, by gid.
+        self._leases: dict[bytes, Lease] = {}
         # Remote endpoints come and go in another thread than those here.
         self._counting = threading.Lock()
         graph = context.graph
@@ -55,8 +60,8 @@ class EndpointWatch:
             graph.on_lost(self._on_lost),
             graph.on_match(self._on_match),
         ]
-        self._watch_deadline(context)
-        self._watch_liveliness(context)
+        self._watch_deadline()
+        self._watch_liveliness()
 
     def stop(self) -> None:
         """Follow no more."""
@@ -66,6 +71,8 @@ class EndpointWatch:
             self._deadline.stop()
         if self._lease is not None:
             self._lease.stop()
+        for lease in list(self._leases.values()):
+            lease.stop()
 
     @property
     def on_sample(self) -> Callable[[], None] | None:
@@ -86,7 +93,7 @@ class EndpointWatch:
     @property
     def on_assertion(self) -> Callable[[], None] | None:
         """What to call when a publisher asserts that it is alive."""
-        return None if self._lease is None else self._lease.renew
+        return None if self._lease is None else self._assert
 
     def watched(self, sink: Callable[[Item], None]) -> Callable[[Item], None]:
         """A subscription's sink, with its deadline looked after."""
@@ -102,25 +109,25 @@ class EndpointWatch:
 
     # -- inside ----------------------------------------------------------------
 
-    def _watch_deadline(self, context: Context) -> None:
+    def _watch_deadline(self) -> None:
         period_ns = self._endpoint.qos.deadline_ns
         if self._callbacks.deadline is not None and period_ns < INFINITE_NS:
             self._deadline = Watchdog(
                 period_ns,
                 self._on_deadline,
-                context.loop,
+                self._context.loop,
                 self._endpoint.node_full_name,
             )
 
-    def _watch_liveliness(self, context: Context) -> None:
+    def _watch_liveliness(self) -> None:
+        graph, loop = self._context.graph, self._context.loop
         if self._endpoint.kind is EndpointKind.SUBSCRIPTION:
             if self._callbacks.liveliness is not None:
-                self._view = LivelinessView(context.graph, self._tell_liveliness)
-                self._undo.append(context.graph.on_liveliness(self._view.on_liveliness))
-        elif has_lease(self._endpoint.qos):
-            self._lease = Lease(
-                self._endpoint, context.graph, context.loop, self._tell_liveliness
-            )
+                self._view = LivelinessView(graph, self._tell_liveliness)
+                self._undo.append(graph.on_liveliness(self._on_liveliness))
+                self._undo.append(graph.on_assertion(self._on_assertion))
+        elif self._endpoint.qos.asserts_itself:
+            self._lease = Lease(self._endpoint, graph, loop, self._tell_liveliness)
 
     def _tell(self, callback: Callable[[Any], Any] | None, info: Any, of: str) -> None:
         if callback is not None:
@@ -169,14 +176,42 @@ class EndpointWatch:
     def _on_match(self, publisher: Endpoint, subscription: Endpoint, up: bool) -> None:
         if self._endpoint not in (publisher, subscription):
             return
+        if not up and publisher.gid in self._leases:
+            self._leases.pop(publisher.gid).stop()
         with self._counting:
             if self._view is not None:
                 self._view.on_match(publisher, up)
+            step = 1 if up else -1
+            self._far += step * subscription.is_remote
             if self._callbacks.matched is not None:
-                step = 1 if up else -1
                 total, current = self._match.total_count, self._match.current_count
                 self._match = QoSMatchedInfo(total + up, int(up), current + step, step)
                 self._tell(self._callbacks.matched, self._match, "matched")
+
+    def _assert(self) -> None:
+        assert self._lease is not None, "only a publisher with a lease asserts"
+        self._lease.renew()
+        if self._far and not self._has_warned:
+            self._has_warned = True
+            self._logger.warning(
+                f"topic {self._endpoint.topic}: assert_liveliness() is heard in this "
+                "process only; subscriptions of other processes take a publisher for "
+                "alive by its messages: publish one within the lease"
+            )
+
+    def _on_liveliness(self, publisher: Endpoint, alive: bool) -> None:
+        with self._counting:
+            assert self._view is not None, "only a subscription with a view asks"
+            self._view.on_liveliness(publisher, alive)
+
+    def _on_assertion(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        if self._endpoint != subscription:
+            return
+        lease = self._leases.get(publisher.gid)
+        if lease is None:
+            lease = Lease(publisher, self._context.graph, self._context.loop)
+            self._leases[publisher.gid] = lease
+        lease.renew()
 
     def _warning(
         self,

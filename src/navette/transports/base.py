@@ -95,6 +95,9 @@ class TransportObserver:
     def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
         """The two endpoints no longer exchange samples."""
 
+    def asserted(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        """A sample of a remote publisher that asserts itself has come."""
+
     def incompatible_qos(
         self,
         publisher: Endpoint,

@@ -14,6 +14,12 @@ _SAME_CLOCK_NS = 365 * 86_400 * 10**9
 _HISTORY_NS = 2 * 10**9
 
 
+def age_ns(item: Item) -> int:
+    """How old a sample was when it came; 0 where the two clocks do not compare."""
+    age = item[2] - item[1]
+    return 0 if abs(age) > _SAME_CLOCK_NS else age
+
+
 class Expiring:
     """In place of the message of a delivered sample: the message, and until when.
 
@@ -61,9 +67,7 @@ class Lifespans:
     def limited(self, gid: bytes, item: Item) -> Item:
         """The sample as it is, or one that expires; any thread."""
         message, source_ns, received_ns, number = item
-        since_ns = source_ns
-        if abs(received_ns - source_ns) > _SAME_CLOCK_NS:
-            since_ns = received_ns
+        since_ns = received_ns - age_ns(item)
         publisher = self._publishers.get(gid)
         if publisher is None:  # announced already, and known here in a moment
             late = Expiring(message, lambda: since_ns + self._lifespan_of(gid))
@@ -88,10 +92,10 @@ class Lifespans:
         return lifespan_ns or INFINITE_NS
 
 
-def _too_old(publisher: Endpoint, age_ns: int) -> str:
+def _too_old(publisher: Endpoint, old_ns: int) -> str:
     lifespan_s = publisher.qos.lifespan_ns / 1e9
     return (
-        f"what {publisher.node_full_name} sends is ignored: it is {age_ns / 1e9:g} s "
+        f"what {publisher.node_full_name} sends is ignored: it is {old_ns / 1e9:g} s "
         f"old when it comes, and its lifespan is {lifespan_s:g} s; are the clocks of "
         "both machines right?"
     )

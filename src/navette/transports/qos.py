@@ -140,6 +140,12 @@ class EndpointQos:
             DurabilityPolicy.BEST_AVAILABLE,
         )
 
+    @property
+    def asserts_itself(self) -> bool:
+        """Whether a publisher of that QoS is alive only for a while after a message."""
+        manual = self.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+        return manual and 0 < self.lease_ns < INFINITE_NS
+
     @classmethod
     def latched(cls, depth: int = 1) -> Self:
         """Reliable, transient local: what maps and descriptions use."""

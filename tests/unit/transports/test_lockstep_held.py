@@ -29,6 +29,8 @@ class Bench:
     def __init__(self, qos: EndpointQos | None = None) -> None:
         self.held = HeldSamples()
         self.items: list[Item] = []
+        #: Whose samples were given, and when.
+        self.heard: list[tuple[bytes, int]] = []
         self.remotes: dict[bytes, Endpoint] = {}
         self.qos = qos or EndpointQos()
         self.holding = self.open()
@@ -40,6 +42,7 @@ class Bench:
             lambda: self.remotes,
             is_latched=self.qos.is_latched,
             depth=self.qos.queue_length,
+            heard=lambda gid, item: self.heard.append((gid, item[2])),
         )
 
     def begins(self) -> None:
@@ -211,3 +214,14 @@ def test_the_tally_counts_until_all_know() -> None:
     second(1)  # after the report: for the next step
     tally.granted(reported)
     assert tally.changed() == {B: Sent("/n", 2, 1, 1)}
+
+
+def test_a_publisher_is_heard_when_its_sample_is_given_not_when_it_comes() -> None:
+    bench = Bench()
+    bench.remotes[A] = publisher(A, "n")
+    bench.begins()
+    bench.come(A, 1)
+    assert bench.heard == []
+    assert bench.held.expect({A: Sent("/n", 1, 1, 1)})
+    bench.released(30)
+    assert bench.heard == [(A, 30)]

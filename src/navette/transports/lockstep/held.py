@@ -60,6 +60,7 @@ class Holding:
         is_latched: whether it gets what was sent before it was there.
         depth: at most so many of those; None = all.
         remotes: the publishers that it is matched with, by gid.
+        heard: told whose samples are given to the subscription.
     """
 
     __slots__ = (
@@ -68,6 +69,7 @@ class Holding:
         "_pairs",
         "_strange",
         "depth",
+        "heard",
         "is_latched",
         "number",
         "remotes",
@@ -85,8 +87,10 @@ class Holding:
         *,
         is_latched: bool,
         depth: int | None,
+        heard: Callable[[bytes, Item], None],
     ) -> None:
         self._held = held
+        self.heard = heard
         self.number = number
         self.topic = topic
         self.sink = sink
@@ -107,6 +111,13 @@ class Holding:
             elif item[3] > pair.upto or (pair.need and item[3] > pair.after):
                 pair.here.setdefault(item[3], item)
         self._held.arrived()
+
+    def give(self, gid: bytes, item: Item, now_ns: int) -> None:
+        """A sample to the subscription, received just now."""
+        message, source_ns, _, number = item
+        item = message, source_ns, now_ns, number
+        self.heard(gid, item)
+        self.sink(item)
 
     def close(self) -> None:
         """Forget what is held."""
@@ -164,7 +175,7 @@ class Holding:
         return all(pair.missing <= 0 for pair in self._pairs.values())
 
     def due(self, known: Mapping[bytes, Sent]) -> list[tuple[Any, ...]]:
-        """(order, item, sink) of what goes now."""
+        """(order, gid, item, for whom) of what goes now."""
         found: list[tuple[Any, ...]] = []
         for gid, pair in self._pairs.items():
             for number, item in pair.take():
@@ -177,14 +188,14 @@ class Holding:
                     number,
                     self.number,
                 )
-                found.append((order, item, self.sink))
+                found.append((order, gid, item, self))
             pair.need = 0
             pair.after = pair.upto
         return found
 
-    def strangers(self) -> list[Item]:
+    def strangers(self) -> list[tuple[bytes, Item]]:
         """Samples of publishers outside, that have been here for a whole step."""
-        found = [item for _, item, is_old in self._strange if is_old]
+        found = [(gid, item) for gid, item, is_old in self._strange if is_old]
         waiting = [
             (gid, item, True) for gid, item, is_old in self._strange if not is_old
         ]
@@ -213,6 +224,7 @@ class HeldSamples:
         *,
         is_latched: bool,
         depth: int | None,
+        heard: Callable[[bytes, Item], None] | None = None,
     ) -> Holding:
         """For one subscription."""
         with self.lock:
@@ -225,6 +237,7 @@ class HeldSamples:
                 remotes,
                 is_latched=is_latched,
                 depth=depth,
+                heard=heard or _unheeded,
             )
             self._holdings.append(holding)
         return holding
@@ -260,12 +273,12 @@ class HeldSamples:
         """Give what is due to the subscriptions, in order; how many samples."""
         with self.lock:
             due = [each for h in self._holdings for each in h.due(self._known)]
-            strange = [(h.sink, item) for h in self._holdings for item in h.strangers()]
+            strange = [(h, *each) for h in self._holdings for each in h.strangers()]
         due.sort(key=lambda each: each[0])
-        for _, (message, source_ns, _, number), sink in due:
-            sink((message, source_ns, now_ns, number))
-        for sink, (message, source_ns, _, number) in strange:
-            sink((message, source_ns, now_ns, number))
+        for _, gid, item, holding in due:
+            holding.give(gid, item, now_ns)
+        for holding, gid, item in strange:
+            holding.give(gid, item, now_ns)
         return len(due) + len(strange)
 
     def arrived(self) -> None:
@@ -282,3 +295,7 @@ class HeldSamples:
 
 def _nothing() -> None:
     """Nobody waits."""
+
+
+def _unheeded(gid: bytes, item: Item) -> None:
+    """Nobody asked."""

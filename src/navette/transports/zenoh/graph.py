@@ -9,9 +9,11 @@ from navette.errors import DecodeError
 from navette.transports.base import (
     Endpoint,
     EndpointKind,
+    Item,
     NodeInfo,
     TransportObserver,
 )
+from navette.transports.expiring import age_ns
 from navette.transports.qos import QoSPolicyKind, incompatible_policies
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.tokens import EndpointToken, Token, gid_of, parse_token
@@ -30,30 +32,60 @@ _OPPOSITE = {
 class Matches:
     """The remote endpoints that an endpoint here exchanges samples with.
 
-    ``remotes`` (by token), ``by_gid`` (the same) and ``refused`` (gids of those whose
-    QoS does not fit) change while others read them.
+    ``remotes`` (by token), ``by_gid`` (the same), ``asserting`` (gids of those of them
+    that assert themselves) and ``refused`` (gids of those whose QoS does not fit)
+    change while others read them.
+
+    Args:
+        asserted: told the gid of a publisher that asserts itself, when it is heard.
     """
 
-    __slots__ = ("by_gid", "endpoint", "refused", "remotes", "type_hash")
+    __slots__ = (
+        "_asserted",
+        "asserting",
+        "by_gid",
+        "endpoint",
+        "refused",
+        "remotes",
+        "type_hash",
+    )
 
-    def __init__(self, endpoint: Endpoint, type_hash: str) -> None:
+    def __init__(
+        self,
+        endpoint: Endpoint,
+        type_hash: str,
+        asserted: Callable[["Matches", bytes], None],
+    ) -> None:
+        self._asserted = asserted
         self.endpoint = endpoint
         self.type_hash = type_hash
         self.remotes: dict[str, Endpoint] = {}
         self.by_gid: dict[bytes, Endpoint] = {}
+        self.asserting: set[bytes] = set()
         self.refused: set[bytes] = set()
 
     def add(self, key: str, remote: Endpoint) -> None:
         """One more, by its token."""
         self.remotes[key] = remote
         self.by_gid[remote.gid] = remote
+        if remote.qos.asserts_itself:
+            self.asserting.add(remote.gid)
 
     def remove(self, key: str) -> bool:
         """Whether it was one of them."""
         remote = self.remotes.pop(key, None)
         if remote is not None:
             self.by_gid.pop(remote.gid, None)
+            self.asserting.discard(remote.gid)
         return remote is not None
+
+    def heard(self, gid: bytes, item: Item) -> None:
+        """A sample by which its publisher says that it is alive; no old one does."""
+        publisher = self.by_gid.get(gid)
+        if publisher is None or gid not in self.asserting:
+            return
+        if age_ns(item) < publisher.qos.lease_ns:
+            self._asserted(self, gid)
 
 
 class RemoteGraph:
@@ -133,7 +165,7 @@ class RemoteGraph:
 
     def add_local(self, endpoint: Endpoint, type_hash: str) -> Matches:
         """An endpoint of this session, from now on matched against the others."""
-        matches = Matches(endpoint, type_hash)
+        matches = Matches(endpoint, type_hash, self._asserted)
         with self._lock:
             self._locals.setdefault((endpoint.kind, endpoint.topic), []).append(matches)
             there = self._by_name.get((_OPPOSITE[endpoint.kind], endpoint.topic), {})
@@ -156,6 +188,7 @@ class RemoteGraph:
                 self._queue_match(matches.endpoint, remote, up=False)
             matches.remotes.clear()
             matches.by_gid.clear()
+            matches.asserting.clear()
         self._tell()
 
     def _token(self, key: str) -> Token | None:
@@ -256,6 +289,14 @@ class RemoteGraph:
         """So many samples did not arrive; told at once."""
         for observer in self.observers:
             observer.message_lost(subscription, count)
+
+    def _asserted(self, matches: Matches, gid: bytes) -> None:
+        with self._lock:
+            publisher = matches.by_gid.get(gid)
+            if publisher is None:
+                return
+            self._queue("asserted", publisher, matches.endpoint)
+        self._tell()
 
     # -- telling ---------------------------------------------------------------
 

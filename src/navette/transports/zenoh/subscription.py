@@ -117,6 +117,8 @@ class ZenohSubscription(SubscriptionPort):
             return
         self._heard.last_ns = found[1][2]
         if self._holding is None:
+            if self.matches.asserting:
+                self.matches.heard(*found)
             self._arrivals.take(*found)
         else:
             self._holding.take(*found)

@@ -229,6 +229,7 @@ class ZenohTransport(Transport):
             lambda: dict(matches.by_gid),
             is_latched=endpoint.qos.is_latched,
             depth=endpoint.qos.queue_length,
+            heard=matches.heard,
         )
 
     # -- what is lost on the way -------------------------------------------------
