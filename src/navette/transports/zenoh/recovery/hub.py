@@ -124,7 +124,7 @@ class Recovery(TransportObserver):
         if publisher.is_remote:
             self.wants.on_match(publisher, subscription, up=up)
         else:
-            self.offers.on_match(publisher)
+            self.offers.on_match(publisher, subscription.gid if up else None)
 
     # -- letters ---------------------------------------------------------------
 

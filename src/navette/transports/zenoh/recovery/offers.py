@@ -88,12 +88,12 @@ class Offers:
         for session in sessions:
             self._peers.post(session, Letter(Kind.CLOSED, (Head(offer.gid, 0),)))
 
-    def on_match(self, endpoint: object) -> None:
-        """Somebody began or ceased to listen to that publisher."""
+    def on_match(self, endpoint: object, met: bytes | None) -> None:
+        """The subscription ``met`` listens to that publisher; None: one has ceased to."""
         with self._lock:
             offer = self._by_endpoint.get(id(endpoint))
         if offer is not None:
-            self._update(offer)
+            self._update(offer, met)
 
     def on_closed(self, gids: Iterable[bytes]) -> None:
         """Those subscriptions do not come back."""
@@ -128,14 +128,16 @@ class Offers:
             return [], End(ask.last)
         return offer.retention.between(ask)
 
-    def _update(self, offer: Offer) -> None:
+    def _update(self, offer: Offer, met: bytes | None = None) -> None:
         now = {
             remote.gid: key.split("/", 3)[2]
             for key, remote in dict(offer.matches.remotes).items()
             if remote.qos.reliability == ReliabilityPolicy.RELIABLE
         }
         with self._lock:
-            new = {now[gid] for gid in now.keys() - offer.listeners.keys()}
+            # One that was lost and is back by now is told anew, too.
+            before = offer.listeners.keys() - {met}
+            new = {now[gid] for gid in now.keys() - before}
             for gid in offer.listeners.keys() - now.keys():
                 session = offer.listeners[gid]
                 if self._peers.may_return(session, gid):

@@ -118,9 +118,10 @@ class Wants:
                 return
             if not up:
                 self._unhear(publisher.gid, hearer)
+                self._early.pop(publisher.gid, None)
                 return
             self._heard.setdefault(publisher.gid, set()).add(hearer)
-            early = self._early.pop(publisher.gid, None)
+            early = self._early.get(publisher.gid)
         if early is not None:
             hearer.start_after(*early)
 
