@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import pytest
 
+from navette.cli.doctor.doors import Refusal
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.graph_checks import check_nodes, check_services, check_topics
 from navette.cli.doctor.machine import is_navette, left_running
 from navette.cli.doctor.module_checks import check_modules
 from navette.cli.doctor.network import Network, Router, check_network
-from navette.cli.doctor.ports import Process
+from navette.cli.doctor.ports import Knock, Process
 from navette.cli.doctor.report import report_lines, summary
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
 from navette.cli.doctor.state_checks import check_stages, check_time
@@ -213,28 +214,33 @@ DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
     ("network", "level", "text"),
     [
         (
-            Network(routers=(Router(HERE, True, DEMO),), nodes={}),
+            Network(routers=(Router(HERE, Knock.OPEN, DEMO),), nodes={}),
             Level.GOOD,
             f"{HERE}, served by navette demo (process 12)",
         ),
         (
-            Network(routers=(Router(HERE, False),), nodes=None),
+            Network(routers=(Router(HERE, Knock.REFUSED),), nodes=None),
             Level.NOTE,
             f"{HERE} is free: the first program that starts serves",
         ),
         (
-            Network(routers=(Router(HERE, True),), nodes=None),
+            Network(
+                routers=(Router(HERE, Knock.OPEN, None, Refusal("wants TLS", "")),),
+                nodes=None,
+            ),
             Level.PROBLEM,
-            f"{HERE} answers, but not as a Zenoh router for us",
+            f"{HERE} answers, but wants TLS",
         ),
         (
-            Network(routers=(Router(HERE, True, DEMO._replace(is_stopped=True)),)),
+            Network(
+                routers=(Router(HERE, Knock.OPEN, DEMO._replace(is_stopped=True)),)
+            ),
             Level.PROBLEM,
             f"{HERE} belongs to navette demo (process 12), which is stopped: nobody"
             " can join",
         ),
         (
-            Network(routers=(Router("tcp/10.0.0.2:7447", False),), nodes=None),
+            Network(routers=(Router("tcp/10.0.0.2:7447", Knock.SILENT),), nodes=None),
             Level.PROBLEM,
             "tcp/10.0.0.2:7447 does not answer",
         ),

@@ -56,7 +56,8 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
     logging.getLogger("navette.transports").setLevel(logging.ERROR)
     # Before anything joins: a program that finds no router serves as one itself.
     network = look_at_network()
-    if any(router.is_stopped for router in network.routers):
+    stops = any(router.is_stopped for router in network.routers)
+    if stops or network.is_out_of_reach:
         yield from check_network(network, None)
         yield from check_machine()
         return
@@ -66,9 +67,11 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
         known = {} if network.is_alone else network.nodes or {}
         published = network.published.get(domain, {})
         seen = look(here, known.get(domain, ()), published)
-    except NetworkError as error:
+    except typer.Exit as end:  # the reason is on standard error already
+        if not isinstance(end.__context__, NetworkError):
+            raise
         yield from check_network(network, None)
-        yield Finding(Level.PROBLEM, NETWORK, "joining", str(error))
+        yield Finding(Level.PROBLEM, NETWORK, "joining", str(end.__context__))
     else:
         yield from check_network(network, domain)
         yield from stopped(processes(), os.getpid())

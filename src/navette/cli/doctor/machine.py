@@ -13,9 +13,10 @@ from navette._version import __version__
 from navette.cli.doctor.findings import Finding, Level
 from navette.cli.doctor.graph_checks import NODES
 from navette.cli.doctor.ports import (
+    Knock,
     Process,
-    answers,
     has_nodes,
+    knock,
     listener,
     processes,
 )
@@ -99,7 +100,7 @@ def _loads(library: str) -> bool:
 def _live_view() -> Finding:
     """Who is on the live view's port?"""
     what = f"port {VIEW_PORT}"
-    if not answers("127.0.0.1", VIEW_PORT):
+    if knock("127.0.0.1", VIEW_PORT) is not Knock.OPEN:
         return Finding(Level.NOTE, MACHINE, what, "free: no live view runs")
     who = listener(VIEW_PORT)
     if who is None:

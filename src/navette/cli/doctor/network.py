@@ -2,11 +2,13 @@
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from navette.cli.doctor.doors import Refusal, refusal
 from navette.cli.doctor.findings import Finding, Level, plural
-from navette.cli.doctor.ports import Process, answers, listener
+from navette.cli.doctor.ports import Knock, Process, knock, listener
 from navette.transports import EndpointKind
 
 if TYPE_CHECKING:
@@ -24,13 +26,15 @@ class Router:
 
     Args:
         endpoint: Zenoh's, as tcp/127.0.0.1:7447.
-        answers: whether anybody accepts connections; None: cannot be told.
+        knock: what came of a connection; None: cannot be tried.
         process: who that is, if it is here and can be seen.
+        refusal: why it does not let us in, where it does not.
     """
 
     endpoint: str
-    answers: bool | None = None
+    knock: Knock | None = None
     process: Process | None = None
+    refusal: Refusal | None = None
 
     @property
     def is_stopped(self) -> bool:
@@ -68,6 +72,15 @@ class Network:
         """Whether programs started here join nobody."""
         return self.transport == "inprocess"
 
+    @property
+    def is_out_of_reach(self) -> bool:
+        """Whether nobody can be met: the router is elsewhere, and does not answer."""
+        reached = any(
+            router.is_here or router.knock in (None, Knock.OPEN)
+            for router in self.routers
+        )
+        return bool(self.routers) and not reached and not self.session_file
+
 
 def look_at_network() -> Network:
     """Try the router's endpoints and ask it who is there."""
@@ -78,9 +91,12 @@ def look_at_network() -> Network:
     settings = Settings.from_environment()
     known = known_to_router(settings)
     nodes, published = _by_domain(known or ())
+    routers = [_router(endpoint) for endpoint in router_endpoints(settings)]
+    if known is None:
+        routers = [_with_refusal(router, settings.security) for router in routers]
     return Network(
         os.environ.get("NAVETTE_TRANSPORT", ""),
-        tuple(_router(endpoint) for endpoint in router_endpoints(settings)),
+        tuple(routers),
         None if known is None else nodes,
         published,
         os.environ.get("ZENOH_SESSION_CONFIG_URI", ""),
@@ -111,9 +127,19 @@ def _router(endpoint: str) -> Router:
     host, port = _address(endpoint)
     if protocol not in _PROBED or port is None:
         return Router(endpoint)
-    if not answers(host.strip("[]"), port):
-        return Router(endpoint, answers=False)
-    return Router(endpoint, True, listener(port) if host in _LOCAL else None)
+    found = knock(host.strip("[]"), port)
+    here = found is Knock.OPEN and host in _LOCAL
+    return Router(endpoint, found, listener(port) if here else None)
+
+
+def _with_refusal(router: Router, security: Path | None) -> Router:
+    """Look why it does not let us in."""
+    host, port = _address(router.endpoint)
+    if router.knock is not Knock.OPEN or port is None or router.is_stopped:
+        return router
+    address = host.strip("[]"), port
+    why = refusal(router.endpoint, address, security, router.process)
+    return replace(router, refusal=why)
 
 
 def _address(endpoint: str) -> tuple[str, int | None]:
@@ -159,11 +185,11 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
     who = router.process
     data = {
         "endpoint": router.endpoint,
-        "answers": router.answers,
+        "answers": None if router.knock is None else router.knock is Knock.OPEN,
         "pid": who.pid if who else None,
     }
     by = f", served by {who.command} (process {who.pid})" if who else ""
-    if router.answers is None:
+    if router.knock is None:
         text = f"{router.endpoint}, which cannot be tried from here"
         return Finding(Level.NOTE, NETWORK, "router", text, data=data)
     if who is not None and who.is_stopped:
@@ -177,33 +203,38 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
             f" kill -KILL {who.pid}",
             data,
         )
-    if router.answers and speaks:
+    if router.knock is Knock.OPEN and speaks:
         return Finding(
             Level.GOOD, NETWORK, "router", f"{router.endpoint}{by}", data=data
         )
-    if router.answers:
-        return Finding(
-            Level.PROBLEM,
-            NETWORK,
-            "router",
-            f"{router.endpoint} answers{by}, but not as a Zenoh router for us",
-            "a router wants the same TLS, certificates and password on both sides; if"
-            " it is another program, choose another port everywhere:"
-            " export NAVETTE_ROUTER=tcp/127.0.0.1:7448",
-            data,
-        )
+    if router.knock is Knock.OPEN:
+        why = router.refusal or Refusal("does not let us in", "")
+        text = f"{router.endpoint} answers{by}, but {why.text}"
+        return Finding(Level.PROBLEM, NETWORK, "router", text, why.advice, data)
     if router.is_here:
         text = f"{router.endpoint} is free: the first program that starts serves"
         return Finding(Level.NOTE, NETWORK, "router", text, data=data)
-    return Finding(
-        Level.PROBLEM,
-        NETWORK,
-        "router",
-        f"{router.endpoint} does not answer",
-        "is that machine on, its Navette started with NAVETTE_ROUTER on that address,"
-        " and no firewall between?",
-        data,
-    )
+    how, advice = _UNREACHED[router.knock]
+    text = f"{router.endpoint} {how}"
+    return Finding(Level.PROBLEM, NETWORK, "router", text, advice, data)
+
+
+_THERE = "start Navette there, with NAVETTE_ROUTER on that address"
+_UNREACHED = {
+    Knock.REFUSED: ("is refused: that machine is on, but no router runs there", _THERE),
+    Knock.SILENT: (
+        "does not answer",
+        f"is that machine on, and no firewall between? Then {_THERE}",
+    ),
+    Knock.NO_WAY: (
+        "cannot be reached: there is no way to that address",
+        "is this machine on the same network? ping it",
+    ),
+    Knock.NO_NAME: (
+        "cannot be reached: nobody knows that name",
+        "look for a mistyped name, or give the address in numbers",
+    ),
+}
 
 
 def _domain_findings(

@@ -6,6 +6,7 @@ Linux only (proc(5), tcp(7)): elsewhere the port is known to be in use, not by w
 import contextlib
 import os
 import socket
+from enum import Enum
 from pathlib import Path
 from typing import NamedTuple
 
@@ -41,13 +42,29 @@ class Process(NamedTuple):
         return " ".join([Path(words[0]).name, *words[1:]]) if words else "?"
 
 
-def answers(host: str, port: int, timeout_s: float = 0.2) -> bool:
-    """Whether somebody accepts TCP connections there."""
+class Knock(Enum):
+    """What comes of a TCP connection."""
+
+    OPEN = "open"
+    REFUSED = "refused"
+    SILENT = "silent"
+    NO_WAY = "no way there"
+    NO_NAME = "no such name"
+
+
+def knock(host: str, port: int, timeout_s: float = 0.2) -> Knock:
+    """Try whether somebody accepts connections there."""
     try:
         with socket.create_connection((host, port), timeout_s):
-            return True
+            return Knock.OPEN
+    except socket.gaierror:
+        return Knock.NO_NAME
+    except TimeoutError:
+        return Knock.SILENT
+    except ConnectionRefusedError:
+        return Knock.REFUSED
     except OSError:
-        return False
+        return Knock.NO_WAY
 
 
 def listener(port: int) -> Process | None:
@@ -82,16 +99,33 @@ def processes() -> list[Process]:
     return sorted(found)
 
 
-def has_nodes(process: Process) -> bool:
-    """Whether a program has Zenoh loaded, and is set to meet those started here."""
-    folder = _PROC / str(process.pid)
+def has_zenoh(process: Process) -> bool | None:
+    """Whether a program has Zenoh in it; None: that cannot be seen."""
     with contextlib.suppress(OSError):
-        if "zenoh" not in (folder / "maps").read_text(errors="replace"):
-            return False
-        entries = (folder / "environ").read_bytes().decode(errors="replace")
-        theirs = dict(entry.partition("=")[::2] for entry in entries.split("\0"))
-        return all(theirs.get(name) == os.environ.get(name) for name in _MEETING)
-    return False
+        folder = _PROC / str(process.pid)
+        # Part of the program itself in zenohd, a library in all others.
+        return (
+            "zenoh" in (folder / "maps").read_text(errors="replace")
+            or "zenoh" in process.command
+        )
+    return None
+
+
+def environment(process: Process) -> dict[str, str]:
+    """As the program was started with; empty where it cannot be seen."""
+    with contextlib.suppress(OSError):
+        entries = (_PROC / str(process.pid) / "environ").read_bytes()
+        lines = entries.decode(errors="replace").split("\0")
+        return dict(line.partition("=")[::2] for line in lines if "=" in line)
+    return {}
+
+
+def has_nodes(process: Process) -> bool:
+    """Whether a program is on a network, and set to meet those started here."""
+    theirs = environment(process)
+    return bool(has_zenoh(process)) and all(
+        theirs.get(name) == os.environ.get(name) for name in _MEETING
+    )
 
 
 def _listening_sockets(port: int) -> set[str]:
