@@ -13,7 +13,7 @@ from navette.transports.qos import EndpointQos, HistoryPolicy, ReliabilityPolicy
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.heard import Heard
-from navette.transports.zenoh.recovery import Kept, Retention
+from navette.transports.zenoh.recovery import Retention
 
 
 class ZenohPublisher(PublisherPort):
@@ -72,7 +72,7 @@ class ZenohPublisher(PublisherPort):
         if is_kept and retention is not None:
             # Zenoh's own, so that what is kept and what is sent are the same bytes.
             size, data = len(data), zenoh.ZBytes(data)
-            retention.add(Kept(sequence, attachment, data, size))
+            retention.add((sequence, attachment, data, size))
         self._put(data, attachment=attachment)
         if self._sent is not None:
             self._sent(sequence)

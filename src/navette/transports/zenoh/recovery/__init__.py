@@ -2,7 +2,7 @@
 
 from navette.transports.zenoh.recovery.arrivals import Arrivals
 from navette.transports.zenoh.recovery.hub import Recovery
-from navette.transports.zenoh.recovery.retention import Kept, Retention
+from navette.transports.zenoh.recovery.retention import Retention
 from navette.transports.zenoh.recovery.wants import Wants
 
-__all__ = ["Arrivals", "Kept", "Recovery", "Retention", "Wants"]
+__all__ = ["Arrivals", "Recovery", "Retention", "Wants"]

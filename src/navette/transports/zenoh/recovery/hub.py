@@ -222,8 +222,8 @@ class Recovery(TransportObserver):
         key = ask_key(self._domain_id, self._zid)
         # The link may be lost in the middle, or the session closed: asked again.
         with query, contextlib.suppress(zenoh.ZError):
-            for sample in samples:
-                query.reply(key, sample.payload, attachment=sample.attachment)
+            for _, attachment, payload, _ in samples:
+                query.reply(key, payload, attachment=attachment)
             query.reply(key, end.encode())
 
     # -- the tick --------------------------------------------------------------

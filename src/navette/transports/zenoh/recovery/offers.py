@@ -89,7 +89,7 @@ class Offers:
             self._peers.post(session, Letter(Kind.CLOSED, (Head(offer.gid, 0),)))
 
     def on_match(self, endpoint: object, met: bytes | None) -> None:
-        """The subscription ``met`` listens to that publisher; None: one has ceased to."""
+        """The subscription ``met`` listens to it now; None: one has ceased to."""
         with self._lock:
             offer = self._by_endpoint.get(id(endpoint))
         if offer is not None:

@@ -3,7 +3,7 @@
 import threading
 from collections import deque
 from collections.abc import Sized
-from typing import Any, NamedTuple
+from typing import Any
 
 from navette.transports.zenoh.recovery.mail import Ask, End
 
@@ -19,13 +19,8 @@ _MOST_SHORT = 48 * 1024
 _MOST_LONG = 1024 * 1024
 
 
-class Kept(NamedTuple):
-    """A sample as it was sent."""
-
-    number: int
-    attachment: bytes
-    payload: Any
-    size: int
+Kept = tuple[int, bytes, Any, int]
+"""A sample as it was sent: number, attachment, payload, size."""
 
 
 class Retention:
@@ -57,23 +52,26 @@ class Retention:
         before its time. From the first listener on everything is kept, until
         :meth:`end`.
         """
+        if self._is_wanted:
+            return True
+        self._newest = number
+        if not listeners:
+            return False
         with self._lock:
-            if listeners:
-                self._is_wanted = True
-            elif not self._is_wanted:
-                self._newest = number
+            self._is_wanted = bool(listeners)
             return self._is_wanted
 
     def add(self, sample: Kept) -> None:
         """It is about to be sent."""
+        kept = self._kept
         with self._lock:
-            self._kept.append(sample)
-            self._bytes += sample.size
-            while len(self._kept) > self._depth or (
-                self._bytes > MOST_BYTES and len(self._kept) > 1
+            kept.append(sample)
+            self._bytes += sample[3]
+            while len(kept) > self._depth or (
+                self._bytes > MOST_BYTES and len(kept) > 1
             ):
-                self._bytes -= self._kept.popleft().size
-            self._newest = max(self._newest, sample.number)
+                self._bytes -= kept.popleft()[3]
+            self._newest = sample[0]
 
     def between(self, ask: Ask) -> tuple[list[Kept], End]:
         """What is there of those numbers, as far as an answer goes, and its end."""
@@ -82,14 +80,14 @@ class Retention:
         size = 0
         with self._lock:
             for sample in self._kept:
-                if not ask.first <= sample.number <= ask.last:
+                number, _, _, bytes_ = sample
+                if not ask.first <= number <= ask.last:
                     continue
-                size += sample.size
+                size += bytes_
                 # The first one goes however long it is, where it may be long at all.
                 is_beyond = size > most and (found or not ask.takes_long)
                 if is_beyond or len(found) >= _MOST_SAMPLES:
-                    is_long = sample.size > _MOST_SHORT
-                    return found, End(sample.number - 1, is_long)
+                    return found, End(number - 1, bytes_ > _MOST_SHORT)
                 found.append(sample)
             return found, End(min(ask.last, self._newest))
 
