@@ -4,7 +4,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from navette.cli.nearest import did_you_mean
-from navette.cli.session import fail, is_hidden, service_endpoints, wait_for
+from navette.cli.output import note
+from navette.cli.session import (
+    endpoints,
+    fail,
+    is_hidden,
+    service_endpoints,
+    wait_for,
+)
 
 if TYPE_CHECKING:
     from navette.runtime import Future, Node
@@ -86,6 +93,15 @@ def node_names(node: "Node", *, hidden: bool = False) -> list[str]:
     names = node.get_fully_qualified_node_names()
     names.remove(node.get_fully_qualified_name())
     return sorted(name for name in names if hidden or not is_hidden(name))
+
+
+def note_none(node: "Node", what: str) -> None:
+    """Say why a list is empty: nothing runs here, or none of that kind."""
+    if node_names(node, hidden=True) or endpoints(node):
+        note(f"no {what}")
+    else:
+        domain = node.context.get_domain_id()
+        note(f"no {what}: nothing runs in domain {domain} (ROS_DOMAIN_ID)")
 
 
 def managed_nodes(here: "Node", *, hidden: bool = False) -> list[str]:

@@ -11,6 +11,7 @@ from navette.cli.asking import (
     ask_all,
     chosen_node,
     managed_nodes,
+    note_none,
 )
 from navette.cli.completing import complete_managed_nodes, complete_transitions
 from navette.cli.nearest import did_you_mean
@@ -51,6 +52,8 @@ def nodes(
     """List the managed nodes."""
     with connect() as here:
         names = managed_nodes(here, hidden=all_)
+        if not (names or count or as_json):
+            note_none(here, "managed nodes")
     if count:
         show(str(len(names)))
     elif as_json:
@@ -79,6 +82,8 @@ def get(
         names = [_managed(here, node_name)] if node_name else every
         questions = [Question(f"{name}/get_state", GET_STATE, {}) for name in names]
         answers = dict(zip(names, ask_all(here, questions), strict=True))
+        if not (names or as_json):
+            note_none(here, "managed nodes")
     states = {n: a.response.current_state for n, a in answers.items() if a.response}
     for name, (response, reason) in answers.items():
         if response is None:

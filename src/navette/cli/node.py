@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from navette.cli.asking import chosen_node, node_names
+from navette.cli.asking import chosen_node, node_names, note_none
 from navette.cli.completing import complete_nodes
-from navette.cli.output import is_terminal, note, show, show_json, styled
+from navette.cli.output import beside, is_terminal, note, show, show_json, styled
 from navette.cli.session import connect, is_hidden, is_of_every_node
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ def list_(
     """List the nodes that run."""
     with connect() as here:
         names = node_names(here, hidden=all_)
+        if not (names or count or as_json):
+            note_none(here, "nodes")
     if count:
         show(str(len(names)))
     elif as_json:
@@ -82,17 +84,18 @@ def info(
 
 def _show_to_a_person(full: str, sections: dict[str, dict[str, list[str]]]) -> None:
     """Types in a column; in the background what is empty or as in every node."""
-    every = [name for names in sections.values() for name in names]
-    width = max(map(len, every), default=0)
     show(styled(full, bold=True))
+    rows = [(n, ", ".join(t)) for names in sections.values() for n, t in names.items()]
+    lines = iter(beside(rows, indent=4, fades=_is_usual))
     for title, names in sections.items():
-        show(
-            f"  {styled(title, bold=True)}{'' if names else styled('  none', dim=True)}"
-        )
-        for name, types in names.items():
-            usual = name in ("/rosout", "/parameter_events") or is_of_every_node(name)
-            shown = f"    {styled(name.ljust(width), dim=True if usual else None)}"
-            show(f"{shown}  {styled(', '.join(types), dim=True)}")
+        none = "" if names else styled("  none", dim=True)
+        show(f"  {styled(title, bold=True)}{none}")
+        for _ in names:
+            show(next(lines))
+
+
+def _is_usual(name: str) -> bool:
+    return name in ("/rosout", "/parameter_events") or is_of_every_node(name)
 
 
 def _sections(

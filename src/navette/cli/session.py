@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Never
 
 import typer
 
+from navette.cli.escaping import escaped
 from navette.cli.interruption import (
     dying_on_signals,
     ending_on_signals,
@@ -148,7 +149,7 @@ def is_of_every_node(service: str) -> bool:
 
 def fail(message: str) -> Never:
     """End the command: what was asked for failed (exit code 1)."""
-    typer.secho(f"navette: {message}", fg="red", err=True)
+    typer.secho(f"navette: {escaped(message)}", fg="red", err=True)
     raise typer.Exit(FAILED)
 
 

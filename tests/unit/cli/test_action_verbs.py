@@ -105,7 +105,8 @@ def test_looking(here: World, counter: Counter) -> None:
     assert here.said("action", "list", "-c") == "1\n"
     assert here.said("action", "type", "/count") == f"{TYPE}\n"
     assert here.said("action", "find", "example_interfaces/Fibonacci") == "/count\n"
-    assert here.said("action", "find", "nav2_msgs/action/Spin") == ""
+    done = here.run("action", "find", "nav2_msgs/action/Spin")
+    assert done == ("", "navette: no action is of type nav2_msgs/action/Spin\n", 1)
     info = (
         "Action: /count\nAction clients: 1\n    /counter\n"
         "Action servers: 1\n    /counter\n"

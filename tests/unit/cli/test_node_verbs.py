@@ -108,3 +108,20 @@ def test_where_nothing_runs() -> None:
         "navette: no node /planner: nothing runs here (or not with this ROS_DOMAIN_ID"
         " and NAVETTE_ROUTER)\n"
     )
+
+
+def test_an_empty_list_says_why() -> None:
+    with world() as here:
+        domain = here.context.get_domain_id()
+        nothing = f": nothing runs in domain {domain} (ROS_DOMAIN_ID)\n"
+        for words, what in (
+            (("node", "list"), "nodes"),
+            (("service", "list"), "services"),
+            (("action", "list"), "actions"),
+            (("lifecycle", "nodes"), "managed nodes"),
+            (("lifecycle", "get"), "managed nodes"),
+        ):
+            assert here.run(*words) == ("", f"no {what}{nothing}", 0)
+        here.graph.add(Node("talker", context=here.context))
+        assert here.run("action", "list") == ("", "no actions\n", 0)
+        assert here.run("action", "list", "--json") == ("[]\n", "", 0)

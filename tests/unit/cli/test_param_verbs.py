@@ -72,6 +72,14 @@ def test_list_with_types(here: World, driver: Node) -> None:
     ]
 
 
+def test_a_text_that_yaml_reads_otherwise(here: World, driver: Node) -> None:
+    done = here.run("param", "set", "driver", "topic", "5")
+    assert done.code == 1
+    assert done.err.endswith("""5 is INTEGER, wanted STRING; as a text: "'5'"\n""")
+    here.said("param", "set", "driver", "topic", "'5'")
+    assert driver.get_parameter("topic").value == "5"
+
+
 def test_a_wrong_pattern_is_a_usage_error(here: World) -> None:
     done = here.run("param", "list", "--filter", "(")
     assert done.code == 2

@@ -69,7 +69,8 @@ def test_type_and_find(here: World, adder: Node) -> None:
     assert here.said("service", "type", "/add") == f"{ADD}\n"
     assert here.said("service", "find", ADD) == "/add\n"
     assert here.said("service", "find", "std_srvs/SetBool", "-c") == "1\n"
-    assert here.said("service", "find", "std_srvs/srv/Empty") == ""
+    done = here.run("service", "find", "std_srvs/srv/Empty")
+    assert done == ("", "navette: no service is of type std_srvs/srv/Empty\n", 1)
 
 
 def test_info(here: World, adder: Node) -> None:

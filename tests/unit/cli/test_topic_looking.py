@@ -70,6 +70,7 @@ def test_list_for_a_person_is_a_table(
     talker: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("navette.cli.topic.listing.is_terminal", lambda: True)
+    monkeypatch.setenv("COLUMNS", "100")
     lines = navette("topic", "list", "-v").stdout.splitlines()
     assert lines[0].split() == ["TOPIC", "TYPE", "PUB", "SUB", "QOS", "OF", "THE",
                                 "PUBLISHERS"]  # fmt: skip

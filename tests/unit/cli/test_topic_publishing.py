@@ -9,6 +9,7 @@ from topic_world import navette, program, shared_graph
 
 from navette.cli.session import connect
 from navette.cli.topic.publishing import PublishOptions, filled_message, publish
+from navette.cli.topic.qos_options import QosWishes
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.msgs.geometry_msgs.msg import PointStamped, Twist
 from navette.msgs.rosgraph_msgs.msg import Clock
@@ -121,8 +122,23 @@ def test_it_waits_for_who_hears_it(
 
     pub(listener, "chatter", "std_msgs/String", values="{data: hi}", times=1)
     assert heard == [None, String(data="hi")]
-    out = capsys.readouterr().out.splitlines()
-    assert out.count("Waiting for at least 1 matching subscription(s)...") == 3
+    assert capsys.readouterr().err == "waiting for 1 matching subscription(s)\n"
+
+
+def test_it_says_why_nobody_hears_it(
+    listener: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    listener.create_subscription(String, "chatter", lambda _: None, 10)
+    told = []
+    for topic, qos in (("chattr", QosWishes()),
+                       ("chatter", QosWishes(reliability="best_effort"))):  # fmt: skip
+        with pytest.raises(typer.Exit):
+            pub(listener, topic, "std_msgs/String", times=1, max_wait_s=1.0, qos=qos)
+        told += capsys.readouterr().err.splitlines()[-2:-1]
+    assert told == [
+        "waiting for 1 matching subscription(s); did you mean /chatter?",
+        "waiting for 1 matching subscription(s); 1 of /chatter want another QoS",
+    ]
 
 
 def test_waiting_for_hearers_ends(
@@ -133,7 +149,7 @@ def test_waiting_for_hearers_ends(
     assert ended.value.exit_code == 1
     shown = capsys.readouterr()
     assert shown.err.endswith("0 of 2 subscriptions to /chatter came in 1.5 s\n")
-    assert shown.out.count("Waiting") == 2
+    assert shown.err.count("waiting") == 1
     with pytest.raises(InvalidValueError, match="nothing is waited for"):
         pub(listener, "chatter", "std_msgs/String", max_wait_s=1.5)
 

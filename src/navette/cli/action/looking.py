@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from navette.cli.action.options import ActionName, ActionType, Json
+from navette.cli.asking import note_none
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import show, show_json
 from navette.cli.service.looking import show_names
@@ -30,6 +31,8 @@ def list_(
     """List the actions."""
     with connect() as here:
         found = actions(here)
+        if not (found or count or as_json):
+            note_none(here, "actions")
     if count:
         show(str(len(found)))
     elif as_json:
@@ -57,7 +60,7 @@ def find(action_type: ActionType, count: Count = False, as_json: Json = False) -
     elif as_json:
         show_json(found)
     else:
-        for name in found:
+        for name in found or fail(f"no action is of type {full}"):
             show(name)
 
 

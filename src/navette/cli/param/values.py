@@ -251,6 +251,11 @@ def parsed(text: str) -> Any:
     return parse_value(text)
 
 
+def quoting_hint(text: str) -> str:
+    """How to write what a person meant as a text, and YAML reads otherwise."""
+    return "" if isinstance(parsed(text), str) else f"; as a text: \"'{text}'\""
+
+
 def _question(node: str, name: str, fields: dict[str, Any]) -> Question:
     type_name = "".join(part.title() for part in name.split("_"))
     return Question(f"{node}/{name}", f"rcl_interfaces/srv/{type_name}", fields)

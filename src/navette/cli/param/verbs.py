@@ -189,7 +189,8 @@ def set_(
         node = chosen_node(here, node_name)
         result = values.set_values(here, node, {name: values.parsed(value)})[0]
     if not result.successful:
-        fail(_with_reason("Setting parameter failed", result))
+        hint = values.quoting_hint(value) if "wanted STRING" in result.reason else ""
+        fail(_with_reason("Setting parameter failed", result) + hint)
     show(_with_reason("Set parameter successful", result))
 
 

@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from navette.cli.asking import note_none
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import aligned, is_terminal, note, show, show_json, styled
+from navette.cli.output import beside, is_terminal, note, show, show_json
 from navette.cli.service.options import Hidden, Json, ServiceName, ServiceType
 from navette.cli.session import (
     connect,
@@ -35,6 +36,8 @@ def list_(
     """List the services that are served."""
     with connect() as here:
         found = services(here, hidden=include_hidden_services)
+        if not (found or count or as_json):
+            note_none(here, "services")
     if count:
         show(str(len(found)))
     elif as_json:
@@ -53,9 +56,7 @@ def show_names(found: dict[str, list[str]], *, with_types: bool) -> None:
     if not with_types:
         lines = list(found)
     elif is_terminal():
-        columns = aligned((name, ", ".join(types)) for name, types in found.items())
-        width = max(map(len, found), default=0)
-        lines = [line[:width] + styled(line[width:], dim=True) for line in columns]
+        lines = beside((name, ", ".join(types)) for name, types in found.items())
     else:
         lines = [f"{name} [{', '.join(types)}]" for name, types in found.items()]
     for line in lines:
@@ -88,7 +89,7 @@ def find(
     elif as_json:
         show_json(found)
     else:
-        for name in found:
+        for name in found or fail(f"no service is of type {full}"):
             show(name)
 
 

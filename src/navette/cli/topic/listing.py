@@ -1,10 +1,11 @@
 """Topics as they are: who publishes and subscribes, with which type and QoS."""
 
+import shutil
 from dataclasses import dataclass
 from typing import Any
 
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import aligned, is_terminal, styled
+from navette.cli.output import aligned, beside, is_terminal, styled
 from navette.cli.session import endpoints, fail, is_hidden
 from navette.runtime import Node
 from navette.runtime.topic_endpoint_info import TopicEndpointInfo
@@ -127,11 +128,7 @@ def _topic(name: str, found: list[Endpoint]) -> Topic:
 def _with_types(found: list[Topic]) -> str:
     if not is_terminal():
         return "\n".join(f"{each.name} [{', '.join(each.types)}]" for each in found)
-    width = max(len(each.name) for each in found)
-    return "\n".join(
-        f"{each.name.ljust(width)}  {styled(', '.join(each.types), dim=True)}"
-        for each in found
-    )
+    return "\n".join(beside((each.name, ", ".join(each.types)) for each in found))
 
 
 def _by_direction(found: list[Topic]) -> str:
@@ -163,13 +160,24 @@ def _table(found: list[Topic]) -> str:
         for each in found
     ]
     first, *lines = aligned([head, *rows])
+    if max(map(len, (first, *lines))) > shutil.get_terminal_size().columns:
+        lines = [line for row in rows for line in _stacked(*row)]
+    else:
+        lines.insert(0, styled(first, dim=True))
     for each in found:
         lines += [styled(f"{each.name}: {text}", fg="red") for text in each.mismatches]
-    return "\n".join([styled(first, dim=True), *lines])
+    return "\n".join(lines)
+
+
+def _stacked(name: str, types: str, pubs: str, subs: str, qos: str) -> list[str]:
+    """A topic in lines of its own, where a terminal has no room for a table."""
+    counts = f"{_count(int(pubs), 'publisher')}, {_count(int(subs), 'subscription')}"
+    details = [types, counts, *([qos] if qos else [])]
+    return [name, *(f"    {styled(each, dim=True)}" for each in details)]
 
 
 def _count(number: int, word: str) -> str:
-    return f"{number} {word}" + ("s" if number > 1 else "")
+    return f"{number} {word}" + ("" if number == 1 else "s")
 
 
 def _mismatch(publisher: Endpoint, subscription: Endpoint) -> str:

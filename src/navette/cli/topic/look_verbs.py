@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 
+from navette.cli.asking import note_none
 from navette.cli.completing import complete_messages
-from navette.cli.output import note, show, show_json
+from navette.cli.output import show, show_json
 from navette.cli.session import connect, fail
 from navette.cli.topic.options import Hidden, Json, TopicName
 
@@ -29,14 +30,13 @@ def list_(
 
     with connect() as node:
         found = listing.topics(node, hidden=include_hidden_topics)
-        domain = node.context.get_domain_id()
+        if not (found or count_topics or as_json):
+            note_none(node, "topics")
     if count_topics:
         show(str(len(found)))
     elif as_json:
         show_json([each.to_json() for each in found])
-    elif not found:
-        note(f"no topics: nothing runs in domain {domain} (ROS_DOMAIN_ID)")
-    else:
+    elif found:
         show(listing.listed(found, show_types=show_types, verbose=verbose))
 
 

@@ -1,12 +1,19 @@
 """Listens to topics and prints what a meter makes of it, every second."""
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from navette.cli.message_types import topic_class
-from navette.cli.output import aligned, is_terminal, note, show, styled
+from navette.cli.output import (
+    aligned,
+    cut_to_width,
+    is_terminal,
+    json_text,
+    note,
+    show,
+    styled,
+)
 from navette.cli.session import fail, wait_for
 from navette.cli.topic.filtering import message_filter
 from navette.cli.topic.meters import Meter, RateMeter, Spread
@@ -86,7 +93,7 @@ class Report:
         self._count += 1
         if self._options.as_json:
             for topic, (meter, figures) in found.items():
-                show(json.dumps({"topic": topic, **meter.to_json(figures)}))
+                show(json_text({"topic": topic, **meter.to_json(figures)}))
         elif len(self._meters) == 1:
             ((meter, figures),) = found.values()
             show(_emphasised(meter.text(figures)))
@@ -106,7 +113,8 @@ class Report:
             )
             for topic, (_, figures) in found.items()
         ]
-        first, *lines = aligned([head, *rows], gap=3)
+        # A line that wraps would be two of those that are written over.
+        first, *lines = map(cut_to_width, aligned([head, *rows], gap=3))
         width = max(map(len, (first, *lines)))
         text = "\n".join([styled(first, dim=True), "=" * width, *lines, ""])
         if is_terminal() and self._lines_above:

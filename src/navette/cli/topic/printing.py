@@ -1,11 +1,11 @@
 """Messages as text on a terminal or in a pipe: YAML, CSV, JSON, raw."""
 
-import json
 import re
+import shutil
 from dataclasses import dataclass
 from typing import Any
 
-from navette.cli.output import harmless, is_terminal, styled
+from navette.cli.output import harmless, is_terminal, json_text, styled
 from navette.cli.topic.field_path import FieldPath
 from navette.companions.rosidl_runtime_py.convert import (
     message_to_csv,
@@ -37,7 +37,7 @@ class Style:
     def text(self, value: Any, field: FieldPath | None) -> str:
         """A message, or the part of one that ``field`` leads to."""
         if self.as_json:
-            return json.dumps(_jsonable(value), ensure_ascii=False)
+            return json_text(_jsonable(value))
         if self.csv:
             return harmless(self._csv(value, field))
         return f"{self._yaml(value, field)}{styled(SEPARATOR, dim=True)}"
@@ -80,11 +80,21 @@ def _readable(yaml: str) -> str:
     """For a person: numbers of an array beside each other, names apart from values."""
     if not is_terminal():
         return yaml
-    yaml = _NUMBERS.sub(_in_a_row, yaml)
+    yaml = _NUMBERS.sub(_in_rows, harmless(yaml))
     return _KEY.sub(lambda m: m[1] + styled(m[2], fg="cyan"), yaml)
 
 
-def _in_a_row(match: re.Match[str]) -> str:
+def _in_rows(match: re.Match[str]) -> str:
+    """Numbers beside each other, in lines that end between two of them."""
     items = [line.strip().removeprefix("- ") for line in match["items"].splitlines()]
-    key = f"{match['key']} " if match["key"] else ""
-    return f"{key}[{', '.join(items)}]\n"
+    key = f"{match['key']} [" if match["key"] else "["
+    room = shutil.get_terminal_size().columns
+    indent = " " * len(key)
+    lines, line = [], f"{key}{items[0]}"
+    for item in items[1:]:
+        if len(line) + len(item) + 3 > room:
+            lines.append(f"{line},\n")
+            line = f"{indent}{item}"
+        else:
+            line += f", {item}"
+    return f"{''.join(lines)}{line}]\n"

@@ -6,8 +6,15 @@ from typing import Any
 
 from navette.cli.filling import from_yaml
 from navette.cli.message_types import topic_class
-from navette.cli.output import is_terminal, show
-from navette.cli.session import fail, follow_clock, is_simulated, wait_for
+from navette.cli.nearest import did_you_mean
+from navette.cli.output import is_terminal, note, show
+from navette.cli.session import (
+    endpoints,
+    fail,
+    follow_clock,
+    is_simulated,
+    wait_for,
+)
 from navette.cli.topic.qos_choice import wished_profile
 from navette.cli.topic.qos_options import QosWishes
 from navette.companions.rosidl_runtime_py import set_message_fields
@@ -18,6 +25,7 @@ from navette.msgs.registry import get_message_spec
 from navette.msgs.values import shortened
 from navette.runtime import Clock, Node, Publisher
 from navette.runtime.time import ClockType
+from navette.transports import EndpointKind
 
 _LONGEST_ON_TERMINAL = 2000
 _CLOCK_TIMEOUT_S = 2.0
@@ -121,17 +129,25 @@ def _wait_for_subscriptions(
     def enough() -> bool:
         return publisher.get_subscription_count() >= wanted
 
-    left_s = options.max_wait_s
-    while not enough():
-        show(f"Waiting for at least {wanted} matching subscription(s)...")
-        pause_s = 1.0 if left_s is None else min(1.0, left_s)
-        if not wait_for(node, enough, pause_s) and left_s is not None:
-            left_s -= pause_s
-            if left_s <= 0:
-                fail(
-                    f"{publisher.get_subscription_count()} of {wanted} subscriptions "
-                    f"to {publisher.topic_name} came in {options.max_wait_s:g} s"
-                )
+    if enough():
+        return
+    note(f"waiting for {wanted} matching subscription(s){_hint(node, publisher)}")
+    if not wait_for(node, enough, options.max_wait_s):
+        fail(
+            f"{publisher.get_subscription_count()} of {wanted} subscriptions "
+            f"to {publisher.topic_name} came in {options.max_wait_s:g} s"
+        )
+
+
+def _hint(node: Node, publisher: Publisher[Any]) -> str:
+    """Why there are too few: another name was meant, or their QoS does not fit."""
+    heard = [e.topic for e in endpoints(node, kind=EndpointKind.SUBSCRIPTION)]
+    deaf = heard.count(publisher.topic_name) - publisher.get_subscription_count()
+    if deaf:
+        return f"; {deaf} of {publisher.topic_name} want another QoS"
+    if publisher.topic_name in heard:
+        return ""
+    return did_you_mean(publisher.topic_name, heard)
 
 
 def _shown(message: Any) -> str:

@@ -1,0 +1,128 @@
+"""What verbs print: strict JSON, harmless texts, columns that fit the terminal."""
+
+import errno
+import json
+import math
+import sys
+from typing import Any
+
+import pytest
+import typer
+
+from navette.cli.escaping import escaped
+from navette.cli.output import beside, json_text, note, show
+from navette.cli.session import fail
+from navette.cli.topic.printing import Style
+from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.std_msgs.msg import String
+
+
+def strict(text: str) -> Any:
+    def refuse(constant: str) -> None:
+        pytest.fail(f"{constant} is no JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_numbers_that_json_has_not_are_null() -> None:
+    scan = LaserScan(ranges=[1.5, math.inf, math.nan], angle_min=-math.inf)
+    read = strict(Style(as_json=True).text(scan, None))
+    assert read["ranges"] == [1.5, None, None]
+    assert read["angle_min"] is None
+    assert strict(json_text({"a": (math.nan, [2])}, indent=2)) == {"a": [None, [2]]}
+
+
+HOSTILE = "\x1b[2J\x9b31m\x07\u202eabc\u2028\r"
+
+
+def test_what_others_sent_does_not_act_on_a_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert escaped("a\tb\n" + HOSTILE) == (
+        "a\tb\n\\x1b[2J\\x9b31m\\x07\\u202eabc\\u2028\\x0d"
+    )
+    for module in ("output", "topic.printing"):
+        monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
+    message = String(data=HOSTILE)
+    for style in (Style(), Style(csv=True), Style(as_json=True)):
+        shown = style.text(message, None)
+        assert not set(shown) & set(HOSTILE.replace("a", "")) - set("[2J31mabc"), style
+    note(HOSTILE)
+    with pytest.raises(typer.Exit):
+        fail(HOSTILE)
+    assert not set(capsys.readouterr().err) & set("\x1b\x9b\x07\u202e\u2028\r")
+
+
+def test_a_text_that_only_turns_letters_round_is_escaped_in_yaml_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    message = String(data="\u202eabc")
+    assert Style().text(message, None) == "data: \u202eabc\n---"
+    for module in ("output", "topic.printing"):
+        monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert Style().text(message, None) == "data: \\u202eabc\n---"
+
+
+def test_json_in_a_pipe_is_the_same_value() -> None:
+    message = String(data=HOSTILE)
+    assert strict(Style(as_json=True).text(message, None)) == {"data": HOSTILE}
+
+
+def test_rows_of_numbers_end_between_two_of_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for module in ("output", "topic.printing"):
+        monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "30")
+    text = Style().text(LaserScan(ranges=[float(i) for i in range(9)]), None)
+    assert text.splitlines()[-5:] == [
+        "ranges: [0.0, 1.0, 2.0, 3.0,",
+        "         4.0, 5.0, 6.0, 7.0,",
+        "         8.0]",
+        "intensities: []",
+        "---",
+    ]
+
+
+def test_what_does_not_fit_beside_a_name_stands_below_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("COLUMNS", "24")
+    rows = [("/a", "pkg/msg/A"), ("/long_name", "pkg/msg/Longer"), ("/b", "")]
+    assert beside(rows) == [
+        "/a          pkg/msg/A",
+        "/long_name\n    pkg/msg/Longer",
+        "/b",
+    ]
+
+
+def test_a_full_disk_is_told_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Full:
+        def write(self, text: str) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        def isatty(self) -> bool:
+            return False
+
+    monkeypatch.setattr("sys.stdout", Full())
+    with pytest.raises(typer.Exit) as ended:
+        show("x")
+    sys.stdout.close()  # what is left goes to os.devnull
+    assert ended.value.exit_code == 1
+    expected = "navette: standard output cannot be written: No space left on device\n"
+    assert capsys.readouterr().err == expected
+
+
+def test_nobody_to_read_is_no_error_of_ours(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Closed:
+        def write(self, text: str) -> None:
+            raise BrokenPipeError
+
+    monkeypatch.setattr("sys.stdout", Closed())
+    with pytest.raises(BrokenPipeError):
+        show("x")
