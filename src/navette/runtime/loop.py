@@ -105,7 +105,7 @@ class EventLoop:
     @property
     def running_node(self) -> str:
         """Full name of the node whose callback runs in this thread, or empty."""
-        if self._running is None or not self.in_driver_thread:
+        if self._running is None or self.waiting or not self.in_driver_thread:
             return ""
         return self._running.origin()[0]
 

@@ -9,6 +9,7 @@ import pytest
 
 from navette.errors import FileFormatError, InvalidValueError
 from navette.runtime import Context, LoggingSeverity, Node, VirtualClock
+from navette.runtime.clock import Wakeup
 from navette.runtime.log import Logger, LogHub, LogRecord
 from navette.runtime.log_levels import severity_from_string
 from navette.runtime.log_sinks import ConsoleSink, FileSink, format_record
@@ -215,6 +216,25 @@ def test_what_an_algorithm_logs_outside_callbacks_reaches_the_console(
     assert re.search(
         r"\[WARN\] .*\[navette\.planning\.astar\]: alone", capsys.readouterr().err
     )
+
+
+def test_what_a_clock_logs_while_it_waits_is_no_nodes(
+    algorithm_logger: logging.Logger, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A lock-step that waits for others; whose callback ran last is chance."""
+
+    class Talking(VirtualClock):
+        def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
+            algorithm_logger.warning("still waiting")
+            return super().go_to(target_ns, wakeup)
+
+    with GraphHarness(clock=Talking()) as graph:
+        logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
+        node = graph.add(Node("planner", context=graph.context))
+        node.create_timer(0.5, lambda: None)
+        graph.run_for(2.0)
+        assert logs.messages == []
+    assert "[navette.planning.astar]: still waiting" in capsys.readouterr().err
 
 
 def test_two_nodes_of_one_name_are_warned_about(
