@@ -90,7 +90,9 @@ def _class_from_outside(node: Node, name: str, of: list[Endpoint]) -> Any:
     reason = definition.reason
     if definition.text is not None:
         try:
-            return msgs.register_definition(name, definition.text)
+            cls = msgs.register_definition(name, definition.text)
+            _check_hash(name, of)
+            return cls
         except NavetteError as error:
             reason = str(error)
     found = installed_class(name)
@@ -100,19 +102,25 @@ def _class_from_outside(node: Node, name: str, of: list[Endpoint]) -> Any:
             + (
                 f", and those who use it do not describe it ({reason})"
                 if reason
-                else _near(name)
+                else near_types(name)
             )
         )
     return found
 
 
-def _near(name: str) -> str:
-    """What was probably meant, of the same package."""
-    package, kind, _ = name.split("/")
-    if package not in msgs.packages():
-        return ""
-    known = (f"{package}/{kind}/{each}" for each in interface_names(package, kind))
-    return did_you_mean(name, known)
+def near_types(name: str) -> str:
+    """What was probably meant: another name of that package, or that name elsewhere."""
+    *rest, last = name.split("/")
+    every = (
+        (package, f"{package}/{kind}/{each}")
+        for package in msgs.packages()
+        for kind in ("msg", "srv", "action")
+        for each in interface_names(package, kind)
+    )
+    if rest and rest[0] in msgs.packages():
+        return did_you_mean(name, (full for of, full in every if of == rest[0]))
+    same = f"/{last}".lower()
+    return did_you_mean(f"/{last}", (f for _, f in every if f.lower().endswith(same)))
 
 
 def _check_type(topic: str, given: str, found: list[Endpoint]) -> None:

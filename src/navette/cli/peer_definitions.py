@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navette.cli.output import harmless
+from navette.cli.session import endpoints, service_endpoints
 from navette.errors import NavetteError
 from navette.msgs.interface import short_name
 from navette.runtime import Node
@@ -39,12 +40,14 @@ class Definition:
 def described_by_peers(node: Node, type_name: str, of: list[Endpoint]) -> Definition:
     """The first definition that those of the endpoints who have the type give.
 
-    Who publishes or serves is asked before who listens.
+    Who publishes or serves is asked before who listens; and who has the type on other
+    topics where these do not say (peers that are no ROS nodes describe nothing).
     """
-    gives = (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
-    # An action's users have its parts: pkg/action/Name_SendGoal.
-    users = [e for e in of if f"{e.type_name}_".startswith(f"{type_name}_")]
-    users.sort(key=lambda each: each.kind not in gives)
+    users = _users(type_name, of)
+    hashes = {each.type_hash for each in users}
+    everywhere = [*endpoints(node), *service_endpoints(node)]
+    others = _users(type_name, everywhere)
+    users += [each for each in others if not hashes or each.type_hash in hashes]
     reasons = []
     for name in dict.fromkeys(each.node_full_name for each in users):
         definition = fetch_definition(node, name, type_name)
@@ -52,6 +55,13 @@ def described_by_peers(node: Node, type_name: str, of: list[Endpoint]) -> Defini
             return definition
         reasons.append(f"{name}: {definition.reason}")
     return Definition(None, "; ".join(reasons))
+
+
+def _users(type_name: str, of: list[Endpoint]) -> list[Endpoint]:
+    gives = (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
+    # An action's users have its parts: pkg/action/Name_SendGoal.
+    users = [e for e in of if f"{e.type_name}_".startswith(f"{type_name}_")]
+    return sorted(users, key=lambda each: each.kind not in gives)
 
 
 def fetch_definition(node: Node, of: str, type_name: str) -> Definition:

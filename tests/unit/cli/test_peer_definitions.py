@@ -14,7 +14,7 @@ from navette.errors import InvalidNameError
 from navette.msgs import get_interface, interface_names, packages
 from navette.msgs.definition_sections import messages_of, read_definition
 from navette.msgs.registry import get_spec
-from navette.msgs.std_srvs.srv import SetBool
+from navette.msgs.std_srvs.srv import SetBool, Trigger
 from navette.msgs.type_description_interfaces.srv import GetTypeDescription
 from navette.runtime import Context, Executor, Node, VirtualClock
 from navette.runtime.type_description_service import describe
@@ -96,11 +96,18 @@ def test_who_describes_nothing_is_named(
             "mute", context=server.context, start_parameter_services=False,
             cli_args=["-p", "start_type_description_service:=false"],
         )  # fmt: skip
-        mute.create_service(SetBool, "other", lambda _, response: response)
+        mute.create_service(Trigger, "other", lambda _, response: response)
         found = described_by_peers(
-            node, "std_srvs/srv/SetBool", service_endpoints(node, "/other")
+            node, "std_srvs/srv/Trigger", service_endpoints(node, "/other")
         )
         assert found.reason == "/mute: describes no types"
+        # Another topic's program knows that type, and is asked instead.
+        mute.create_service(SetBool, "like_switch", lambda _, response: response)
+        (end,) = service_endpoints(node, "/like_switch")
+        found = described_by_peers(node, "std_srvs/srv/SetBool", [end])
+        assert found.text is not None
+        other = replace(end, type_hash="RIHS01_" + "0" * 64)
+        assert described_by_peers(node, "std_srvs/srv/SetBool", [other]).text is None
 
 
 def test_a_type_that_nobody_knows_ends_the_command(

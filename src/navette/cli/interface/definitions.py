@@ -5,9 +5,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from navette.cli.interface.listing import Kind, interfaces
-from navette.cli.message_types import installed_class, interface_class
-from navette.cli.nearest import did_you_mean
+from navette.cli.interface.listing import Kind
+from navette.cli.message_types import installed_class, interface_class, near_types
 from navette.cli.output import harmless, is_terminal, styled
 from navette.cli.peer_definitions import described_by_peers
 from navette.cli.session import connect, endpoints, fail, service_endpoints
@@ -99,8 +98,7 @@ def _sent_by_peers(name: str) -> dict[str, str]:
             node, name, [*endpoints(node), *service_endpoints(node)]
         )
     if definition.text is None:
-        every = [each for kind in Kind for each in interfaces(kind)]
-        fail(f"no interface {name}{did_you_mean(name, every)}")
+        fail(f"no interface {name}{near_types(name)}")
     read_definition(name, definition.text)  # bounded, and nothing contains itself
     sections = split_sections(name, definition.text, f"definition of {name}")
     return {full_name(each): text for each, text in sections}
@@ -109,6 +107,8 @@ def _sent_by_peers(name: str) -> dict[str, str]:
 def _full_name(name: str) -> str:
     """``pkg/Name`` → the message, service or action of that name, if there is one."""
     package, _, rest = name.partition("/")
+    if not rest and (near := near_types(name)):
+        fail(f"no interface {name}{near}")
     if "/" in rest:
         return full_name(name)
     try:
