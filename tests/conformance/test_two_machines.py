@@ -45,10 +45,10 @@ def fleet(tmp_path: Path) -> Iterator[TwoFleets]:
 
 @pytest.fixture
 def hasty(tmp_path: Path) -> Iterator[TwoFleets]:
-    """Programs that give a link up after three seconds, not ten."""
+    """Programs that give a link up after two seconds, not ten."""
     config = {
         "scouting": {"multicast": {"enabled": False}},
-        "transport": {"link": {"tx": {"lease": 3000}}},
+        "transport": {"link": {"tx": {"lease": 2000}}},
         "connect": {"retry": {"period_init_ms": 50, "period_max_ms": 500}},
     }
     file = tmp_path / "hasty.json5"
@@ -72,13 +72,13 @@ def test_what_is_reliable_survives_a_late_lossy_and_broken_wire(
     until(lambda: len(numbers()) > 20, "the first numbers")
     fleet.wire.delay_s, fleet.wire.loss = 0.1, 0.05
     worse = len(numbers())
-    until(lambda: len(numbers()) > worse + 50, "numbers on a bad wire")
+    until(lambda: len(numbers()) > worse + 25, "numbers on a bad wire")
     fleet.wire.is_cut = True
     # Longer than the link lasts: all that is between the two is lost.
     until(lambda: "alone" in fleet.said("numbers"), "the end of the link")
     cut = numbers()[-1]
     fleet.wire.is_cut = False
-    until(lambda: numbers()[-1] > cut + 300, "numbers after the cut")
+    until(lambda: numbers()[-1] > cut + 150, "numbers after the cut")
     heard = numbers()
     assert [b - a for a, b in itertools.pairwise(heard)] == [1] * (len(heard) - 1)
 
