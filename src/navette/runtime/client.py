@@ -26,7 +26,7 @@ from navette.runtime.service_introspection import (
     ServiceIntrospectionState,
 )
 from navette.runtime.time import seconds_to_ns
-from navette.transports import ClientPort, Endpoint, Reply, RequestId
+from navette.transports import ClientPort, Endpoint, Reply, RequestId, Transport
 
 
 class _Replies(Entity):
@@ -93,6 +93,16 @@ class Client:
     @property
     def callback_group(self) -> CallbackGroup:
         return self.group
+
+    def open_port(self, transport: Transport) -> None:
+        """Ask through that transport too.
+
+        Raises:
+            InvalidValueError: the service is of another type; both are named.
+        """
+        port = transport.connect(self.endpoint, self.receive)
+        self.ports.append(port)
+        self._sequence = max(self._sequence, port.used)
 
     # -- calling ---------------------------------------------------------------
 

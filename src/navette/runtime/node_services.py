@@ -135,7 +135,7 @@ class NodeServices:
         client.group.add_entity(client)
         try:
             for transport in self._context.graph.transports:
-                client.ports.append(transport.connect(client.endpoint, client.receive))
+                client.open_port(transport)
         except NavetteError:
             client.destroy()
             raise

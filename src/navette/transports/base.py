@@ -118,6 +118,11 @@ class PublisherPort(ABC):
 
     __slots__ = ()
 
+    @property
+    def used(self) -> int:
+        """The last number that was sent under its gid, by a publisher before it."""
+        return 0
+
     @abstractmethod
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
         """Deliver ``message`` as it is now; later edits by the caller are unseen."""

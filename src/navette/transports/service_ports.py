@@ -63,6 +63,11 @@ class ClientPort(ABC):
 
     __slots__ = ()
 
+    @property
+    def used(self) -> int:
+        """The last number that was sent under its gid, by a client before it."""
+        return 0
+
     @abstractmethod
     def request(self, message: Any, source_ns: int, sequence: int) -> None:
         """Send a request as it is now to every server that fits."""

@@ -23,6 +23,7 @@ class ZenohClient(ClientPort):
 
     Args:
         gid: as hashed from the liveliness token.
+        used: the last number that was sent under that gid before.
         timeout_s: so long an answer is waited for. Zenoh keeps 0.8 kB of every request
             until then, also of one that has been answered.
         closed: called once when the port is closed.
@@ -37,6 +38,8 @@ class ZenohClient(ClientPort):
         "_session",
         "_sink",
         "_timeout_s",
+        "_used",
+        "last",
         "matches",
     )
 
@@ -51,9 +54,12 @@ class ZenohClient(ClientPort):
         complaints: Complaints,
         max_message_bytes: int,
         timeout_s: float,
+        used: int,
         closed: Callable[["ZenohClient"], None],
     ) -> None:
         self.matches = matches
+        #: The newest number, also of a request that nobody remote gets.
+        self.last = self._used = used
         self._session: zenoh.Session | None = session
         self._key = key
         self._gid = gid
@@ -64,6 +70,7 @@ class ZenohClient(ClientPort):
         self._closed = closed
 
     def request(self, message: Any, source_ns: int, sequence: int) -> None:
+        self.last = sequence
         if self._session is None or not self.matches.remotes:
             return
         attachment = Attachment(sequence, source_ns, self._gid)
@@ -78,6 +85,10 @@ class ZenohClient(ClientPort):
             attachment=attachment.encode(),
             allowed_destination=zenoh.Locality.REMOTE,
         )
+
+    @property
+    def used(self) -> int:
+        return self._used
 
     @property
     def server_count(self) -> int:

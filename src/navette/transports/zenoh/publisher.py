@@ -22,6 +22,7 @@ class ZenohPublisher(PublisherPort):
     Args:
         qos: as it was announced.
         gid: as hashed from the liveliness token.
+        used: the last number that was sent under that gid before.
         heard: when something of the others came last.
         retention: what is kept for those that miss something; None: nothing is.
         closed: called once when the port is closed.
@@ -37,6 +38,8 @@ class ZenohPublisher(PublisherPort):
         "_put",
         "_retention",
         "_sent",
+        "_used",
+        "last",
         "matches",
     )
 
@@ -47,12 +50,15 @@ class ZenohPublisher(PublisherPort):
         qos: EndpointQos,
         gid: bytes,
         matches: Matches,
+        used: int,
         heard: Heard,
         retention: Retention | None,
         closed: Callable[["ZenohPublisher"], None],
         sent: Callable[[int], None] | None = None,
     ) -> None:
         self.matches = matches
+        #: The newest number, also of a sample that nobody remote gets.
+        self.last = self._used = used
         self._gid = gid
         self._heard = heard
         self._retention = retention
@@ -63,6 +69,7 @@ class ZenohPublisher(PublisherPort):
         self._put = self._publisher.put
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
+        self.last = sequence
         retention, remotes = self._retention, self.matches.remotes
         is_kept = retention is not None and retention.admits(sequence, remotes)
         if not (is_kept or remotes or self._latched or self._is_awaited(source_ns)):
@@ -86,6 +93,10 @@ class ZenohPublisher(PublisherPort):
             return publisher is not None and bool(publisher.matching_status.matching)
         except zenoh.ZError:  # the session was closed: nobody listens
             return False
+
+    @property
+    def used(self) -> int:
+        return self._used
 
     @property
     def matched_count(self) -> int:

@@ -35,6 +35,9 @@ class ZenohService(ServicePort):
         closed: called once when the port is closed.
     """
 
+    #: It numbers nothing.
+    last = 0
+
     __slots__ = (
         "_closed",
         "_complaints",

@@ -37,6 +37,9 @@ class ZenohSubscription(SubscriptionPort):
         holding: in lock-step, where samples go instead of the sink; in any order.
     """
 
+    #: It numbers nothing.
+    last = 0
+
     __slots__ = (
         "_arrivals",
         "_closed",

@@ -30,6 +30,7 @@ from navette.transports.zenoh.recovery import Recovery, Retention
 from navette.transports.zenoh.services import ZenohService
 from navette.transports.zenoh.session import Session
 from navette.transports.zenoh.settings import Settings
+from navette.transports.zenoh.spare import SpareTokens
 from navette.transports.zenoh.subscription import ZenohSubscription
 from navette.transports.zenoh.tokens import EndpointToken, NodeToken, gid_of
 
@@ -72,8 +73,9 @@ class ZenohTransport(Transport):
         self._recovery = None if traffic is not None else self._make_recovery()
         self._ids = itertools.count()
         self._nodes: dict[NodeInfo, list[tuple[int, zenoh.LivelinessToken]]] = {}
-        self._announced: dict[bytes, EndpointToken] = {}
-        self._ports: dict[Port, zenoh.LivelinessToken] = {}
+        self._spare = SpareTokens()
+        self._announced: dict[bytes, tuple[EndpointToken, int]] = {}
+        self._ports: dict[Port, tuple[EndpointToken, zenoh.LivelinessToken]] = {}
         self._hashes: dict[str, str] = {}
         #: Gids of the publishers here: those they reach in process are not told twice.
         self._own_gids: set[bytes] = set()
@@ -109,14 +111,14 @@ class ZenohTransport(Transport):
 
     def gid_for(self, endpoint: Endpoint) -> bytes:
         """The gid is a hash of the token, which is therefore made up here."""
-        token = self._token_of(endpoint)
+        token, used = self._token_of(endpoint)
         gid = gid_of(token.key())
         with self._lock:
-            self._announced[gid] = token
+            self._announced[gid] = token, used
         return gid
 
     def advertise(self, endpoint: Endpoint, message_class: type) -> ZenohPublisher:
-        def make(token: EndpointToken, matches: Matches) -> ZenohPublisher:
+        def make(token: EndpointToken, used: int, matches: Matches) -> ZenohPublisher:
             gid = gid_of(token.key())
             self._own_gids.add(gid)
             key, session, sent = self._key(token), self.session.zenoh, None
@@ -128,8 +130,9 @@ class ZenohTransport(Transport):
                 token.qos,
                 gid,
                 matches,
+                used,
                 self.session.heard,
-                self._retention(gid, token.qos, matches),
+                self._retention(gid, token.qos, used, matches),
                 self._leave,
                 sent,
             )
@@ -139,7 +142,7 @@ class ZenohTransport(Transport):
     def subscribe(
         self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
     ) -> ZenohSubscription:
-        def make(token: EndpointToken, matches: Matches) -> ZenohSubscription:
+        def make(token: EndpointToken, _: int, matches: Matches) -> ZenohSubscription:
             recovery = self._recovery_of(token.qos)
             port = ZenohSubscription(
                 self.session.zenoh,
@@ -162,7 +165,7 @@ class ZenohTransport(Transport):
         return self._open(endpoint, make)
 
     def serve(self, endpoint: Endpoint, sink: RequestSink) -> ZenohService:
-        def make(token: EndpointToken, matches: Matches) -> ZenohService:
+        def make(token: EndpointToken, _: int, matches: Matches) -> ZenohService:
             key, session = self._key(token), self.session.zenoh
             return ZenohService(
                 session,
@@ -177,12 +180,16 @@ class ZenohTransport(Transport):
         return self._open(endpoint, make)
 
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> ZenohClient:
-        def make(token: EndpointToken, matches: Matches) -> ZenohClient:
-            key, session = self._key(token), self.session.zenoh
-            gid = gid_of(token.key())
-            timeout_s = self.session.settings.service_timeout_s
+        def make(token: EndpointToken, used: int, matches: Matches) -> ZenohClient:
             return ZenohClient(
-                session, key, gid, sink, matches, timeout_s=timeout_s, **self._common()
+                self.session.zenoh,
+                self._key(token),
+                gid_of(token.key()),
+                sink,
+                matches,
+                used=used,
+                timeout_s=self.session.settings.service_timeout_s,
+                **self._common(),
             )
 
         return self._open(endpoint, make)
@@ -250,21 +257,22 @@ class ZenohTransport(Transport):
         return self._recovery
 
     def _retention(
-        self, gid: bytes, qos: EndpointQos, matches: Matches
+        self, gid: bytes, qos: EndpointQos, used: int, matches: Matches
     ) -> Retention | None:
         recovery = self._recovery_of(qos)
         if recovery is None:
             return None
-        retention = Retention(qos.queue_length)
+        retention = Retention(qos.queue_length, used)
         recovery.offers.add(gid, matches, retention)
         return retention
 
     # -- inside ----------------------------------------------------------------
 
-    def _token_of(self, endpoint: Endpoint) -> EndpointToken:
+    def _token_of(self, endpoint: Endpoint) -> tuple[EndpointToken, int]:
+        """Its token, and the last number that was used under it."""
         offers = endpoint.kind in (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
         nid, node = self._node_of(endpoint)
-        return EndpointToken(
+        token = EndpointToken(
             domain_id=self.domain_id,
             zid=self.session.zid,
             nid=nid,
@@ -276,6 +284,8 @@ class ZenohTransport(Transport):
             type_hash=self._hash(endpoint.type_name),
             qos=announced(endpoint.qos, offers=offers),
         )
+        # In lock-step each publisher is counted from its first sample on.
+        return (token, 0) if self._traffic is not None else self._spare.take(token)
 
     def _node_of(self, endpoint: Endpoint) -> tuple[int, NodeInfo]:
         """The newest announced node of that name; 0 where none was."""
@@ -295,16 +305,15 @@ class ZenohTransport(Transport):
         return data_key(token.domain_id, token.topic, token.type_name, token.type_hash)
 
     def _open(
-        self, endpoint: Endpoint, make: Callable[[EndpointToken, Matches], P]
+        self, endpoint: Endpoint, make: Callable[[EndpointToken, int, Matches], P]
     ) -> P:
         """A port that is matched, then announced: who sees its token may rely on it."""
         with self._lock:
-            token = self._announced.pop(endpoint.gid, None)
-        if token is None:
-            token = self._token_of(endpoint)
+            known = self._announced.pop(endpoint.gid, None)
+        token, used = known or self._token_of(endpoint)
         matches = self._graph.add_local(endpoint, token.type_hash)
         try:
-            port = make(token, matches)
+            port = make(token, used, matches)
             declared = self._declare_token(token.key())
         except zenoh.ZError as error:
             if self._recovery is not None:
@@ -315,7 +324,7 @@ class ZenohTransport(Transport):
                 f"{endpoint.node_full_name}) cannot be opened: {error}"
             ) from error
         with self._lock:
-            self._ports[port] = declared
+            self._ports[port] = token, declared
         return port
 
     def _common(self) -> dict[str, Any]:
@@ -327,13 +336,14 @@ class ZenohTransport(Transport):
 
     def _leave(self, port: Port) -> None:
         with self._lock:
-            token = self._ports.pop(port)
+            token, declared = self._ports.pop(port)
         self._own_gids.discard(port.matches.endpoint.gid)
         if self._recovery is not None:
             self._recovery.leave(port.matches)
         self._graph.remove_local(port.matches)
         if not self.session.zenoh.is_closed():
-            token.undeclare()
+            declared.undeclare()
+            self._spare.put(token, port.last)
 
     def _declare_token(self, key: str) -> zenoh.LivelinessToken:
         return self.session.zenoh.liveliness().declare_token(key)

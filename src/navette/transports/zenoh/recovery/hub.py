@@ -124,6 +124,8 @@ class Recovery(TransportObserver):
         if publisher.is_remote:
             self.wants.on_match(publisher, subscription, up=up)
         else:
+            if up:  # it may have the name of one that was closed
+                self._closed.pop(subscription.gid, None)
             self.offers.on_match(publisher, subscription.gid if up else None)
 
     # -- letters ---------------------------------------------------------------

@@ -28,16 +28,17 @@ class Retention:
 
     Args:
         depth: None: all, within bounds.
+        newest: the last number that was sent by a publisher of that name before.
     """
 
     __slots__ = ("_bytes", "_depth", "_is_wanted", "_kept", "_lock", "_newest")
 
-    def __init__(self, depth: int | None) -> None:
+    def __init__(self, depth: int | None, newest: int = 0) -> None:
         self._is_wanted = False
         self._depth = depth or MOST_OF_ALL
         self._kept: deque[Kept] = deque()
         self._bytes = 0
-        self._newest = 0
+        self._newest = newest
         self._lock = threading.Lock()
 
     @property

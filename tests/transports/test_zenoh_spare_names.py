@@ -1,0 +1,160 @@
+"""Endpoints that come after others of their kind take their names on the network."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from transport_benches import ZenohPair, free_endpoint, message_of, until
+
+from navette import Context, Node
+from navette.msgs.example_interfaces.srv import AddTwoInts
+from navette.msgs.std_msgs.msg import String
+from navette.runtime import Executor
+from navette.transports import (
+    Endpoint,
+    EndpointKind,
+    EndpointQos,
+    Item,
+    ReliabilityPolicy,
+    TransportObserver,
+)
+
+BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
+
+EAR = Endpoint(
+    EndpointKind.SUBSCRIPTION,
+    "/t",
+    "std_msgs/msg/String",
+    EndpointQos(),
+    "ear",
+    "/",
+    b"",
+)
+
+
+@pytest.fixture
+def pair() -> Iterator[ZenohPair]:
+    pair = ZenohPair()
+    yield pair
+    pair.close()
+
+
+def mouth(
+    pair: ZenohPair, topic: str = "/t", qos: EndpointQos | None = None
+) -> tuple[bytes, Any]:
+    """Gid and port."""
+    name = "std_msgs/msg/String"
+    kind = EndpointKind.PUBLISHER
+    end = Endpoint(kind, topic, name, qos or EndpointQos(), "n", "/", b"")
+    gid = pair.far.gid_for(end)
+    assert gid is not None
+    return gid, pair.far.advertise(
+        Endpoint(kind, topic, name, end.qos, "n", "/", gid), String
+    )
+
+
+def test_the_name_is_that_of_one_of_the_very_same_kind(pair: ZenohPair) -> None:
+    first, port = mouth(pair)
+    second, _ = mouth(pair)
+    port.close()
+    elsewhere, _ = mouth(pair, "/u")
+    other, _ = mouth(pair, qos=BEST_EFFORT)
+    again, _ = mouth(pair)
+    more, _ = mouth(pair)
+    assert again == first
+    assert len({first, second, elsewhere, other, more}) == 5
+
+
+def test_samples_are_numbered_on(pair: ZenohPair) -> None:
+    items: list[Item] = []
+    pair.near.subscribe(EAR, String, items.append, shared=False)
+    for number, text in enumerate("abc"):
+        _, port = mouth(pair)
+        assert port.used == number
+        pair.settle()
+        port.send(String(data=text), 0, number + 1)
+        pair.settle()
+        port.close()
+        pair.settle()
+        assert pair.near.endpoints() == []
+    assert [message_of(item).data for item in items] == ["a", "b", "c"]
+
+
+def test_who_listens_from_now_on_misses_nothing_of_before(pair: ZenohPair) -> None:
+    _, port = mouth(pair)
+    for number in (1, 2, 3):
+        port.send(String(data="unheard"), 0, number)
+    port.close()
+    lost: list[int] = []
+
+    class Notes(TransportObserver):
+        def message_lost(self, subscription: Endpoint, count: int) -> None:
+            lost.append(count)
+
+    pair.near.observe(Notes())
+    _, port = mouth(pair)
+    items: list[Item] = []
+    pair.near.subscribe(EAR, String, items.append, shared=False)
+    pair.settle()
+    port.send(String(data="heard"), 0, port.used + 1)
+    pair.settle()
+    assert [message_of(item).data for item in items] == ["heard"]
+    assert lost == []
+
+
+class Station:
+    """A node on the network, and what runs it."""
+
+    def __init__(self, context: Context, name: str) -> None:
+        self.node = Node(name, context=context)
+        self._executor = Executor(context=context)
+        self._executor.add_node(self.node)
+
+    def step(self) -> None:
+        self._executor.spin_once(timeout_sec=0.0)
+
+
+@pytest.fixture
+def stations(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Station, Station]]:
+    monkeypatch.setenv("NAVETTE_ROUTER", free_endpoint())
+    with Context(transport="zenoh") as here, Context(transport="zenoh") as there:
+        yield Station(here, "here"), Station(there, "there")
+
+
+def test_publishers_and_clients_of_nodes_go_on(
+    stations: tuple[Station, Station],
+) -> None:
+    here, there = stations
+    heard: list[str] = []
+    there.node.create_subscription(String, "t", lambda m: heard.append(m.data), 10)
+
+    def add(request: Any, response: Any) -> Any:
+        response.sum = request.a + request.b
+        return response
+
+    there.node.create_service(AddTwoInts, "add", add)
+    names = set()
+
+    def look(condition: Any, what: str) -> None:
+        def goes() -> bool:
+            here.step()
+            there.step()
+            return bool(condition())
+
+        until(goes, what)
+
+    for number in range(3):
+        publisher = here.node.create_publisher(String, "t", 10)
+        client = here.node.create_client(AddTwoInts, "add")
+        names.add((publisher.endpoint.gid, client.endpoint.gid))
+        look(publisher.get_subscription_count, "the listener")
+        look(client.service_is_ready, "the server")
+        publisher.publish(String(data=str(number)))
+        future = client.call_async(AddTwoInts.Request(a=number))
+        look(lambda: len(heard) == number + 1, "the message")  # noqa: B023
+        look(future.done, "the answer")
+        assert future.result().sum == number
+        here.node.destroy_client(client)
+        here.node.destroy_publisher(publisher)
+    assert heard == ["0", "1", "2"]
+    assert len(names) == 1
