@@ -26,6 +26,7 @@ from navette.launch_files.launch.logging import console, get_logger
 from navette.launch_files.launch.subprocesses import SubprocessRunner
 from navette.packages import activate, find_package
 from navette.packages.finding import PATH_VARIABLE
+from navette.processes import Keeper
 
 _INTERRUPTED = 130
 _log = get_logger("launch")
@@ -77,6 +78,7 @@ def launch(
     *,
     processes: bool = False,
     debug: bool = False,
+    keeper: Keeper | None = None,
 ) -> int:
     """Run a launch file until everything that it started has ended.
 
@@ -85,6 +87,7 @@ def launch(
         arguments: its launch arguments.
         processes: a process for each node, instead of all in this one.
         debug: log what happens inside.
+        keeper: starts those processes; closed at the end. It may be prepared already.
 
     Returns:
         0; 1 if the launch failed or a process died by itself; 130 after Ctrl-C.
@@ -92,7 +95,7 @@ def launch(
     Raises:
         NavetteError: the file or an argument is wrong.
     """
-    own = SubprocessRunner()
+    own = SubprocessRunner(keeper)
     with _workspace_of(path), console(debug=debug), closing(own):
         if processes:
             own.keeper.prepare()

@@ -1,5 +1,7 @@
 """``navette launch``: ROS 2 launch files on Navette."""
 
+from contextlib import closing
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -41,16 +43,23 @@ def launch(
     Ctrl-C ends everything it started. Exit code 1: the launch failed or a process
     died.
     """
-    from navette.bringup import launch as run_launch
-    from navette.bringup import parse_launch_arguments, show_arguments
-    from navette.bringup.session import find_launch_file
-    from navette.interop import install
+    from navette.processes import Keeper
 
-    install(instead_of_ros=on_navette)
-    path, rest = find_launch_file(words)
-    if show_args:
-        typer.echo(show_arguments(path))
-        return
-    arguments = parse_launch_arguments(rest)
-    code = run_launch(path, arguments, processes=processes, debug=debug)
+    with closing(Keeper()) as keeper:
+        if processes and not show_args and Path(words[0]).is_file():
+            keeper.prepare()  # imports there what is imported here meanwhile
+        from navette.bringup import launch as run_launch
+        from navette.bringup import parse_launch_arguments, show_arguments
+        from navette.bringup.session import find_launch_file
+        from navette.interop import install
+
+        install(instead_of_ros=on_navette)
+        path, rest = find_launch_file(words)
+        if show_args:
+            typer.echo(show_arguments(path))
+            return
+        arguments = parse_launch_arguments(rest)
+        code = run_launch(
+            path, arguments, processes=processes, debug=debug, keeper=keeper
+        )
     raise typer.Exit(code)

@@ -3,6 +3,8 @@
 Started by ``navette.processes``; whatever else a program needs, it imports itself.
 """
 
+from pathlib import Path
+
 import navette.cli.run
 import navette.interop.process
 import navette.interop.ros2.rclpy.node
@@ -12,11 +14,13 @@ import navette.msgs.rcl_interfaces.srv
 import navette.msgs.std_msgs.msg
 import navette.packages
 import navette.runtime
-import navette.transports.zenoh.transport  # noqa: F401 - only loaded, all of them
+import navette.transports.zenoh.transport
+from navette.cli.app import build
+from navette.interop.hook import modules_in
 from navette.msgs import type_hash
 from navette.processes.zygote import main
 
-# Their definitions are read once for all.
+# Their definitions are read, and their hashes computed, once for all.
 _OF_EVERY_NODE = (
     "rcl_interfaces/msg/Log",
     "rcl_interfaces/msg/ParameterEvent",
@@ -32,4 +36,6 @@ _OF_EVERY_NODE = (
 if __name__ == "__main__":
     for name in _OF_EVERY_NODE:
         type_hash(name)
+    modules_in(Path(navette.interop.ros2.rclpy.__file__).parent)
+    build("run")
     main()

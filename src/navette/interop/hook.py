@@ -8,6 +8,7 @@ calls :func:`install`.
 import importlib
 import sys
 from collections.abc import Sequence
+from functools import cache
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
@@ -28,15 +29,16 @@ ROOTS = {
 }
 
 
-def modules_in(folder: Path) -> set[str]:
-    """Names of the modules and packages in a folder."""
-    return {
+@cache
+def modules_in(folder: Path) -> frozenset[str]:
+    """Names of the modules and packages in a folder of Navette."""
+    return frozenset(
         path.stem
         for path in folder.iterdir()
         if path.stem.isidentifier()
         and not path.stem.startswith("_")
         and (path.suffix == ".py" or (path / "__init__.py").is_file())
-    }
+    )
 
 
 #: ROS 2's name of a package → Navette's.
@@ -211,9 +213,9 @@ class AliasLoader(_NavetteLoader, Loader):
     def contents(self) -> list[str]:
         return sorted({*_public_names(self._real), *self._submodules()})
 
-    def _submodules(self) -> set[str]:
+    def _submodules(self) -> frozenset[str]:
         path = Path(getattr(self._real, "__file__", None) or "")
-        return modules_in(path.parent) if path.name == "__init__.py" else set()
+        return modules_in(path.parent) if path.name == "__init__.py" else frozenset()
 
     def _attribute(self, name: str) -> Any:
         # rclpy's modules import each other, so that programs reach

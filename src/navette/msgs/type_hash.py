@@ -37,11 +37,19 @@ _ARRAY, _BOUNDED_SEQUENCE, _SEQUENCE = 48, 96, 144
 
 Description = dict[str, Any]
 
+#: Of each type the hash, and the definition that it is of.
+_hashes: dict[str, tuple[Spec, str]] = {}
+
 
 def type_hash(name: str) -> str:
     """``RIHS01_`` and 64 hex digits, as ROS 2 computes it for this interface."""
-    text = json.dumps(type_description(name), ensure_ascii=False)
-    return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
+    spec = get_spec(name)
+    known, found = _hashes.get(name, (None, ""))
+    if known is not spec:
+        text = json.dumps(type_description(name), ensure_ascii=False)
+        found = "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
+        _hashes[name] = spec, found
+    return found
 
 
 def type_description(name: str) -> Description:

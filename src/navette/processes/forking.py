@@ -102,10 +102,11 @@ class Forking:
         self._lock = threading.Lock()
 
     def prepare(self, env: Mapping[str, str]) -> None:
-        """Start a zygote already; it is ready when it is."""
+        """Start a zygote already; it is ready when it is. Twice is harmless."""
         if Wish(_HEAD, env, None, False, ()).is_for_zygote:
             with self._lock:
-                self._open(env)
+                if not self._links:
+                    self._open(env)
 
     def start(self, wish: Wish) -> ForkedProcess | None:
         """The program as a process; None where it is to start the ordinary way."""

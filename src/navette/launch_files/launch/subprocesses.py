@@ -18,8 +18,8 @@ class SubprocessRunner:
 
     graph = None
 
-    def __init__(self) -> None:
-        self.keeper = Keeper()
+    def __init__(self, keeper: Keeper | None = None) -> None:
+        self.keeper = keeper or Keeper()
 
     def start(self, command: Command, listener: Listener) -> ChildProcess:
         words = command.words
