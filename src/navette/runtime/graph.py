@@ -194,7 +194,7 @@ class Graph(TransportObserver):
 
     def topics(self) -> dict[str, list[str]]:
         """Full topic name → type names, sorted by name."""
-        return names_and_types(self.endpoints())
+        return names_and_types(e for t in self.transports for e in t.endpoints())
 
     def services(self) -> dict[str, list[str]]:
         """Full name of each served service → type names, sorted by name."""
@@ -217,7 +217,7 @@ def _selected(
     return sorted(found, key=lambda endpoint: (endpoint.topic, endpoint.gid))
 
 
-def names_and_types(endpoints: list[Endpoint]) -> dict[str, list[str]]:
+def names_and_types(endpoints: Iterable[Endpoint]) -> dict[str, list[str]]:
     """Topic → sorted type names of the given endpoints."""
     found: dict[str, set[str]] = {}
     for endpoint in endpoints:

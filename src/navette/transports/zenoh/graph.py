@@ -152,14 +152,18 @@ class RemoteGraph:
                     if not self._events:
                         return dict(self._count_of)
 
-    def wait_until_known(self, keys: set[str], timeout_s: float) -> bool:
-        """Whether all those tokens are here within the time."""
+    def wait_until_known(self, keys: set[str], timeout_s: float) -> set[str]:
+        """Wait for those tokens; what is not here within the time."""
+        missing = keys
 
         def all_here() -> bool:
-            return all(key in self._nodes or key in self._endpoints for key in keys)
+            nonlocal missing
+            missing = missing - self._nodes.keys() - self._endpoints.keys()
+            return not missing
 
         with self._lock:
-            return self._lock.wait_for(all_here, timeout_s)
+            self._lock.wait_for(all_here, timeout_s)
+        return missing
 
     # -- ours ------------------------------------------------------------------
 

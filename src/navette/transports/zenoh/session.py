@@ -27,7 +27,7 @@ _ASK_S = 2.0
 _CLOSE_S = 1.5
 # Tokens that wait to be read; who declares more at once waits for the reader.
 _CHANNEL = 10_000
-_FIRST_PAUSE_S, _LONGEST_PAUSE_S = 0.002, 0.032
+_FIRST_PAUSE_S, _LONGEST_PAUSE_S = 0.002, 0.064
 
 _open: "weakref.WeakSet[Session]" = weakref.WeakSet()
 
@@ -123,11 +123,24 @@ class Session:
 
     def _look_around(self, router: zenoh.Session) -> None:
         """Wait until all that the router knows of are known here."""
+        known = _listed(router, self._tokens)
         for _ in range(_LOOKS):
-            replies = router.liveliness().get(self._tokens, timeout=_ASK_S)
-            known = {str(reply.ok.key_expr) for reply in replies if reply.ok}
-            if self.graph.wait_until_known(known, _LOOK_S):
+            missing = self.graph.wait_until_known(known, _LOOK_S)
+            # Those may have gone meanwhile: only of their sessions it is asked again.
+            sessions = {key.split("/", 3)[2] for key in missing}
+            known = {
+                key
+                for zid in sessions
+                for key in _listed(router, self._tokens.replace("**", f"{zid}/**"))
+            }
+            if not known:
                 return
+
+
+def _listed(router: zenoh.Session, tokens: str) -> set[str]:
+    """The tokens that the router knows of."""
+    replies = router.liveliness().get(tokens, timeout=_ASK_S)
+    return {str(reply.ok.key_expr) for reply in replies if reply.ok}
 
 
 def _change(sample: zenoh.Sample) -> tuple[str, bool]:
