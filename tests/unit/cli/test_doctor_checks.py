@@ -8,7 +8,7 @@ import pytest
 from navette.cli.doctor.doors import Refusal
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.graph_checks import check_nodes, check_services, check_topics
-from navette.cli.doctor.machine import is_navette, left_running
+from navette.cli.doctor.machine import is_navette, left_running, stopped
 from navette.cli.doctor.module_checks import check_modules
 from navette.cli.doctor.network import Network, Router, check_network
 from navette.cli.doctor.ports import Knock, Process
@@ -85,6 +85,54 @@ def test_a_node_that_does_not_answer() -> None:
     assert {finding.level for finding in findings} == {Level.PROBLEM}
 
 
+def test_who_cannot_be_reached_explains_what_is_missing() -> None:
+    seen = Snapshot(
+        nodes=("/planner", "/sim"),
+        endpoints=(pub("/path", "planner"), sub("/cmd_vel", "sim")),
+        unreached=("/control",),
+        unreached_topics={"/control": ("/cmd_vel", "/control/status")},
+        speed_mps=0.0,
+    )
+    finding = of(check_nodes(seen), "/control")
+    assert finding.text == (
+        "is known to the router, but cannot be reached; the robot stands"
+    )
+    assert finding.data["publishes"] == ["/cmd_vel", "/control/status"]
+    whats = [each.what for each in (*check_nodes(seen), *check_topics(seen))]
+    assert whats == ["/control", "nodes", "nobody reads"]
+
+
+def test_a_stage_that_is_missing_between_others() -> None:
+    seen = Snapshot(
+        nodes=("/planner", "/sim"),
+        endpoints=(pub("/path", "planner"), sub("/cmd_vel", "sim")),
+        speed_mps=0.42,
+    )
+    finding = of(check_nodes(seen), "control")
+    assert finding.level is Level.PROBLEM
+    assert finding.text == (
+        "is missing: nobody makes /cmd_vel of /path; the robot drives at 0.4 m/s"
+    )
+    assert "navette run navette control" in finding.advice
+    assert "/cmd_vel" not in [each.what for each in check_topics(seen)]
+    # Driven by hand: nobody plans, nothing is missing.
+    by_hand = Snapshot(nodes=("/sim",), endpoints=(sub("/cmd_vel", "sim"),))
+    assert [each.what for each in check_nodes(by_hand)] == ["nodes"]
+
+
+def test_two_definitions_of_a_type() -> None:
+    ours, theirs = (
+        replace(end, type_hash=f"RIHS01_{digit * 64}")
+        for end, digit in ((pub("/scan", "lidar"), "a"), (sub("/scan", "old"), "b"))
+    )
+    finding = of(check_topics(Snapshot(endpoints=(ours, theirs))), "/scan")
+    assert finding.level is Level.PROBLEM
+    assert finding.text == f"{SCAN} has 2 definitions: /lidar | /old"
+    unhashed = replace(theirs, type_hash="TypeHashNotSupported")
+    (finding,) = check_topics(Snapshot(endpoints=(ours, unhashed)))
+    assert finding.level is Level.GOOD
+
+
 def test_topics_that_fit() -> None:
     seen = Snapshot(endpoints=(pub("/scan", "lidar"), sub("/scan", "costmap")))
     (finding,) = check_topics(seen)
@@ -154,6 +202,8 @@ def test_what_a_person_publishes_and_what_every_node_has_is_not_missed() -> None
 
 
 def test_a_client_without_a_server() -> None:
+    asks = end(EndpointKind.CLIENT, "/gone/get_parameters", "viewer", "a/srv/Get")
+    assert list(check_services(Snapshot(services=(asks,)))) == []
     client = end(EndpointKind.CLIENT, "/add", "asker", "a/srv/Add")
     finding = of(check_services(Snapshot(services=(client,))), "/add")
     assert finding.text == "nobody serves it; /asker may wait for it"
@@ -204,6 +254,15 @@ def test_heartbeats(beat: Heartbeat, level: Level, text: str) -> None:
     seen = Snapshot(endpoints=(pub(beat.topic, "planner"),), heartbeats=(beat,))
     (finding,) = check_stages(seen)
     assert (finding.level, finding.text) == (level, text)
+
+
+def test_what_the_robot_does() -> None:
+    stale = Heartbeat("/control/status", "stale_path", 1, 0.1)
+    seen = Snapshot(heartbeats=(stale,), speed_mps=0.0)
+    status, robot = check_stages(seen)
+    assert status.level is Level.WARNING
+    assert status.text == "stale_path: nothing new from that side; the robot stands"
+    assert (robot.what, robot.text) == ("robot", "the robot stands")
 
 
 HERE = "tcp/127.0.0.1:7447"
@@ -289,6 +348,18 @@ def test_modules() -> None:
         ("control", Level.PROBLEM, "does not run: no such file"),
     ]
     assert found[0].advice == "navette logs robot"
+
+
+def test_programs_that_are_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    control = Process(20, 1, ("python", "-u", "/bin/navette", "run"), is_stopped=True)
+    every = [control, control._replace(pid=21, is_stopped=False)]
+    # Whether it has nodes is seen in /proc, of processes that there are.
+    assert list(stopped(every, here=14)) == []
+    monkeypatch.setattr("navette.cli.doctor.machine.has_nodes", lambda _: True)
+    (finding,) = stopped(every, here=14)
+    assert (finding.what, finding.level) == ("process 20", Level.PROBLEM)
+    assert finding.text.startswith("navette run is stopped (Ctrl-Z, SIGSTOP)")
+    assert "kill -CONT 20" in finding.advice
 
 
 def test_programs_that_were_left_running() -> None:
