@@ -4,6 +4,7 @@ A completion says nothing where it knows nothing: no message would fit into a ha
 typed line.
 """
 
+import os
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -18,7 +19,12 @@ from navette.errors import NavetteError
 if TYPE_CHECKING:
     from navette.runtime import Node
 
-_ANSWER_S = 0.2
+_ANSWER_S = 0.5
+
+
+def complete_from(*words: str) -> Callable[[str], list[str]]:
+    """One of a few words."""
+    return lambda incomplete: _chosen(incomplete, words)
 
 
 def complete_nodes(incomplete: str) -> list[str]:
@@ -111,6 +117,52 @@ def complete_type_of_action(ctx: typer.Context, incomplete: str) -> list[str]:
     return served or complete_action_types(incomplete)
 
 
+def complete_message_values(ctx: typer.Context, incomplete: str) -> list[str]:
+    """The message of the type named before with its defaults, to edit."""
+    return _prototype(str(ctx.params.get("type_name") or ""), "msg", incomplete)
+
+
+def complete_request(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Of ``service call NAME``: the type, then the request with its defaults."""
+    return _type_or_values(ctx, incomplete, "srv", complete_type_of_service)
+
+
+def complete_goal(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Of ``action send_goal NAME``: the type, then the goal with its defaults."""
+    return _type_or_values(ctx, incomplete, "action", complete_type_of_action)
+
+
+def _type_or_values(
+    ctx: typer.Context,
+    incomplete: str,
+    kind: str,
+    types: "Callable[[typer.Context, str], list[str]]",
+) -> list[str]:
+    words = list(ctx.params.get("words") or ())
+    if not words:
+        return types(ctx, incomplete)
+    return _prototype(words[0], kind, incomplete) if len(words) == 1 else []
+
+
+def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
+    """Nothing where somebody has begun to type the values."""
+    shell = os.environ.get("_NAVETTE_COMPLETE", "")
+    # Zsh takes no value with quotes and colons in it.
+    if incomplete or not type_name or shell.endswith("zsh"):
+        return []
+    from navette.cli.message_types import full_type_name, installed_class
+    from navette.companions.rosidl_runtime_py import message_to_yaml
+
+    with suppress(NavetteError):
+        cls = installed_class(full_type_name(type_name, kind))
+        if cls is not None:
+            part: Any = getattr(cls, "Goal", getattr(cls, "Request", cls))
+            text = message_to_yaml(part(), flow_style=True).strip()
+            # Fish quotes by itself what is inserted.
+            return [f'"{text}"' if shell.endswith("bash") else text]
+    return []
+
+
 def complete_packages(incomplete: str) -> list[str]:
     """Packages, installed or in the workspace."""
     from navette.packages import find_packages
@@ -157,9 +209,11 @@ def _running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[
     """Names out of what runs; those for machines only where their start is typed."""
     hidden = "_" in incomplete
     with suppress(NavetteError, typer.Exit), connect() as here:
-        return _chosen(
-            incomplete, (n for n in names(here) if hidden or not is_hidden(n))
-        )
+        found = [n for n in names(here) if hidden or not is_hidden(n)]
+        # A name may be typed without the slash that it begins with.
+        if incomplete and not incomplete.startswith("/"):
+            found += [name.removeprefix("/") for name in found]
+        return _chosen(incomplete, found)
     return []
 
 

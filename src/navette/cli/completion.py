@@ -36,11 +36,16 @@ compdef _navette_completion navette
 """
 _FISH = """\
 function _navette_completion
-    env _NAVETTE_COMPLETE=complete_fish _TYPER_COMPLETE_FISH_ACTION=$argv[1] \\
-        _TYPER_COMPLETE_ARGS=(commandline -cp) navette 2>/dev/null
+    set --local words (env _NAVETTE_COMPLETE=complete_fish \\
+        _TYPER_COMPLETE_FISH_ACTION=get-args \\
+        _TYPER_COMPLETE_ARGS=(commandline -cp) navette 2>/dev/null)
+    if test (count $words) -gt 0
+        printf '%s\\n' $words
+    else
+        __fish_complete_path (commandline -ct)
+    end
 end
-complete --command navette --no-files --arguments "(_navette_completion get-args)" \\
-    --condition "_navette_completion is-args"
+complete --command navette --no-files --arguments "(_navette_completion)"
 """
 
 

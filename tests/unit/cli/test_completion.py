@@ -41,6 +41,44 @@ def test_names_of_what_runs(here: World) -> None:
     assert completing.complete_managed_nodes("") == ["/camera"]
 
 
+def test_a_name_typed_without_its_slash(here: World) -> None:
+    assert completing.complete_topics("chat") == ["chatter"]
+    assert completing.complete_nodes("t") == ["talker"]
+
+
+@pytest.mark.parametrize(
+    ("shell", "expected"),
+    [
+        ("complete_bash", ['"{a: 0, b: 0}"']),
+        ("complete_fish", ["{a: 0, b: 0}"]),
+        ("complete_zsh", []),
+    ],
+)
+def test_values_to_edit(
+    monkeypatch: pytest.MonkeyPatch, shell: str, expected: list[str]
+) -> None:
+    monkeypatch.setenv("_NAVETTE_COMPLETE", shell)
+    asked: Any = SimpleNamespace(params={"words": ["example_interfaces/AddTwoInts"]})
+    assert completing.complete_request(asked, "") == expected
+    assert completing.complete_request(asked, "{a") == []
+    asked.params["words"].append("{a: 1}")
+    assert completing.complete_request(asked, "") == []
+
+
+def test_a_message_and_a_goal_to_edit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("_NAVETTE_COMPLETE", "complete_bash")
+    asked: Any = SimpleNamespace(params={"type_name": "std_msgs/msg/String"})
+    assert completing.complete_message_values(asked, "") == ["\"{data: ''}\""]
+    asked = SimpleNamespace(params={"words": ["example_interfaces/action/Fibonacci"]})
+    assert completing.complete_goal(asked, "") == ['"{order: 0}"']
+    asked = SimpleNamespace(params={"type_name": "no such type"})
+    assert completing.complete_message_values(asked, "") == []
+
+
+def test_one_of_a_few_words() -> None:
+    assert completing.complete_from("reliable", "best_effort")("r") == ["reliable"]
+
+
 def test_names_that_a_node_answers(here: World) -> None:
     assert completing.complete_parameters(typed("talker"), "s") == [
         "speed",

@@ -6,7 +6,7 @@ import typer
 
 from navette.cli.action.looking import actions, types_of
 from navette.cli.action.options import ActionName, Json
-from navette.cli.completing import complete_type_of_action
+from navette.cli.completing import complete_goal
 from navette.cli.filling import filled, from_stdin, type_and_values
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import note, show, show_json, styled
@@ -28,7 +28,7 @@ def send_goal(
             metavar="[TYPE] [YAML]",
             help="The type (by default that of the server), and the fields of the goal"
             " that are not to keep their defaults: '{order: 5}'.",
-            autocompletion=complete_type_of_action,
+            autocompletion=complete_goal,
         ),
     ] = None,
     feedback: Annotated[

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from navette.cli.completing import complete_type_of_service
+from navette.cli.completing import complete_request
 from navette.cli.filling import filled, from_stdin, type_and_values
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import note, show, show_json, styled
@@ -25,7 +25,7 @@ def call(
             metavar="[TYPE] [YAML]",
             help="The type (by default that of the server), and the fields of the"
             " request that are not to keep their defaults: '{a: 1, b: 2}'.",
-            autocompletion=complete_type_of_service,
+            autocompletion=complete_request,
         ),
     ] = None,
     rate: Annotated[

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_messages
+from navette.cli.completing import complete_message_values, complete_messages
 from navette.cli.session import connect
 from navette.cli.topic import qos_options
 from navette.cli.topic.options import TopicName
@@ -27,6 +27,7 @@ def pub(
             metavar="YAML",
             help="Fields that are not at their defaults, as in '{linear: {x: 0.5}}';"
             " auto for a header and now for a time mean when it is sent.",
+            autocompletion=complete_message_values,
         ),
     ] = "{}",
     stdin: Annotated[

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from navette.cli.completing import complete_from
+
 PANEL = "Quality of service"
 
 # The words are ROS 2's; spelt out, so that the command line's start imports nothing.
@@ -14,7 +16,12 @@ PROFILES = (
 )
 Profile = Annotated[
     str | None,
-    typer.Option("--qos-profile", help=f"One of: {PROFILES}.", rich_help_panel=PANEL),
+    typer.Option(
+        "--qos-profile",
+        help=f"One of: {PROFILES}.",
+        autocompletion=complete_from(*PROFILES.split()),
+        rich_help_panel=PANEL,
+    ),
 ]
 Depth = Annotated[
     int | None,
@@ -24,24 +31,38 @@ Depth = Annotated[
 ]
 History = Annotated[
     str | None,
-    typer.Option("--qos-history", help="keep_last or keep_all.", rich_help_panel=PANEL),
+    typer.Option(
+        "--qos-history",
+        help="keep_last or keep_all.",
+        autocompletion=complete_from("keep_last", "keep_all"),
+        rich_help_panel=PANEL,
+    ),
 ]
 Reliability = Annotated[
     str | None,
     typer.Option(
-        "--qos-reliability", help="reliable or best_effort.", rich_help_panel=PANEL
+        "--qos-reliability",
+        help="reliable or best_effort.",
+        autocompletion=complete_from("reliable", "best_effort"),
+        rich_help_panel=PANEL,
     ),
 ]
 Durability = Annotated[
     str | None,
     typer.Option(
-        "--qos-durability", help="volatile or transient_local.", rich_help_panel=PANEL
+        "--qos-durability",
+        help="volatile or transient_local.",
+        autocompletion=complete_from("volatile", "transient_local"),
+        rich_help_panel=PANEL,
     ),
 ]
 Liveliness = Annotated[
     str | None,
     typer.Option(
-        "--qos-liveliness", help="automatic or manual_by_topic.", rich_help_panel=PANEL
+        "--qos-liveliness",
+        help="automatic or manual_by_topic.",
+        autocompletion=complete_from("automatic", "manual_by_topic"),
+        rich_help_panel=PANEL,
     ),
 ]
 Lease = Annotated[
