@@ -10,9 +10,10 @@ last third of what is judged::
 
 Zenoh keeps 0.8 kB of every request until its time is over (NAVETTE_SERVICE_TIMEOUT,
 here ``--service-timeout``), and only then as much is given back as is taken: the run is
-judged from there on. What is kept of every endpoint that was ever made stays as long as
-a link does (docs/decisions/0018): ``--churn 0`` makes none, ``--churn 50`` shows it.
-Single megabytes come and go with the images that are on their way.
+judged from there on. The names of the topics that come and go come again, ten in all:
+what Zenoh keeps of a name stays as long as a link does (docs/decisions/0018), and
+``--new-names`` shows it. Single megabytes come and go with the images that are on their
+way.
 """
 
 import argparse
@@ -38,7 +39,7 @@ from navette.runtime import (
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 FLAT_MB = 3.0
-CHURN_HZ = float(os.environ.get("SOAK_CHURN_HZ", "1"))
+NEW_NAMES = "SOAK_NEW_NAMES" in os.environ
 # Imports, first allocations, Zenoh's pools.
 WARM_UP_S = 15.0
 SAMPLE_S = 5.0
@@ -61,9 +62,7 @@ class Talker(Node):
         self.answers = self.round = 0
         self.create_timer(0.05, self.send_image)
         self.create_timer(0.002, lambda: self.values.publish(Float64(data=1.0)))
-        self.create_timer(1.0, lambda: self.maps.publish(self.map))
-        if CHURN_HZ:
-            self.create_timer(1.0 / CHURN_HZ, self.change)
+        self.create_timer(1.0, self.change)
 
     def send_image(self) -> None:
         self.images.publish(self.image)
@@ -74,8 +73,10 @@ class Talker(Node):
         self.answers += 1
 
     def change(self) -> None:
+        self.maps.publish(self.map)
         self.round += 1
-        publisher = self.create_publisher(Float64, f"/passing/round_{self.round}", 10)
+        name = self.round if NEW_NAMES else self.round % 10
+        publisher = self.create_publisher(Float64, f"/passing/round_{name}", 10)
         subscription = self.create_subscription(
             Float64, "/echoed", lambda message: None, 10
         )
@@ -135,7 +136,7 @@ def growth(samples: list[float]) -> float:
     return statistics.median(samples[-third:]) - statistics.median(samples[:third])
 
 
-def soak(minutes: float, service_timeout_s: float, churn_hz: float) -> None:
+def soak(minutes: float, service_timeout_s: float, *, new_names: bool) -> None:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
@@ -143,8 +144,9 @@ def soak(minutes: float, service_timeout_s: float, churn_hz: float) -> None:
         **os.environ,
         "NAVETTE_ROUTER": f"tcp/127.0.0.1:{port}",
         "NAVETTE_SERVICE_TIMEOUT": str(service_timeout_s),
-        "SOAK_CHURN_HZ": str(churn_hz),
     }
+    if new_names:
+        env["SOAK_NEW_NAMES"] = "1"
     pipe = subprocess.PIPE
     listener = subprocess.Popen(
         [sys.executable, __file__, "--role", "listener"],
@@ -178,12 +180,10 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--minutes", type=float, default=3.0)
     parser.add_argument("--service-timeout", type=float, default=30.0)
-    parser.add_argument(
-        "--churn", type=float, default=1.0, help="pairs of endpoints made a second"
-    )
+    parser.add_argument("--new-names", action="store_true")
     parser.add_argument("--role", choices=("talker", "listener"))
     given = parser.parse_args()
     if given.role is None:
-        soak(given.minutes, given.service_timeout, given.churn)
+        soak(given.minutes, given.service_timeout, new_names=given.new_names)
     else:
         spin(Talker if given.role == "talker" else Listener, None)
