@@ -52,16 +52,7 @@ _COMMON: dict[str, Any] = {
             "open_timeout": _OPEN_TIMEOUT_MS,
             "accept_pending": 1000,
             "max_sessions": 10_000,
-        },
-        # As rmw_zenoh has it: one long message that waits for a slow link must not
-        # close that link (after 5 s, else).
-        "link": {
-            "tx": {
-                "queue": {
-                    "congestion_control": {"block": {"wait_before_close": 60_000_000}}
-                }
-            }
-        },
+        }
     },
 }
 
