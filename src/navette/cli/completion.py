@@ -39,7 +39,7 @@ function _navette_completion
     set --local words (env _NAVETTE_COMPLETE=complete_fish \\
         _TYPER_COMPLETE_FISH_ACTION=get-args \\
         _TYPER_COMPLETE_ARGS=(commandline -cp) navette 2>/dev/null)
-    if test (count $words) -gt 0
+    if test -n "$words"
         printf '%s\\n' $words
     else
         __fish_complete_path (commandline -ct)
