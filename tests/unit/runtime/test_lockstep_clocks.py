@@ -239,8 +239,9 @@ def test_a_follower_that_waits_for_a_simulator_says_so(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     followed = Followed()
-    turns(followed.clock, times=4, in_vain=True)
-    assert caplog.text == ""
+    turns(followed.clock, times=8, in_vain=True)
+    assert caplog.text == ""  # not before some seconds
+    followed.clock.say_after_s = 0.0
     turns(followed.clock, times=4, in_vain=True)
     assert caplog.text.count("/planner: waiting for a simulator with --lockst") == 1
 
@@ -321,10 +322,15 @@ def test_endpoints_that_come_later_are_waited_for() -> None:
 def test_the_conductor_says_who_is_missing(caplog: pytest.LogCaptureFixture) -> None:
     conducted = Conducted()
     conducted.wire.there = replace(conducted.wire.there, others=("/control",))
-    turns(conducted.clock, times=7, in_vain=True)
+    conducted.clock.say_after_s = 0.0
+    # Also while something comes all the time, such as reports that are said again.
+    turns(conducted.clock, times=7)
     hint = "there, but not with NAVETTE_LOCKSTEP=follow"
     assert f"waiting for /control ({hint}); /planner" in caplog.text
     assert len(caplog.records) == 1
+    conducted.told(ONE, 0, nodes=("/plannr",))
+    turns(conducted.clock)
+    assert "/planner; following, but not named: /plannr" in caplog.text
 
 
 def test_what_got_lost_is_said_again() -> None:
@@ -362,6 +368,21 @@ def test_who_does_not_answer_is_named() -> None:
     conducted.told(TWO, 1)
     with pytest.raises(LockStepError, match=r"no answer within 0 s at 0\.01 s: /pl"):
         turns(conducted.clock)
+
+
+def test_who_never_sees_all_of_the_others_is_named() -> None:
+    """Though all go on saying what they see."""
+    conducted = Conducted(limit_s=0.02)
+    conducted.begin()
+
+    def go_on() -> None:
+        for _ in range(1_000_000):
+            conducted.told(ONE, 1, seen={SIM: 7, TWO: 5})
+            conducted.told(TWO, 1)
+            turns(conducted.clock)
+
+    with pytest.raises(LockStepError, match=r"s: /planner to see all of /control$"):
+        go_on()
 
 
 def test_the_run_ends_at_its_time_for_all() -> None:

@@ -20,7 +20,8 @@ LIMIT_S = 30.0
 AGAIN_S = 1.0
 """Wall time after which what was said is said again: a link may just have changed."""
 
-_SAY_AFTER = 5  # times
+SAY_AFTER_S = 5.0
+"""Wall time after which it is told what is waited for; and again when that changes."""
 
 _log = logging.getLogger(__name__)
 
@@ -50,7 +51,8 @@ class LockStepClock(TimeSource):
         self._next: Grant | None = None  # granted, but not all is here that was sent
         self._is_over = False
         self._waiting = Stopwatch()
-        self._fruitless = 0
+        self.say_after_s = SAY_AFTER_S
+        self._silence = Stopwatch()
         self._said = ""
 
     @property
@@ -146,9 +148,8 @@ class LockStepClock(TimeSource):
 
     def _say(self, text: str) -> None:
         """Log what is waited for, when it has been for a while, and once."""
-        self._fruitless += 1
-        if self._fruitless >= _SAY_AFTER and text != self._said:
-            self._said = text
+        if text != self._said and self._silence.elapsed_s >= self.say_after_s:
+            self._said, self._silence = text, Stopwatch()
             _log.warning("lock-step: %s", text)
 
 

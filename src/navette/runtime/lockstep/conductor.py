@@ -111,19 +111,22 @@ class Conductor(LockStepClock):
             self.on_end()
 
     def _wait(self, problems: list[str], wakeup: Wakeup) -> None:
-        """For a report, or for somebody to come or go."""
+        """For a report, or for somebody to come or go.
+
+        However often something comes: reports are repeated, and change nothing where
+        somebody never gets to see what all others see.
+        """
         listed = "; ".join(sorted(problems)[:20])
-        if wakeup.wait(min(AGAIN_S, self._patience_s) if self.step else AGAIN_S):
-            return
         if self._last is None:
             self._say(f"waiting for {listed}")
-        elif self._patience_s > 0.0:
-            self.wire.grant(self._last)
-        else:
+            wakeup.wait(AGAIN_S)
+        elif self._patience_s <= 0.0:
             raise LockStepError(
                 f"lock-step: no answer within {self.limit_s:g} s at "
                 f"{self.now_ns / 1e9:g} s: {listed}"
             )
+        elif not wakeup.wait(min(AGAIN_S, self._patience_s)):
+            self.wire.grant(self._last)
 
     # -- who takes part --------------------------------------------------------
 
@@ -144,6 +147,10 @@ class Conductor(LockStepClock):
                 problems.append(f"{name} (there, but not with NAVETTE_LOCKSTEP=follow)")
             else:
                 problems.append(name)
+        idle = [n for s, r in here.items() if s not in roster for n in r.nodes]
+        if problems and idle:
+            listed = ", ".join(sorted(idle)[:20])
+            problems.append(f"following, but not named: {listed}")
         return roster, problems
 
     def _check_there(self, census: Census) -> None:

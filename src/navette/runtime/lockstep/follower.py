@@ -46,12 +46,11 @@ class Follower(LockStepClock):
         if self._is_news(report):
             self._reported = report
             self.wire.report(report)
-        if wakeup.wait(AGAIN_S):
-            return
-        self._reported = None
         if not self.step:
             named = ", ".join(census.nodes) or "a process without nodes"
             self._say(f"{named}: waiting for a simulator with --lockstep")
+        if not wakeup.wait(AGAIN_S):
+            self._reported = None
 
     def _is_old(self, grant: Grant) -> bool:
         """Whether it was said again though it was heard."""
