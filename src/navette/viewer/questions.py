@@ -31,6 +31,7 @@ class ServiceClient(Protocol):
 class _Question:
     service: str
     future: Any
+    patience_s: float
     deadline_s: float
     answered: Answered
 
@@ -58,7 +59,13 @@ class Questions:
         return len(self._under_way)
 
     def ask(
-        self, service: str, type_name: str, fields: dict[str, Any], answered: Answered
+        self,
+        service: str,
+        type_name: str,
+        fields: dict[str, Any],
+        answered: Answered,
+        *,
+        patience_s: float = ANSWER_S,
     ) -> None:
         """Call a service; ``answered`` is called once, later or at once."""
         try:
@@ -70,7 +77,8 @@ class Questions:
             self._release(service)
             answered(None, str(error))
             return
-        question = _Question(service, future, self._now_s() + ANSWER_S, answered)
+        deadline_s = self._now_s() + patience_s
+        question = _Question(service, future, patience_s, deadline_s, answered)
         self._under_way.append(question)
         future.add_done_callback(partial(self._on_done, question))
 
@@ -81,7 +89,7 @@ class Questions:
             client = self._clients.get(question.service)
             if client is not None:
                 client.remove_pending_request(question.future)
-            self._finish(question, None, f"no answer in {ANSWER_S:g} s")
+            self._finish(question, None, f"no answer in {question.patience_s:g} s")
 
     def keep(self, service: str) -> None:
         """Keep the client for more questions: it will be asked often."""

@@ -19,7 +19,7 @@ from navette.viewer.parameters import (
     value_of,
     wire_name,
 )
-from navette.viewer.questions import Questions
+from navette.viewer.questions import Answered, Questions
 
 LIST = "rcl_interfaces/srv/ListParameters"
 _GET = "rcl_interfaces/srv/GetParameters"
@@ -29,7 +29,8 @@ _SET = "rcl_interfaces/srv/SetParameters"
 # Nobody has as many, except to do harm.
 _MOST_NAMES = 1000
 _MOST_TOLD = 10_000
-_AGAIN_S = 2.0  # until a node that did not answer is asked again
+_PATIENCE_S = 2.0  # with a node that is busy
+_AGAIN_S = 5.0  # after a question, until a node that did not answer is asked again
 
 Encode = Callable[[str, Any], Any]
 """Name and value → rcl_interfaces/msg/Parameter; raises NavetteError for no value."""
@@ -142,7 +143,7 @@ class RemoteParameters:
             else:
                 self._read(node, remote, list(response.result.names)[:_MOST_NAMES])
 
-        self._questions.ask(f"{node}/list_parameters", LIST, {}, listed)
+        self._ask(f"{node}/list_parameters", LIST, {}, listed)
 
     def _read(self, node: str, remote: _Remote, names: list[str]) -> None:
         def got(response: Any, reason: str) -> None:
@@ -163,10 +164,9 @@ class RemoteParameters:
                 self.texts |= {text.name: text for text in texts}
                 self._described(texts)
 
-        self._questions.ask(
-            f"{node}/describe_parameters", _DESCRIBE, {"names": names}, described
-        )
-        self._questions.ask(f"{node}/get_parameters", _GET, {"names": names}, got)
+        wanted = {"names": names}
+        self._ask(f"{node}/describe_parameters", _DESCRIBE, wanted, described)
+        self._ask(f"{node}/get_parameters", _GET, wanted, got)
 
     def take(self, node: str, values: Iterable[tuple[str, Any]]) -> None:
         """Parameters as a node says them: name, rcl_interfaces/msg/ParameterValue."""
@@ -225,7 +225,14 @@ class RemoteParameters:
             done("")
 
         fields = {"parameters": [message]}
-        self._questions.ask(f"{node}/set_parameters", _SET, fields, answered)
+        self._ask(f"{node}/set_parameters", _SET, fields, answered)
+
+    def _ask(
+        self, service: str, type_name: str, fields: dict[str, Any], answered: Answered
+    ) -> None:
+        self._questions.ask(
+            service, type_name, fields, answered, patience_s=_PATIENCE_S
+        )
 
 
 def _tell(remote: _Remote, reason: str) -> None:

@@ -130,10 +130,11 @@ def test_a_latecomer_sees_the_path_that_was_said_before(
     program: Program, far: Far, client: Client
 ) -> None:
     client.subscribe("/path", 1)
-    # Who publishes must know of the subscription first.
-    client.get_parameters()
-    far.do(lambda: far.path.publish(Path(header=Header(frame_id="map"))))
+    # Again until it is heard: who publishes must know of the subscription first.
+    path = Path(header=Header(frame_id="map"))
+    timer = far.node.create_timer(0.3, lambda: far.path.publish(path))
     client.message(1)
+    far.do(timer.cancel)
     with Client(program.address) as late:
         late.subscribe("/path", 2)
         assert deserialize(late.message(2)[1], Path).header.frame_id == "map"
@@ -148,7 +149,7 @@ def test_a_node_that_hangs_harms_nobody_and_one_that_ends_is_gone(
     far.freeze()
     set_speed(client, 1.5)
     said = client.wait_for_op("status")["message"]
-    assert said == "parameter '/far.speed_mps': node /far: no answer in 1 s"
+    assert said == "parameter '/far.speed_mps': node /far: no answer in 2 s"
     wait_for_state(client, "silent")
     far.thaw.set()
     wait_for_state(client, "alive")
