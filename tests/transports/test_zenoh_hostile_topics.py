@@ -77,7 +77,9 @@ def test_what_is_held_goes_before_a_publisher_that_counts_anew() -> None:
     lane.take(FAR_BEHIND + 2, "a", 1)
     assert lane.take(FAR_BEHIND + 5, "held", 1) == []
     assert lane.take(3, "late", 1) == []
-    assert lane.take(2, "anew", 1) == ["held", "anew"]
+    assert lane.take(1, "anew", 1) == ["anew"]
+    assert lane.take(1, "anew", 1) == []
+    assert lane.take(2, "two in a row", 1) == ["held", "two in a row"]
     assert lane.passes(3)
     assert not lane.is_waiting
 

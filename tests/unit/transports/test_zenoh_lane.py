@@ -72,8 +72,15 @@ def test_one_that_was_under_way_when_it_began_is_taken() -> None:
 
 
 def test_a_jump_beyond_all_measure_costs_nothing() -> None:
-    lane, out = filled(1, 2**62, 2)
-    assert (out, lane.missing(), lane.passes(3)) == ([1, 2**62, 2], None, True)
+    lane, out = filled(1, 2**62, 2**62, 0, 2, 2**62 - 1, 3)
+    assert out == [1, 2**62, 2, 2**62 - 1, 3]
+    assert (lane.missing(), lane.passes(4)) == (None, True)
+
+
+def test_two_in_a_row_are_of_a_publisher_that_counts_anew() -> None:
+    lane, out = filled(2**62, 1, 2, 3, 2**62 + 1, 4)
+    assert out == [2**62, 1, 2, 3, 2**62 + 1, 4]
+    assert (lane.missing(), lane.passes(5)) == (None, True)
 
 
 def test_what_cannot_be_held_counts_as_missing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,8 +9,8 @@ T = TypeVar("T")
 MOST_HELD = 4096
 MOST_HELD_BYTES = 64 * 1024 * 1024
 
-# Nothing is late or missing by as much: the publisher counts anew, or somebody has
-# used its name with a number of his own, which must not shut it out.
+# Nothing is late or missing by as much: somebody has used the publisher's name with a
+# number of his own, which must not shut it out. Two in a row: it counts anew.
 FAR_BEHIND = 10_000
 FAR_AHEAD = 1_000_000
 
@@ -24,7 +24,7 @@ class Lane(Generic[T]):
     or time of its own: its owner has.
     """
 
-    __slots__ = ("_begun", "_bytes", "_held", "_newest", "_next", "_ready")
+    __slots__ = ("_begun", "_bytes", "_held", "_newest", "_next", "_ready", "_stray")
 
     def __init__(self) -> None:
         # The number that may pass at once; never while something is held.
@@ -32,6 +32,8 @@ class Lane(Generic[T]):
         self._next = _NEVER
         self._newest = _NEVER
         self._begun = False
+        # What would follow one that was far from all others.
+        self._stray = _NEVER
         self._held: dict[int, tuple[T, int]] = {}
         self._bytes = 0
 
@@ -64,7 +66,7 @@ class Lane(Generic[T]):
         if self._next == _NEVER or (number < self._next and not self._begun):
             self._next = number
         if not self._next - FAR_BEHIND <= number < self._next + FAR_AHEAD:
-            return self._begin_anew(number, sample)
+            return self._take_far(number, sample)
         if number < self._next or number in self._held:
             return []
         self._newest = max(self._newest, number)
@@ -101,7 +103,13 @@ class Lane(Generic[T]):
         """Wait for nothing that is missing by now."""
         return self.give_up(self._newest)
 
-    def _begin_anew(self, number: int, sample: T) -> list[T]:
+    def _take_far(self, number: int, sample: T) -> list[T]:
+        if number == self._stray - 1:
+            return []  # by another way
+        if number != self._stray:
+            self._stray = number + 1
+            return [sample]
+        self._stray = _NEVER
         held = [self._unhold(each) for each in sorted(self._held)]
         self._next, self._newest = number + 1, number
         return [*held, sample, *self._released()]
