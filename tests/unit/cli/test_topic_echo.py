@@ -10,9 +10,10 @@ import typer
 from topic_world import navette, program, shared_graph
 
 from navette.cli.session import connect
-from navette.cli.topic.echo import EchoOptions, echo
-from navette.cli.topic.printing import Style
+from navette.cli.topic.echo import echo
+from navette.cli.topic.echo_options import EchoOptions
 from navette.cli.topic.qos_options import QosWishes
+from navette.cli.topic.style import Style
 from navette.errors import InvalidValueError, MessageError
 from navette.expressions import ExpressionError
 from navette.msgs.geometry_msgs.msg import Point, Pose, PoseArray

@@ -8,7 +8,8 @@ import typer
 from topic_world import navette, program, shared_graph
 
 from navette.cli.session import connect
-from navette.cli.topic.publishing import PublishOptions, filled_message, publish
+from navette.cli.topic.pub_options import PublishOptions
+from navette.cli.topic.publishing import filled_message, publish
 from navette.cli.topic.qos_options import QosWishes
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.msgs.geometry_msgs.msg import PointStamped, Twist

@@ -2,6 +2,7 @@
 
 import typer
 
+from navette.cli.bundles import unbundled
 from navette.cli.topic import echo_verb, look_verbs, measure_verbs, pub_verb
 
 topic = typer.Typer(
@@ -11,10 +12,10 @@ topic = typer.Typer(
 )
 topic.command("list")(look_verbs.list_)
 topic.command()(look_verbs.info)
-topic.command()(echo_verb.echo)
+topic.command()(unbundled(echo_verb.echo))
 topic.command()(measure_verbs.hz)
 topic.command()(measure_verbs.bw)
 topic.command()(measure_verbs.delay)
-topic.command()(pub_verb.pub)
+topic.command()(unbundled(pub_verb.pub))
 topic.command("type")(look_verbs.type_)
 topic.command()(look_verbs.find)

@@ -1,6 +1,5 @@
 """Prints the messages of a topic."""
 
-from dataclasses import dataclass, field
 from typing import Any
 
 import yaml
@@ -8,9 +7,10 @@ import yaml
 from navette.cli.message_types import topic_class
 from navette.cli.output import is_terminal, note, show
 from navette.cli.session import endpoints, fail, wait_for
+from navette.cli.topic.echo_options import EchoOptions
 from navette.cli.topic.field_path import FieldPath, parse_field_path
 from navette.cli.topic.filtering import message_filter
-from navette.cli.topic.printing import SEPARATOR, Style
+from navette.cli.topic.printing import SEPARATOR, text_of
 from navette.cli.topic.qos_choice import fitting_profile, wished_profile
 from navette.cli.topic.qos_options import QosWishes
 from navette.msgs import type_name
@@ -21,24 +21,6 @@ from navette.transports import EndpointKind
 # Home, then every line erased as it is written over, then what is below: no flicker.
 _HOME, _END_OF_LINE, _BELOW = "\x1b[H", "\x1b[K", "\x1b[J"
 _CLEAR = "\x1b[2J"
-
-
-@dataclass(frozen=True, kw_only=True)
-class EchoOptions:
-    """What to print of a topic."""
-
-    topic: str
-    type_name: str | None = None
-    path: str | None = None
-    filter: str | None = None
-    raw: bool = False
-    count: int | None = None
-    timeout_s: float | None = None
-    with_info: bool = False
-    clear: bool = False
-    report_lost: bool = True
-    style: Style = field(default_factory=Style)
-    qos: QosWishes = field(default_factory=QosWishes)
 
 
 def echo(node: Node, options: EchoOptions) -> None:
@@ -60,7 +42,7 @@ def echo(node: Node, options: EchoOptions) -> None:
 
     topic = node.resolve_topic_name(options.topic)
     events = SubscriptionEventCallbacks(
-        message_lost=_report_lost if options.report_lost else None
+        message_lost=None if options.no_lost_messages else _report_lost
     )
     node.create_subscription(
         cls, topic, receive, _profile(node, topic, options.qos), raw=options.raw,
@@ -70,7 +52,7 @@ def echo(node: Node, options: EchoOptions) -> None:
     if deadline_ns is not None:
         left_s = max(0.0, (deadline_ns - node.context.clock.now_ns) / 1e9)
     enough = wait_for(node, lambda: screen.is_full, left_s)
-    if not enough and (options.count is not None or not screen.count):
+    if not enough and (options.wanted is not None or not screen.count):
         fail(f"{screen.count} messages came on {topic} in {options.timeout_s:g} s")
 
 
@@ -87,7 +69,8 @@ class Screen:
 
     @property
     def is_full(self) -> bool:
-        return self._options.count is not None and self.count >= self._options.count
+        wanted = self._options.wanted
+        return wanted is not None and self.count >= wanted
 
     def show(self, message: Any, info: dict[str, Any]) -> None:
         """Print one, unless there were enough."""
@@ -109,7 +92,7 @@ class Screen:
         if self._options.raw:
             return f"{message!r}\n{SEPARATOR}"
         if self._path is None:
-            return self._style.text(message, None)
+            return text_of(message, None, self._style)
         try:
             value = self._path.of(message)
         except IndexError:
@@ -117,7 +100,7 @@ class Screen:
                 note(f"{self._path.text}: some messages have not so many elements")
             self._said_short = True
             return None
-        return self._style.text(value, self._path)
+        return text_of(value, self._path, self._style)
 
     def _with_info(self, text: str, info: dict[str, Any]) -> str:
         if self._style.csv:

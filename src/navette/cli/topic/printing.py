@@ -2,11 +2,11 @@
 
 import re
 import shutil
-from dataclasses import dataclass
 from typing import Any
 
 from navette.cli.output import harmless, is_terminal, json_text, styled
 from navette.cli.topic.field_path import FieldPath
+from navette.cli.topic.style import Style
 from navette.companions.rosidl_runtime_py.convert import (
     message_to_csv,
     message_to_yaml,
@@ -23,47 +23,39 @@ _NUMBERS = re.compile(
 _KEY = re.compile(r"^([ ]*(?:- )*)([A-Za-z]\w*)(?=:)", re.MULTILINE)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Style:
-    """How messages are printed; lengths in items or characters, None = whole."""
+def text_of(value: Any, field: FieldPath | None, style: Style) -> str:
+    """A message, or the part of one that ``field`` leads to."""
+    if style.as_json:
+        return json_text(_jsonable(value))
+    if style.csv:
+        return harmless(_csv(value, field, style))
+    return f"{_yaml(value, field, style)}{styled(SEPARATOR, dim=True)}"
 
-    csv: bool = False
-    as_json: bool = False
-    truncate_length: int | None = 128
-    no_arr: bool = False
-    no_str: bool = False
-    flow_style: bool = False
 
-    def text(self, value: Any, field: FieldPath | None) -> str:
-        """A message, or the part of one that ``field`` leads to."""
-        if self.as_json:
-            return json_text(_jsonable(value))
-        if self.csv:
-            return harmless(self._csv(value, field))
-        return f"{self._yaml(value, field)}{styled(SEPARATOR, dim=True)}"
+def _csv(value: Any, field: FieldPath | None, style: Style) -> str:
+    shortened = _shortened(style)
+    if isinstance(value, Message):
+        return message_to_csv(value, **shortened)
+    assert field is not None, "a message itself is a Message"
+    return value_to_csv(value, field.type, **shortened)
 
-    def _csv(self, value: Any, field: FieldPath | None) -> str:
-        shortened = self._shortened()
-        if isinstance(value, Message):
-            return message_to_csv(value, **shortened)
-        assert field is not None, "a message itself is a Message"
-        return value_to_csv(value, field.type, **shortened)
 
-    def _yaml(self, value: Any, field: FieldPath | None) -> str:
-        shortened = {**self._shortened(), "flow_style": self.flow_style}
-        if isinstance(value, Message):
-            return _readable(message_to_yaml(value, **shortened))
-        assert field is not None, "a message itself is a Message"
-        if field.type.is_scalar:
-            return harmless(value_to_csv(value, field.type)) + "\n"
-        return _readable(value_to_yaml(value, field.type, **shortened))
+def _yaml(value: Any, field: FieldPath | None, style: Style) -> str:
+    shortened = {**_shortened(style), "flow_style": style.flow_style}
+    if isinstance(value, Message):
+        return _readable(message_to_yaml(value, **shortened))
+    assert field is not None, "a message itself is a Message"
+    if field.type.is_scalar:
+        return harmless(value_to_csv(value, field.type)) + "\n"
+    return _readable(value_to_yaml(value, field.type, **shortened))
 
-    def _shortened(self) -> dict[str, Any]:
-        return {
-            "truncate_length": self.truncate_length,
-            "no_arr": self.no_arr,
-            "no_str": self.no_str,
-        }
+
+def _shortened(style: Style) -> dict[str, Any]:
+    return {
+        "truncate_length": None if style.full_length else style.truncate_length,
+        "no_arr": style.no_arr,
+        "no_str": style.no_str,
+    }
 
 
 def _jsonable(value: Any) -> Any:

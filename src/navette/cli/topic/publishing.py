@@ -1,10 +1,9 @@
 """Publishes a message as a person typed it, once or at a rate."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Any
 
-from navette.cli.filling import from_yaml
+from navette.cli.filling import from_stdin, from_yaml
 from navette.cli.message_types import topic_class
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import is_terminal, note, show
@@ -15,8 +14,8 @@ from navette.cli.session import (
     is_simulated,
     wait_for,
 )
+from navette.cli.topic.pub_options import PublishOptions
 from navette.cli.topic.qos_choice import wished_profile
-from navette.cli.topic.qos_options import QosWishes
 from navette.companions.rosidl_runtime_py import set_message_fields
 from navette.errors import InvalidValueError
 from navette.msgs import type_name
@@ -33,37 +32,12 @@ _CLOCK_TIMEOUT_S = 2.0
 Stamp = Callable[[Any], None]
 
 
-@dataclass(frozen=True, kw_only=True)
-class PublishOptions:
-    """What to publish, and how often."""
-
-    topic: str
-    type_name: str
-    values: str = "{}"
-    rate_hz: float = 1.0
-    times: int = 0  # 0: until Ctrl-C
-    print_each: int = 1  # 0: none
-    wait_for: int | None = None
-    max_wait_s: float | None = None
-    keep_alive_s: float = 0.1
-    wall_time: bool = False
-    qos: QosWishes = field(default_factory=QosWishes)
-
-    @property
-    def subscriptions_wanted(self) -> int:
-        """As in ROS 2: a message that is sent once should have a hearer."""
-        return int(self.times > 0) if self.wait_for is None else self.wait_for
-
-
 def publish(node: Node, options: PublishOptions) -> None:
     """Publish until it was often enough."""
-    if options.max_wait_s is not None and not options.subscriptions_wanted:
-        raise InvalidValueError(
-            "--max-wait-time-secs: nothing is waited for without"
-            " --wait-matching-subscriptions, --once or --times"
-        )
     cls = topic_class(node, options.topic, options.type_name)
-    message, stamps = filled_message(cls, options.values)
+    message, stamps = filled_message(
+        cls, from_stdin() if options.stdin else options.values
+    )
     profile = wished_profile(options.qos, "default")
     publisher = node.create_publisher(cls, options.topic, profile)
     _wait_for_subscriptions(node, publisher, options)
@@ -75,7 +49,7 @@ def publish(node: Node, options: PublishOptions) -> None:
 
     def send() -> None:
         nonlocal count
-        if options.times and count >= options.times:
+        if options.wanted and count >= options.wanted:
             return
         now = node.get_clock().now().to_msg()
         for stamp in stamps:
@@ -88,7 +62,7 @@ def publish(node: Node, options: PublishOptions) -> None:
     send()
     clock = Clock(clock_type=ClockType.STEADY_TIME, context=node.context)
     node.create_timer(1.0 / options.rate_hz, send, clock=clock)
-    wait_for(node, lambda: bool(options.times) and count >= options.times)
+    wait_for(node, lambda: bool(options.wanted) and count >= options.wanted)
     # Time to reach the wire, and for who hears late to take it.
     wait_for(node, lambda: False, options.keep_alive_s)
 

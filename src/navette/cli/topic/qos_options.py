@@ -80,13 +80,13 @@ Lease = Annotated[
 class QosWishes:
     """What was said with ``--qos-…``; None = nothing."""
 
-    profile: str | None = None
-    depth: int | None = None
-    history: str | None = None
-    reliability: str | None = None
-    durability: str | None = None
-    liveliness: str | None = None
-    lease_s: float | None = None
+    profile: Profile = None
+    depth: Depth = None
+    history: History = None
+    reliability: Reliability = None
+    durability: Durability = None
+    liveliness: Liveliness = None
+    lease_s: Lease = None
 
     @property
     def is_empty(self) -> bool:
