@@ -86,10 +86,14 @@ class RouterRole:
             zenoh.handlers.Callback(on_event, indirect=False)
         )
 
-    def close(self) -> None:
-        """Serve no more; another process takes over."""
+    def stop_watching(self) -> None:
+        """Take over no more: where all leave at once, nobody needs another router."""
         self._stop.set()
         self._lost.set()
+
+    def close(self) -> None:
+        """Serve no more; another process takes over."""
+        self.stop_watching()
         if self._thread is not None:
             self._thread.join()
         if self._router is not None:
@@ -99,9 +103,11 @@ class RouterRole:
     def _take_over(self) -> None:
         while True:
             self._lost.wait()
+            # Before the look at _stop: the other way round, a close that comes between
+            # the two is forgotten, and waits for this thread for ever.
+            self._lost.clear()
             if self._stop.is_set():
                 return
-            self._lost.clear()
             client = self.find_or_serve()
             if client is not None:
                 client.close()

@@ -82,6 +82,7 @@ class Session:
         """Leave the network; closing twice is harmless."""
         _open.discard(self)
         self._closing.set()
+        self._role.stop_watching()
         if not self.zenoh.is_closed():
             closer = threading.Thread(target=self._close, daemon=True)
             closer.start()
