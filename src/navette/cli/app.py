@@ -17,6 +17,7 @@ from navette.cli.arguments import (
     parse_goal,
     parse_speed,
     spread_lists,
+    without_daemon,
 )
 from navette.cli.completion import is_completing, keep_quiet
 from navette.cli.lazy import lazy_group
@@ -216,7 +217,7 @@ def main() -> None:
         keep_quiet()
     arguments = sys.argv[1:]
     if arguments[:1] != ["run"]:
-        arguments = fill_values(spread_lists(join_pairs(arguments)))
+        arguments = without_daemon(fill_values(spread_lists(join_pairs(arguments))))
     try:
         (_built[0] if _built else app)(args=arguments, prog_name="navette")
     except NavetteError as error:

@@ -12,6 +12,7 @@ LIST_OPTIONS = (
     *("--topic-types", "--exclude-topics", "--exclude-topic-types"),
     *("--param-prefixes", "--prefixes"),
 )
+_ASKS_DAEMON = ("topic", "node", "param", "service", "action", "lifecycle", "component")
 OPTIONAL_VALUES = {"--clock": "40"}
 
 
@@ -45,6 +46,23 @@ def fill_values(arguments: Sequence[str]) -> list[str]:
         if word in OPTIONAL_VALUES and not _is_number(following):
             filled.append(OPTIONAL_VALUES[word])
     return filled
+
+
+def without_daemon(arguments: Sequence[str]) -> list[str]:
+    """Leave out what tells ROS 2's command how to discover: ``--no-daemon`` and such.
+
+    Why: scripts that were written for it have them, and here they mean nothing: there
+    is no daemon, and what runs is known at once.
+    """
+    if arguments[:1] and arguments[0] not in _ASKS_DAEMON:
+        return list(arguments)
+    kept: list[str] = []
+    skipping = False
+    for word in arguments:
+        if not (skipping or word == "--no-daemon" or word.startswith("--spin-time=")):
+            kept += [] if word == "--spin-time" else [word]
+        skipping = word == "--spin-time" and not skipping
+    return kept
 
 
 def spread_lists(arguments: Sequence[str]) -> list[str]:

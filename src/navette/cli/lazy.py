@@ -97,6 +97,8 @@ def _take_plain_values_as_they_are(command: Any) -> None:
         for param in params:
             if getattr(param, "_runtime_param", "") is None:
                 param._runtime_param = _PlainValue()
+            if getattr(param, "is_flag", False) and param.metavar is None:
+                param.metavar = ""  # help would say <bool>, as if it took a value
         return params
 
     command.get_params = get_plain_params

@@ -8,6 +8,7 @@ from navette.cli.arguments import (
     parse_goal,
     parse_speed,
     spread_lists,
+    without_daemon,
 )
 from navette.errors import InvalidValueError
 
@@ -26,6 +27,14 @@ def test_each_goal_becomes_one_word() -> None:
         "2",
         "90",
     ]
+
+
+def test_what_only_a_daemon_understands_is_left_out() -> None:
+    typed = "topic list --no-daemon -t --spin-time 2 --spin-time=3 -v".split()
+    assert without_daemon(typed) == ["topic", "list", "-t", "-v"]
+    others = ["launch", "x", "--no-daemon"]
+    assert without_daemon(others) == others
+    assert without_daemon([]) == []
 
 
 def test_a_goal_already_joined_stays() -> None:

@@ -124,3 +124,8 @@ def test_defaults_lists_and_numbers_arrive_as_declared() -> None:
     assert seen == {
         "words": ["a"], "number": 4, "ratio": 2.0, "text": "5", "many": [6]
     }  # fmt: skip
+
+
+def test_help_does_not_say_that_a_flag_takes_a_value() -> None:
+    for words in (["topic", "echo", "--help"], ["--help"]):
+        assert "<bool>" not in navette(*words).stdout

@@ -8,6 +8,7 @@ import pytest
 import typer
 
 from navette.cli.session import connect, follow_clock, is_simulated
+from navette.cli.topic import measure_verbs
 from navette.cli.topic.measuring import MeasureOptions, measure
 from navette.cli.topic.meters import (
     DelayMeter,
@@ -140,6 +141,19 @@ def test_delay_as_ros2_prints_it(
     run(talker, "imu", **DELAY)
     assert capsys.readouterr().out == (
         "average delay: 0.030\n\tmin: 0.030s max: 0.030s std dev: 0.00000s window: 9\n"
+    )
+
+
+def test_stamps_of_other_times_are_remarked_once(
+    talker: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    year_2020 = ns_to_stamp(1_577_836_800 * 10**9)
+    publish_each(talker, "imu", 0.1, lambda _: Imu(header=Header(stamp=year_2020)))
+    options = {**DELAY, "remark": measure_verbs.of_other_times, "count": 3}
+    run(talker, "imu", **options)
+    assert capsys.readouterr().err == (
+        "the stamps are not set, or not in this time: --wall-time measures in the"
+        " machine's, --use-sim-time in that of /clock\n"
     )
 
 

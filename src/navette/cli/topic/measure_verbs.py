@@ -1,6 +1,6 @@
 """``navette topic hz|bw|delay``: the commands and their options."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -8,6 +8,11 @@ from navette.cli.completing import complete_topics
 from navette.cli.output import note
 from navette.cli.session import connect, follow_clock, is_simulated
 from navette.cli.topic.options import Filter, TopicName
+
+if TYPE_CHECKING:
+    from navette.cli.topic.meters import Spread
+
+_LONGEST_DELAY_S = 1e7
 
 Window = Annotated[
     int,
@@ -87,6 +92,16 @@ def bw(
         measure(node, options)
 
 
+def of_other_times(figures: "Spread") -> str:
+    """Stamps that are years away were never set, or are of another clock."""
+    if abs(figures.mean) < _LONGEST_DELAY_S:
+        return ""
+    return (
+        "the stamps are not set, or not in this time: --wall-time measures in the"
+        " machine's, --use-sim-time in that of /clock"
+    )
+
+
 def delay(
     topic: TopicName,
     window: Window = 10000,
@@ -111,6 +126,7 @@ def delay(
         needs_header=True,
         count=count,
         as_json=as_json,
+        remark=of_other_times,
     )
     with connect() as node:
         if use_sim_time or (is_simulated(node) and not wall_time):

@@ -41,6 +41,8 @@ class MeasureOptions:
     filter: str | None = None
     count: int | None = None
     as_json: bool = False
+    #: What to say of unlikely figures, once.
+    remark: Callable[[Any], str] = lambda _: ""
 
 
 def measure(node: Node, options: MeasureOptions) -> None:
@@ -69,6 +71,7 @@ class Report:
         self._count = 0
         self._lines_above = 0
         self._said_silent = False
+        self._remarked = False
 
     @property
     def is_full(self) -> bool:
@@ -97,6 +100,10 @@ class Report:
         elif len(self._meters) == 1:
             ((meter, figures),) = found.values()
             show(_emphasised(meter.text(figures)))
+            remark = self._options.remark(figures)
+            if remark and not self._remarked:
+                note(remark)
+            self._remarked = bool(remark)
         else:
             self._print_table(found)
 
