@@ -54,7 +54,9 @@ def without_daemon(arguments: Sequence[str]) -> list[str]:
     Why: scripts that were written for it have them, and here they mean nothing: there
     is no daemon, and what runs is known at once.
     """
-    if arguments[:1] and arguments[0] not in _ASKS_DAEMON:
+    # Before the verb stands at most --domain-id N.
+    verb = next((w for w in arguments if w[:1] != "-" and not w.isdigit()), "")
+    if verb not in _ASKS_DAEMON:
         return list(arguments)
     kept: list[str] = []
     skipping = False

@@ -32,6 +32,8 @@ def test_each_goal_becomes_one_word() -> None:
 def test_what_only_a_daemon_understands_is_left_out() -> None:
     typed = "topic list --no-daemon -t --spin-time 2 --spin-time=3 -v".split()
     assert without_daemon(typed) == ["topic", "list", "-t", "-v"]
+    typed = ["--domain-id", "3", "node", "list", "--no-daemon"]
+    assert without_daemon(typed) == typed[:-1]
     others = ["launch", "x", "--no-daemon"]
     assert without_daemon(others) == others
     assert without_daemon([]) == []
