@@ -17,7 +17,7 @@ from navette.transports.zenoh.attachment import decode_attachment
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.heard import Heard
-from navette.transports.zenoh.recovery import Arrivals, Wants
+from navette.transports.zenoh.recovery import Arrivals, Recovered, Wants
 
 _HEADER_SIZE = 4
 _HEADERS = (b"\x00\x01", b"\x00\x00")  # plain CDR, little and big endian
@@ -126,7 +126,7 @@ class ZenohSubscription(SubscriptionPort):
         else:
             self._holding.take(*found)
 
-    def _checked(self, sample: zenoh.Sample) -> tuple[bytes, Item] | None:
+    def _checked(self, sample: zenoh.Sample | Recovered) -> tuple[bytes, Item] | None:
         """Whose it is, and the item to deliver; None where it is none."""
         if not self._is_open:
             return None
@@ -139,7 +139,7 @@ class ZenohSubscription(SubscriptionPort):
             return None
         return gid, self._lifespans.limited(gid, item)
 
-    def _decoded(self, sample: zenoh.Sample) -> tuple[bytes, Item]:
+    def _decoded(self, sample: zenoh.Sample | Recovered) -> tuple[bytes, Item]:
         payload, attachment = sample.payload, sample.attachment
         if len(payload) > self._longest:
             raise DecodeError(

@@ -244,7 +244,11 @@ class ZenohTransport(Transport):
     def _make_recovery(self) -> Recovery:
         session = self.session
         recovery = Recovery(
-            session.zenoh, session.zid, self.domain_id, session.complaints
+            session.zenoh,
+            session.zid,
+            self.domain_id,
+            session.complaints,
+            session.settings.max_message_bytes,
         )
         self._graph.observers.append(recovery)
         return recovery

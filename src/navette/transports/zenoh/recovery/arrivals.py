@@ -8,6 +8,7 @@ import zenoh
 from navette.transports.base import Item, Sink
 from navette.transports.expiring import Expiring
 from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.recovery.answer import Recovered
 from navette.transports.zenoh.recovery.lane import Lane
 from navette.transports.zenoh.recovery.wants import Wants
 
@@ -44,7 +45,7 @@ class Arrivals:
         sink: Sink,
         *,
         lost: Callable[[int], None],
-        checked: Callable[[zenoh.Sample], tuple[bytes, Item] | None],
+        checked: Callable[[zenoh.Sample | Recovered], tuple[bytes, Item] | None],
         wants: Wants | None,
     ) -> None:
         self.matches = matches
@@ -102,7 +103,7 @@ class Arrivals:
             lane = self._lanes.get(gid)
             return None if lane is None else lane.missing()
 
-    def recover(self, gid: bytes, sample: zenoh.Sample) -> None:
+    def recover(self, gid: bytes, sample: Recovered) -> None:
         """A sample that was asked for.
 
         Answers are in order: what was asked for and is before it is not there any more.

@@ -16,26 +16,25 @@ from navette.transports.base import Endpoint, TransportObserver
 from navette.transports.leaving import wait_for_at_end
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.recovery.answer import Answer
 from navette.transports.zenoh.recovery.errands import Errands
 from navette.transports.zenoh.recovery.mail import (
     Ask,
-    End,
     Kind,
     Letter,
     ask_key,
     mail_key,
     parse_ask,
-    parse_end,
     parse_letter,
     parse_sender,
 )
 from navette.transports.zenoh.recovery.offers import Offers
+from navette.transports.zenoh.recovery.retention import pieces
 from navette.transports.zenoh.recovery.wants import Wants
 
 _TICK_S = 1.0
-# An answer with a long message on a slow link takes its time; a lost link ends it
-# at once.
-_ANSWER_S = 120.0
+# The most that an answer may take, on a very slow link; a lost link ends it at once.
+_ANSWER_S = 60.0
 _JOIN_S = 1.5
 # Sessions and endpoints remembered; a hostile peer may make up any number.
 _MOST_REMEMBERED = 20_000
@@ -52,10 +51,16 @@ class Recovery(TransportObserver):
 
     Args:
         zid: of ``session``.
+        max_message_bytes: longer messages are not put together.
     """
 
     def __init__(
-        self, session: zenoh.Session, zid: str, domain_id: int, complaints: Complaints
+        self,
+        session: zenoh.Session,
+        zid: str,
+        domain_id: int,
+        complaints: Complaints,
+        max_message_bytes: int,
     ) -> None:
         self._session = session
         self._zid = zid
@@ -63,7 +68,7 @@ class Recovery(TransportObserver):
         self._complaints = complaints
         self._errands = Errands("navette-recovery")
         self.offers = Offers(self)
-        self.wants = Wants(self._get, self.post, self._errands)
+        self.wants = Wants(self._get, self.post, self._errands, max_message_bytes)
         self._peers: dict[str, None] = {}
         self._closed: dict[bytes, None] = {}
         self._left: dict[str, None] = {}
@@ -184,19 +189,12 @@ class Recovery(TransportObserver):
 
     # -- asks and answers --------------------------------------------------------
 
-    def _get(
-        self,
-        session: str,
-        ask: Ask,
-        take: Callable[[zenoh.Sample], None],
-        ended: Callable[[End | None], None],
-    ) -> None:
-        answer = _Answer(take, ended)
+    def _get(self, session: str, ask: Ask, answer: Answer) -> None:
         priority = zenoh.Priority.DATA_LOW if ask.takes_long else zenoh.Priority.DATA
         try:
             self._session.get(
                 ask_key(self._domain_id, session),
-                zenoh.handlers.Callback(answer.take, answer.end, indirect=False),
+                zenoh.handlers.Callback(answer.reply, answer.end, indirect=False),
                 consolidation=zenoh.ConsolidationMode.NONE,
                 timeout=_ANSWER_S,
                 payload=ask.encode(),
@@ -224,8 +222,11 @@ class Recovery(TransportObserver):
         key = ask_key(self._domain_id, self._zid)
         # The link may be lost in the middle, or the session closed: asked again.
         with query, contextlib.suppress(zenoh.ZError):
-            for _, attachment, payload, _ in samples:
-                query.reply(key, payload, attachment=attachment)
+            for sample in samples:
+                for attachment, payload in pieces(sample, ask):
+                    if self._stop.is_set():
+                        return
+                    query.reply(key, payload, attachment=attachment)
             query.reply(key, end.encode())
 
     # -- the tick --------------------------------------------------------------
@@ -245,35 +246,6 @@ class Recovery(TransportObserver):
         while not self._stop.wait(_TICK_S):
             self.offers.tick()
             self.wants.tick()
-
-
-class _Answer:
-    """Takes the replies to one ask; the last one is its end."""
-
-    def __init__(
-        self,
-        take: Callable[[zenoh.Sample], None],
-        ended: Callable[[End | None], None],
-    ) -> None:
-        self._take = take
-        self._ended: Callable[[End | None], None] | None = ended
-        self._end: End | None = None
-
-    def take(self, reply: zenoh.Reply) -> None:
-        sample = reply.ok
-        if sample is None:  # out of time
-            return
-        if sample.attachment is not None:
-            self._take(sample)
-            return
-        # What is no end is as good as none: it is asked again.
-        with contextlib.suppress(DecodeError):
-            self._end = parse_end(sample.payload.to_bytes())
-
-    def end(self) -> None:
-        ended, self._ended = self._ended, None
-        if ended is not None:
-            ended(self._end)
 
 
 def _remember(known: dict[Any, None], what: Any) -> bool:

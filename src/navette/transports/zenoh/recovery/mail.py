@@ -12,12 +12,14 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from navette.errors import DecodeError
+from navette.transports.zenoh.attachment import SIZE
 
 SPACE = "@navette"
 _ZID = re.compile(r"[0-9a-f]{1,32}")
 _HEAD = struct.Struct("<16sq")
 _GID = struct.Struct("<16s")
-_ASK = struct.Struct("<16sqq?")
+_ASK = struct.Struct("<16sqqq")
+_PIECE = struct.Struct("<qq")
 _END = struct.Struct("<q?")
 
 MOST_ENTRIES = 2000
@@ -63,14 +65,18 @@ class Letter(NamedTuple):
 class Ask(NamedTuple):
     """Samples of a publisher, by number, both ends included.
 
-    Long ones only where ``takes_long``: that ask, and its answer, give way to what else
-    is on the link.
+    Long ones, in pieces, only where ``offset`` is not negative: the ask and its answer
+    then give way to what else is on the link. The first sample is sent from there on.
     """
 
     gid: bytes
     first: int
     last: int
-    takes_long: bool
+    offset: int = -1
+
+    @property
+    def takes_long(self) -> bool:
+        return self.offset >= 0
 
     def encode(self) -> bytes:
         return _ASK.pack(*self)
@@ -79,7 +85,7 @@ class Ask(NamedTuple):
 class End(NamedTuple):
     """The end of an answer: there is nothing more up to the number ``covered``.
 
-    ``is_long``: the next one is there, but long.
+    ``is_long``: the next one is there, but long; it may have come in part.
     """
 
     covered: int
@@ -87,6 +93,19 @@ class End(NamedTuple):
 
     def encode(self) -> bytes:
         return _END.pack(*self)
+
+
+class Piece(NamedTuple):
+    """Where a piece of a long sample begins, and how long all of it is.
+
+    It travels behind the sample's attachment.
+    """
+
+    offset: int
+    total: int
+
+    def encode(self) -> bytes:
+        return _PIECE.pack(*self)
 
 
 def mail_key(domain_id: int, to: str, sender: str) -> str:
@@ -138,6 +157,13 @@ def parse_ask(data: bytes) -> Ask:
     if len(data) != _ASK.size:
         raise DecodeError(f"ask of {len(data)} bytes, wanted {_ASK.size}")
     return Ask(*_ASK.unpack(data))
+
+
+def split_attachment(data: bytes) -> tuple[bytes, Piece | None]:
+    """The attachment of a sample in an answer, and what piece of it this is."""
+    if len(data) != SIZE + _PIECE.size:
+        return data, None
+    return data[:SIZE], Piece(*_PIECE.unpack(data[SIZE:]))
 
 
 def parse_end(data: bytes) -> End:

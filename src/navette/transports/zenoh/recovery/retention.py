@@ -2,18 +2,19 @@
 
 import threading
 from collections import deque
-from collections.abc import Sized
+from collections.abc import Iterator, Sized
 from typing import Any
 
-from navette.transports.zenoh.recovery.mail import Ask, End
+from navette.transports.zenoh.recovery.mail import Ask, End, Piece
 
 # Of one publisher. The newest sample is kept however long it is.
 MOST_BYTES = 64 * 1024 * 1024
 # What a publisher that keeps all keeps for this.
 MOST_OF_ALL = 1000
 
-# One answer. Bytes of short samples: what a link takes at once, among all else. The
-# answer that may have long ones waits for its turn on the link, and others for it.
+# One answer: short samples go together, with all else on the link; long ones in pieces
+# that give way to it. No message must be longer than what a link takes at once: it
+# would keep its sender waiting, and others of the same priority.
 _MOST_SAMPLES = 1000
 _MOST_SHORT = 48 * 1024
 _MOST_LONG = 1024 * 1024
@@ -84,10 +85,11 @@ class Retention:
                 number, _, _, bytes_ = sample
                 if not ask.first <= number <= ask.last:
                     continue
-                size += bytes_
-                # The first one goes however long it is, where it may be long at all.
-                is_beyond = size > most and (found or not ask.takes_long)
-                if is_beyond or len(found) >= _MOST_SAMPLES:
+                begin = ask.offset if ask.takes_long and number == ask.first else 0
+                size += max(bytes_ - begin, 0)
+                if size > most and ask.takes_long and not found:
+                    return [sample], End(number - 1, is_long=True)
+                if size > most or len(found) >= _MOST_SAMPLES:
                     return found, End(number - 1, bytes_ > _MOST_SHORT)
                 found.append(sample)
             return found, End(min(ask.last, self._newest))
@@ -99,3 +101,17 @@ class Retention:
                 self._is_wanted = False
                 self._kept.clear()
                 self._bytes = 0
+
+
+def pieces(sample: Kept, ask: Ask) -> Iterator[tuple[bytes, Any]]:
+    """Attachments and payloads of the replies that carry a sample."""
+    number, attachment, payload, size = sample
+    if size <= _MOST_SHORT:
+        yield attachment, payload
+        return
+    begin = ask.offset if number == ask.first else 0
+    end = min(size, begin + _MOST_LONG)
+    data = payload.to_bytes()
+    for start in range(begin, end, _MOST_SHORT):
+        piece = Piece(start, size)
+        yield attachment + piece.encode(), data[start : min(start + _MOST_SHORT, end)]

@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Protocol
 
-import zenoh
-
 from navette.transports.base import Endpoint
 from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.recovery.answer import Answer, Parts, Recovered
 from navette.transports.zenoh.recovery.errands import Errands
 from navette.transports.zenoh.recovery.mail import Ask, End, Head, Kind, Letter
 
@@ -35,7 +34,7 @@ class Hearer(Protocol):
     def missing(self, gid: bytes) -> tuple[int, int] | None:
         """First and last number of the first gap."""
 
-    def recover(self, gid: bytes, sample: zenoh.Sample) -> None:
+    def recover(self, gid: bytes, sample: Recovered) -> None:
         """A sample that was asked for."""
 
     def give_up(self, gid: bytes, number: int | None) -> None:
@@ -45,34 +44,38 @@ class Hearer(Protocol):
 class Want:
     """Something is missing of a publisher at a subscription."""
 
-    __slots__ = ("gid", "hearer", "is_parked", "takes_long", "ticks", "tries")
+    __slots__ = ("gid", "hearer", "is_parked", "parts", "takes_long", "ticks", "tries")
 
-    def __init__(self, hearer: Hearer, gid: bytes) -> None:
+    def __init__(self, hearer: Hearer, gid: bytes, parts: Parts) -> None:
         self.hearer = hearer
         self.gid = gid
+        self.parts = parts
         self.tries = 0
         self.ticks = 0
         self.takes_long = False
         self.is_parked = False
 
 
-Get = Callable[
-    [str, Ask, Callable[[zenoh.Sample], None], Callable[[End | None], None]], None
-]
+Get = Callable[[str, Ask, Answer], None]
 
 
 class Wants:
     """Asks each session for one thing at a time.
 
     Args:
-        get: asks a session; calls back with samples, then once with the end of the
-            answer, None where it did not come.
+        get: asks a session.
         post: sends a letter.
+        max_message_bytes: longer messages are not put together.
     """
 
     def __init__(
-        self, get: Get, post: Callable[[str, Letter], None], errands: Errands
+        self,
+        get: Get,
+        post: Callable[[str, Letter], None],
+        errands: Errands,
+        max_message_bytes: int,
     ) -> None:
+        self._longest = max_message_bytes
         self._get = get
         self._post = post
         self._errands = errands
@@ -168,7 +171,8 @@ class Wants:
         """Something is missing there; nothing new where it is asked for already."""
         with self._lock:
             if (hearer, gid) not in self._wants:
-                want = self._wants[hearer, gid] = Want(hearer, gid)
+                want = Want(hearer, gid, Parts(self._longest))
+                self._wants[hearer, gid] = want
                 self._queue(want)
 
     def tick(self) -> None:
@@ -217,19 +221,22 @@ class Wants:
             gap = self._still_missing(want)
             if gap is None:
                 continue
-            ask = Ask(want.gid, *gap, want.takes_long)
+            offset = want.parts.offset(gap[0]) if want.takes_long else -1
+            ask = Ask(want.gid, *gap, offset)
             take = partial(want.hearer.recover, want.gid)
-            self._get(session, ask, take, partial(self._ended, session, want, ask))
+            ended = partial(self._ended, session, want, ask)
+            self._get(session, ask, Answer(want.parts, take, ended))
             return
 
-    def _ended(self, session: str, want: Want, ask: Ask, end: End | None) -> None:
+    def _ended(
+        self, session: str, want: Want, ask: Ask, end: End | None, has_come: bool
+    ) -> None:
         """The answer is over; on any thread."""
-        if end is None or not _is_progress(ask, end):
-            want.tries += 1
-        else:
-            want.tries = 0
+        if end is not None:
+            has_come |= end.covered >= ask.first or end.is_long > ask.takes_long
             want.takes_long = end.is_long
             want.hearer.give_up(want.gid, min(end.covered, ask.last))
+        want.tries = 0 if has_come else want.tries + 1
         gap = self._still_missing(want)
         with self._lock:
             if gap is not None and want.tries:
@@ -257,9 +264,8 @@ class Wants:
         """A publisher is back."""
         with self._lock:
             for want in [w for w in self._wants.values() if w.is_parked]:
-                if want.gid == gid and want.tries < _MOST_TRIES:
-                    # A long sample that never gets through must not be tried for ever.
-                    want.tries = want.tries if want.takes_long else 0
+                if want.gid == gid:
+                    want.tries = 0
                     self._queue(want)
 
     def _forsake(self, is_hopeless: Callable[[Want], bool]) -> None:
@@ -275,7 +281,3 @@ class Wants:
         heard.discard(hearer)
         if not heard:
             self._heard.pop(gid, None)
-
-
-def _is_progress(ask: Ask, end: End) -> bool:
-    return end.covered >= ask.first or (end.is_long and not ask.takes_long)
