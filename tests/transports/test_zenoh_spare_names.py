@@ -158,3 +158,23 @@ def test_publishers_and_clients_of_nodes_go_on(
         here.node.destroy_publisher(publisher)
     assert heard == ["0", "1", "2"]
     assert len(names) == 1
+
+
+def test_a_node_that_is_made_again_has_all_its_names_again(
+    stations: tuple[Station, Station],
+) -> None:
+    context = stations[0].node.context
+    graph = stations[1].node.context.graph
+
+    def seen() -> set[bytes]:
+        return {end.gid for end in graph.service_endpoints(node="/again")}
+
+    names = []
+    for _ in range(2):
+        node = Node("again", context=context)
+        gids = {service.endpoint.gid for service in node.services}
+        names.append(gids)
+        until(lambda: gids <= seen(), "its services")  # noqa: B023
+        node.destroy_node()
+        until(lambda: not seen(), "its end")
+    assert names[0] == names[1]

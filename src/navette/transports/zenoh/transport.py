@@ -74,6 +74,8 @@ class ZenohTransport(Transport):
         self._ids = itertools.count()
         self._nodes: dict[NodeInfo, list[tuple[int, zenoh.LivelinessToken]]] = {}
         self._spare = SpareTokens()
+        #: Numbers of nodes that are gone, for others of their names.
+        self._spare_nodes: dict[NodeInfo, list[int]] = {}
         self._announced: dict[bytes, tuple[EndpointToken, int]] = {}
         self._ports: dict[Port, tuple[EndpointToken, zenoh.LivelinessToken]] = {}
         self._hashes: dict[str, str] = {}
@@ -87,7 +89,9 @@ class ZenohTransport(Transport):
     # -- nodes -----------------------------------------------------------------
 
     def announce(self, node: NodeInfo) -> None:
-        nid = next(self._ids)
+        with self._lock:
+            spare = self._spare_nodes.get(node)
+            nid = spare.pop() if spare else next(self._ids)
         token = NodeToken(self.domain_id, self.session.zid, nid, node)
         declared = self._declare_token(token.key())
         with self._lock:
@@ -98,11 +102,13 @@ class ZenohTransport(Transport):
             tokens = self._nodes.get(node, [])
             if not tokens:
                 return
-            _, token = tokens.pop(0)
+            nid, token = tokens.pop(0)
             if not tokens:
                 del self._nodes[node]
         if not self.session.zenoh.is_closed():
             token.undeclare()
+            with self._lock:
+                self._spare_nodes.setdefault(node, []).append(nid)
 
     def remote_nodes(self) -> list[NodeInfo]:
         return self._graph.nodes()
