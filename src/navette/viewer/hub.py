@@ -122,8 +122,6 @@ class Hub:
                 )
                 self._topics[topic] = self._channels[channel.id] = channel
                 added.append(channel)
-                if topic.is_kept:
-                    self._keep(channel)
         if added:
             self._broadcast(replies.advertise(added))
 
@@ -141,9 +139,9 @@ class Hub:
     def set_graph(self, graph: Graph) -> None:
         update = replies.graph_update(self._graph, graph)
         self._graph = graph
-        for channel in self._channels.values():
-            if channel.topic not in graph.published:  # who said it is gone
-                self._last.forget(channel.id)
+        for topic, channel in self._topics.items():
+            if topic.is_kept:
+                self._keep(channel, is_published=topic.name in graph.published)
         if update is not None:
             for session in self._sessions.values():
                 if session.wants_graph:
@@ -261,12 +259,16 @@ class Hub:
             frame = replies.message_data(subscription_id, *last)
             session.outbox.put_data(subscription_id, frame)
 
-    def _keep(self, channel: Channel) -> None:
-        """Listen, though nobody watches yet."""
+    def _keep(self, channel: Channel, *, is_published: bool) -> None:
+        """Listen, though nobody watches, as long as somebody publishes."""
         watch = Watch(channel, None)
-        self._last.open(channel.id)
-        self._watchers[watch] = set()
-        self._robot.watch(watch)
+        if not is_published:  # who said it is gone
+            self._last.close(channel.id)
+            if watch in self._watchers:
+                self._drop_unwatched(watch)
+        elif self._last.open(channel.id) and watch not in self._watchers:
+            self._watchers[watch] = set()
+            self._robot.watch(watch)
 
     def _drop_unwatched(self, watch: Watch) -> None:
         """No longer listen to what nobody watches, unless it is kept for newcomers."""

@@ -1,22 +1,21 @@
 """The last message of topics that speak rarely: for clients who come in between.
 
-A path, a marker or a goal is said once and holds until the next one; who opens the
-page in the middle of a drive would not see it. Latched topics need nothing of this:
-there the publisher itself keeps the last message.
+A path or a marker is said once and holds until the next one; who opens the page in the
+middle of a drive would not see it. Latched topics need nothing of this: there the
+publisher itself keeps the last message.
 """
 
 from collections import deque
 from dataclasses import dataclass, field
 
 #: Small, and a state: each message replaces the one before. Their topics are listened
-#: to at all times, so their publishers serialise for this.
+#: to as long as somebody publishes them, who serialises for this. No goals and poses
+#: (PointStamped, PoseStamped): these are commands, and who gives one waits for a
+#: listener, who must not be the live view.
 STATE_TYPES = frozenset(
     {
-        "geometry_msgs/msg/PointStamped",
         "geometry_msgs/msg/PolygonStamped",
         "geometry_msgs/msg/PoseArray",
-        "geometry_msgs/msg/PoseStamped",
-        "geometry_msgs/msg/PoseWithCovarianceStamped",
         "nav_msgs/msg/OccupancyGrid",
         "nav_msgs/msg/Path",
         "visualization_msgs/msg/Marker",
@@ -40,20 +39,25 @@ class LastMessages:
 
     def __init__(self) -> None:
         self._topics: dict[int, _Topic] = {}
+        self._streams: set[int] = set()
 
-    def open(self, channel: int) -> None:
-        """Keep what comes from now on."""
+    def open(self, channel: int) -> bool:
+        """Keep what comes from now on; False where that is so, or it is a stream."""
+        if channel in self._topics or channel in self._streams:
+            return False
         self._topics[channel] = _Topic()
+        return True
 
     def close(self, channel: int) -> None:
-        """Keep nothing any more."""
+        """Keep nothing any more: nobody publishes it."""
         self._topics.pop(channel, None)
+        self._streams.discard(channel)
 
     def __contains__(self, channel: int) -> bool:
         return channel in self._topics
 
     def take(self, channel: int, stamp_ns: int, payload: bytes) -> None:
-        """A message; a topic that proves a stream, or large, is closed."""
+        """A message; a topic that proves a stream, or large, is kept no more."""
         topic = self._topics.get(channel)
         if topic is None:
             return
@@ -65,15 +69,15 @@ class LastMessages:
             len(topic.stamps) == _OFTEN and stamp_ns - topic.stamps[0] < _OFTEN_NS
         )
         if is_stream or len(payload) > _MOST_BYTES:
-            self.close(channel)
+            del self._topics[channel]
+            self._streams.add(channel)
 
     def last(self, channel: int) -> tuple[int, bytes] | None:
         """Stamp (ns) and message, if there is one."""
         topic = self._topics.get(channel)
         return None if topic is None else topic.last
 
-    def forget(self, channel: int | None = None) -> None:
-        """What was said no longer holds: of a channel, or of all."""
-        for each, topic in self._topics.items():
-            if channel in (None, each):
-                topic.last = None
+    def forget(self) -> None:
+        """What was said no longer holds."""
+        for topic in self._topics.values():
+            topic.last = None

@@ -58,8 +58,24 @@ def test_it_is_listened_to_on_when_the_last_client_leaves(bench: Bench) -> None:
 
 def test_what_the_gone_have_said_is_not_kept(bench: Bench) -> None:
     say(bench, 1)
+    bench.robot.take()
     bench.hub.set_graph(Graph({}, {"/path": ("/control",)}))
+    assert bench.robot.take() == [("unwatch", "/path", None)]
     assert latecomer(bench) == []
+    bench.robot.take()
+    bench.hub.set_graph(SAID)  # watched already
+    assert bench.robot.take() == []
+    say(bench, 2)
+    assert latecomer(bench) == [message_data(7, 2, b"way")]
+
+
+def test_commands_are_not_listened_to(bench: Bench) -> None:
+    """Who sends a goal waits for a listener: that must be the planner."""
+    bench.robot.take()
+    goal = Topic("/goal_point", "geometry_msgs/msg/PointStamped", "float64 x")
+    bench.hub.set_topics([goal])
+    bench.hub.set_graph(Graph({"/goal_point": ("/missions",)}, {}))
+    assert ("watch", "/goal_point", None) not in bench.robot.take()
 
 
 def test_after_a_jump_in_a_recording_nothing_holds(bench: Bench) -> None:
@@ -74,6 +90,8 @@ def test_a_stream_is_let_go_unless_somebody_watches(bench: Bench) -> None:
     for number in range(20):
         say(bench, number * 100_000_000)
     assert bench.robot.take() == [("unwatch", "/path", None)]
+    bench.hub.set_graph(Graph({**SAID.published, "/new": ("/b",)}, {}))
+    assert bench.robot.take() == []
     assert latecomer(bench) == []  # the next one comes soon
 
 
