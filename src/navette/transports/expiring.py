@@ -66,19 +66,19 @@ class Lifespans:
 
     def limited(self, gid: bytes, item: Item) -> Item:
         """The sample as it is, or one that expires; any thread."""
+        publisher = self._publishers.get(gid)
+        lifespan_ns = 0 if publisher is None else publisher.qos.lifespan_ns
+        if publisher is not None and not 0 < lifespan_ns < INFINITE_NS:
+            return item
         message, source_ns, received_ns, number = item
         since_ns = received_ns - age_ns(item)
-        publisher = self._publishers.get(gid)
         if publisher is None:  # announced already, and known here in a moment
-            late = Expiring(message, lambda: since_ns + self._lifespan_of(gid))
-            return late, source_ns, received_ns, number
-        lifespan_ns = publisher.qos.lifespan_ns
-        if not 0 < lifespan_ns < INFINITE_NS:
-            return item
-        if received_ns - since_ns >= lifespan_ns:
-            self._look_at_age(publisher, since_ns, received_ns)
-        expiring = Expiring(message, since_ns + lifespan_ns)
-        return expiring, source_ns, received_ns, number
+            message = Expiring(message, lambda: since_ns + self._lifespan_of(gid))
+        else:
+            if received_ns - since_ns >= lifespan_ns:
+                self._look_at_age(publisher, since_ns, received_ns)
+            message = Expiring(message, since_ns + lifespan_ns)
+        return message, source_ns, received_ns, number
 
     def _look_at_age(self, publisher: Endpoint, since_ns: int, now_ns: int) -> None:
         if self._first_ns is None:
