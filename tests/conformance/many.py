@@ -33,12 +33,15 @@ class Meeting:
     """``complete``: seconds from the start until each saw all, by its number.
 
     ``last``: the nodes and topics that each saw in the end. ``said``: all output.
+    ``cpu_s``: what all of it took, the end included; unlike the time hardly more where
+    the machine has other things to do. Nothing else may be waited for meanwhile.
     """
 
     complete: dict[int, float]
     last: dict[int, tuple[int, int]]
     said: str
     code: int
+    cpu_s: float
 
 
 def meet(count: int, folder: Path, patience_s: float) -> Meeting:
@@ -47,7 +50,7 @@ def meet(count: int, folder: Path, patience_s: float) -> Meeting:
     file.write_text(_LAUNCH.format(program=str(PROGRAM), count=count))
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
-    watch = Stopwatch()
+    watch, before = Stopwatch(), os.times()
     process = subprocess.Popen(
         [sys.executable, "-m", "navette", "launch", "--processes", str(file)],
         env={
@@ -81,4 +84,6 @@ def meet(count: int, folder: Path, patience_s: float) -> Meeting:
                     limit.cancel()
                     process.send_signal(signal.SIGINT)
     limit.cancel()
-    return Meeting(complete, last, "".join(lines), process.returncode)
+    after = os.times()
+    cpu_s = sum(after[2:4]) - sum(before[2:4])
+    return Meeting(complete, last, "".join(lines), process.returncode, cpu_s)

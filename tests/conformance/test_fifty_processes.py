@@ -16,6 +16,8 @@ pytestmark = [
 
 COUNT = 20
 TOPICS = 4
+# With their end; 3 when it was written.
+MOST_CPU_S = 6.0
 
 
 def test_processes_that_start_at_once_all_find_each_other(tmp_path: Path) -> None:
@@ -24,4 +26,4 @@ def test_processes_that_start_at_once_all_find_each_other(tmp_path: Path) -> Non
     assert len(meeting.complete) == COUNT, (missing, meeting.said)
     assert set(meeting.last.values()) == {(COUNT, COUNT * TOPICS)}
     assert meeting.code == 130  # by Ctrl-C, as the end was asked for
-    sys.stdout.write(f"{COUNT} processes: {max(meeting.complete.values()):.2f} s\n")
+    assert meeting.cpu_s < MOST_CPU_S

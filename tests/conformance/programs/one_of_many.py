@@ -12,7 +12,7 @@ from std_msgs.msg import String
 
 NUMBER, OF = (int(word) for word in rclpy.utilities.remove_ros_args(sys.argv)[1:3])
 TOPICS = 4
-LOOK_S = 0.25
+LOOK_S = 0.1
 
 
 class OneOfMany(Node):

@@ -27,7 +27,7 @@ _ASK_S = 2.0
 _CLOSE_S = 1.5
 # Tokens that wait to be read; who declares more at once waits for the reader.
 _CHANNEL = 10_000
-_FIRST_PAUSE_S, _LONGEST_PAUSE_S = 0.002, 0.064
+_SHORTEST_PAUSE_S, _LONGEST_PAUSE_S = 0.002, 0.064
 
 _open: "weakref.WeakSet[Session]" = weakref.WeakSet()
 
@@ -100,20 +100,22 @@ class Session:
     def _read(self) -> None:
         """Take tokens as they come and go, until the session is closed.
 
-        One that comes after a silence is taken at once. Then there is a pause, after
-        which those that came meanwhile are taken together: each time costs two changes
-        of threads, here and in who waits for news of the graph.
+        One that comes after a silence is taken at once, then there is a pause; those
+        that come meanwhile are taken together: each time costs two changes of threads,
+        here and in who waits for news of the graph. Pauses double while tokens come
+        and halve while none do.
         """
         pause_s = 0.0
         with contextlib.suppress(zenoh.ZError):
             while True:
                 first = self._samples.try_recv()
-                if first is None:
-                    pause_s = _FIRST_PAUSE_S
-                    first = self._samples.recv()
-                self.graph.on_tokens(map(_change, self._all(first)))
+                if first is None and pause_s > _SHORTEST_PAUSE_S:
+                    pause_s /= 2
+                else:
+                    first = first or self._samples.recv()
+                    self.graph.on_tokens(map(_change, self._all(first)))
+                    pause_s = min(max(2 * pause_s, _SHORTEST_PAUSE_S), _LONGEST_PAUSE_S)
                 self._closing.wait(pause_s)
-                pause_s = min(2 * pause_s, _LONGEST_PAUSE_S)
 
     def _all(self, first: zenoh.Sample) -> list[zenoh.Sample]:
         """It, and those that wait behind it."""
