@@ -98,8 +98,9 @@ def up(
 ) -> None:
     """Start modules, each of its nodes a process that is kept running.
 
-    Ends as soon as all are ready; the modules stay until navette down. Exit code 1:
-    a process ended or was not ready in time.
+    Ends as soon as all are ready; the modules stay until navette down, and arguments
+    (NAME:=VALUE) hold for whatever is started until all are down. Exit code 1: a
+    process ended or was not ready in time.
     """
     project, content, names = _read(words or [], file)
     specs = content.specs(names or content.names)
@@ -108,7 +109,7 @@ def up(
     started = [s.name for s in specs if s.name not in up_before or s.name in names]
     reader = _reader(project, started)
     reader.last(0)
-    client.up(specs)
+    client.up(specs, content.arguments)
     try:
         _watch_start(client, [s.name for s in specs], timeout, stay=attach or watch)
         if watch:
@@ -137,7 +138,7 @@ def restart(
     chosen = names or [each["module"] for each in client.status()] or content.names
     known = [name for name in chosen if name in content.modules]
     specs = [spec for spec in content.specs(known or chosen) if spec.name in chosen]
-    client.restart(specs)
+    client.restart(specs, content.arguments)
     _watch_start(client, chosen, timeout, stay=watch)
     if watch:
         _watch_files(client, words or [], file)
@@ -235,7 +236,13 @@ def _read(
     project = _project(file)
     arguments = parse_launch_arguments(word for word in words if ":=" in word)
     names = list(dict.fromkeys(word for word in words if ":=" not in word))
-    return project, read_project(project, arguments), names
+    before = _client(project).arguments()
+    content = read_project(project, arguments, before)
+    kept = content.arguments.keys() & (before.keys() - arguments.keys())
+    if kept:
+        said = (f"{name}:={content.arguments[name]}" for name in sorted(kept))
+        note(f"as before: {' '.join(said)}")
+    return project, content, names
 
 
 def _client(project: "Project") -> "Client":

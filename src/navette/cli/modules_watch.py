@@ -30,6 +30,7 @@ class ChangeWatch:
         self._read = read
         _, content, names = read()
         self._file = content.path
+        self._arguments = content.arguments
         self._project_watch = FileWatch([self._file])
         self._take(content.specs(names or content.names))
 
@@ -53,7 +54,8 @@ class ChangeWatch:
         if names:
             paths = sorted({path for found in changes.values() for path in found})
             note(f"{_named(paths)}: restarting {', '.join(names)}")
-            self._client.restart([self._specs[name] for name in names])
+            specs = [self._specs[name] for name in names]
+            self._client.restart(specs, self._arguments)
 
     def _reread(self) -> None:
         try:
@@ -67,7 +69,7 @@ class ChangeWatch:
         if different:
             names = [spec.name for spec in different]
             note(f"{self._file.name} changed: restarting {', '.join(names)}")
-            self._client.restart(different)
+            self._client.restart(different, self._arguments)
 
 
 def _named(paths: "Sequence[Path]") -> str:

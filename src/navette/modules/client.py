@@ -6,7 +6,7 @@ import select
 import socket
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -46,17 +46,33 @@ class Client:
     def status(self) -> list[dict[str, Any]]:
         """All modules that are up; none where there is no supervisor."""
         try:
-            return self._ask({"do": "status"})
+            return _modules(self._ask({"do": "status"}))
         except ConnectionError:
             return []
 
-    def up(self, modules: Iterable[ModuleSpec]) -> list[dict[str, Any]]:
-        """Start modules, and the supervisor first if need be."""
-        return self._send("up", modules)
+    def arguments(self) -> dict[str, str]:
+        """Those with which modules were last started; they hold until all are down."""
+        try:
+            found: dict[str, str] = self._ask({"do": "status"})["arguments"]
+        except ConnectionError:
+            return {}
+        return found
 
-    def restart(self, modules: Iterable[ModuleSpec]) -> list[dict[str, Any]]:
+    def up(
+        self, modules: Iterable[ModuleSpec], arguments: Mapping[str, str]
+    ) -> list[dict[str, Any]]:
+        """Start modules, and the supervisor first if need be.
+
+        Args:
+            arguments: with which the project's file was read.
+        """
+        return self._send("up", modules, arguments)
+
+    def restart(
+        self, modules: Iterable[ModuleSpec], arguments: Mapping[str, str]
+    ) -> list[dict[str, Any]]:
         """End modules and start them again."""
-        return self._send("restart", modules)
+        return self._send("restart", modules, arguments)
 
     def down(self, modules: Iterable[str] | None) -> list[dict[str, Any]]:
         """End modules (None: all).
@@ -66,7 +82,7 @@ class Client:
         """
         names = None if modules is None else list(modules)
         try:
-            return self._ask({"do": "down", "modules": names})
+            return _modules(self._ask({"do": "down", "modules": names}))
         except ConnectionError:
             if names:
                 raise SupervisorError(
@@ -74,24 +90,27 @@ class Client:
                 ) from None
             return []
 
-    def _send(self, wish: str, modules: Iterable[ModuleSpec]) -> list[dict[str, Any]]:
+    def _send(
+        self, wish: str, modules: Iterable[ModuleSpec], arguments: Mapping[str, str]
+    ) -> list[dict[str, Any]]:
         request = {
             "do": wish,
             "modules": [each.to_json() for each in modules],
+            "arguments": dict(arguments),
             "environ": without_marks(os.environ),
         }
         try:
-            return self._ask(request)
+            return _modules(self._ask(request))
         except ConnectionError:
             start_supervisor(self.project, self._socket)
         try:
-            return self._ask(request)
+            return _modules(self._ask(request))
         except ConnectionError as error:
             raise SupervisorError(
                 f"the supervisor of {self.project.folder} does not answer: {error}"
             ) from error
 
-    def _ask(self, request: dict[str, Any]) -> list[dict[str, Any]]:
+    def _ask(self, request: dict[str, Any]) -> dict[str, Any]:
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
             connection.settimeout(_PATIENCE_S)
             try:
@@ -109,11 +128,15 @@ class Client:
                 ) from None
         if not line:
             raise ConnectionResetError
-        answer = json.loads(line)
+        answer: dict[str, Any] = json.loads(line)
         if "error" in answer:
             raise SupervisorError(answer["error"])
-        found: list[dict[str, Any]] = answer["modules"]
-        return found
+        return answer
+
+
+def _modules(answer: dict[str, Any]) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = answer["modules"]
+    return found
 
 
 def answers(path: Path) -> bool:

@@ -80,6 +80,7 @@ class _Daemon:
         self._loop = EventLoop(SystemClock())
         self._log = LogBook(state, lambda: self._loop.clock.now_ns)
         self._keeper = Keeper(hold=[lock])
+        self._arguments: dict[str, str] = {}
         self._over = False
         self._farewell: Call | None = None
         self._supervisor = Supervisor(
@@ -108,14 +109,19 @@ class _Daemon:
         wish = request.get("do")
         if wish in ("up", "restart"):
             specs = [ModuleSpec.from_json(each) for each in request["modules"]]
-            environ = {str(k): str(v) for k, v in request["environ"].items()}
+            environ = _texts(request["environ"])
+            self._arguments = _texts(request["arguments"])
             act = self._supervisor.up if wish == "up" else self._supervisor.restart
             act(specs, environ)
         elif wish == "down":
             self._supervisor.down(request.get("modules"))
         elif wish != "status":
             raise ValueError(f"do: {wish!r}; wanted up, restart, down or status")
-        return {"pid": os.getpid(), "modules": self._supervisor.status()}
+        return {
+            "pid": os.getpid(),
+            "modules": self._supervisor.status(),
+            "arguments": self._arguments,
+        }
 
     def _become_idle(self) -> None:
         if self._farewell is None:
@@ -142,6 +148,10 @@ class _Daemon:
                 self._loop.call_soon_threadsafe(self._supervisor.down, "signal")
 
         threading.Thread(target=watch, daemon=True).start()
+
+
+def _texts(values: dict[Any, Any]) -> dict[str, str]:
+    return {str(name): str(value) for name, value in values.items()}
 
 
 if __name__ == "__main__":

@@ -32,12 +32,17 @@ _MOST_BYTES = 1 << 20
 
 @dataclass(frozen=True)
 class ProjectFile:
-    """The file of a project, with its arguments worked out."""
+    """The file of a project, with its arguments worked out.
+
+    Attributes:
+        arguments: those that were given, now or before.
+    """
 
     path: Path
     modules: Mapping[str, Mapping[str, Any]]
     variables: Variables
     folder: Path
+    arguments: Mapping[str, str]
 
     @property
     def names(self) -> list[str]:
@@ -118,11 +123,16 @@ class ProjectFile:
         return FileFormatError(self.path, reason)
 
 
-def read_project(project: Project, arguments: Mapping[str, str]) -> ProjectFile:
+def read_project(
+    project: Project,
+    arguments: Mapping[str, str],
+    before: Mapping[str, str] | None = None,
+) -> ProjectFile:
     """Read the project's file, or the built-in one.
 
     Args:
         arguments: values for what the file lists under ``arguments``.
+        before: values of before, for what is not among these and the file still has.
 
     Raises:
         FileFormatError: not YAML, or not of this form; says where and what is wanted.
@@ -152,8 +162,10 @@ def read_project(project: Project, arguments: Mapping[str, str]) -> ProjectFile:
                 f"(arguments: {', '.join(values) or 'none'})"
             )
     named = {str(name): module for name, module in modules.items()}
-    variables = Variables({**values, **arguments}, path)
-    return ProjectFile(path, named, variables, project.folder)
+    kept = {name: text for name, text in (before or {}).items() if name in values}
+    given = {**kept, **arguments}
+    variables = Variables({**values, **given}, path)
+    return ProjectFile(path, named, variables, project.folder, given)
 
 
 def _load(path: Path) -> dict[Any, Any]:

@@ -41,7 +41,7 @@ class Bench:
 
     def up(self, *names: str) -> dict[str, ProcessView]:
         specs = self.specs(*names)
-        self.client.up(specs)
+        self.client.up(specs, {})
         return self.settled(*[spec.name for spec in specs])
 
     def settled(self, *names: str) -> dict[str, ProcessView]:

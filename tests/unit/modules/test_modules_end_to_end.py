@@ -176,6 +176,29 @@ def test_edit_and_restart(bench: Any) -> None:
     assert "m/node: interrupted" in said(bench)
 
 
+def test_arguments_hold_until_all_is_down(bench: Any) -> None:
+    bench.write(
+        """
+        arguments: {word: first}
+        modules:
+          a: {nodes: [{command: [sh, -c, "echo a $(var word); sleep 1000"], name: a}]}
+          b: {nodes: [{command: [sh, -c, "echo b $(var word); sleep 1000"], name: b}]}
+        """
+    )
+    assert "before" not in navette("up", "a", "word:=second").output
+    wait_for(lambda: "a: a second" in said(bench))
+    up = navette("up", "b")
+    assert "as before: word:=second" in up.output
+    wait_for(lambda: "b: b second" in said(bench))
+    navette("restart", "a")
+    wait_for(lambda: said(bench).count("a: a second") == 2)
+    navette("restart", "a", "word:=third")
+    wait_for(lambda: "a: a third" in said(bench))
+    bench.down()
+    wait_for(lambda: not bench.client.project.is_supervised)
+    assert bench.client.arguments() == {}
+
+
 def test_a_process_that_ends_at_once_is_shown_with_its_last_words(bench: Any) -> None:
     bench.write("raise ValueError('of its own making')", "node.py")
     bench.write("modules: {m: {nodes: [node.py], restart: no}}")
@@ -195,7 +218,7 @@ def test_there_is_one_supervisor_whoever_comes_first(bench: Any) -> None:
     bench.write("modules: {a: {nodes: [{command: sleep 1000}]}}")
     specs = bench.specs()
     clients = [bench.client for _ in range(3)]
-    threads = [threading.Thread(target=each.up, args=(specs,)) for each in clients]
+    threads = [threading.Thread(target=each.up, args=(specs, {})) for each in clients]
     for thread in threads:
         thread.start()
     for thread in threads:

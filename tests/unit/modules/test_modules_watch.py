@@ -13,7 +13,7 @@ class FakeClient:
     def __init__(self) -> None:
         self.restarted: list[list[str]] = []
 
-    def restart(self, specs: Any) -> None:
+    def restart(self, specs: Any, arguments: Any) -> None:
         self.restarted.append([spec.name for spec in specs])
 
 
