@@ -302,7 +302,7 @@ def test_letters_and_asks_of_any_shape_do_no_harm(
         for data in [*hostile, b"\x02" + speaker.port._gid + b"\xff" * 8, b"\x03"]:
             far.zenoh.put(box, data)
         far.zenoh.put(mail_key(7, near.zid, "no_session"), b"\x03")
-        for data in [b"", bytes(32), bytes(33), b"\xff" * 33]:
+        for data in [b"", bytes(40), bytes(41), b"\xff" * 50, b"\xff" * 40 + b"ab"]:
             list(near.zenoh.get(ask_key(7, far.zid), payload=data, timeout=5.0))
         speaker.say(3, drop=(2,))
         ear.await_(1, 2, 3)

@@ -55,12 +55,14 @@ def test_many_entries_take_several_letters() -> None:
 
 
 def test_asks_and_ends_are_read_as_they_were_written() -> None:
-    ask, end = Ask(GID, 3, 9, 4096), End(7, is_long=True)
+    ask, end = Ask(GID, 3, 9, 4096, "1f"), End(7, is_long=True, sent=4)
     assert (parse_ask(ask.encode()), parse_end(end.encode())) == (ask, end)
     assert (ask.takes_long, Ask(GID, 3, 9).takes_long) == (True, False)
     for read in (parse_ask, parse_end):
         with pytest.raises(DecodeError, match="of 3 bytes"):
             read(b"abc")
+    with pytest.raises(DecodeError, match="by 'x/y'"):
+        parse_ask(ask._replace(by="x/y").encode())
     with pytest.raises(DecodeError, match="no session"):
         parse_sender("@navette/7/abc/mail/No")
 

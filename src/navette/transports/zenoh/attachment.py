@@ -8,7 +8,7 @@ from navette.errors import DecodeError
 # Sequence number, source time in ns, the length of the gid (always 16), the gid.
 _LAYOUT = struct.Struct("<qqB16s")
 SIZE = _LAYOUT.size
-_GID_SIZE = 16
+GID_SIZE = 16
 
 
 class Attachment(NamedTuple):
@@ -20,7 +20,7 @@ class Attachment(NamedTuple):
 
     def encode(self) -> bytes:
         """33 bytes."""
-        return _LAYOUT.pack(self.sequence, self.source_ns, _GID_SIZE, self.gid)
+        return _LAYOUT.pack(self.sequence, self.source_ns, GID_SIZE, self.gid)
 
 
 def decode_attachment(data: bytes) -> Attachment:
@@ -32,8 +32,8 @@ def decode_attachment(data: bytes) -> Attachment:
     if len(data) != SIZE:
         raise DecodeError(f"attachment of {len(data)} bytes, wanted {SIZE}")
     sequence, source_ns, size, gid = _LAYOUT.unpack(data)
-    if size != _GID_SIZE:
-        raise DecodeError(f"attachment with a gid of {size} bytes, wanted {_GID_SIZE}")
+    if size != GID_SIZE:
+        raise DecodeError(f"attachment with a gid of {size} bytes, wanted {GID_SIZE}")
     if sequence < 0:
         raise DecodeError(f"attachment with the sequence number {sequence}")
     return Attachment(sequence, source_ns, gid)

@@ -85,7 +85,7 @@ class ZenohSubscription(SubscriptionPort):
         self._holding = holding
         self._lifespans = Lifespans(matches.by_gid, self._complain_of_age)
         self._arrivals = Arrivals(
-            matches, sink, lost=lost, checked=self._checked, wants=wants
+            matches, key, sink, lost=lost, checked=self._checked, wants=wants
         )
         # Samples may come before the declaration returns.
         self._is_open = True

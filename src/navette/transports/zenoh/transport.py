@@ -138,7 +138,7 @@ class ZenohTransport(Transport):
                 matches,
                 used,
                 self.session.heard,
-                self._retention(gid, token.qos, used, matches),
+                self._retention(gid, key, token.qos, used, matches),
                 self._leave,
                 sent,
             )
@@ -267,13 +267,13 @@ class ZenohTransport(Transport):
         return self._recovery
 
     def _retention(
-        self, gid: bytes, qos: EndpointQos, used: int, matches: Matches
+        self, gid: bytes, key: str, qos: EndpointQos, used: int, matches: Matches
     ) -> Retention | None:
         recovery = self._recovery_of(qos)
         if recovery is None:
             return None
         retention = Retention(qos.queue_length, used)
-        recovery.offers.add(gid, matches, retention)
+        recovery.offers.add(gid, key, matches, retention)
         return retention
 
     # -- inside ----------------------------------------------------------------

@@ -10,7 +10,6 @@ from navette.transports.zenoh.recovery.mail import (
     End,
     Piece,
     parse_end,
-    split_attachment,
 )
 
 
@@ -69,12 +68,12 @@ class Parts:
 
 
 class Answer:
-    """Takes the replies to one ask; the last one is its end.
+    """Takes what comes on one ask.
 
     Args:
         take: called with each sample.
-        ended: called once with the end, None where it did not come, and whether
-            anything has come at all.
+        ended: called once with the end, None where it or something before it did not
+            come, and whether anything has come at all.
     """
 
     def __init__(
@@ -87,32 +86,33 @@ class Answer:
         self._take = take
         self._ended: Callable[[End | None, bool], None] | None = ended
         self._end: End | None = None
+        self._count = 0
         self._has_come = False
 
-    def reply(self, reply: zenoh.Reply) -> None:
+    def sample(
+        self, attachment: bytes, piece: Piece | None, payload: zenoh.ZBytes
+    ) -> None:
         """The next one, in order."""
-        sample = reply.ok
-        if sample is None:  # out of time
-            return
-        if sample.attachment is None:
-            # What is no end is as good as none: it is asked again.
-            with suppress(DecodeError):
-                self._end = parse_end(sample.payload.to_bytes())
-            return
-        whole = self._whole(sample.attachment.to_bytes(), sample.payload)
+        self._count += 1
+        if piece is None:
+            whole: Recovered | None = Recovered(attachment, payload)
+        else:
+            self._has_come |= self._parts.add(attachment, piece, payload)
+            whole = self._parts.whole()
         if whole is not None:
             self._has_come = True
             self._take(whole)
 
-    def end(self) -> None:
-        """No more replies; closing twice is harmless."""
+    def reply(self, reply: zenoh.Reply) -> None:
+        """The end of the answer."""
+        if reply.ok is not None:  # else: out of time
+            # What is no end is as good as none: it is asked again.
+            with suppress(DecodeError):
+                self._end = parse_end(reply.ok.payload.to_bytes())
+
+    def close(self) -> None:
+        """No more comes; closing twice is harmless."""
         ended, self._ended = self._ended, None
         if ended is not None:
-            ended(self._end, self._has_come)
-
-    def _whole(self, attachment: bytes, payload: zenoh.ZBytes) -> Recovered | None:
-        own, piece = split_attachment(attachment)
-        if piece is None:
-            return Recovered(own, payload)
-        self._has_come |= self._parts.add(own, piece, payload)
-        return self._parts.whole()
+            is_complete = self._end is not None and self._count >= self._end.sent
+            ended(self._end if is_complete else None, self._has_come)

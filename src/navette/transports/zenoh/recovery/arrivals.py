@@ -22,6 +22,7 @@ class Arrivals:
     Safe to use from several threads; the sink is called under a lock.
 
     Args:
+        key: of the topic's samples.
         lost: told how many samples will not come.
         checked: whose a sample is, and the item to deliver; None: nobody's.
         wants: where to ask; None: what is missing is lost at once (best effort).
@@ -36,12 +37,14 @@ class Arrivals:
         "_lost",
         "_sink",
         "_wants",
+        "key",
         "matches",
     )
 
     def __init__(
         self,
         matches: Matches,
+        key: str,
         sink: Sink,
         *,
         lost: Callable[[int], None],
@@ -49,6 +52,7 @@ class Arrivals:
         wants: Wants | None,
     ) -> None:
         self.matches = matches
+        self.key = key
         self._sink = sink
         self._lost = lost
         self._checked = checked

@@ -27,15 +27,17 @@ from navette.transports.zenoh.recovery.mail import (
     parse_ask,
     parse_letter,
     parse_sender,
+    recovered_key,
 )
 from navette.transports.zenoh.recovery.offers import Offers
 from navette.transports.zenoh.recovery.retention import pieces
-from navette.transports.zenoh.recovery.wants import Wants
+from navette.transports.zenoh.recovery.wants import Hearer, Wants
 
 _TICK_S = 1.0
 # The most that an answer may take, on a very slow link; a lost link ends it at once.
 _ANSWER_S = 60.0
 _JOIN_S = 1.5
+_SHORT, _LONG = zenoh.Priority.DATA, zenoh.Priority.DATA_LOW
 # Sessions and endpoints remembered; a hostile peer may make up any number.
 _MOST_REMEMBERED = 20_000
 
@@ -68,13 +70,14 @@ class Recovery(TransportObserver):
         self._complaints = complaints
         self._errands = Errands("navette-recovery")
         self.offers = Offers(self)
-        self.wants = Wants(self._get, self.post, self._errands, max_message_bytes)
+        self.wants = Wants(zid, self._get, self.post, self._errands, max_message_bytes)
         self._peers: dict[str, None] = {}
         self._closed: dict[bytes, None] = {}
         self._left: dict[str, None] = {}
         self._stop = threading.Event()
         self._ticker: threading.Thread | None = None
         self._declared: list[Any] = []
+        self._listening: dict[Hearer, Any] = {}
         self._lock = threading.Lock()
 
     def open(self) -> None:
@@ -93,12 +96,23 @@ class Recovery(TransportObserver):
                     desk, _direct(self._on_ask), complete=True, allowed_origin=remote
                 ),
             ]
+            if not _open:
+                # Now, not when this was imported: before the sessions are closed.
+                atexit.register(_farewell_all)
             _open.add(self)
 
     def leave(self, matches: Matches) -> None:
         """That endpoint here is about to close."""
         self.offers.remove(matches.endpoint)
-        self.wants.remove(matches.endpoint)
+        hearer = self.wants.remove(matches.endpoint)
+        if hearer is not None:
+            self._cease(hearer)
+
+    def _cease(self, hearer: Hearer) -> None:
+        with self._lock:
+            listening = self._listening.pop(hearer, None)
+        if listening is not None and not self._session.is_closed():
+            listening.undeclare()
 
     def farewell(self) -> None:
         """All endpoints here are about to close; said while the session is open."""
@@ -189,12 +203,13 @@ class Recovery(TransportObserver):
 
     # -- asks and answers --------------------------------------------------------
 
-    def _get(self, session: str, ask: Ask, answer: Answer) -> None:
-        priority = zenoh.Priority.DATA_LOW if ask.takes_long else zenoh.Priority.DATA
+    def _get(self, session: str, ask: Ask, hearer: Hearer, answer: Answer) -> None:
+        priority = _LONG if ask.takes_long else _SHORT
         try:
+            self._listen(hearer)
             self._session.get(
                 ask_key(self._domain_id, session),
-                zenoh.handlers.Callback(answer.reply, answer.end, indirect=False),
+                zenoh.handlers.Callback(answer.reply, answer.close, indirect=False),
                 consolidation=zenoh.ConsolidationMode.NONE,
                 timeout=_ANSWER_S,
                 payload=ask.encode(),
@@ -202,7 +217,17 @@ class Recovery(TransportObserver):
                 allowed_destination=zenoh.Locality.REMOTE,
             )
         except zenoh.ZError:  # closed
-            answer.end()
+            answer.close()
+
+    def _listen(self, hearer: Hearer) -> None:
+        """For what is asked for; declared when something is, for the first time."""
+        with self._lock:
+            if hearer not in self._listening:
+                self._listening[hearer] = self._session.declare_subscriber(
+                    recovered_key(hearer.key, self._zid),
+                    _direct(partial(self.wants.on_sample, hearer)),
+                    allowed_origin=zenoh.Locality.REMOTE,
+                )
 
     def _on_ask(self, query: zenoh.Query) -> None:
         """Leave it to another thread: an answer may have to wait for the link."""
@@ -218,16 +243,29 @@ class Recovery(TransportObserver):
             query.drop()  # and it is asked again
 
     def _answer(self, query: zenoh.Query, ask: Ask) -> None:
-        samples, end = self.offers.answer(ask)
-        key = ask_key(self._domain_id, self._zid)
+        topic_key, samples, end = self.offers.answer(ask)
+        key, sent = recovered_key(topic_key, ask.by), 0
         # The link may be lost in the middle, or the session closed: asked again.
         with query, contextlib.suppress(zenoh.ZError):
             for sample in samples:
                 for attachment, payload in pieces(sample, ask):
                     if self._stop.is_set():
                         return
-                    query.reply(key, payload, attachment=attachment)
-            query.reply(key, end.encode())
+                    self._send(key, payload, attachment, ask)
+                    sent += 1
+            end = end._replace(sent=sent)
+            query.reply(ask_key(self._domain_id, self._zid), end.encode())
+
+    def _send(self, key: str, payload: Any, attachment: bytes, ask: Ask) -> None:
+        # A put, and in the topic's name: what may not be put there is not recovered.
+        self._session.put(
+            key,
+            payload,
+            attachment=attachment,
+            priority=_LONG if ask.takes_long else _SHORT,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            allowed_destination=zenoh.Locality.REMOTE,
+        )
 
     # -- the tick --------------------------------------------------------------
 
@@ -267,8 +305,6 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_open.clear)
 
 
-@atexit.register
 def _farewell_all() -> None:
-    """Before the sessions are closed: theirs was registered first."""
     for recovery in list(_open):
         recovery.farewell()

@@ -1,8 +1,9 @@
 """What sessions tell each other about their samples, and how they ask for some.
 
 A letter goes to ``@navette/<domain>/<to>/mail/<from>``: a byte that says its kind, then
-its entries. An ask goes to ``@navette/<domain>/<to>/recover``. Who is not Navette never
-hears of either.
+its entries. An ask goes to ``@navette/<domain>/<to>/recover``; before the end of the
+answer the samples come to ``<the topic's key>/recovered/<who asked>``, where the rules
+of access for the topic hold. Who is not Navette never hears of any.
 """
 
 import re
@@ -20,7 +21,7 @@ _HEAD = struct.Struct("<16sq")
 _GID = struct.Struct("<16s")
 _ASK = struct.Struct("<16sqqq")
 _PIECE = struct.Struct("<qq")
-_END = struct.Struct("<q?")
+_END = struct.Struct("<q?q")
 
 MOST_ENTRIES = 2000
 _MOST_BYTES = 1 + MOST_ENTRIES * _HEAD.size
@@ -73,23 +74,27 @@ class Ask(NamedTuple):
     first: int
     last: int
     offset: int = -1
+    #: The session that asks.
+    by: str = ""
 
     @property
     def takes_long(self) -> bool:
         return self.offset >= 0
 
     def encode(self) -> bytes:
-        return _ASK.pack(*self)
+        return _ASK.pack(*self[:4]) + self.by.encode()
 
 
 class End(NamedTuple):
     """The end of an answer: there is nothing more up to the number ``covered``.
 
-    ``is_long``: the next one is there, but long; it may have come in part.
+    ``is_long``: the next one is there, but long; it may have come in part. ``sent``: so
+    many samples and pieces went before.
     """
 
     covered: int
     is_long: bool = False
+    sent: int = 0
 
     def encode(self) -> bytes:
         return _END.pack(*self)
@@ -116,6 +121,11 @@ def mail_key(domain_id: int, to: str, sender: str) -> str:
 def ask_key(domain_id: int, to: str) -> str:
     """Where that session is asked."""
     return f"{SPACE}/{domain_id}/{to}/recover"
+
+
+def recovered_key(topic_key: str, to: str) -> str:
+    """Where samples go that the session ``to`` has asked for."""
+    return f"{topic_key}/recovered/{to}"
 
 
 def parse_sender(key: str) -> str:
@@ -154,9 +164,11 @@ def parse_ask(data: bytes) -> Ask:
     Raises:
         DecodeError: it is no ask.
     """
-    if len(data) != _ASK.size:
-        raise DecodeError(f"ask of {len(data)} bytes, wanted {_ASK.size}")
-    return Ask(*_ASK.unpack(data))
+    by = data[_ASK.size :].decode(errors="replace")
+    if not _ZID.fullmatch(by):
+        raise DecodeError(f"ask of {len(data)} bytes, by {by[:100]!r}")
+    gid, first, last, offset = _ASK.unpack(data[: _ASK.size])
+    return Ask(gid, first, last, offset, by)
 
 
 def split_attachment(data: bytes) -> tuple[bytes, Piece | None]:

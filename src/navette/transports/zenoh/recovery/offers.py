@@ -30,10 +30,22 @@ class Peers(Protocol):
 class Offer:
     """A reliable publisher, with those that listen to it or are owed samples."""
 
-    __slots__ = ("gid", "listeners", "matches", "owed", "quiet", "retention", "seen")
+    __slots__ = (
+        "gid",
+        "key",
+        "listeners",
+        "matches",
+        "owed",
+        "quiet",
+        "retention",
+        "seen",
+    )
 
-    def __init__(self, gid: bytes, matches: Matches, retention: Retention) -> None:
+    def __init__(
+        self, gid: bytes, key: str, matches: Matches, retention: Retention
+    ) -> None:
         self.gid = gid
+        self.key = key
         self.matches = matches
         self.retention = retention
         #: Subscription → its session.
@@ -69,9 +81,9 @@ class Offers:
         self._by_endpoint: dict[int, Offer] = {}
         self._lock = threading.Lock()
 
-    def add(self, gid: bytes, matches: Matches, retention: Retention) -> None:
-        """A publisher is open, from before it is announced."""
-        offer = Offer(gid, matches, retention)
+    def add(self, gid: bytes, key: str, matches: Matches, retention: Retention) -> None:
+        """A publisher of samples with that key is open, from before it is announced."""
+        offer = Offer(gid, key, matches, retention)
         with self._lock:
             self._offers[gid] = offer
             self._by_endpoint[id(matches.endpoint)] = offer
@@ -120,13 +132,13 @@ class Offers:
             for letter in letters(Kind.HEADS, entries):
                 self._peers.post(session, letter)
 
-    def answer(self, ask: Ask) -> tuple[list[Kept], End]:
-        """What there is of what is asked for."""
+    def answer(self, ask: Ask) -> tuple[str, list[Kept], End]:
+        """The key of the topic, and what there is of what is asked for."""
         with self._lock:
             offer = self._offers.get(ask.gid)
         if offer is None:
-            return [], End(ask.last)
-        return offer.retention.between(ask)
+            return "", [], End(ask.last)
+        return offer.key, *offer.retention.between(ask)
 
     def _update(self, offer: Offer, met: bytes | None = None) -> None:
         now = {

@@ -6,11 +6,21 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Protocol
 
+import zenoh
+
 from navette.transports.base import Endpoint
+from navette.transports.zenoh.attachment import GID_SIZE
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.recovery.answer import Answer, Parts, Recovered
 from navette.transports.zenoh.recovery.errands import Errands
-from navette.transports.zenoh.recovery.mail import Ask, End, Head, Kind, Letter
+from navette.transports.zenoh.recovery.mail import (
+    Ask,
+    End,
+    Head,
+    Kind,
+    Letter,
+    split_attachment,
+)
 
 # A publisher that cannot be reached is waited for as long as it keeps its samples.
 _GRACE_TICKS = 60
@@ -24,6 +34,7 @@ class Hearer(Protocol):
     """A reliable subscription."""
 
     matches: Matches
+    key: str
 
     def start_after(self, gid: bytes, number: int) -> None:
         """What comes after that number is owed to it; any thread."""
@@ -44,37 +55,51 @@ class Hearer(Protocol):
 class Want:
     """Something is missing of a publisher at a subscription."""
 
-    __slots__ = ("gid", "hearer", "is_parked", "parts", "takes_long", "ticks", "tries")
+    __slots__ = (
+        "answer",
+        "gid",
+        "hearer",
+        "is_parked",
+        "parts",
+        "takes_long",
+        "ticks",
+        "tries",
+    )
 
     def __init__(self, hearer: Hearer, gid: bytes, parts: Parts) -> None:
         self.hearer = hearer
         self.gid = gid
         self.parts = parts
+        #: What is under way.
+        self.answer: Answer | None = None
         self.tries = 0
         self.ticks = 0
         self.takes_long = False
         self.is_parked = False
 
 
-Get = Callable[[str, Ask, Answer], None]
+Get = Callable[[str, Ask, Hearer, Answer], None]
 
 
 class Wants:
     """Asks each session for one thing at a time.
 
     Args:
-        get: asks a session.
+        own_zid: who asks.
+        get: asks a session, for a subscription; samples come by :meth:`on_sample`.
         post: sends a letter.
         max_message_bytes: longer messages are not put together.
     """
 
     def __init__(
         self,
+        own_zid: str,
         get: Get,
         post: Callable[[str, Letter], None],
         errands: Errands,
         max_message_bytes: int,
     ) -> None:
+        self._own_zid = own_zid
         self._longest = max_message_bytes
         self._get = get
         self._post = post
@@ -98,12 +123,12 @@ class Wants:
             for publisher in list(hearer.matches.remotes.values()):
                 self._heard.setdefault(publisher.gid, set()).add(hearer)
 
-    def remove(self, endpoint: object) -> None:
+    def remove(self, endpoint: object) -> Hearer | None:
         """That subscription is about to close: nobody is to keep anything for it."""
         with self._lock:
             own_gid, hearer = self._hearers.pop(id(endpoint), (b"", None))
             if hearer is None:
-                return
+                return None
             heard = [gid for gid, by in self._heard.items() if hearer in by]
             sessions = {self._homes[gid] for gid in heard if gid in self._homes}
             for gid in heard:
@@ -112,6 +137,7 @@ class Wants:
                 del self._wants[key]
         for session in sessions:
             self._post(session, Letter(Kind.CLOSED, (Head(own_gid, 0),)))
+        return hearer
 
     def on_match(self, publisher: Endpoint, endpoint: object, *, up: bool) -> None:
         """That subscription hears that publisher from now on, or no longer."""
@@ -160,6 +186,16 @@ class Wants:
     def on_bye(self, session: str) -> None:
         """That session does not come back."""
         self._forsake(lambda want: self._homes.get(want.gid) == session)
+
+    def on_sample(self, hearer: Hearer, sample: zenoh.Sample) -> None:
+        """Something that was asked for; nothing where it was not."""
+        if sample.attachment is None:
+            return
+        attachment, piece = split_attachment(sample.attachment.to_bytes())
+        want = self._wants.get((hearer, attachment[-GID_SIZE:]))
+        answer = None if want is None else want.answer
+        if answer is not None:
+            answer.sample(attachment, piece, sample.payload)
 
     # -- asking ----------------------------------------------------------------
 
@@ -222,16 +258,18 @@ class Wants:
             if gap is None:
                 continue
             offset = want.parts.offset(gap[0]) if want.takes_long else -1
-            ask = Ask(want.gid, *gap, offset)
+            ask = Ask(want.gid, *gap, offset, self._own_zid)
             take = partial(want.hearer.recover, want.gid)
             ended = partial(self._ended, session, want, ask)
-            self._get(session, ask, Answer(want.parts, take, ended))
+            want.answer = Answer(want.parts, take, ended)
+            self._get(session, ask, want.hearer, want.answer)
             return
 
     def _ended(
         self, session: str, want: Want, ask: Ask, end: End | None, has_come: bool
     ) -> None:
         """The answer is over; on any thread."""
+        want.answer = None
         if end is not None:
             has_come |= end.covered >= ask.first or end.is_long > ask.takes_long
             want.takes_long = end.is_long
