@@ -35,6 +35,8 @@ from navette.runtime.time import stamp_to_ns
 _NEVER = -(1 << 62)
 _LONGEST_PREDICTION_S = 0.25
 _TICKS_PER_REPORT = 5
+# What a planner says of itself until its first goal.
+_NO_GOAL_YET = "waiting_for_goal"
 
 
 class ControlNode(StageNode):
@@ -99,6 +101,7 @@ class ControlNode(StageNode):
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrival of it, of the one used
         self._planner_ns = _NEVER
+        self._planner_said = ""
         self._ticks_to_report = 0
         self._status = StatusReporter(self, "/control/status")
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
@@ -128,8 +131,13 @@ class ControlNode(StageNode):
         self._costmap_ns = self._now_ns
 
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
-        """The planner is alive."""
+        """The planner is alive; one that begins anew knows nothing of the path."""
         self._planner_ns = self._now_ns
+        before, self._planner_said = self._planner_said, msg.message
+        began_anew = msg.message == _NO_GOAL_YET and before not in ("", _NO_GOAL_YET)
+        if began_anew and self._follower.has_path:
+            self.get_logger().warning("the planner was started anew: path dropped")
+            self.on_path(Path())
 
     def on_params_changed(self, old: ControlParams) -> None:
         """Follow the same path with the new parameters."""

@@ -26,6 +26,7 @@ class World:
         self.graph = graph
         self.plant = Plant(Pose2(0.0, 0.0, 0.0))
         self.odometry = self.lidar = self.planner = True
+        self.planner_says = "following"
         self.wall_x: float | None = None  # across the x axis of the map
         self.resolution = 0.1  # of the costmap, as it is told
         self.node = graph.add(
@@ -104,9 +105,8 @@ class World:
 
     def _plan(self) -> None:
         if self.planner:
-            self.graph.publish(
-                "/planner/status", DiagnosticStatus(message="following"), latched=True
-            )
+            status = DiagnosticStatus(message=self.planner_says)
+            self.graph.publish("/planner/status", status, latched=True)
 
 
 @pytest.fixture
@@ -181,6 +181,27 @@ def test_a_dead_planner_stops_the_robot(world: World) -> None:
     world.graph.run_for(0.7)
     assert world.state == "stale_path"
     assert world.commands.last == Twist()
+
+
+def test_a_planner_that_begins_anew_knows_nothing_of_the_path(world: World) -> None:
+    world.send_path(tangent_path(np.array([[0, 0], [9, 0.0]])))
+    world.graph.run_for(2.0)
+    world.planner = False
+    world.graph.run_for(3.0)
+    assert world.state == "stale_path"
+    world.planner, world.planner_says = True, "waiting_for_goal"
+    world.graph.run_for(2.0)
+    assert (world.state, world.plant.speed) == ("idle", pytest.approx(0.0, abs=0.01))
+
+
+def test_a_path_of_somebody_else_is_followed_beside_an_idle_planner(
+    graph: GraphHarness,
+) -> None:
+    world = World(graph)
+    world.planner_says = "waiting_for_goal"
+    graph.run_for(1.0)
+    world.send_path(STRAIGHT)
+    assert graph.run_until(lambda: world.state == "reached", 15.0)
 
 
 def test_a_path_from_a_user_without_planner_can_be_followed(
