@@ -263,7 +263,7 @@ def test_one_that_never_answers_is_given_up(
     pair.settle()
     far = pair.far_zenoh._recovery
     assert far is not None
-    monkeypatch.setattr(far, "_answer", lambda query, ask: query.drop())
+    monkeypatch.setattr(far._desk, "_answer", lambda query, ask: query.drop())
     speaker.say(4, drop=(2, 3))
     ear.await_(1, 4)
     assert ear.lost == 2

@@ -17,6 +17,7 @@ from navette.msgs.std_msgs.msg import String
 from navette.runtime import Context, Executor, Node, SystemClock
 from navette.transports.certificates import create_keys
 from navette.transports.zenoh.recovery import hub
+from navette.transports.zenoh.recovery.desk import Desk
 from navette.transports.zenoh.recovery.mail import Ask
 from navette.transports.zenoh.security import Security
 from navette.transports.zenoh.settings import Settings
@@ -173,13 +174,13 @@ def test_access_rules_say_what_a_guest_may_not(
 ) -> None:
     # What does not arrive is asked for again at once, and must not come that way.
     monkeypatch.setattr(hub, "_TICK_S", 0.01)
-    answer, answered = hub.Recovery._answer, threading.Event()
+    answer, answered = Desk._answer, threading.Event()
 
-    def note_answer(self: hub.Recovery, query: zenoh.Query, ask: Ask) -> None:
+    def note_answer(self: Desk, query: zenoh.Query, ask: Ask) -> None:
         answer(self, query, ask)
         answered.set()
 
-    monkeypatch.setattr(hub.Recovery, "_answer", note_answer)
+    monkeypatch.setattr(Desk, "_answer", note_answer)
     robot, laptop, guest = create_keys(
         tmp_path / "keys", ["robot", "laptop", "guest"], now=NOW
     )

@@ -6,10 +6,7 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Protocol
 
-import zenoh
-
 from navette.transports.base import Endpoint
-from navette.transports.zenoh.attachment import GID_SIZE
 from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.recovery.answer import Answer, Parts, Recovered
 from navette.transports.zenoh.recovery.errands import Errands
@@ -19,7 +16,6 @@ from navette.transports.zenoh.recovery.mail import (
     Head,
     Kind,
     Letter,
-    split_attachment,
 )
 
 # A publisher that cannot be reached is waited for as long as it keeps its samples.
@@ -56,7 +52,6 @@ class Want:
     """Something is missing of a publisher at a subscription."""
 
     __slots__ = (
-        "answer",
         "gid",
         "hearer",
         "is_parked",
@@ -70,8 +65,6 @@ class Want:
         self.hearer = hearer
         self.gid = gid
         self.parts = parts
-        #: What is under way.
-        self.answer: Answer | None = None
         self.tries = 0
         self.ticks = 0
         self.takes_long = False
@@ -86,7 +79,7 @@ class Wants:
 
     Args:
         own_zid: who asks.
-        get: asks a session, for a subscription; samples come by :meth:`on_sample`.
+        get: asks a session, for a subscription.
         post: sends a letter.
         max_message_bytes: longer messages are not put together.
     """
@@ -187,16 +180,6 @@ class Wants:
         """That session does not come back."""
         self._forsake(lambda want: self._homes.get(want.gid) == session)
 
-    def on_sample(self, hearer: Hearer, sample: zenoh.Sample) -> None:
-        """Something that was asked for; nothing where it was not."""
-        if sample.attachment is None:
-            return
-        attachment, piece = split_attachment(sample.attachment.to_bytes())
-        want = self._wants.get((hearer, attachment[-GID_SIZE:]))
-        answer = None if want is None else want.answer
-        if answer is not None:
-            answer.sample(attachment, piece, sample.payload)
-
     # -- asking ----------------------------------------------------------------
 
     def knows(self, gid: bytes) -> bool:
@@ -261,15 +244,14 @@ class Wants:
             ask = Ask(want.gid, *gap, offset, self._own_zid)
             take = partial(want.hearer.recover, want.gid)
             ended = partial(self._ended, session, want, ask)
-            want.answer = Answer(want.parts, take, ended)
-            self._get(session, ask, want.hearer, want.answer)
+            answer = Answer(want.parts, take, ended)
+            self._get(session, ask, want.hearer, answer)
             return
 
     def _ended(
         self, session: str, want: Want, ask: Ask, end: End | None, has_come: bool
     ) -> None:
         """The answer is over; on any thread."""
-        want.answer = None
         if end is not None:
             has_come |= end.covered >= ask.first or end.is_long > ask.takes_long
             want.takes_long = end.is_long
