@@ -232,7 +232,8 @@ class InterfacePackageLoader(_NavetteLoader, Loader):
         module.__doc__ = f"Interfaces of {self.name}."
 
     def find_child(self, fullname: str) -> ModuleSpec:
-        if fullname.rpartition(".")[2] in self.contents():
+        kind = fullname.rpartition(".")[2]
+        if kind in KINDS and interface_names(self.name, kind):
             return _spec(fullname, InterfaceLoader(fullname))
         return super().find_child(fullname)
 

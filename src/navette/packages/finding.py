@@ -8,7 +8,7 @@ Navette itself.
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from navette import msgs
@@ -48,10 +48,7 @@ def find_packages(start: Path | None = None) -> dict[str, Package]:
             not there.
         InvalidNameError: two packages of one name below one folder.
     """
-    found: dict[str, Package] = {}
-    for package in _all(start):
-        found.setdefault(package.name, package)
-    return dict(sorted(found.items()))
+    return {each.name: each for each in _first_of_each(_all(start))}
 
 
 def find_package(name: str, start: Path | None = None) -> Package:
@@ -100,9 +97,7 @@ def activate(start: Path | None = None) -> tuple[Path, ...]:
     Returns the folders that were put on Python's path (behind what is there).
     """
     added = []
-    for package in find_packages(start).values():
-        if package.origin is Origin.BUILT_IN:
-            continue
+    for package in _first_of_each(_beside_built_in(start)):
         if package.has_interfaces and package.name not in msgs.packages():
             _add_interfaces(package)
         folder = package.python_path
@@ -120,8 +115,21 @@ def _add_interfaces(package: Package) -> None:
         msgs.load_interfaces(package.name, package.folder)
 
 
+def _first_of_each(packages: Iterable[Package]) -> list[Package]:
+    """The first of each name, sorted by name."""
+    found: dict[str, Package] = {}
+    for package in packages:
+        found.setdefault(package.name, package)
+    return [found[name] for name in sorted(found)]
+
+
 def _all(start: Path | None) -> Iterator[Package]:
     """Those of the nearest place first; a name may come several times."""
+    yield from _beside_built_in(start)
+    yield from _built_in()
+
+
+def _beside_built_in(start: Path | None) -> Iterator[Package]:
     here, depth = _workspace_root((start or Path.cwd()).resolve())
     if here in _named_roots():  # then it is a workspace, whatever else it holds
         depth = _DEPTH
@@ -129,7 +137,6 @@ def _all(start: Path | None) -> Iterator[Package]:
         yield from _crawl(root, depth if root == here else _DEPTH)
     for prefix in installed_prefixes():
         yield from _installed(prefix)
-    yield from _built_in()
 
 
 def _workspace_root(start: Path) -> tuple[Path, int]:
