@@ -210,7 +210,8 @@ class Wants:
     def _queue(self, want: Want) -> None:
         session = self._homes.get(want.gid)
         want.is_parked = session is None
-        if session is None:
+        if session is None:  # forgotten, of too many
+            want.tries += 1
             return
         self._lines.setdefault(session, deque()).append(want)
         if session not in self._busy:
