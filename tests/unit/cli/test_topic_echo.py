@@ -330,6 +330,23 @@ def test_on_a_terminal_names_are_coloured_and_control_characters_do_not_act(
     assert "\x1b[2J" not in capsys.readouterr().out
 
 
+def test_what_is_printed_over_the_last_fits_the_screen(
+    talker: Node,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("navette.cli.topic.echo.is_terminal", lambda: True)
+    monkeypatch.setenv("COLUMNS", "40")
+    monkeypatch.setenv("LINES", "6")
+    latch(talker, "scan", SCAN)
+    echo_of(talker, "scan", count=1, clear=True)
+    lines = capsys.readouterr().out.replace("\x1b[K", "").splitlines()
+    assert lines[-2:] == ["    nanosec: 0", "…\x1b[J"]
+    latch(talker, "text", String(data="x" * 100))
+    echo_of(talker, "text", count=1, clear=True)
+    assert capsys.readouterr().out.endswith("xxx\x1b[K\n---\x1b[K\x1b[J\n")
+
+
 def test_clearing_prints_each_over_the_last(
     talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,5 +1,7 @@
 """Prints the messages of a topic."""
 
+import re
+import shutil
 from typing import Any
 
 import yaml
@@ -21,6 +23,7 @@ from navette.transports import EndpointKind
 # Home, then every line erased as it is written over, then what is below: no flicker.
 _HOME, _END_OF_LINE, _BELOW = "\x1b[H", "\x1b[K", "\x1b[J"
 _CLEAR = "\x1b[2J"
+_COLOUR = re.compile(r"\x1b\[[\d;]*m")
 
 
 def echo(node: Node, options: EchoOptions) -> None:
@@ -83,6 +86,7 @@ class Screen:
         if self._options.with_info:
             text = self._with_info(text, info)
         if self._clears:
+            text = _fitting(text)
             text = text.replace("\n", f"{_END_OF_LINE}\n")
             first = _CLEAR if self.count == 1 else ""
             text = f"{first}{_HOME}{text}{_END_OF_LINE}{_BELOW}"
@@ -106,6 +110,18 @@ class Screen:
         if self._style.csv:
             return f"{','.join(str(value) for value in info.values())},{text}"
         return f"{yaml.safe_dump(info)}{SEPARATOR}\n{text}"
+
+
+def _fitting(text: str) -> str:
+    """What fits on the screen: if it scrolled, there would be nothing to write over."""
+    width, height = shutil.get_terminal_size()
+    lines = text.split("\n")
+    rows = 0
+    for number, line in enumerate(lines):
+        rows += 1 + max(0, len(_COLOUR.sub("", line)) - 1) // width
+        if rows >= height - 1 and number < len(lines) - 1:
+            return "\n".join([*lines[:number], "…"])
+    return text
 
 
 def _profile(node: Node, topic: str, wishes: QosWishes) -> QoSProfile:
