@@ -149,7 +149,7 @@ class Arrivals:
     def _deliver(self, gid: bytes, lane: Lane[Item], due: list[Item]) -> int:
         """Pass on what is due; how many are lost, as there is nobody to ask."""
         lost = 0
-        if lane.is_waiting and (self._wants is None or not self._wants.knows(gid)):
+        if lane.is_waiting and (self._wants is None or not self._wants.can_ask(gid)):
             lost, more = lane.give_up_all()
             due = [*due, *more]
         if self._is_open:

@@ -63,7 +63,12 @@ class Recovery(TransportObserver):
         self._stop = threading.Event()
         self._desk = Desk(session, zid, domain_id, complaints, self.offers, self._stop)
         self.wants = Wants(
-            zid, self._desk.get, self.post, self._desk.errands, max_message_bytes
+            zid,
+            self._desk.get,
+            self.post,
+            self._start_ticking,
+            self._desk.errands,
+            max_message_bytes,
         )
         self._peers: dict[str, None] = {}
         #: Endpoint → ticks for which this is remembered.

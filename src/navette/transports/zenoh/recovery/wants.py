@@ -22,6 +22,9 @@ from navette.transports.zenoh.recovery.mail import (
 _GRACE_TICKS = 60
 # One that can be reached and does not answer is asked so often, a tick apart.
 _MOST_TRIES = 3
+# A publisher's first letter may come after its first samples; who writes none for so
+# many ticks is not Navette's.
+_STRANGE_TICKS = 3
 # Publishers whose session is remembered.
 _MOST_HOMES = 20_000
 
@@ -81,6 +84,7 @@ class Wants:
         own_zid: who asks.
         get: asks a session, for a subscription.
         post: sends a letter.
+        watch: called when there is something to look at with every tick.
         max_message_bytes: longer messages are not put together.
     """
 
@@ -89,9 +93,11 @@ class Wants:
         own_zid: str,
         get: Get,
         post: Callable[[str, Letter], None],
+        watch: Callable[[], None],
         errands: Errands,
         max_message_bytes: int,
     ) -> None:
+        self._watch = watch
         self._own_zid = own_zid
         self._longest = max_message_bytes
         self._get = get
@@ -102,6 +108,8 @@ class Wants:
         #: Publisher → those that hear it now; and its session, also when it is away.
         self._heard: dict[bytes, set[Hearer]] = {}
         self._homes: dict[bytes, str] = {}
+        #: Publishers that are not Navette's.
+        self._strangers: dict[bytes, None] = {}
         # Heads of publishers that nobody here knows yet.
         self._early: dict[bytes, Head] = {}
         self._wants: dict[tuple[Hearer, bytes], Want] = {}
@@ -155,6 +163,7 @@ class Wants:
             if len(self._homes) >= _MOST_HOMES:
                 del self._homes[next(iter(self._homes))]
             self._homes[head.gid] = session
+            self._strangers.pop(head.gid, None)
             hearers = list(self._heard.get(head.gid, ()))
             if not hearers and len(self._early) < _MOST_HOMES:
                 self._early[head.gid] = head
@@ -182,9 +191,9 @@ class Wants:
 
     # -- asking ----------------------------------------------------------------
 
-    def knows(self, gid: bytes) -> bool:
-        """Whether there is somebody to ask for samples of that publisher."""
-        return gid in self._homes
+    def can_ask(self, gid: bytes) -> bool:
+        """Whether there is, or may be, somebody to ask for that publisher's samples."""
+        return gid in self._homes or (gid in self._heard and gid not in self._strangers)
 
     def want(self, hearer: Hearer, gid: bytes) -> None:
         """Something is missing there; nothing new where it is asked for already."""
@@ -193,6 +202,7 @@ class Wants:
                 want = Want(hearer, gid, Parts(self._longest))
                 self._wants[hearer, gid] = want
                 self._queue(want)
+        self._watch()
 
     def tick(self) -> None:
         """A second has gone by."""
@@ -201,17 +211,25 @@ class Wants:
             for want in [w for w in self._wants.values() if w.is_parked]:
                 want.ticks += 1
                 is_heard = want.hearer in self._heard.get(want.gid, ())
-                if is_heard and want.tries < _MOST_TRIES:
+                if want.gid not in self._homes:
+                    if want.ticks >= _STRANGE_TICKS:
+                        self._note_stranger(want.gid)
+                        hopeless.append(want)
+                elif is_heard and want.tries < _MOST_TRIES:
                     self._queue(want)
                 elif is_heard or want.ticks >= _GRACE_TICKS:
                     hopeless.append(want)
         self._forsake(lambda want: want in hopeless)
 
+    def _note_stranger(self, gid: bytes) -> None:
+        if len(self._strangers) >= _MOST_HOMES:
+            del self._strangers[next(iter(self._strangers))]
+        self._strangers[gid] = None
+
     def _queue(self, want: Want) -> None:
         session = self._homes.get(want.gid)
         want.is_parked = session is None
-        if session is None:  # forgotten, of too many
-            want.tries += 1
+        if session is None:
             return
         self._lines.setdefault(session, deque()).append(want)
         if session not in self._busy:
