@@ -198,8 +198,8 @@ def test_what_is_destroyed_leaves_nothing_behind(network: Network) -> None:
     until(lambda: there.get_node_names() == ["there"], "the end of the nodes")
     transport = transport_of(here)
     assert not transport._ports
-    assert not transport._nodes
-    assert not transport._announced
+    assert not transport._tokens.nodes()
+    assert not transport._tokens._made
     assert not transport._own_gids
     assert not transport.session.graph._locals
     graph = transport_of(there).session.graph

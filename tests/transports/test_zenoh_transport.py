@@ -160,7 +160,8 @@ def test_a_type_of_another_name_or_hash_is_told_and_does_not_meet(
         EndpointKind.PUBLISHER, node="wrong", type_name="std_msgs/msg/Float64"
     )
     far.advertise(wrong, Float64).send(Float64(data=1.0), 0, 1)
-    token, _ = pair.far_zenoh._token_of(endpoint(EndpointKind.PUBLISHER, node="older"))
+    older = endpoint(EndpointKind.PUBLISHER, node="older")
+    token, _ = far._tokens.take(older)
     other = token.key().replace("RIHS01_df", "RIHS01_00")
     keep = far.session.zenoh.liveliness().declare_token(other)
     pair.settle()

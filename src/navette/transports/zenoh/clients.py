@@ -11,7 +11,7 @@ from navette.msgs import deserialize, get_interface, serialize
 from navette.transports.service_ports import ClientPort, Reply, ReplySink
 from navette.transports.zenoh.attachment import Attachment, decode_attachment
 from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.matches import Matches
 
 _LONGEST_REASON = 2000
 # What Zenoh tells in place of a reply when the time is over.

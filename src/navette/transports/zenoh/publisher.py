@@ -11,8 +11,8 @@ from navette.transports.base import PublisherPort
 from navette.transports.encoded import Encoded
 from navette.transports.qos import EndpointQos, HistoryPolicy, ReliabilityPolicy
 from navette.transports.zenoh.attachment import Attachment
-from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.heard import Heard
+from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery import Retention
 
 

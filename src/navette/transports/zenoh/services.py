@@ -16,8 +16,8 @@ from navette.transports.service_ports import (
 )
 from navette.transports.zenoh.attachment import Attachment, decode_attachment
 from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.heard import Heard
+from navette.transports.zenoh.matches import Matches
 
 # Requests that wait at one server, and how many of the longest ones; more are refused.
 # Whoever may ask can fill a slow server, but not the memory.

@@ -15,8 +15,8 @@ from navette.transports.lockstep import Holding
 from navette.transports.qos import EndpointQos
 from navette.transports.zenoh.attachment import decode_attachment
 from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.heard import Heard
+from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery import Arrivals, Recovered, Wants
 
 _HEADER_SIZE = 4

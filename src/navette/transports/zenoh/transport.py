@@ -1,6 +1,5 @@
 """The Zenoh transport: endpoints of other processes and machines, rmw_zenoh's way."""
 
-import itertools
 import threading
 from collections.abc import Callable
 from functools import partial
@@ -9,7 +8,6 @@ from typing import Any, TypeVar
 import zenoh
 
 from navette.errors import NetworkError
-from navette.msgs import type_hash
 from navette.transports.base import (
     Endpoint,
     EndpointKind,
@@ -22,17 +20,16 @@ from navette.transports.lockstep import Holding, StepTraffic
 from navette.transports.qos import EndpointQos, ReliabilityPolicy
 from navette.transports.service_ports import ReplySink, RequestSink
 from navette.transports.zenoh.clients import ZenohClient
-from navette.transports.zenoh.graph import Matches
 from navette.transports.zenoh.keys import data_key
+from navette.transports.zenoh.matches import Matches
+from navette.transports.zenoh.own_tokens import OwnTokens
 from navette.transports.zenoh.publisher import ZenohPublisher
-from navette.transports.zenoh.qos_text import announced
 from navette.transports.zenoh.recovery import Recovery, Retention
 from navette.transports.zenoh.services import ZenohService
 from navette.transports.zenoh.session import Session
 from navette.transports.zenoh.settings import Settings
-from navette.transports.zenoh.spare import SpareTokens
 from navette.transports.zenoh.subscription import ZenohSubscription
-from navette.transports.zenoh.tokens import EndpointToken, NodeToken, gid_of
+from navette.transports.zenoh.tokens import EndpointToken, gid_of
 
 _TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
 _SERVICE_KINDS = (EndpointKind.SERVICE, EndpointKind.CLIENT)
@@ -71,14 +68,10 @@ class ZenohTransport(Transport):
         self._graph = self.session.graph
         # In lock-step nothing is lost, and every sample is counted.
         self._recovery = None if traffic is not None else self._make_recovery()
-        self._ids = itertools.count()
-        self._nodes: dict[NodeInfo, list[tuple[int, zenoh.LivelinessToken]]] = {}
-        self._spare = SpareTokens()
-        #: Numbers of nodes that are gone, for others of their names.
-        self._spare_nodes: dict[NodeInfo, list[int]] = {}
-        self._announced: dict[bytes, tuple[EndpointToken, int]] = {}
+        # There each publisher is counted from its first sample on.
+        reuses = traffic is None
+        self._tokens = OwnTokens(self.session, domain_id, reuses_endpoints=reuses)
         self._ports: dict[Port, tuple[EndpointToken, zenoh.LivelinessToken]] = {}
-        self._hashes: dict[str, str] = {}
         #: Gids of the publishers here: those they reach in process are not told twice.
         self._own_gids: set[bytes] = set()
         self._lock = threading.Lock()
@@ -89,26 +82,10 @@ class ZenohTransport(Transport):
     # -- nodes -----------------------------------------------------------------
 
     def announce(self, node: NodeInfo) -> None:
-        with self._lock:
-            spare = self._spare_nodes.get(node)
-            nid = spare.pop() if spare else next(self._ids)
-        token = NodeToken(self.domain_id, self.session.zid, nid, node)
-        declared = self._declare_token(token.key())
-        with self._lock:
-            self._nodes.setdefault(node, []).append((nid, declared))
+        self._tokens.announce(node)
 
     def withdraw(self, node: NodeInfo) -> None:
-        with self._lock:
-            tokens = self._nodes.get(node, [])
-            if not tokens:
-                return
-            nid, token = tokens.pop(0)
-            if not tokens:
-                del self._nodes[node]
-        if not self.session.zenoh.is_closed():
-            token.undeclare()
-            with self._lock:
-                self._spare_nodes.setdefault(node, []).append(nid)
+        self._tokens.withdraw(node)
 
     def remote_nodes(self) -> list[NodeInfo]:
         return self._graph.nodes()
@@ -116,12 +93,7 @@ class ZenohTransport(Transport):
     # -- endpoints -------------------------------------------------------------
 
     def gid_for(self, endpoint: Endpoint) -> bytes:
-        """The gid is a hash of the token, which is therefore made up here."""
-        token, used = self._token_of(endpoint)
-        gid = gid_of(token.key())
-        with self._lock:
-            self._announced[gid] = token, used
-        return gid
+        return self._tokens.gid_for(endpoint)
 
     def advertise(self, endpoint: Endpoint, message_class: type) -> ZenohPublisher:
         def make(token: EndpointToken, used: int, matches: Matches) -> ZenohPublisher:
@@ -223,13 +195,12 @@ class ZenohTransport(Transport):
 
     def own_nodes(self) -> tuple[str, ...]:
         """Full names of the nodes announced here."""
-        with self._lock:
-            return tuple(node.full_name for node in self._nodes)
+        return tuple(dict.fromkeys(node.full_name for node in self._tokens.nodes()))
 
     def own_count(self) -> int:
         """How many nodes and endpoints are announced here."""
         with self._lock:
-            return sum(map(len, self._nodes.values())) + len(self._ports)
+            return len(self._tokens.nodes()) + len(self._ports)
 
     def _holding(
         self, endpoint: Endpoint, sink: Sink, matches: Matches
@@ -278,39 +249,6 @@ class ZenohTransport(Transport):
 
     # -- inside ----------------------------------------------------------------
 
-    def _token_of(self, endpoint: Endpoint) -> tuple[EndpointToken, int]:
-        """Its token, and the last number that was used under it."""
-        offers = endpoint.kind in (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
-        nid, node = self._node_of(endpoint)
-        token = EndpointToken(
-            domain_id=self.domain_id,
-            zid=self.session.zid,
-            nid=nid,
-            eid=next(self._ids),
-            kind=endpoint.kind,
-            node=node,
-            topic=endpoint.topic,
-            type_name=endpoint.type_name,
-            type_hash=self._hash(endpoint.type_name),
-            qos=announced(endpoint.qos, offers=offers),
-        )
-        # In lock-step each publisher is counted from its first sample on.
-        return (token, 0) if self._traffic is not None else self._spare.take(token)
-
-    def _node_of(self, endpoint: Endpoint) -> tuple[int, NodeInfo]:
-        """The newest announced node of that name; 0 where none was."""
-        with self._lock:
-            for node, tokens in self._nodes.items():
-                if node.full_name == endpoint.node_full_name:
-                    return tokens[-1][0], node
-        return 0, NodeInfo(endpoint.node_name, endpoint.node_namespace)
-
-    def _hash(self, type_name: str) -> str:
-        found = self._hashes.get(type_name)
-        if found is None:
-            found = self._hashes[type_name] = type_hash(type_name)
-        return found
-
     def _key(self, token: EndpointToken) -> str:
         return data_key(token.domain_id, token.topic, token.type_name, token.type_hash)
 
@@ -318,13 +256,11 @@ class ZenohTransport(Transport):
         self, endpoint: Endpoint, make: Callable[[EndpointToken, int, Matches], P]
     ) -> P:
         """A port that is matched, then announced: who sees its token may rely on it."""
-        with self._lock:
-            known = self._announced.pop(endpoint.gid, None)
-        token, used = known or self._token_of(endpoint)
+        token, used = self._tokens.take(endpoint)
         matches = self._graph.add_local(endpoint, token.type_hash)
         try:
             port = make(token, used, matches)
-            declared = self._declare_token(token.key())
+            declared = self._tokens.declare(token)
         except zenoh.ZError as error:
             if self._recovery is not None:
                 self._recovery.leave(matches)
@@ -351,9 +287,4 @@ class ZenohTransport(Transport):
         if self._recovery is not None:
             self._recovery.leave(port.matches)
         self._graph.remove_local(port.matches)
-        if not self.session.zenoh.is_closed():
-            declared.undeclare()
-            self._spare.put(token, port.last)
-
-    def _declare_token(self, key: str) -> zenoh.LivelinessToken:
-        return self.session.zenoh.liveliness().declare_token(key)
+        self._tokens.take_back(token, declared, port.last)

@@ -7,7 +7,7 @@ import zenoh
 
 from navette.transports.base import Item, Sink
 from navette.transports.expiring import Expiring
-from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery.answer import Recovered
 from navette.transports.zenoh.recovery.lane import Lane
 from navette.transports.zenoh.recovery.wants import Wants

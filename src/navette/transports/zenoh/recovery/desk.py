@@ -13,6 +13,7 @@ from navette.transports.zenoh.attachment import GID_SIZE
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.recovery.answer import Answer
 from navette.transports.zenoh.recovery.errands import Errands
+from navette.transports.zenoh.recovery.hearer import Hearer
 from navette.transports.zenoh.recovery.mail import (
     Ask,
     ask_key,
@@ -22,7 +23,6 @@ from navette.transports.zenoh.recovery.mail import (
 )
 from navette.transports.zenoh.recovery.offers import Offers
 from navette.transports.zenoh.recovery.retention import pieces
-from navette.transports.zenoh.recovery.wants import Hearer
 
 # The most that an answer may take, on a very slow link; a lost link ends it at once.
 _ANSWER_S = 60.0

@@ -13,7 +13,7 @@ from navette.errors import DecodeError
 from navette.transports.base import Endpoint, TransportObserver
 from navette.transports.leaving import wait_for_at_end
 from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery.desk import Desk
 from navette.transports.zenoh.recovery.mail import (
     Kind,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from navette.transports.qos import ReliabilityPolicy
-from navette.transports.zenoh.graph import Matches
+from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery.mail import Ask, End, Head, Kind, Letter, letters
 from navette.transports.zenoh.recovery.retention import Kept, Retention
 

@@ -4,12 +4,11 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import Protocol
 
 from navette.transports.base import Endpoint
-from navette.transports.zenoh.graph import Matches
-from navette.transports.zenoh.recovery.answer import Answer, Parts, Recovered
+from navette.transports.zenoh.recovery.answer import Answer, Parts
 from navette.transports.zenoh.recovery.errands import Errands
+from navette.transports.zenoh.recovery.hearer import Hearer, Want
 from navette.transports.zenoh.recovery.mail import (
     Ask,
     End,
@@ -27,51 +26,6 @@ _MOST_TRIES = 3
 _STRANGE_TICKS = 3
 # Publishers whose session is remembered.
 _MOST_HOMES = 20_000
-
-
-class Hearer(Protocol):
-    """A reliable subscription."""
-
-    matches: Matches
-    key: str
-
-    def start_after(self, gid: bytes, number: int) -> None:
-        """What comes after that number is owed to it; any thread."""
-
-    def reach(self, gid: bytes, number: int) -> None:
-        """The publisher has come to that number; any thread."""
-
-    def missing(self, gid: bytes) -> tuple[int, int] | None:
-        """First and last number of the first gap."""
-
-    def recover(self, gid: bytes, sample: Recovered) -> None:
-        """A sample that was asked for."""
-
-    def give_up(self, gid: bytes, number: int | None) -> None:
-        """What is missing up to that number (None: all) is lost."""
-
-
-class Want:
-    """Something is missing of a publisher at a subscription."""
-
-    __slots__ = (
-        "gid",
-        "hearer",
-        "is_parked",
-        "parts",
-        "takes_long",
-        "ticks",
-        "tries",
-    )
-
-    def __init__(self, hearer: Hearer, gid: bytes, parts: Parts) -> None:
-        self.hearer = hearer
-        self.gid = gid
-        self.parts = parts
-        self.tries = 0
-        self.ticks = 0
-        self.takes_long = False
-        self.is_parked = False
 
 
 Get = Callable[[str, Ask, Hearer, Answer], None]
