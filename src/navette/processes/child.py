@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import select
 import signal
 import subprocess
 import threading
@@ -10,8 +11,10 @@ from typing import IO, Protocol
 
 _POSIX = os.name == "posix"
 _CHUNK = 65536
-# How long the output of a process that has ended may still come (its children's).
+# How long the output of a process that has ended may still come (its children's); and
+# how long it may take to read what it wrote itself, on a machine with much to do.
 _LAST_OUTPUT_S = 0.5
+_READING_S = 10.0
 # How long the rest of its group may take to end, and how often that is looked at.
 _GROUP_END_S = 2.0
 _LOOK_S = 0.02
@@ -65,10 +68,11 @@ class ChildProcess:
         self._listener = listener
         self._on_end = on_end
         pipes = (("stdout", process.stdout), ("stderr", process.stderr))
+        self._delivering: set[str] = set()
+        self._pipes = [(name, pipe) for name, pipe in pipes if pipe is not None]
         self._readers = [
-            threading.Thread(target=self._read, args=(name, pipe), daemon=True)
-            for name, pipe in pipes
-            if pipe is not None
+            threading.Thread(target=self._read, args=pipe, daemon=True)
+            for pipe in self._pipes
         ]
         for reader in self._readers:
             reader.start()
@@ -101,7 +105,9 @@ class ChildProcess:
     def _read(self, name: str, pipe: IO[bytes]) -> None:
         with pipe:
             while data := os.read(pipe.fileno(), _CHUNK):
+                self._delivering.add(name)
                 self._listener.output(name, data)
+                self._delivering.discard(name)
 
     def _wait(self) -> None:
         code = self._process.wait()
@@ -118,8 +124,21 @@ class ChildProcess:
 
     def _last_output(self) -> None:
         """Its children may hold its output open, for ever if they like."""
-        for reader in self._readers:
-            reader.join(_LAST_OUTPUT_S / len(self._readers))
+        waited_s = 0.0
+        while reading := [each for each in self._readers if each.is_alive()]:
+            reading[0].join(_LOOK_S)
+            waited_s += _LOOK_S
+            limit_s = _READING_S if self._has_unread() else _LAST_OUTPUT_S
+            if waited_s >= limit_s:
+                return
+
+    def _has_unread(self) -> bool:
+        """Whether something of its output waits to be read, or to be passed on."""
+        if self._delivering or not _POSIX:
+            return bool(self._delivering)
+        with contextlib.suppress(ValueError):  # closed just now: all was read
+            return any(select.select([pipe], [], [], 0)[0] for _, pipe in self._pipes)
+        return False
 
     def _group_ends(self) -> bool:
         """Wait for the end of what is left of the group; False if it takes long."""

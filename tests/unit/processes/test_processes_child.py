@@ -2,12 +2,15 @@
 
 import os
 import signal
+import sys
+import threading
 from pathlib import Path
 from typing import Any
 
 import pytest
+from process_bench import WAIT_S, Heard
 
-from navette.processes import Keeper, ProcessError, StartOptions
+from navette.processes import Keeper, ProcessError, StartOptions, child
 
 pytestmark = [
     pytest.mark.slow,
@@ -46,6 +49,27 @@ def test_errors_may_come_with_the_output(bench: Any) -> None:
     _, heard = bench.start(code, one_stream=True)
     assert heard.wait_over() == 0
     assert heard.text == {"stdout": b"1\n2\nready\n", "stderr": b""}
+
+
+def test_the_end_is_told_after_all_output_however_long_that_takes(
+    bench: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(child, "_LAST_OUTPUT_S", 0.0)
+    go_on = threading.Event()
+
+    class Slow(Heard):
+        def output(self, stream: str, data: bytes) -> None:
+            assert go_on.wait(WAIT_S)
+            super().output(stream, data)
+
+    heard = Slow()
+    words = [sys.executable, "-c", "print('ready')"]
+    running = bench.keeper.start(words, heard, StartOptions())
+    assert running._process.wait() == 0
+    assert not heard.over.wait(0.1)
+    go_on.set()
+    assert heard.wait_over() == 0
+    assert heard.text["stdout"] == b"ready\n"
 
 
 def test_a_shell_line(bench: Any) -> None:

@@ -3,7 +3,7 @@
 import logging
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -52,8 +52,7 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
     from navette.cli.doctor.ports import processes
     from navette.errors import NetworkError
 
-    # What Zenoh's side has to complain of is in the report, in other words.
-    logging.getLogger("navette.transports").setLevel(logging.ERROR)
+    joined.enter_context(_quiet())
     # Before anything joins: a program that finds no router serves as one itself.
     network = look_at_network()
     stops = any(router.is_stopped for router in network.routers)
@@ -78,6 +77,18 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
         yield from _check_running(seen)
     yield from check_modules(modules_here())
     yield from check_machine()
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """What Zenoh's side has to complain of is in the report, in other words."""
+    logger = logging.getLogger("navette.transports")
+    before = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)
 
 
 def _check_running(seen: "Snapshot") -> Iterator[Finding]:
