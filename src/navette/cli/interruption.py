@@ -81,6 +81,7 @@ class _Asked:
     def __init__(self) -> None:
         self.code: int = INTERRUPTED
         self.pending = False
+        self.count = 0
         self.wake: Callable[[], None] | None = None
 
     def forget(self) -> None:
@@ -92,13 +93,14 @@ class _Asked:
             self.pending = False
             raise KeyboardInterrupt
         self.pending = True
+        self.count += 1
         # Not here: this thread may hold the very lock that waking it takes.
-        _thread.start_new_thread(self._insist, (self.wake,))
+        _thread.start_new_thread(self._insist, (self.wake, self.count))
 
-    def _insist(self, wake: Callable[[], None]) -> None:
+    def _insist(self, wake: Callable[[], None], count: int) -> None:
         wake()
         threading.Event().wait(_PATIENCE_S)
-        if self.pending:
+        if self.pending and self.count == count:
             sys.stdout.flush()
             os._exit(self.code)
 
