@@ -16,6 +16,7 @@ from navette.transports.zenoh import ZenohTransport
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.keys import data_key
+from navette.transports.zenoh.tokens import gid_of
 
 ADD, GET = "example_interfaces/srv/AddTwoInts", "rcl_interfaces/srv/GetParameters"
 MAX_BYTES = 1000
@@ -125,6 +126,25 @@ def test_a_number_that_is_under_way_is_not_taken_twice(pair: ZenohPair) -> None:
     server.reply(requests[0].id, AddTwoInts.Response(sum=1))
     until(lambda: len(replies) == 1, "the reply")
     assert (replies[0].message.sum, len(requests)) == (1, 1)
+
+
+def test_a_request_to_another_service_is_refused(pair: ZenohPair) -> None:
+    """As Zenoh delivers it when the two ends of a link mean different keys."""
+    requests, _ = serve(pair.near, ADD)
+    other = Endpoint(EndpointKind.CLIENT, "/other", ADD, EndpointQos(), "n", "/", b"")
+    token, _ = pair.far_zenoh._tokens.take(other)
+    keep = pair.far_zenoh._tokens.declare(token)
+    pair.settle()
+    keep.undeclare()  # the link is lost, and back before its tokens are
+    pair.settle()
+    (answer,) = pair.far_zenoh.session.zenoh.get(
+        data_key(7, "/s", ADD, type_hash(ADD)),
+        payload=serialize(AddTwoInts.Request(a=2)),
+        attachment=Attachment(1, 0, gid_of(token.key())).encode(),
+    )
+    assert answer.err is not None
+    assert answer.err.payload.to_string().startswith("sent to /other")
+    assert requests == []
 
 
 def test_who_calls_itself_something_else_each_time_is_told_of_a_few_times(

@@ -235,6 +235,27 @@ def test_what_is_malformed_is_dropped_and_told_once(
     assert len([w for w in warnings if "message ignored" in w]) == 1
 
 
+def test_what_was_sent_on_another_topic_goes_to_nobody(
+    pair: ZenohPair, caplog: pytest.LogCaptureFixture
+) -> None:
+    """As Zenoh delivers it when the two ends of a link mean different keys."""
+    items, _ = subscribe(pair.near_zenoh)
+    stray = endpoint(EndpointKind.PUBLISHER, node="stray", topic="/elsewhere")
+    token, _ = pair.far_zenoh._tokens.take(stray)
+    keep = pair.far_zenoh._tokens.declare(token)
+    pair.settle()
+    keep.undeclare()  # the link is lost, and back before its tokens are
+    pair.settle()
+    attachment = Attachment(1, 0, gid_of(token.key())).encode()
+    with caplog.at_level(logging.WARNING):
+        send_raw(pair, serialize(String(data="stop")), attachment)
+        send_raw(pair, serialize(String(data="of a stranger")), good(1))
+        pair.settle()
+    assert texts(items) == ["of a stranger"]
+    (said,) = (r.getMessage() for r in caplog.records if "ignored" in r.getMessage())
+    assert "sent on /elsewhere" in said
+
+
 def test_a_payload_of_another_shape_is_found_where_it_is_taken(
     pair: ZenohPair, caplog: pytest.LogCaptureFixture
 ) -> None:

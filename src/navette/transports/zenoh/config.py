@@ -20,6 +20,13 @@ _OPEN_TIMEOUT_MS = 10_000
 # What a message has around it; one that is too long by less is complained of.
 _ROOM_BYTES = 1024 * 1024
 
+# A link that is silent for as long is lost. What waits in it is then still tried to be
+# sent, each batch for the time between two signs of life; until that is over the link
+# is half there: a new one joins the remains of it, is misunderstood at the other end,
+# and ends with them.
+_LEASE_MS = 10_000
+_KEEP_ALIVES = 20
+
 # As in rmw_zenoh's default configurations, but for the retries: the router is in one
 # of the processes, and another one takes over at once.
 _COMMON: dict[str, Any] = {
@@ -52,7 +59,8 @@ _COMMON: dict[str, Any] = {
             "open_timeout": _OPEN_TIMEOUT_MS,
             "accept_pending": 1000,
             "max_sessions": 10_000,
-        }
+        },
+        "link": {"tx": {"lease": _LEASE_MS, "keep_alive": _KEEP_ALIVES}},
     },
 }
 

@@ -19,6 +19,9 @@ from navette.transports.zenoh.tokens import EndpointToken, Token, gid_of, parse_
 
 # What is listed of one session; nobody has as many, except to do harm.
 MOST_TOKENS_OF_A_SESSION = 20_000
+_MOST_NAMES = 100_000
+
+_SENDERS = (EndpointKind.PUBLISHER, EndpointKind.CLIENT)
 
 _OPPOSITE = {
     EndpointKind.PUBLISHER: EndpointKind.SUBSCRIPTION,
@@ -45,6 +48,8 @@ class RemoteGraph:
         self._endpoints: dict[str, Endpoint] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[str, Endpoint]] = {}
         self._count_of: Counter[str] = Counter()
+        #: Never taken out: a gid means the same for ever.
+        self._names: dict[bytes, str] = {}
         self._locals: dict[tuple[EndpointKind, str], list[Matches]] = {}
         self._lock = threading.Condition()
         self._events: deque[Callable[[], None]] = deque()
@@ -109,7 +114,7 @@ class RemoteGraph:
 
     def add_local(self, endpoint: Endpoint, type_hash: str) -> Matches:
         """An endpoint of this session, from now on matched against the others."""
-        matches = Matches(endpoint, type_hash, self._asserted)
+        matches = Matches(endpoint, type_hash, self._names, self._asserted)
         with self._lock:
             self._locals.setdefault((endpoint.kind, endpoint.topic), []).append(matches)
             there = self._by_name.get((_OPPOSITE[endpoint.kind], endpoint.topic), {})
@@ -174,9 +179,16 @@ class RemoteGraph:
             type_hash=token.type_hash,
         )
         self._endpoints[key] = endpoint
+        if endpoint.kind in _SENDERS:
+            self._note_name(endpoint)
         self._by_name.setdefault((endpoint.kind, endpoint.topic), {})[key] = endpoint
         for matches in self._locals.get((_OPPOSITE[token.kind], token.topic), ()):
             self._meet(matches, key, endpoint)
+
+    def _note_name(self, sender: Endpoint) -> None:
+        if len(self._names) >= _MOST_NAMES:
+            del self._names[next(iter(self._names))]
+        self._names[sender.gid] = sender.topic
 
     def _remove(self, key: str) -> bool:
         endpoint = self._endpoints.pop(key, None)

@@ -1,6 +1,6 @@
 """Whom an endpoint here exchanges samples with."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from navette.transports.base import Endpoint, Item
 from navette.transports.expiring import age_ns
@@ -14,11 +14,14 @@ class Matches:
     change while others read them.
 
     Args:
+        names: what every publisher or client of others sends on, by gid, also of those
+            that are gone.
         asserted: told the gid of a publisher that asserts itself, when it is heard.
     """
 
     __slots__ = (
         "_asserted",
+        "_names",
         "asserting",
         "by_gid",
         "endpoint",
@@ -31,8 +34,10 @@ class Matches:
         self,
         endpoint: Endpoint,
         type_hash: str,
+        names: Mapping[bytes, str],
         asserted: Callable[["Matches", bytes], None],
     ) -> None:
+        self._names = names
         self._asserted = asserted
         self.endpoint = endpoint
         self.type_hash = type_hash
@@ -61,6 +66,18 @@ class Matches:
         self.remotes.clear()
         self.by_gid.clear()
         self.asserting.clear()
+
+    def astray_from(self, gid: bytes) -> str:
+        """The name that the sender sends on, if it is another one; empty otherwise.
+
+        Zenoh sends numbers in place of keys. After a link was lost, a new one may join
+        what is left of it at one of its ends; until both are renewed, the ends mean
+        different keys by their numbers (decision 0012).
+        """
+        if gid in self.by_gid:
+            return ""
+        name = self._names.get(gid, "")
+        return "" if name == self.endpoint.topic else name
 
     def heard(self, gid: bytes, item: Item) -> None:
         """A sample by which its publisher says that it is alive; no old one does."""

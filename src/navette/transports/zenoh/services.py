@@ -130,6 +130,8 @@ class ZenohService(ServicePort):
             )
         self.waiting.check_room(len(payload))
         sequence, source_ns, gid = decode_attachment(attachment.to_bytes())
+        if other := self.matches.astray_from(gid):
+            raise DecodeError(f"sent to {other}; a link is being renewed")
         interface: Any = get_interface(self.matches.endpoint.type_name)
         message = deserialize(payload.to_bytes(), interface.Request)
         return Request(message, source_ns, self._now_ns(), RequestId(gid, sequence))

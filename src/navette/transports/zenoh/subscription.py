@@ -137,6 +137,10 @@ class ZenohSubscription(SubscriptionPort):
             return None
         if gid in self._own_gids or gid in self.matches.refused:
             return None
+        if other := self.matches.astray_from(gid):
+            renewed = f"sent on {other}; a link is being renewed"
+            self._complain(other, DecodeError(renewed))
+            return None
         return gid, self._lifespans.limited(gid, item)
 
     def _decoded(self, sample: zenoh.Sample | Recovered) -> tuple[bytes, Item]:
