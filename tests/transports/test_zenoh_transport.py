@@ -1,5 +1,6 @@
 """What only the network has: others that err, come, go, or mean another type."""
 
+import json
 import logging
 from collections.abc import Iterator
 from typing import Any
@@ -27,8 +28,10 @@ from navette.transports import (
 from navette.transports.zenoh import Settings, ZenohTransport
 from navette.transports.zenoh import publisher as publisher_module
 from navette.transports.zenoh.attachment import Attachment
+from navette.transports.zenoh.config import peer_config, router_config
 from navette.transports.zenoh.graph import MOST_TOKENS_OF_A_SESSION
 from navette.transports.zenoh.keys import data_key
+from navette.transports.zenoh.settings import DEFAULT_ROUTER
 from navette.transports.zenoh.tokens import gid_of
 
 KEY = data_key(7, "/t", "std_msgs/msg/String", type_hash("std_msgs/msg/String"))
@@ -411,6 +414,24 @@ def test_the_environment_is_checked() -> None:
         Settings.from_environment({"NAVETTE_MAX_MESSAGE_BYTES": "x"})
     found = Settings.from_environment({"NAVETTE_LISTEN": "tcp/[::]:0, udp/1.2.3.4:5"})
     assert found.listen == ("tcp/[::]:0", "udp/1.2.3.4:5")
+
+
+@pytest.mark.parametrize(
+    ("variables", "wanted"),
+    [
+        ({}, False),
+        ({"NAVETTE_ROUTER": "tls/localhost:7", "NAVETTE_LISTEN": "tcp/[::1]:0"}, False),
+        ({"NAVETTE_LISTEN": "tcp/192.168.1.7:0"}, True),
+        ({"NAVETTE_ROUTER": "tcp/127.0.0.1:1,tcp/robot.local:1"}, True),
+    ],
+)
+def test_links_between_machines_show_more_often_that_they_live(
+    variables: dict[str, str], wanted: bool
+) -> None:
+    settings = Settings.from_environment(variables)
+    for config in (peer_config(settings), router_config(settings, DEFAULT_ROUTER)):
+        number = json.loads(config.get_json("transport/link/tx/keep_alive"))
+        assert number == (20 if wanted else 4)
 
 
 def test_within_one_context_nothing_comes_back_over_the_network(

@@ -20,12 +20,12 @@ _OPEN_TIMEOUT_MS = 10_000
 # What a message has around it; one that is too long by less is complained of.
 _ROOM_BYTES = 1024 * 1024
 
-# A link that is silent for as long is lost. What waits in it is then still tried to be
-# sent, each batch for the time between two signs of life; until that is over the link
-# is half there: a new one joins the remains of it, is misunderstood at the other end,
-# and ends with them.
-_LEASE_MS = 10_000
-_KEEP_ALIVES = 20
+# A link that is silent for its lease (10 s) is lost. What waits in it is then still
+# tried to be sent, each batch for the time between two signs of life; until that is
+# over the link is half there: a new one joins the remains of it, is misunderstood at
+# the other end, and ends with them. On one machine nobody cuts a cable, and there may
+# be thousands of links: there Zenoh's own number (4) is enough.
+_KEEP_ALIVES_BETWEEN_MACHINES = 20
 
 # As in rmw_zenoh's default configurations, but for the retries: the router is in one
 # of the processes, and another one takes over at once.
@@ -59,8 +59,7 @@ _COMMON: dict[str, Any] = {
             "open_timeout": _OPEN_TIMEOUT_MS,
             "accept_pending": 1000,
             "max_sessions": 10_000,
-        },
-        "link": {"tx": {"lease": _LEASE_MS, "keep_alive": _KEEP_ALIVES}},
+        }
     },
 }
 
@@ -110,6 +109,9 @@ def router_endpoints(settings: Settings) -> list[str]:
 
 def _base(settings: Settings, path: Path | None) -> zenoh.Config:
     config = _read(path)
+    if path is None and not settings.is_local:
+        number = str(_KEEP_ALIVES_BETWEEN_MACHINES)
+        config.insert_json5("transport/link/tx/keep_alive", number)
     if settings.security is not None:
         security = Security(settings.security)
         if security.is_encrypted:

@@ -44,6 +44,11 @@ class Settings:
     service_timeout_s: float = DEFAULT_SERVICE_TIMEOUT_S
     security: Path | None = None
 
+    @property
+    def is_local(self) -> bool:
+        """Whether only processes of this machine are met."""
+        return all(map(_is_local, (*self.router, *self.listen)))
+
     @classmethod
     def from_environment(
         cls, environment: Mapping[str, str] = os.environ
@@ -76,6 +81,11 @@ class Settings:
                 environment, "NAVETTE_SERVICE_TIMEOUT", DEFAULT_SERVICE_TIMEOUT_S
             ),
         )
+
+
+def _is_local(endpoint: str) -> bool:
+    host = endpoint.partition("/")[2].rpartition(":")[0]
+    return host.startswith(("127.", "localhost", "[::1]"))
 
 
 def _endpoints(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
