@@ -62,11 +62,12 @@ def run_until_printed(
     timeout_s: float,
     forbidden: str = "Traceback",
     packages: str = "",
+    own_end_s: float = _OWN_END_S,
 ) -> ProgramRun:
     """Run ``navette run WORDS`` until ``expected`` (regexes) was printed in that order.
 
     ``packages``: folders of packages that the program may look for.
-    A program that goes on for longer gets SIGINT, as from Ctrl-C.
+    A program that goes on for ``own_end_s`` gets SIGINT, as from Ctrl-C.
     """
     run = ProgramRun(expected, forbidden)
     run.look()
@@ -77,7 +78,7 @@ def run_until_printed(
         stderr=subprocess.STDOUT,
     )
     _read(process, run, timeout_s)
-    _read(process, run, _OWN_END_S, to_the_end=True)
+    _read(process, run, own_end_s, to_the_end=True)
     if process.poll() is None:
         run.interrupted = True
         process.send_signal(signal.SIGINT)

@@ -17,8 +17,9 @@ SURFACE = str(PROGRAMS / "surface.py")
 pytestmark = pytest.mark.slow
 
 
-def printed(words: list[str], *expected: str) -> ProgramRun:
-    run = run_until_printed(words, expected, timeout_s=20.0)
+def printed(words: list[str], *expected: str, own_end_s: float = 0.3) -> ProgramRun:
+    """``own_end_s``: so long it may take to end by itself, before Ctrl-C."""
+    run = run_until_printed(words, expected, timeout_s=20.0, own_end_s=own_end_s)
     assert run.is_good, f"{run.faults()}\n{run.output}"
     return run
 
@@ -41,6 +42,7 @@ def test_programs_that_end_by_themselves() -> None:
         "I heard: message 0",
         "I heard: message 1",
         "Publishing: .message 49",
+        own_end_s=20.0,
     )
     assert not run.interrupted
 
@@ -111,7 +113,8 @@ def test_nodes_of_other_files_in_one_executor() -> None:
 
 
 def test_events_of_quality_of_service() -> None:
-    run = printed([str(PROGRAMS / "events.py")], r"\+1, now 1", "-1, now 0")
+    program = str(PROGRAMS / "events.py")
+    run = printed([program], r"\+1, now 1", "-1, now 0", own_end_s=20.0)
     assert not run.interrupted
 
 
@@ -125,6 +128,7 @@ def test_corners_of_the_surface() -> None:
         "ran for pooled",
         "asyncio 7",
         "no node without init",
+        own_end_s=20.0,
     )
     assert not run.interrupted
     assert "[surface]: before init" in run.output

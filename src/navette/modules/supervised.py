@@ -83,6 +83,7 @@ class Supervised:
             return
         self._run = run
         self._say(f"started (pid {run.pid})")
+        run.begin()
         self._set(State.STARTING if self.spec.tells_ready else State.RUNNING)
         if self.spec.tells_ready:
             self._later = self._after(_READY_AT_LAST_S, self._ready)
@@ -204,6 +205,7 @@ class _Run:
         self._owner = owner
         self._cutter = LineCutter()
         self._child: ChildProcess | None = None
+        self._has_begun = threading.Event()
         self.started_ns = owner.now_ns
 
     @property
@@ -234,16 +236,22 @@ class _Run:
             os.close(pipes[1])
             threading.Thread(target=self._wait, args=(pipes[0],), daemon=True).start()
 
+    def begin(self) -> None:
+        """Its start has been noted: what it wrote, however soon, stands behind that."""
+        self._has_begun.set()
+
     def signal(self, number: int) -> None:
         if self._child is not None:
             self._child.signal(number)
 
     def output(self, stream: str, data: bytes) -> None:
+        self._has_begun.wait()
         lines = self._cutter.feed(data)
         if lines:
             self._owner.heard(self, lines)
 
     def exited(self, code: int) -> None:
+        self._has_begun.wait()
         lines = self._cutter.finish()
         if lines:
             self._owner.heard(self, lines)
