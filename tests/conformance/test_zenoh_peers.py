@@ -15,7 +15,7 @@ from navette.msgs import type_hash
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.std_srvs.srv import SetBool
 from navette.runtime import Context, Executor, Node, QoSProfile
-from navette.transports import EndpointKind
+from navette.transports import Endpoint, EndpointKind
 
 pytestmark = pytest.mark.slow
 
@@ -148,7 +148,12 @@ def test_we_list_the_peers_graph(meeting: Meeting) -> None:
     assert (info.node_name, info.node_namespace) == ("peer", "/")
     assert str(info.topic_type_hash) == HASHES[0]
     graph = node.context.graph
-    (end,) = graph.service_endpoints("/our_switch", kind=EndpointKind.CLIENT)
+
+    def clients() -> list[Endpoint]:
+        return graph.service_endpoints("/our_switch", kind=EndpointKind.CLIENT)
+
+    meeting.until(clients, "the peer's client, which it made last")
+    (end,) = clients()
     assert end.type_hash == HASHES[1]
 
 
