@@ -139,20 +139,29 @@ def test_services_both_ways(meeting: Meeting) -> None:
 
 def test_we_list_the_peers_graph(meeting: Meeting) -> None:
     node = meeting.node
-    assert "peer" in node.get_node_names()
-    topics = dict(node.get_topic_names_and_types())
-    assert topics["/from_peer"] == ["std_msgs/msg/String"]
-    services = dict(node.get_service_names_and_types())
-    assert services["/peer_switch"] == ["std_srvs/srv/SetBool"]
-    (info,) = node.get_publishers_info_by_topic("/from_peer")
-    assert (info.node_name, info.node_namespace) == ("peer", "/")
-    assert str(info.topic_type_hash) == HASHES[0]
     graph = node.context.graph
 
     def clients() -> list[Endpoint]:
         return graph.service_endpoints("/our_switch", kind=EndpointKind.CLIENT)
 
-    meeting.until(clients, "the peer's client, which it made last")
+    def publishers() -> list[Any]:
+        return node.get_publishers_info_by_topic("/from_peer")
+
+    def services() -> dict[str, list[str]]:
+        return dict(node.get_service_names_and_types())
+
+    # Tokens come in bunches, in no order.
+    meeting.until(
+        lambda: bool(clients() and publishers()) and "/peer_switch" in services(),
+        "all that the peer made",
+    )
+    meeting.until(lambda: "peer" in node.get_node_names(), "the peer itself")
+    topics = dict(node.get_topic_names_and_types())
+    assert topics["/from_peer"] == ["std_msgs/msg/String"]
+    assert services()["/peer_switch"] == ["std_srvs/srv/SetBool"]
+    (info,) = publishers()
+    assert (info.node_name, info.node_namespace) == ("peer", "/")
+    assert str(info.topic_type_hash) == HASHES[0]
     (end,) = clients()
     assert end.type_hash == HASHES[1]
 
