@@ -154,6 +154,35 @@ def test_servers_here_and_there_are_both_asked_once(network: Network) -> None:
     assert (future.result().sum, sorted(asked)) == (3, ["here", "there"])
 
 
+def test_an_awaited_service_may_await_one_of_the_group_that_asked(
+    network: Network,
+) -> None:
+    here, there = network.node("here"), network.node("there")
+    back = there.create_client(AddTwoInts, "add")
+    sums: list[int] = []
+
+    def add(request: Any, response: Any) -> Any:
+        response.sum = request.a + request.b
+        return response
+
+    async def twice(request: Any, response: Any) -> Any:
+        response.sum = 2 * (await back.call_async(request)).sum
+        return response
+
+    async def ask() -> None:
+        timer.cancel()
+        sums.append((await client.call_async(AddTwoInts.Request(a=1, b=2))).sum)
+
+    here.create_service(AddTwoInts, "add", add)
+    there.create_service(AddTwoInts, "twice", twice)
+    client = here.create_client(AddTwoInts, "twice")
+    network.until(lambda: client.service_is_ready(), "twice")
+    network.until(lambda: back.service_is_ready(), "add")
+    timer = here.create_timer(0.001, ask)
+    network.until(lambda: sums, "the answer")
+    assert sums == [6]
+
+
 def test_events_tell_of_remote_endpoints(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
     alive: list[int] = []

@@ -2,7 +2,8 @@
 
 On the one deterministic loop a callback runs to its end unless it waits (a nested
 spin, a coroutine's ``await``). While it waits, its own group decides: mutually
-exclusive ones hold their other callbacks back, re-entrant ones let them start.
+exclusive ones hold their other callbacks back, re-entrant ones let them start. Who
+waits for a service or an action lets the group's servers answer (decision 0021).
 """
 
 from collections import deque

@@ -18,7 +18,7 @@ from navette.runtime.exceptions import (
     ServiceFailedError,
     ServiceTimeoutError,
 )
-from navette.runtime.future import Future
+from navette.runtime.future import Answer, Future
 from navette.runtime.qos import QoSProfile
 from navette.runtime.ros_clock import Clock
 from navette.runtime.service_introspection import (
@@ -120,7 +120,7 @@ class Client:
                 f"service {self.srv_name}: expected {type_name(wanted)}, got "
                 f"{type(request).__name__}"
             )
-        future: Future[Any] = Future()
+        future: Future[Any] = Answer()
         with self._lock:
             self._sequence = sequence = self._sequence + 1
             self._pending[sequence] = future

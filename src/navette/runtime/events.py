@@ -12,8 +12,9 @@ class Entity:
 
     __slots__ = ("group",)
 
-    #: Whether it runs while its group is held by a callback that waits for a service:
-    #: the one it waits for may be in that very group.
+    #: Whether it runs while its group is held by a callback that waits for a service
+    #: or an action, blocking or in an ``await``: what it waits for may be in that very
+    #: group.
     answers_calls = False
 
     group: CallbackGroup

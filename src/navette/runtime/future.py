@@ -20,6 +20,10 @@ class Future(Generic[T]):
             without one they are called at once by whoever sets the result.
     """
 
+    #: Whether a service may have to answer first, perhaps one of the very group whose
+    #: coroutine awaits this.
+    awaits_service = False
+
     def __init__(self, *, executor: Any = None) -> None:
         self._done = False
         self._cancelled = False
@@ -108,6 +112,12 @@ class Future(Generic[T]):
         self._loop = getattr(executor, "loop", executor)
 
 
+class Answer(Future[T]):
+    """What a service or an action gives, now or later."""
+
+    awaits_service = True
+
+
 class _Stepping(threading.local):
     """How many of our tasks take a step in this thread, one inside another."""
 
@@ -150,6 +160,9 @@ class Task(Future[T]):
     ``asyncio.sleep(0)``) lets everything else that is ready go first.
     """
 
+    #: What it waits for may be an answer; nobody looks.
+    awaits_service = True
+
     def __init__(
         self,
         handler: Callable[..., Any] | Coroutine[Any, Any, T],
@@ -169,6 +182,7 @@ class Task(Future[T]):
         self.node = node
         #: The callback group that is held until it ends; set by the loop.
         self.group: CallbackGroup | None = None
+        self._calling: CallbackGroup | None = None  # whose servers may answer it
         #: Called with an exception nobody else would see; set by the loop.
         self.on_error: Callable[[Exception], None] | None = None
         if isinstance(handler, Coroutine):
@@ -180,6 +194,7 @@ class Task(Future[T]):
 
     def __call__(self) -> None:
         """Run until the next wait, or to the end."""
+        self._end_call()
         if self._done or self._executing:
             return
         self._executing = True
@@ -197,6 +212,7 @@ class Task(Future[T]):
 
     def cancel(self) -> None:
         super().cancel()
+        self._end_call()
         if self._coroutine is not None and not self._executing:
             self._coroutine.close()
 
@@ -214,6 +230,9 @@ class Task(Future[T]):
         finally:
             _stepping.depth -= 1
         if isinstance(awaited, Future):
+            if awaited.awaits_service and self.group is not None:
+                self._calling = self.group
+                self._calling.begin_call()
             awaited.add_done_callback(self._resume)
         elif awaited is None:
             self._resume()
@@ -225,6 +244,11 @@ class Task(Future[T]):
                     "futures and tasks run on this loop (not asyncio's)"
                 )
             )
+
+    def _end_call(self) -> None:
+        calling, self._calling = self._calling, None
+        if calling is not None:
+            calling.end_call()
 
     def _resume(self, _: object = None) -> None:
         if self._loop is not None:

@@ -30,7 +30,7 @@ class Service(Entity):
             with :meth:`send_response` when it likes.
     """
 
-    #: Also while a callback of its group waits in a blocking call (see the loop).
+    #: Also while a callback of its group waits for an answer.
     answers_calls = True
 
     __slots__ = (

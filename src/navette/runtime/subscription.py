@@ -56,6 +56,7 @@ class Subscription(Entity, Generic[MsgT]):
         "_ready",
         "_received",
         "_room",
+        "answers_calls",
         "endpoint",
         "event_handlers",
         "msg_type",
@@ -84,6 +85,7 @@ class Subscription(Entity, Generic[MsgT]):
         self.qos_profile = qos_profile
         self.raw = raw
         self.shared = shared
+        self.answers_calls = False
         self.ports: list[SubscriptionPort] = []
         #: What it calls back for.
         self.event_handlers: list[EventHandler] = []

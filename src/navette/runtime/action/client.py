@@ -15,7 +15,7 @@ from navette.runtime.action.goal_states import STATUS_NAMES, is_active
 from navette.runtime.action.result_request import ResultRequest
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.exceptions import ROSInterruptException
-from navette.runtime.future import Future
+from navette.runtime.future import Answer, Future
 from navette.runtime.node import Node
 from navette.runtime.qos import (
     QoSProfile,
@@ -144,6 +144,8 @@ class ActionClient(Waitable[Any]):
             callback_group=callback_group,
             shared=True,
         )
+        # Whoever waits for a result, holding its group, hears of it meanwhile.
+        self._feedback.answers_calls = self._status.answers_calls = True
         node.add_waitable(self)
 
     @property
@@ -180,7 +182,7 @@ class ActionClient(Waitable[Any]):
             self._feedback_callbacks[key] = feedback_callback
         request = self._action_type.Impl.SendGoalService.Request
         answered = self._goal_client.call_async(request(goal_id=goal_id, goal=goal))
-        future: Future[ClientGoalHandle] = Future()
+        future: Future[ClientGoalHandle] = Answer()
 
         def take(_: object) -> None:
             if answered.cancelled():

@@ -5,7 +5,7 @@ from typing import Any
 from navette.runtime.client import Client
 from navette.runtime.clock import TimeSource
 from navette.runtime.exceptions import ServiceTimeoutError
-from navette.runtime.future import Future
+from navette.runtime.future import Answer, Future
 
 # No answer to one request is waited for as little: who says so is not to be believed.
 _SOONEST_NS = 50_000_000
@@ -23,7 +23,7 @@ class ResultRequest:
     """
 
     def __init__(self, client: Client, request: Any, clock: TimeSource) -> None:
-        self.future: Future[Any] = Future()
+        self.future: Future[Any] = Answer()
         self._client = client
         self._request = request
         self._clock = clock
