@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from difflib import get_close_matches
 from pathlib import Path
 
 from navette.errors import InvalidValueError
@@ -80,8 +81,19 @@ def _executable(package: str, name: str, arguments: tuple[str, ...]) -> Program:
 
 def _existing(path: Path) -> Path:
     if not path.is_file():
-        raise InvalidValueError(f"{path}: no such file")
+        raise InvalidValueError(f"{path}: no such file{_near(path)}")
     return path
+
+
+def _near(path: Path) -> str:
+    """A program of that name one folder up or down, or one of nearly that name."""
+    folder = path.parent if path.parent.is_dir() else Path()
+    for pattern in (path.name, f"*/{path.name}", f"../{path.name}"):
+        for found in folder.glob(pattern):
+            return f"; there is {found}"
+    names = [each.name for each in folder.glob(f"*{path.suffix}")]
+    close = get_close_matches(path.name, names, n=1)
+    return f"; did you mean {folder / close[0]}?" if close else ""
 
 
 def find_sources(words: Sequence[str]) -> list[Path]:

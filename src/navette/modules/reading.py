@@ -6,17 +6,16 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from navette.errors import FileFormatError, InvalidValueError, NavetteError
-from navette.modules.entries import Entry, read_process
-from navette.modules.project import Project
-from navette.modules.specs import ModuleSpec
+from navette.modules.document import Document, Place, read_document
+from navette.modules.entries import read_process
+from navette.modules.entry import Entry, EntryError
+from navette.modules.project import FILE_NAME, Project
+from navette.modules.specs import ModuleSpec, ProcessSpec
 from navette.modules.variables import Variables
-from navette.runtime.parameter_files import RosLoader
 
 DEFAULT_FILE = Path(__file__).parent / "default.yaml"
-_TOP_KEYS = ("arguments", "modules")
+_TOP_KEYS = ("arguments", "environment", "modules")
 _MODULE_KEYS = (
     "needs",
     "nodes",
@@ -27,7 +26,7 @@ _MODULE_KEYS = (
     "stop_timeout_s",
     "watch",
 )
-_MOST_BYTES = 1 << 20
+_FORM = "wanted 'modules:' with a name and a mapping each"
 
 
 @dataclass(frozen=True)
@@ -36,13 +35,15 @@ class ProjectFile:
 
     Attributes:
         arguments: those that were given, now or before.
+        shared: what all modules have: ``environment``.
     """
 
-    path: Path
+    document: Document
     modules: Mapping[str, Mapping[str, Any]]
     variables: Variables
     folder: Path
     arguments: Mapping[str, str]
+    shared: Mapping[str, Any]
 
     @property
     def names(self) -> list[str]:
@@ -63,16 +64,24 @@ class ProjectFile:
     def _add(self, name: str, order: dict[str, None], path: tuple[str, ...]) -> None:
         if name in path:
             chain = " → ".join([*path[path.index(name) :], name])
-            raise self._error(f"modules that need one another: {chain}")
-        if name not in self.modules:
-            where = f"module {path[-1]!r} needs {name!r}, but" if path else ""
-            raise InvalidValueError(
-                f"{where or f'{name!r}:'} {self.path} has no such module"
-                f"{_meant(name, self.names)} (modules: {', '.join(self.names)})"
+            raise self._error(
+                f"modules that need one another: {chain}", path[-1], "needs"
             )
+        if name not in self.modules:
+            known = f"{_meant(name, self.names)} (modules: {', '.join(self.names)})"
+            if path:
+                reason = f"module {path[-1]!r} needs {name!r}, which is not there"
+                raise self._error(f"{reason}{known}", path[-1], "needs")
+            raise InvalidValueError(f"no module {name!r} {self._where}{known}")
         for need in self._needs(name):
             self._add(need, order, (*path, name))
         order[name] = None
+
+    @property
+    def _where(self) -> str:
+        if self.document.path == DEFAULT_FILE:
+            return f"(no {FILE_NAME} in {self.folder} or above: the built-in ones)"
+        return f"in {self.document.path}"
 
     def _needs(self, name: str) -> tuple[str, ...]:
         needs = self.modules[name].get("needs") or []
@@ -80,29 +89,22 @@ class ProjectFile:
 
     def _spec(self, name: str) -> ModuleSpec:
         module = self.modules[name]
-        _check_keys(self.path, f"module {name!r}", module, _MODULE_KEYS)
-        shared = {
-            key: value
-            for key, value in module.items()
-            if key not in ("needs", "nodes", "watch")
-        }
+        for key in module:
+            if key not in _MODULE_KEYS:
+                raise self._error(
+                    f"module {name!r}: {_unknown(key, _MODULE_KEYS)}", name, key
+                )
         taken: set[str] = set()
         processes = []
         watched: dict[str, None] = {}
-        for entry in self._list(name, "nodes", module.get("nodes") or []):
-            if not entry:
-                raise self._error(f"module {name!r}: an empty entry in 'nodes'")
-            try:
-                made, files = read_process(
-                    Entry.of(name, entry, shared), self.variables, self.folder, taken
-                )
-            except NavetteError as error:
-                raise self._error(f"module {name!r}: {error}") from error
+        entries = self._list(name, "nodes", module.get("nodes") or [])
+        for number, entry in enumerate(entries):
+            made, files = self._process(name, number, entry, taken)
             processes.append(made)
             watched.update(dict.fromkeys(files))
         if not processes:
             raise self._error(
-                f"module {name!r}: wanted 'nodes', a list of at least one"
+                f"module {name!r}: wanted 'nodes', a list of at least one", name
             )
         extra = self._list(name, "watch", module.get("watch") or [])
         for each in extra:
@@ -114,13 +116,44 @@ class ProjectFile:
             watched=tuple(watched),
         )
 
+    def _process(
+        self, name: str, number: int, entry: Any, taken: set[str]
+    ) -> tuple[ProcessSpec, list[str]]:
+        """The process of an entry of a module, and its files."""
+        module = self.modules[name]
+        try:
+            if not entry:
+                raise InvalidValueError("an empty entry in 'nodes'")
+            return read_process(
+                Entry.of(name, entry, module, self.shared),
+                self.variables,
+                self.folder,
+                taken,
+            )
+        except NavetteError as error:
+            reason = f"module {name!r}: {error}"
+            key = error.key if isinstance(error, EntryError) else ""
+            place = self._place(name, number, entry, key)
+            raise self.document.error(reason, *place) from error
+
+    def _place(self, name: str, number: int, entry: Any, key: str) -> Place:
+        """Where a key stands that counts for an entry: there, at its module, on top."""
+        own: Place = ("modules", name, "nodes", number, key)
+        if isinstance(entry, dict) and key in entry:
+            return own
+        if key in self.modules[name]:
+            return ("modules", name, key)
+        return (key,) if key in self.shared else own
+
     def _list(self, module: str, key: str, value: Any) -> list[Any]:
         if not isinstance(value, list):
-            raise self._error(f"module {module!r}: {key}: {value!r}: wanted a list")
+            raise self._error(
+                f"module {module!r}: {key}: {value!r}: wanted a list", module, key
+            )
         return value
 
-    def _error(self, reason: str) -> FileFormatError:
-        return FileFormatError(self.path, reason)
+    def _error(self, reason: str, *place: str | int) -> FileFormatError:
+        return self.document.error(reason, "modules", *place)
 
 
 def read_project(
@@ -138,69 +171,55 @@ def read_project(
         FileFormatError: not YAML, or not of this form; says where and what is wanted.
         InvalidValueError: an argument that the file has not got.
     """
-    path = project.file or DEFAULT_FILE
-    content = _load(path)
-    _check_keys(path, "the file", content, _TOP_KEYS)
-    modules = content.get("modules")
-    if not isinstance(modules, dict) or not modules:
-        raise FileFormatError(path, "wanted 'modules:' with a name and a mapping each")
-    for name, module in modules.items():
-        if not isinstance(module, dict):
-            raise FileFormatError(path, f"module {name!r}: wanted a mapping")
-        if not str(name).replace("-", "_").isidentifier():
-            raise FileFormatError(
-                path, f"module name {name!r}: wanted letters, digits, - and _"
-            )
+    document = read_document(project.file or DEFAULT_FILE, _FORM)
+    content = document.content
+    for key in content:
+        if key not in _TOP_KEYS:
+            raise document.error(_unknown(key, _TOP_KEYS), key)
+    modules = _modules(document)
     declared = content.get("arguments") or {}
     if not isinstance(declared, dict):
-        raise FileFormatError(path, "arguments: wanted names with a default each")
-    values = {str(name): _as_text(value) for name, value in declared.items()}
+        raise document.error("arguments: wanted names with a default each", "arguments")
+    values = {name: _as_text(value) for name, value in declared.items()}
     for name in arguments:
         if name not in values:
             raise InvalidValueError(
-                f"{path} has no argument {name!r}{_meant(name, list(values))} "
+                f"{document.path} has no argument {name!r}{_meant(name, list(values))} "
                 f"(arguments: {', '.join(values) or 'none'})"
             )
-    named = {str(name): module for name, module in modules.items()}
     kept = {name: text for name, text in (before or {}).items() if name in values}
     given = {**kept, **arguments}
-    variables = Variables({**values, **given}, path)
-    return ProjectFile(path, named, variables, project.folder, given)
+    shared = {key: content[key] for key in ("environment",) if key in content}
+    return ProjectFile(
+        document=document,
+        modules=modules,
+        variables=Variables({**values, **given}, document.path),
+        folder=project.folder,
+        arguments=given,
+        shared=shared,
+    )
 
 
-def _load(path: Path) -> dict[Any, Any]:
-    data = path.read_bytes()
-    if len(data) > _MOST_BYTES:
-        raise FileFormatError(path, f"larger than {_MOST_BYTES} bytes")
-    try:
-        for event in yaml.parse(data, Loader=RosLoader):
-            if isinstance(event, yaml.AliasEvent):  # a few make very much of a little
-                raise FileFormatError(
-                    path, f"YAML alias *{event.anchor}: not read here"
-                )
-        content = yaml.load(data, Loader=RosLoader)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        reason = getattr(error, "problem", None) or str(error)
-        line = None if mark is None else mark.line + 1
-        raise FileFormatError(path, f"not YAML: {reason}", line) from None
-    except RecursionError:
-        raise FileFormatError(path, "nested too deep") from None
-    if not isinstance(content, dict):
-        raise FileFormatError(path, "wanted 'modules:' with a name and a mapping each")
-    return content
-
-
-def _check_keys(
-    path: Path, where: str, given: Mapping[Any, Any], known: tuple[str, ...]
-) -> None:
-    for key in given:
-        if key not in known:
-            raise FileFormatError(
-                path,
-                f"{where}: unknown key {key!r}{_meant(str(key), list(known))} "
-                f"(known: {', '.join(known)})",
+def _modules(document: Document) -> dict[str, Mapping[str, Any]]:
+    """The modules by their names."""
+    modules = document.content.get("modules")
+    if not isinstance(modules, dict) or not modules:
+        raise document.error(_FORM, "modules")
+    for name, module in modules.items():
+        if not isinstance(module, dict):
+            raise document.error(
+                f"module {name!r}: wanted a mapping with 'nodes'", "modules", name
             )
+        if not name.replace("-", "_").isidentifier():
+            raise document.error(
+                f"module name {name!r}: wanted letters, digits, - and _",
+                *("modules", name),
+            )
+    return modules
+
+
+def _unknown(key: str, known: tuple[str, ...]) -> str:
+    return f"unknown key {key!r}{_meant(key, list(known))} (known: {', '.join(known)})"
 
 
 def _meant(name: str, known: list[str]) -> str:

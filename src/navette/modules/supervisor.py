@@ -91,7 +91,7 @@ class Supervisor:
         for name in wanted:
             if name not in self._modules:
                 up = ", ".join(self._modules) or "nothing"
-                raise UnknownNameError(f"{name!r} is not up; {up} is")
+                raise UnknownNameError(f"{name!r} is not up (up: {up})")
         for name in wanted:
             self._modules[name].is_wanted = False
         self._look()

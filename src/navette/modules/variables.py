@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from navette.errors import InvalidValueError
+from navette.launch_files.launch.errors import UndeclaredConfigurationFailure
 from navette.launch_files.launch.frontend import parse_substitution
 from navette.launch_files.launch.launch_context import LaunchContext
 from navette.launch_files.launch.subprocesses import SubprocessRunner
@@ -36,7 +38,13 @@ class Variables:
         """
         if "$(" not in text:
             return text
-        return perform_substitutions(self._context, parse_substitution(text))
+        try:
+            return perform_substitutions(self._context, parse_substitution(text))
+        except UndeclaredConfigurationFailure as error:
+            known = ", ".join(self._context.launch_configurations) or "none"
+            raise InvalidValueError(
+                f"{text!r}: no argument {error.name!r} (under 'arguments': {known})"
+            ) from error
 
     def fill_value(self, value: Any) -> Any:
         """As :meth:`fill`, in lists and mappings too; what a substitution gives is

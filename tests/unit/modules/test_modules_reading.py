@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from navette.errors import InvalidValueError, NavetteError
+from navette.errors import FileFormatError, InvalidValueError, NavetteError
 from navette.modules import RestartPolicy
 from navette.modules.project import Project, find_project
 from navette.modules.reading import DEFAULT_FILE, read_project
@@ -142,7 +142,10 @@ def node(extra: str) -> str:
         ("modules: {m: {nodes: [{launch: no.launch.py}]}}", "no such launch file"),
         ("modules: {m: {nodes: [{command: no-such}]}}", "'no-such': no such program"),
         ("modules: {m: {nodes: [{command: ls, remap: {}}]}}", "remap goes with 'run'"),
-        ("modules: {m: {needs: [x], nodes: [n.py]}}", "needs 'x', but .*\\(modules: m"),
+        (
+            "modules: {m: {needs: [x], nodes: [n.py]}}",
+            "needs 'x', which is not there \\(modules: m",
+        ),
         (
             "modules: {a: {needs: [b], nodes: [n.py]}, b: {needs: [a], nodes: [n.py]}}",
             "need one another: a → b → a",
@@ -157,7 +160,10 @@ def node(extra: str) -> str:
         (node("parameter_files: [p.yaml]"), "p.yaml"),
         (node("remap: {'a b': c}"), "a b"),
         (node("environment: [1]"), "wanted names and values"),
-        (node("parameters: {a: $(var x)}"), "x"),
+        (
+            node("parameters: {a: $(var x)}"),
+            "no argument 'x' .*: none",
+        ),
         (node("arguments: hm"), "'hm': wanted a list"),
         ("modules: {m: {nodes: ['n.py \"a']}}", "No closing quotation"),
     ],
@@ -167,6 +173,45 @@ def test_what_is_wrong_is_named(bench: Any, text: str, reason: str) -> None:
     bench.write(text)
     with pytest.raises(NavetteError, match=reason):
         bench.specs()
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        ("    nods: [n.py]", ":5: module 'm': unknown key 'nods'"),
+        ("    restart: sometimes", ":5: .*'sometimes': wanted"),
+        ("    environment: {A: $(var x)}", ":5: .*no argument 'x'"),
+        ("    needs: [x]", ":5: .*needs 'x'"),
+        ("    nodes: [n.py]", ":5: 'nodes' is there twice, first in line 3"),
+        ("      - nn.py", ":5: .*nn.py: no such file; did you mean n.py"),
+        ("      - p/n.py", ":5: .*p/n.py: no such file; there is n.py"),
+        ("      - run: n.py\n        remap: {'a b': c}", ":6: .*topic name"),
+        ("      - run: n.py\n        speed: 3", ":6: .*unknown key 'speed'"),
+        ("modul: {}", ":5: unknown key 'modul'"),
+        ("environment: 3", ":5: .*environment: 3: wanted names and values"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_line(
+    bench: Any, line: str, reason: str
+) -> None:
+    bench.write("", "n.py")
+    bench.write(f"modules:\n  m:\n    nodes:\n      - n.py\n{line}\n")
+    with pytest.raises(FileFormatError, match=f"navette.yaml{reason}"):
+        bench.specs()
+
+
+def test_environment_of_all_modules(bench: Any) -> None:
+    bench.write("", "n.py")
+    bench.write(
+        """
+        environment: {ROS_DOMAIN_ID: 7, LEVEL: 1}
+        modules:
+          m: {nodes: [n.py], environment: {LEVEL: 2}}
+        """
+    )
+    (module,) = bench.specs()
+    env = module.processes[0].env
+    assert (env["ROS_DOMAIN_ID"], env["LEVEL"]) == ("7", "2")
 
 
 def test_unknown_modules_and_arguments_are_told(bench: Any) -> None:
@@ -192,7 +237,7 @@ def test_the_project_is_found_from_below(bench: Any) -> None:
 
 def test_the_built_in_modules(tmp_path: Path) -> None:
     content = read_project(Project(tmp_path), {"robot": "husky"})
-    assert content.path == DEFAULT_FILE
+    assert content.document.path == DEFAULT_FILE
     specs = {spec.name: spec for spec in content.specs(content.names)}
     assert set(specs) == {"sim", "robot", "viewer"}
     names = [process.name for process in specs["robot"].processes]

@@ -187,7 +187,7 @@ def test_a_stubborn_one_gets_each_signal(world: Any) -> None:
     world.run(20)
     assert world.children[0].signals == [2, 15, 9]
     assert "m: does not end; sending SIGKILL" in world.said
-    with pytest.raises(UnknownNameError, match="'m' is not up; nothing is"):
+    with pytest.raises(UnknownNameError, match=r"'m' is not up \(up: nothing\)"):
         world.supervisor.down(["m"])
 
 

@@ -17,6 +17,18 @@ class SubstitutionFailure(NavetteError, RuntimeError):  # noqa: N818 - ROS 2's n
     """A substitution has no value."""
 
 
+class UndeclaredConfigurationFailure(SubstitutionFailure):
+    """A launch configuration that nothing has set; ``name`` is its name."""
+
+    def __init__(self, name: str, known: list[str]) -> None:
+        super().__init__(
+            f"launch configuration {name!r} does not exist; there are: "
+            f"{', '.join(known) or 'none'}. "
+            f"Declare it with DeclareLaunchArgument({name!r}) before its use"
+        )
+        self.name = name
+
+
 class InvalidConditionExpressionError(InvalidValueError):
     """A condition is neither true nor false."""
 

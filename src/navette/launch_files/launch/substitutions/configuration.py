@@ -5,7 +5,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from navette.launch_files.launch.errors import SubstitutionFailure
+from navette.launch_files.launch.errors import (
+    SubstitutionFailure,
+    UndeclaredConfigurationFailure,
+)
 from navette.launch_files.launch.logging import launch_config
 from navette.launch_files.launch.substitution import (
     SomeSubstitutionsType,
@@ -32,11 +35,8 @@ class LaunchConfiguration(Substitution):
         if name in context.launch_configurations:
             return context.launch_configurations[name]
         if self._default is None:
-            known = ", ".join(sorted(context.launch_configurations)) or "none"
-            raise SubstitutionFailure(
-                f"launch configuration {name!r} does not exist; there are: {known}. "
-                f"Declare it with DeclareLaunchArgument({name!r}) before its use"
-            )
+            known = sorted(context.launch_configurations)
+            raise UndeclaredConfigurationFailure(name, known)
         return perform_substitutions(context, self._default)
 
     def describe(self) -> str:
