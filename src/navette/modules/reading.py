@@ -46,6 +46,10 @@ class ProjectFile:
     shared: Mapping[str, Any]
 
     @property
+    def path(self) -> Path:
+        return self.document.path
+
+    @property
     def names(self) -> list[str]:
         return list(self.modules)
 
@@ -79,9 +83,9 @@ class ProjectFile:
 
     @property
     def _where(self) -> str:
-        if self.document.path == DEFAULT_FILE:
+        if self.path == DEFAULT_FILE:
             return f"(no {FILE_NAME} in {self.folder} or above: the built-in ones)"
-        return f"in {self.document.path}"
+        return f"in {self.path}"
 
     def _needs(self, name: str) -> tuple[str, ...]:
         needs = self.modules[name].get("needs") or []

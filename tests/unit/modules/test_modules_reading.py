@@ -237,7 +237,7 @@ def test_the_project_is_found_from_below(bench: Any) -> None:
 
 def test_the_built_in_modules(tmp_path: Path) -> None:
     content = read_project(Project(tmp_path), {"robot": "husky"})
-    assert content.document.path == DEFAULT_FILE
+    assert content.path == DEFAULT_FILE
     specs = {spec.name: spec for spec in content.specs(content.names)}
     assert set(specs) == {"sim", "robot", "viewer"}
     names = [process.name for process in specs["robot"].processes]
