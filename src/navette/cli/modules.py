@@ -110,6 +110,7 @@ def up(
     reader = _reader(project, started)
     reader.last(0)
     client.up(specs, content.arguments)
+    _tell_neighbours(client)
     try:
         _watch_start(client, [s.name for s in specs], timeout, stay=attach or watch)
         if watch:
@@ -204,7 +205,10 @@ def logs(
     view = LogView(as_json=as_json)
     reader = _reader(project, modules or [])
     try:
-        view.show(reader.last(lines or None))
+        found = reader.last(lines or None)
+        view.show(found)
+        if not found:
+            _tell_who_wrote(project, modules or [])
         pause = threading.Event()
         while follow:
             pause.wait(_LOOK_S)
@@ -275,13 +279,28 @@ def _watch_start(
         raise typer.Exit(_FAILED)
 
 
+def _tell_neighbours(client: "Client") -> None:
+    """Two systems in one domain drive each other's robot."""
+    from navette.modules.session import neighbours
+
+    for domain, other in neighbours(client, _all_clients()):
+        note(
+            f"{other.folder} is up in domain {domain} too, and these modules meet its "
+            "nodes; another ROS_DOMAIN_ID, and another port of the live view, keep "
+            "them apart"
+        )
+
+
 def _end(client: "Client", names: Sequence[str] | None) -> None:
     from navette.cli.modules_view import Progress
     from navette.modules.session import until_down, views
+    from navette.modules.specs import State
 
     found = views(client.down(names))
     first = [view for view in found if names is None or view.module in names]
-    left = Progress().show(until_down(client, names, _DOWN_S, first))
+    if not first:
+        note(f"nothing is up in {client.project.folder}")
+    left = Progress(State.RUNNING).show(until_down(client, names, _DOWN_S, first))
     if any(view.pid for view in left):
         note(f"still there: {', '.join(v.label for v in left if v.pid)}")
         raise typer.Exit(_FAILED)
@@ -332,6 +351,16 @@ def _usage(found: "Sequence[ProcessView]") -> "dict[int, Usage]":
     from navette.modules.usage import usage_of
 
     return usage_of(view.pid for view in found if view.pid)
+
+
+def _tell_who_wrote(project: "Project", modules: Sequence[str]) -> None:
+    """Where there are no lines: whose there are."""
+    reader = _reader(project, [])
+    labels = {line.label for line in reader.last(None)}
+    reader.close()
+    who = f"{', '.join(modules)} wrote nothing" if modules else "nothing was written"
+    known = f" (there is the log of {', '.join(sorted(labels))})" if labels else ""
+    note(f"{who} in {project.folder}{known}")
 
 
 def _nothing_is_up(client: "Client") -> None:

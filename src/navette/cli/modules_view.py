@@ -46,9 +46,14 @@ def console() -> Console:
 
 
 class Progress:
-    """Processes on their way up or down: a live picture, or a line each when piped."""
+    """Processes on their way up or down: a live picture, or a line each when piped.
 
-    def __init__(self) -> None:
+    Args:
+        before: the state that is no news at first.
+    """
+
+    def __init__(self, before: State | None = None) -> None:
+        self._before = before
         self._told: dict[str, State] = {}
         self._spinner = Spinner("dots", style="cyan")
 
@@ -66,7 +71,8 @@ class Progress:
 
     def _tell(self, found: Sequence[ProcessView]) -> None:
         for view in found:
-            if self._told.get(view.label) is not view.state and view.is_settled:
+            is_news = self._told.get(view.label, self._before) is not view.state
+            if is_news and view.is_settled:
                 show("  ".join(filter(None, [view.label, _state_text(view)])))
             self._told[view.label] = view.state
 

@@ -62,7 +62,7 @@ class ChangeWatch:
             _, content, names = self._read()
             specs = content.specs(names or content.names)
         except NavetteError as error:
-            note(f"{error}; nothing was restarted")
+            note(f"nothing was restarted: {error}")
             return
         different = [spec for spec in specs if self._specs.get(spec.name) != spec]
         self._take(specs)

@@ -28,6 +28,7 @@ class ProcessView:
     seconds: float
     restarts: int
     reason: str
+    domain: str
 
     @property
     def is_settled(self) -> bool:
@@ -50,6 +51,17 @@ def views(status: Sequence[dict[str, Any]]) -> list[ProcessView]:
         )
         for module in status
         for process in module["processes"]
+    ]
+
+
+def neighbours(own: Client, others: Sequence[Client]) -> list[tuple[str, Project]]:
+    """Other projects whose nodes meet those of this one: domain and project."""
+    domains = {view.domain for view in views(own.status())}
+    return [
+        (domain, other.project)
+        for other in others
+        if other.project.folder != own.project.folder
+        for domain in sorted({view.domain for view in views(other.status())} & domains)
     ]
 
 

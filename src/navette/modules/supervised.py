@@ -117,7 +117,14 @@ class Supervised:
             "seconds": (self._loop.clock.now_ns - self._since_ns) / 1e9,
             "restarts": self.restarts,
             "reason": self.reason,
+            "domain": self._domain,
         }
+
+    @property
+    def _domain(self) -> str:
+        """The ROS domain of its nodes, as its environment says."""
+        environ = {**self._environ, **self.spec.env}
+        return environ.get("ROS_DOMAIN_ID") or "0"
 
     # -- what happens to it --------------------------------------------------------
 

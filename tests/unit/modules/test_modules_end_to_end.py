@@ -99,6 +99,9 @@ def test_from_up_to_down(bench: Any) -> None:
     wait_for(lambda: "a/hold: holding" in said(bench))
     assert "a/hold: holding" in navette("logs", "a").output.replace("Z ", "")
     assert "holding" not in navette("logs", "b").output
+    nobody = navette("logs", "hold").output
+    assert f"hold wrote nothing in {bench.folder}" in nobody
+    assert "log of a/hold, b/sleep" in nobody
     (first, second) = json.loads(navette("ps", "--json").output)
     assert (first["label"], first["state"]) == ("a/hold", "running")
     assert os.getpgid(first["pid"]) == first["pid"]
@@ -116,6 +119,7 @@ def test_from_up_to_down(bench: Any) -> None:
     pipe.wait_end()
     wait_for(lambda: not bench.client.project.is_supervised)
     assert "nothing is up" in navette("ps").output
+    assert "nothing is up" in navette("down").output
     assert "nothing is up" in str(navette("down", "a").exception)
     assert not known_projects()
 

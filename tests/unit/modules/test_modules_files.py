@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from navette.modules import log_book
-from navette.modules.client import SupervisorError
+from navette.modules.client import Client, SupervisorError
 from navette.modules.log_book import LogBook, LogLine, LogReader
-from navette.modules.project import socket_path
+from navette.modules.project import Project, socket_path
+from navette.modules.session import neighbours
 from navette.modules.watching import FileWatch
 
 
@@ -123,3 +124,30 @@ def test_a_supervisor_that_hangs_is_not_waited_for_long(
         with pytest.raises(SupervisorError, match="does not answer"):
             bench.client.down(None)
         Path(deaf.getsockname()).unlink()
+
+
+class FakeClient(Client):
+    """What is up in a folder: a process in each of some domains."""
+
+    def __init__(self, folder: str, *domains: str) -> None:
+        super().__init__(Project(Path(folder)))
+        self._domains = domains
+
+    def status(self) -> list[dict[str, Any]]:
+        process = {
+            "name": "p",
+            "label": "p",
+            "state": "running",
+            "pid": 1,
+            "seconds": 0.0,
+            "restarts": 0,
+            "reason": "",
+        }
+        found = [{**process, "domain": domain} for domain in self._domains]
+        return [{"module": "p", "processes": found}]
+
+
+def test_who_is_up_in_the_same_domain_is_a_neighbour() -> None:
+    own = FakeClient("/a", "0", "7")
+    others = [own, FakeClient("/b", "7", "7", "8"), FakeClient("/c", "9")]
+    assert neighbours(own, others) == [("7", Project(Path("/b")))]
