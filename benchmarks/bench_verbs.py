@@ -16,6 +16,7 @@ from harness import Benchmark, Run
 PROGRAM = """
 import navette
 from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.msgs.sensor_msgs.msg import Image
 from navette.msgs.std_srvs.srv import Trigger
 from navette.runtime import DurabilityPolicy, QoSProfile
 navette.init(args=[])
@@ -26,6 +27,8 @@ publisher = node.create_publisher(OccupancyGrid, "map", latched)
 grid = OccupancyGrid(data=[0] * 250_000)
 grid.info.width = grid.info.height = 500
 publisher.publish(grid)
+camera = node.create_publisher(Image, "camera", latched)
+camera.publish(Image(data=bytes(range(250)) * 24_000))
 node.create_service(Trigger, "clear", lambda request, response: response)
 print("ready", flush=True)
 navette.spin(node)
@@ -34,6 +37,7 @@ VERBS = (
     ("topic", "list", "-t"),
     ("topic", "info", "-v", "/map"),
     ("topic", "echo", "/map", "--once"),
+    ("topic", "echo", "/camera", "--once", "-f"),  # 6 MB
     ("topic", "type", "/map"),
     ("topic", "find", "nav_msgs/msg/OccupancyGrid"),
     ("interface", "show", "nav_msgs/msg/OccupancyGrid"),

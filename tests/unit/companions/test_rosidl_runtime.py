@@ -1,5 +1,6 @@
 """rosidl_runtime_py: messages as YAML, CSV, dicts and back; interfaces by name."""
 
+import math
 from collections import OrderedDict
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,9 @@ import yaml
 
 from navette.companions import rosidl_runtime_py as rosidl
 from navette.companions.rosidl_runtime_py import utilities
+from navette.companions.rosidl_runtime_py.convert import yaml_pieces
 from navette.errors import MessageError
+from navette.msgs import register_definition
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from navette.msgs.example_interfaces.action import Fibonacci
@@ -65,6 +68,29 @@ def test_texts_in_yaml() -> None:
     assert rosidl.message_to_yaml(DiagnosticStatus(level=1)).startswith(
         'level: "\\x01"\n'
     )
+
+
+def test_arrays_in_yaml_are_what_the_emitter_writes() -> None:
+    """They are written apart from it (an image has millions of numbers)."""
+    edges: list[list[Any]] = [
+        [0, 1, 127, -128, -1] * 10,
+        [2**63 - 1, -(2**63)] * 10,
+        [0.0, -0.0, 1e17, 1.5e-7, 1e-05, math.inf, -math.inf, math.nan, 2.5] * 5,
+        [True, False] * 20,
+    ]
+    for values, name in zip(edges, ("int8", "int64", "float64", "bool"), strict=True):
+        cls = register_definition(f"text_{name}/msg/Array", f"{name}[] data\nstring s")
+        for message in (cls(data=values, s="0xa 0xaaa\n0xa"), cls(data=values[:3])):
+            plain = dict(rosidl.message_to_ordereddict(message))
+            for flow in (False, True):
+                text = rosidl.message_to_yaml(message, flow_style=flow)
+                wanted = yaml.safe_dump(
+                    plain, sort_keys=False, default_flow_style=flow, width=10**6
+                )
+                assert text == wanted
+            pieces = list(yaml_pieces(message, None, width=30))
+            assert max(map(len, pieces[1].split("\n"))) <= 30
+            assert repr(yaml.safe_load("".join(pieces))) == repr(plain)
 
 
 def test_shortened() -> None:

@@ -86,20 +86,13 @@ def _as_csv(event: Any, shortened: dict[str, Any]) -> str:
 
 def _as_yaml(event: Any, shortened: dict[str, Any], *, flow_style: bool) -> str:
     """The event, with the kind of event in words."""
-    import yaml
-
     from navette.companions.rosidl_runtime_py import message_to_yaml
 
-    fields = yaml.safe_load(message_to_yaml(event, **shortened))
-    fields["info"]["event_type"] = _event_words()[event.info.event_type]
-    text: str = yaml.safe_dump(
-        fields,
-        allow_unicode=True,
-        width=2**31 - 1,
-        default_flow_style=flow_style,
-        sort_keys=False,
-    )
-    return f"{text}---"
+    number = event.info.event_type
+    text = message_to_yaml(event, **shortened, flow_style=flow_style)
+    # The first field of all: what is said further on stays as it is.
+    said = f"event_type: {number}"
+    return f"{text.replace(said, f'event_type: {_event_words()[number]}', 1)}---"
 
 
 def _event_words() -> dict[int, str]:

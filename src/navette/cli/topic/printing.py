@@ -9,17 +9,12 @@ from navette.cli.topic.field_path import FieldPath
 from navette.cli.topic.style import Style
 from navette.companions.rosidl_runtime_py.convert import (
     message_to_csv,
-    message_to_yaml,
     value_to_csv,
-    value_to_yaml,
+    yaml_pieces,
 )
 from navette.msgs import Message, to_dict
 
 SEPARATOR = "---"
-_NUMBER = r"(?:-?(?:\.inf|\.nan|\d[\d.]*(?:e[+-]?\d+)?)|true|false|'\.\.\.')"
-_NUMBERS = re.compile(
-    rf"(?P<key>^ *(?:- )*\w+:|\A)\n?(?P<items>(?: *- {_NUMBER}\n)+)", re.MULTILINE
-)
 _KEY = re.compile(r"^([ ]*(?:- )*)([A-Za-z]\w*)(?=:)", re.MULTILINE)
 
 
@@ -41,13 +36,19 @@ def _csv(value: Any, field: FieldPath | None, style: Style) -> str:
 
 
 def _yaml(value: Any, field: FieldPath | None, style: Style) -> str:
-    shortened = {**_shortened(style), "flow_style": style.flow_style}
-    if isinstance(value, Message):
-        return _readable(message_to_yaml(value, **shortened))
-    assert field is not None, "a message itself is a Message"
-    if field.type.is_scalar:
+    if field is not None and field.type.is_scalar and not field.type.is_message:
         return harmless(value_to_csv(value, field.type)) + "\n"
-    return _readable(value_to_yaml(value, field.type, **shortened))
+    pieces = yaml_pieces(
+        value,
+        None if field is None else field.type,
+        **_shortened(style),
+        flow_style=style.flow_style,
+        width=shutil.get_terminal_size().columns if is_terminal() else None,
+    )
+    if not is_terminal():
+        return "".join(pieces)
+    # Arrays of numbers, every second piece, have nothing to escape or to colour.
+    return "".join(p if n % 2 else _readable(p) for n, p in enumerate(pieces))
 
 
 def _shortened(style: Style) -> dict[str, Any]:
@@ -69,24 +70,5 @@ def _jsonable(value: Any) -> Any:
 
 
 def _readable(yaml: str) -> str:
-    """For a person: numbers of an array beside each other, names apart from values."""
-    if not is_terminal():
-        return yaml
-    yaml = _NUMBERS.sub(_in_rows, harmless(yaml))
-    return _KEY.sub(lambda m: m[1] + styled(m[2], fg="cyan"), yaml)
-
-
-def _in_rows(match: re.Match[str]) -> str:
-    """Numbers beside each other, in lines that end between two of them."""
-    items = [line.strip().removeprefix("- ") for line in match["items"].splitlines()]
-    key = f"{match['key']} [" if match["key"] else "["
-    room = shutil.get_terminal_size().columns
-    indent = " " * len(key)
-    lines, line = [], f"{key}{items[0]}"
-    for item in items[1:]:
-        if len(line) + len(item) + 3 > room:
-            lines.append(f"{line},\n")
-            line = f"{indent}{item}"
-        else:
-            line += f", {item}"
-    return f"{''.join(lines)}{line}]\n"
+    """For a person: names apart from values, and nothing that acts on the terminal."""
+    return _KEY.sub(lambda m: m[1] + styled(m[2], fg="cyan"), harmless(yaml))

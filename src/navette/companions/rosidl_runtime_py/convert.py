@@ -6,18 +6,21 @@
 
 from array import array
 from collections import OrderedDict
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import yaml
 
+from navette.companions.rosidl_runtime_py.number_text import (
+    CUT,
+    Layout,
+    Numbers,
+    python_words,
+)
+from navette.companions.rosidl_runtime_py.yaml_text import yaml_text
 from navette.msgs import Message
 from navette.msgs.interface import FieldType
-
-# One line per value, however long; libyaml's width is a C int.
-_WIDTH = 2**31 - 1
-_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 _IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8"}
 _IDL_NAMES |= {"float32": "float", "float64": "double"}
@@ -42,10 +45,7 @@ def message_to_yaml(
 ) -> str:
     """The message as YAML; ``flow_style`` puts it on one line."""
     fields = _fields(msg, _Shortening(truncate_length, no_arr, no_str))
-    text = _dumped(fields, _Dumper, flow_style=flow_style)
-    if "\\U" in text:  # libyaml escapes an emoji, PyYAML writes it
-        text = _dumped(fields, yaml.SafeDumper, flow_style=flow_style)
-    return text
+    return "".join(yaml_text(fields, Layout(flow_style)))
 
 
 def message_to_csv(
@@ -63,20 +63,26 @@ def message_to_csv(
     )
 
 
-def value_to_yaml(
+def yaml_pieces(
     value: Any,
-    field_type: FieldType,
+    field_type: FieldType | None,
     *,
     truncate_length: int | None = None,
     no_arr: bool = False,
     no_str: bool = False,
     flow_style: bool = False,
-) -> str:
-    """A sequence of a message as YAML, as it would stand in the message's."""
+    width: int | None = None,
+) -> Iterator[str]:
+    """A message or a sequence of one as YAML, as it would stand in the message's.
+
+    Args:
+        width: numbers of arrays beside each other, in lines of so many characters.
+
+    Returns:
+        Pieces: in turn what stands around the arrays of numbers, and such an array.
+    """
     shortening = _Shortening(truncate_length, no_arr, no_str)
-    return _dumped(
-        _plain(value, shortening, field_type), _Dumper, flow_style=flow_style
-    )
+    return yaml_text(_plain(value, shortening, field_type), Layout(flow_style, width))
 
 
 def value_to_csv(
@@ -109,21 +115,11 @@ def get_message_slot_types(msg: Message) -> "OrderedDict[str, FieldType]":
     return OrderedDict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
 
 
-def _dumped(fields: Any, dumper: Any, *, flow_style: bool) -> str:
-    text: str = yaml.dump(
-        fields,
-        Dumper=dumper,
-        allow_unicode=True,
-        width=_WIDTH,
-        default_flow_style=flow_style,
-        sort_keys=False,
-    )
-    return text
-
-
 def _ordered(value: Any) -> Any:
     if isinstance(value, dict):
         return OrderedDict((name, _ordered(each)) for name, each in value.items())
+    if isinstance(value, Numbers):
+        return value.plain()
     if isinstance(value, list):
         return [_ordered(each) for each in value]
     return value
@@ -140,24 +136,24 @@ def _plain(
     if isinstance(value, Message):
         return _fields(value, shortening)
     if isinstance(value, bytes):
-        return _short(value.decode("latin-1"), shortening.length, "...")
+        return _short(value.decode("latin-1"), shortening.length, CUT)
     if isinstance(value, str):
         if shortening.no_str:
             return _hidden_text(value)
-        return _short(value, shortening.length, "...")
+        return _short(value, shortening.length, CUT)
     if isinstance(value, (list, array, np.ndarray)):
         if shortening.no_arr and field_type is not None:
             return _hidden_array(field_type, len(value))
         items = _short(value, shortening.length, None)
-        plain = _plain_items(items, shortening)
-        return plain if items is value else [*plain, "..."]
+        if not isinstance(items, list) or _is_of_bools(field_type):
+            return Numbers(items, is_cut=items is not value)
+        plain = [_plain(item, shortening) for item in items]
+        return plain if items is value else [*plain, CUT]
     return value
 
 
-def _plain_items(items: Any, shortening: _Shortening) -> list[Any]:
-    if isinstance(items, (array, np.ndarray)):
-        return items.tolist()
-    return [_plain(item, shortening) for item in items]
+def _is_of_bools(field_type: FieldType | None) -> bool:
+    return field_type is not None and field_type.base == "bool"
 
 
 def _csv(
@@ -172,13 +168,16 @@ def _csv(
         if shortening.no_arr and field_type is not None:
             return _hidden_array(field_type, len(value))
         items = _short(value, shortening.length, None)
-        plain = items.tolist() if isinstance(items, (array, np.ndarray)) else items
-        texts = [_csv(item, shortening) for item in plain]
-        return ",".join(texts if items is value else [*texts, "..."])
+        if isinstance(items, list):
+            text = ",".join(_csv(item, shortening) for item in items)
+        else:
+            text = python_words(np.asarray(items), ",")
+        end = () if items is value else (CUT,)
+        return ",".join((text, *end) if len(items) else end)
     if isinstance(value, str):
         if shortening.no_str:
             return _hidden_text(value)
-        return str(_short(value, shortening.length, "..."))
+        return str(_short(value, shortening.length, CUT))
     return str(value)
 
 
