@@ -79,7 +79,9 @@ class MapMemoryNode(StageNode):
         """Place the costmap as soon as its pose is known."""
         stamp_ns = stamp_to_ns(msg.header.stamp)
         if stamp_ns < self._last_stamp_ns - NEW_RUN_NS:
-            self.get_logger().info("time went back: the map starts anew")
+            self.get_logger().info(
+                "time went back: the map starts anew", throttle_duration_sec=5.0
+            )
             self._restart()
         self._waiting.add(msg, stamp_ns, self._now_ns())
         self._place_waiting()

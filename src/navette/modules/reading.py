@@ -72,20 +72,21 @@ class ProjectFile:
                 f"modules that need one another: {chain}", path[-1], "needs"
             )
         if name not in self.modules:
-            known = f"{_meant(name, self.names)} (modules: {', '.join(self.names)})"
+            names, meant = ", ".join(self.names), _meant(name, self.names)
             if path:
-                reason = f"module {path[-1]!r} needs {name!r}, which is not there"
-                raise self._error(f"{reason}{known}", path[-1], "needs")
-            raise InvalidValueError(f"no module {name!r} {self._where}{known}")
+                reason = (
+                    f"module {path[-1]!r} needs {name!r}, which is not there{meant}"
+                )
+                raise self._error(f"{reason} (modules: {names})", path[-1], "needs")
+            where = f"{self.path} has {names}"
+            if self.path == DEFAULT_FILE:
+                where = (
+                    f"no {FILE_NAME} in {self.folder} or above; built in are {names}"
+                )
+            raise InvalidValueError(f"no module {name!r}{meant} ({where})")
         for need in self._needs(name):
             self._add(need, order, (*path, name))
         order[name] = None
-
-    @property
-    def _where(self) -> str:
-        if self.path == DEFAULT_FILE:
-            return f"(no {FILE_NAME} in {self.folder} or above: the built-in ones)"
-        return f"in {self.path}"
 
     def _needs(self, name: str) -> tuple[str, ...]:
         needs = self.modules[name].get("needs") or []
