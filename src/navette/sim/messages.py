@@ -28,6 +28,9 @@ from navette.sim.imu import ImuReading
 from navette.sim.lidar import Scan
 from navette.sim.robot_state import Motion, cross
 from navette.sim.scene import CameraSensor, ImuSensor
+from navette.sim.wheel_odometry import Matrix, PlanarCovariances
+
+_PLANAR = np.ix_([0, 1, 5], [0, 1, 5])  # x, y, yaw of six
 
 
 def time_message(stamp_ns: int) -> Time:
@@ -59,10 +62,12 @@ def odometry_message(
     frame_T_base: Transform3,
     motion: Motion,
     base_T_child: Transform3,
+    planar: PlanarCovariances | None = None,
 ) -> Odometry:
     """Pose and velocity of a point fixed to the base, the velocity in its own axes.
 
-    ``frames`` are the frame of the pose and the child frame.
+    ``frames`` are the frame of the pose and the child frame. Covariances that are not
+    given are 0, as are those of height, roll and pitch: the robot drives in the plane.
     """
     (x, y, z), (qx, qy, qz, qw) = frame_T_base @ base_T_child
     lever = cross(motion.angular, base_T_child.translation)
@@ -70,7 +75,7 @@ def odometry_message(
     child_R_base = base_T_child.inverse().rotation
     vx, vy, vz = rotate(child_R_base, (vx, vy, vz))
     wx, wy, wz = rotate(child_R_base, motion.angular)
-    return Odometry(
+    message = Odometry(
         header=header(stamp_ns, frames[0]),
         child_frame_id=frames[1],
         pose=PoseWithCovariance(
@@ -85,6 +90,18 @@ def odometry_message(
             )
         ),
     )
+    if planar is not None:
+        child = planar.of_child(frame_T_base.to_pose2(), base_T_child.to_pose2())
+        message.pose.covariance = _spatial(child.pose)
+        message.twist.covariance = _spatial(child.twist)
+    return message
+
+
+def _spatial(planar: Matrix) -> Matrix:
+    """(3, 3) of x, y, yaw → (36,) of x, y, z, roll, pitch, yaw."""
+    spatial = np.zeros((6, 6))
+    spatial[_PLANAR] = planar
+    return spatial.ravel()
 
 
 def scan_message(scan: Scan, stamp_ns: int, frame: str, period_s: float) -> LaserScan:

@@ -18,6 +18,7 @@ from navette.sim.robot_state import Motion
 from navette.sim.scene import CameraSensor, ImuSensor, LidarSensor, Scene, Sensor
 from navette.sim.sensors import sensors_of
 from navette.sim.simulator import Simulator
+from navette.sim.wheel_odometry import PlanarCovariances
 
 _HEARTBEAT_S = 0.1  # physics goes on, and contacts are told, without any listener
 
@@ -268,23 +269,32 @@ class SimNode(StageNode):
         self.publish("/clock", Clock(clock=messages.time_message(stamp_ns)))
 
     def _publish_odometry(self, stamp_ns: int) -> None:
-        odom_T_base, motion = self._odometry()
+        odom_T_base, motion, covariances = self._odometry()
         message = messages.odometry_message(
             stamp_ns,
             (self.params.odom_frame, self._child_frame),
             odom_T_base,
             motion,
             self._base_T_child,
+            covariances,
         )
         self.publish("/odom/filtered", message)
 
-    def _odometry(self) -> tuple[Transform3, Motion]:
-        """Pose and motion of the base as the robot knows them."""
+    def _odometry(self) -> tuple[Transform3, Motion, PlanarCovariances | None]:
+        """Pose and motion of the base as the robot knows them, and how well."""
         if self.params.odometry == "true":
-            return self.simulator.pose(), self.simulator.motion()
+            return self.simulator.pose(), self.simulator.motion(), None
         wheels = self.simulator.wheel_odometry()
-        motion = Motion((wheels.speed, 0.0, 0.0), (0.0, 0.0, wheels.yaw_rate))
-        return Transform3.from_pose2(wheels.pose), motion
+        told = wheels.motion()
+        motion = Motion((told.speed, 0.0, 0.0), (0.0, 0.0, told.yaw_rate))
+        covariances = PlanarCovariances(wheels.pose_covariance, told.covariance)
+        return Transform3.from_pose2(wheels.pose), motion, covariances
+
+    def _believed_pose(self) -> Transform3:
+        """Pose of the base as the robot knows it."""
+        if self.params.odometry == "true":
+            return self.simulator.pose()
+        return Transform3.from_pose2(self.simulator.wheel_odometry().pose)
 
     def _publish_truth(self, stamp_ns: int) -> None:
         message = messages.odometry_message(
@@ -298,9 +308,8 @@ class SimNode(StageNode):
 
     def _publish_base_tf(self, stamp_ns: int) -> None:
         p = self.params
-        odom_T_base, _ = self._odometry()
         transform = messages.transform_message(
-            stamp_ns, p.odom_frame, p.base_frame, odom_T_base
+            stamp_ns, p.odom_frame, p.base_frame, self._believed_pose()
         )
         self.publish("/tf", TFMessage(transforms=[transform]))
 

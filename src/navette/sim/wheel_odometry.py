@@ -2,18 +2,64 @@
 """Dead reckoning by wheel encoders: drifts as wheels slip and sensors err."""
 
 import math
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from navette.geometry import Pose2
 from navette.sim.scene import DiffDrive
 
+Matrix = np.ndarray[Any, np.dtype[np.float64]]
+
+#: Nothing is stated to be known better than to this, metres and radians (a second):
+#: a variance of 0 would say "not known" to one reader and "exactly" to another.
+LEAST_STDDEV = 1e-3
+
+
+@dataclass(frozen=True)
+class WheelMotion:
+    """Mean speed (m/s) and yaw rate (rad/s) of the axle's midpoint over a time.
+
+    ``covariance``: (3, 3) of forward speed, sideways speed, yaw rate.
+    """
+
+    speed: float
+    yaw_rate: float
+    covariance: Matrix
+
+
+@dataclass(frozen=True)
+class PlanarCovariances:
+    """What is known of a pose (x, y, yaw) and of a motion in the body's own axes.
+
+    Both (3, 3).
+    """
+
+    pose: Matrix
+    twist: Matrix
+
+    def of_child(self, frame_T_base: Pose2, base_T_child: Pose2) -> "PlanarCovariances":
+        """These of the base → those of a frame that is fixed to it."""
+        x, y, turn = base_T_child
+        child = frame_T_base @ base_T_child
+        pose_J_base = _lever(child.x - frame_T_base.x, child.y - frame_T_base.y)
+        c, s = math.cos(turn), math.sin(turn)
+        child_R_base = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        twist_J_base = child_R_base @ _lever(x, y)
+        return PlanarCovariances(
+            pose_J_base @ self.pose @ pose_J_base.T,
+            twist_J_base @ self.twist @ twist_J_base.T,
+        )
+
 
 class WheelOdometry:
     """Integrates the turns of the wheels along circular arcs.
 
     Each side's measured travel has a random relative error, whose variance grows
-    with the distance: after a metre its standard deviation is ``noise`` metres.
+    with the distance: after a metre its standard deviation is ``noise`` metres. The
+    covariances follow from it to first order (Siegwart, Nourbakhsh, Scaramuzza,
+    "Autonomous Mobile Robots", 2nd ed., section 5.2.4); slip is not in them.
     """
 
     def __init__(self, drive: DiffDrive, *, noise: float) -> None:
@@ -22,35 +68,87 @@ class WheelOdometry:
         self.reset(Pose2(0.0, 0.0, 0.0), (0.0, 0.0))
 
     def reset(self, pose: Pose2, wheels: tuple[float, float]) -> None:
-        """Start at a pose with the encoders at these angles (rad)."""
+        """Start at a pose, known exactly, with the encoders at these angles (rad)."""
         self.pose = pose
         self._wheels = wheels
-        self._stamp_ns = 0
-        self.speed = 0.0
-        self.yaw_rate = 0.0
+        self._stamp_ns = self._told_ns = 0
+        self._covariance = np.zeros((3, 3))
+        self._left = self._right = 0.0  # since the motion was told, metres
+        self._spread = (0.0, 0.0)  # variances of these
+        self._motion = WheelMotion(0.0, 0.0, _floor())
+
+    @property
+    def pose_covariance(self) -> Matrix:
+        """(3, 3) of x, y, yaw of :attr:`pose`, in the frame that it is given in."""
+        return self._covariance + _floor()
 
     def update(
         self, wheels: tuple[float, float], stamp_ns: int, rng: np.random.Generator
     ) -> Pose2:
         """Pose after the encoders moved to ``wheels`` (left, right; rad)."""
         radius = self._drive.wheel_radius
-        left = self._measured((wheels[0] - self._wheels[0]) * radius, rng)
-        right = self._measured((wheels[1] - self._wheels[1]) * radius, rng)
+        true_left = (wheels[0] - self._wheels[0]) * radius
+        true_right = (wheels[1] - self._wheels[1]) * radius
+        left, right = self._measured(true_left, rng), self._measured(true_right, rng)
         self._wheels = wheels
-        travel = (left + right) / 2
-        turn = (right - left) / self._drive.wheel_separation
+        self._stamp_ns = stamp_ns
+        # Of the measured travel they would hang together with the very errors that they
+        # describe, and a filter that believes them would be biased.
+        spread = self._noise**2 * abs(true_left), self._noise**2 * abs(true_right)
+        self._left, self._right = self._left + left, self._right + right
+        self._spread = self._spread[0] + spread[0], self._spread[1] + spread[1]
+        self._move(*self._travel_and_turn(left, right), self._step_covariance(spread))
+        return self.pose
+
+    def motion(self) -> WheelMotion:
+        """Mean motion between the last :meth:`update` and that before the last call."""
+        seconds = (self._stamp_ns - self._told_ns) * 1e-9
+        if seconds > 0:
+            travel, turn = self._travel_and_turn(self._left, self._right)
+            covariance = _floor()
+            covariance[_FORWARD_AND_YAW] += (
+                self._step_covariance(self._spread) / seconds**2
+            )
+            self._motion = WheelMotion(travel / seconds, turn / seconds, covariance)
+            self._told_ns = self._stamp_ns
+            self._left = self._right = 0.0
+            self._spread = (0.0, 0.0)
+        return self._motion
+
+    def _travel_and_turn(self, left: float, right: float) -> tuple[float, float]:
+        return (left + right) / 2, (right - left) / self._drive.wheel_separation
+
+    def _step_covariance(self, spread: tuple[float, float]) -> Matrix:
+        """(2, 2) of travel and turn, from the variances of left and right."""
+        base = self._drive.wheel_separation
+        total, skew = spread[0] + spread[1], (spread[1] - spread[0]) / (2 * base)
+        return np.array([[total / 4, skew], [skew, total / base**2]])
+
+    def _move(self, travel: float, turn: float, covariance: Matrix) -> None:
         # Chord of the arc: along the mean heading, shorter by sinc(turn / 2).
         half = turn / 2
         chord = travel * (math.sin(half) / half if abs(half) > 1e-9 else 1.0)
         step = Pose2(chord * math.cos(half), chord * math.sin(half), turn)
-        self.pose = self.pose @ step
-        seconds = (stamp_ns - self._stamp_ns) * 1e-9
-        if seconds > 0:
-            self.speed, self.yaw_rate = travel / seconds, turn / seconds
-        self._stamp_ns = stamp_ns
-        return self.pose
+        before, self.pose = self.pose, self.pose @ step
+        x, y = self.pose.x - before.x, self.pose.y - before.y
+        c, s = math.cos(before.yaw + half), math.sin(before.yaw + half)
+        F = _lever(x, y)
+        G = np.array([[c, -y / 2], [s, x / 2], [0.0, 1.0]])
+        self._covariance = F @ self._covariance @ F.T + G @ covariance @ G.T
 
     def _measured(self, travel: float, rng: np.random.Generator) -> float:
         if self._noise == 0:
             return travel
         return travel + self._noise * math.sqrt(abs(travel)) * float(rng.normal())
+
+
+_FORWARD_AND_YAW = np.ix_([0, 2], [0, 2])
+
+
+def _lever(x: float, y: float) -> Matrix:
+    """(3, 3): how a point at (x, y) moves when the origin moves and turns."""
+    return np.array([[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]])
+
+
+def _floor() -> Matrix:
+    return np.eye(3) * LEAST_STDDEV**2

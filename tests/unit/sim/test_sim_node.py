@@ -250,6 +250,9 @@ def test_wheel_odometry_drifts() -> None:
     a, b = odometry.pose.pose.position, truth.pose.pose.position
     assert 0.01 < math.hypot(a.x - b.x, a.y - b.y) < 1.5
     assert odometry.twist.twist.linear.x == pytest.approx(0.5, abs=0.2)
+    for stated in (odometry.pose.covariance, odometry.twist.covariance):
+        assert (stated.reshape(6, 6).diagonal()[[0, 1, 5]] > 0).all()
+    assert not truth.pose.covariance.any()
 
 
 def test_the_same_run_twice_gives_the_same_messages() -> None:
