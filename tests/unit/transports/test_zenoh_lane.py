@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from navette.transports.zenoh.recovery import lane as lane_module
-from navette.transports.zenoh.recovery.lane import Lane
+from navette.transports.zenoh.recovery.lane import Lane, Room
 
 
 def filled(*numbers: int) -> tuple[Lane[int], list[int]]:
@@ -69,6 +69,48 @@ def test_one_that_was_under_way_when_it_began_is_taken() -> None:
     assert take(lane, 9) == [9]
     assert take(lane, 8) == []
     assert take(lane, 10) == [10]
+
+
+def test_what_comes_before_it_is_said_what_is_owed_waits() -> None:
+    lane: Lane[int] = Lane(is_expected=True)
+    assert [take(lane, 8), take(lane, 7), take(lane, 7), take(lane, 11)] == [[]] * 4
+    assert (lane.is_held_up, lane.missing()) == (True, None)
+    assert lane.start_after(5) == []
+    assert (lane.is_held_up, lane.missing()) == (False, (6, 6))
+    assert take(lane, 6) == [6, 7, 8]
+    assert lane.missing() == (9, 10)
+    assert lane.start_after(20) == []
+
+
+def test_what_was_on_its_way_when_it_was_said_is_delivered() -> None:
+    lane: Lane[int] = Lane(is_expected=True)
+    assert [take(lane, 2**62), take(lane, 7), take(lane, 9)] == [[], [], []]
+    assert lane.start_after(8) == [7, 2**62]
+    assert lane.missing() == (8, 8)
+
+
+def test_the_very_first_and_those_of_nobody_known_wait_for_nothing() -> None:
+    lane: Lane[int] = Lane(is_expected=True)
+    assert [take(lane, 3), take(lane, 1), take(lane, 2)] == [[], [1], [2, 3]]
+    other: Lane[int] = Lane(is_expected=True)
+    assert [take(other, 5), take(other, 7)] == [[], []]
+    assert other.start() == [5]
+    assert other.missing() == (6, 6)
+
+
+def test_lanes_share_a_room() -> None:
+    room = Room(3)
+    one: Lane[int] = Lane(room)
+    two: Lane[int] = Lane(room)
+    for number in (1, 3, 4):
+        take(one, number)
+        take(two, number)
+    assert take(one, 2) == [2, 3, 4]
+    assert take(two, 2) == [2, 3]
+    assert take(two, 5) == []
+    assert take(two, 4) == [4, 5]
+    one.drop()
+    assert room.take(3)
 
 
 def test_a_jump_beyond_all_measure_costs_nothing() -> None:

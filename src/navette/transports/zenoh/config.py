@@ -64,9 +64,11 @@ _COMMON: dict[str, Any] = {
 }
 
 
-def peer_config(settings: Settings) -> zenoh.Config:
-    """Of the session that does the work."""
+def peer_config(settings: Settings, zid: str = "") -> zenoh.Config:
+    """Of the session that does the work, with that id unless a file says another."""
     config = _base(settings, settings.session_file)
+    if zid and config.get_json("id") == "null":
+        config.insert_json5("id", json.dumps(zid))
     config.insert_json5("mode", '"peer"')
     if settings.session_file is None or "router" in settings.explicit:
         config.insert_json5("connect/endpoints", json.dumps(settings.router))

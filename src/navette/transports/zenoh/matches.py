@@ -9,9 +9,9 @@ from navette.transports.expiring import age_ns
 class Matches:
     """The remote endpoints that an endpoint here exchanges samples with.
 
-    ``remotes`` (by token), ``by_gid`` (the same), ``asserting`` (gids of those of them
-    that assert themselves) and ``refused`` (gids of those whose QoS does not fit)
-    change while others read them.
+    ``remotes`` (by token), ``by_gid`` (the same), ``sessions`` (of each gid),
+    ``asserting`` (gids of those of them that assert themselves) and ``refused`` (gids
+    of those whose QoS does not fit) change while others read them.
 
     Args:
         names: what every publisher or client of others sends on, by gid, also of those
@@ -27,6 +27,7 @@ class Matches:
         "endpoint",
         "refused",
         "remotes",
+        "sessions",
         "type_hash",
     )
 
@@ -43,6 +44,7 @@ class Matches:
         self.type_hash = type_hash
         self.remotes: dict[str, Endpoint] = {}
         self.by_gid: dict[bytes, Endpoint] = {}
+        self.sessions: dict[bytes, str] = {}
         self.asserting: set[bytes] = set()
         self.refused: set[bytes] = set()
 
@@ -50,6 +52,7 @@ class Matches:
         """One more, by its token."""
         self.remotes[key] = remote
         self.by_gid[remote.gid] = remote
+        self.sessions[remote.gid] = key.split("/", 3)[2]
         if remote.qos.asserts_itself:
             self.asserting.add(remote.gid)
 
@@ -58,6 +61,7 @@ class Matches:
         remote = self.remotes.pop(key, None)
         if remote is not None:
             self.by_gid.pop(remote.gid, None)
+            self.sessions.pop(remote.gid, None)
             self.asserting.discard(remote.gid)
         return remote is not None
 
@@ -65,6 +69,7 @@ class Matches:
         """There is nobody any more."""
         self.remotes.clear()
         self.by_gid.clear()
+        self.sessions.clear()
         self.asserting.clear()
 
     def astray_from(self, gid: bytes) -> str:

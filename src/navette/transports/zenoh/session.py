@@ -37,12 +37,13 @@ class Session:
 
     Args:
         domain_id: whose nodes are seen.
+        zid: its name on the network; empty: Zenoh makes one up.
 
     Raises:
         NetworkError: says with which endpoints, and why.
     """
 
-    def __init__(self, settings: Settings, domain_id: int) -> None:
+    def __init__(self, settings: Settings, domain_id: int, zid: str = "") -> None:
         self.settings = settings
         self.complaints = Complaints()
         self.heard = Heard()
@@ -50,7 +51,7 @@ class Session:
         self._role = RouterRole(settings)
         router = self._role.find_or_serve()
         try:
-            self.zenoh = zenoh.open(peer_config(settings))
+            self.zenoh = zenoh.open(peer_config(settings, zid))
         except zenoh.ZError as error:
             self._role.close()
             raise refuse(settings, error) from error

@@ -21,6 +21,7 @@ from navette.transports.qos import EndpointQos, ReliabilityPolicy
 from navette.transports.service_ports import ReplySink, RequestSink
 from navette.transports.zenoh.clients import ZenohClient
 from navette.transports.zenoh.keys import data_key
+from navette.transports.zenoh.kin import new_zid
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.own_tokens import OwnTokens
 from navette.transports.zenoh.publisher import ZenohPublisher
@@ -64,7 +65,9 @@ class ZenohTransport(Transport):
         self.domain_id = domain_id
         self._now_ns = now_ns
         self._traffic = traffic
-        self.session = Session(settings or Settings.from_environment(), domain_id)
+        # In lock-step there is no recovery, and nobody is to wait for its letters.
+        zid = new_zid() if traffic is None else ""
+        self.session = Session(settings or Settings.from_environment(), domain_id, zid)
         self._graph = self.session.graph
         # In lock-step nothing is lost, and every sample is counted.
         self._recovery = None if traffic is not None else self._make_recovery()
@@ -137,7 +140,7 @@ class ZenohTransport(Transport):
                 **self._common(),
             )
             if recovery is not None:
-                recovery.wants.add(gid_of(token.key()), port.arrivals)
+                recovery.hearing.add(gid_of(token.key()), port.arrivals)
             return port
 
         return self._open(endpoint, make)

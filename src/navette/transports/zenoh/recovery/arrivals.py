@@ -9,7 +9,7 @@ from navette.transports.base import Item, Sink
 from navette.transports.expiring import Expiring
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery.answer import Recovered
-from navette.transports.zenoh.recovery.lane import Lane
+from navette.transports.zenoh.recovery.lane import Lane, Room
 from navette.transports.zenoh.recovery.wants import Wants
 
 # Publishers remembered at most; those that are not listed in the graph come to it.
@@ -35,6 +35,7 @@ class Arrivals:
         "_lanes",
         "_lock",
         "_lost",
+        "_room",
         "_sink",
         "_wants",
         "key",
@@ -60,6 +61,7 @@ class Arrivals:
         self._is_latched = matches.endpoint.qos.is_latched
         self._is_open = True
         self._lanes: dict[bytes, Lane[Item]] = {}
+        self._room = Room()
         self._lock = threading.Lock()
 
     def take(self, gid: bytes, item: Item) -> None:
@@ -71,8 +73,10 @@ class Arrivals:
                 return
             lane = lane or self._lane(gid)
             lost = self._deliver(gid, lane, lane.take(item[3], item, _size(item)))
-            is_waiting = lane.is_waiting
+            is_waiting, is_held_up = lane.is_waiting, lane.is_held_up
         self._follow_up(gid, lost, is_waiting=is_waiting)
+        if is_held_up and self._wants is not None:
+            self._wants.starts.await_letter(self, gid)
 
     def close(self) -> None:
         """Deliver nothing more."""
@@ -84,22 +88,27 @@ class Arrivals:
 
     def start_after(self, gid: bytes, number: int) -> None:
         """What comes after that number is owed to it; any thread."""
-        with self._lock:
-            # What a latched publisher has kept comes first; it begins with that.
-            if not self._is_latched:
-                self._lane(gid).start_after(number)
-        self.reach(gid, number)
+        # What a latched publisher has kept comes first; it begins with that.
+        if not self._is_latched:
+            self._change(gid, lambda lane: lane.start_after(number), new=True)
+
+    def start(self, gid: bytes) -> None:
+        """Nobody will say from where on; any thread."""
+        self._change(gid, lambda lane: lane.start() if lane.is_held_up else [])
+
+    def is_held_up(self, gid: bytes) -> bool:
+        """Whether something waits to be told from where on it is owed something."""
+        lane = self._lanes.get(gid)
+        return lane is not None and lane.is_held_up
 
     def reach(self, gid: bytes, number: int) -> None:
         """The publisher has come to that number; any thread."""
-        with self._lock:
-            lane = self._lanes.get(gid)
-            if lane is None:
-                return
+
+        def reached(lane: Lane[Item]) -> list[Item]:
             lane.reach(number)
-            lost = self._deliver(gid, lane, [])
-            is_waiting = lane.is_waiting
-        self._follow_up(gid, lost, is_waiting=is_waiting)
+            return []
+
+        self._change(gid, reached)
 
     def missing(self, gid: bytes) -> tuple[int, int] | None:
         """First and last number of the first gap."""
@@ -136,15 +145,44 @@ class Arrivals:
 
     # -- inside ------------------------------------------------------------------
 
+    def _change(
+        self,
+        gid: bytes,
+        change: Callable[[Lane[Item]], list[Item]],
+        *,
+        new: bool = False,
+    ) -> None:
+        """Do something to a lane, deliver what is due then, ask for what is missing."""
+        with self._lock:
+            lane = self._lane(gid) if new else self._lanes.get(gid)
+            if lane is None:
+                return
+            lost = self._deliver(gid, lane, change(lane))
+            is_waiting = lane.is_waiting
+        self._follow_up(gid, lost, is_waiting=is_waiting)
+
     def _lane(self, gid: bytes) -> Lane[Item]:
         lane = self._lanes.get(gid)
         if lane is None:
-            lane = Lane()
+            lane = Lane(self._room, is_expected=self._expects_letter(gid))
             if self._is_open:
                 if len(self._lanes) >= _MOST_PUBLISHERS:
-                    del self._lanes[next(iter(self._lanes))]
+                    self._forget_one()
                 self._lanes[gid] = lane
         return lane
+
+    def _expects_letter(self, gid: bytes) -> bool:
+        """Whether its publisher is, or may be, going to say from where on."""
+        if self._wants is None or self._is_latched:
+            return False
+        return self._wants.starts.expects(self.matches.sessions.get(gid))
+
+    def _forget_one(self) -> None:
+        """The oldest, but first those that the graph does not list (any more)."""
+        listed = self.matches.by_gid
+        strangers = (gid for gid in self._lanes if gid not in listed)
+        gid = next(strangers, None) or next(iter(self._lanes))
+        self._lanes.pop(gid).drop()
 
     def _deliver(self, gid: bytes, lane: Lane[Item], due: list[Item]) -> int:
         """Pass on what is due; how many are lost, as there is nobody to ask."""

@@ -15,6 +15,12 @@ class Hearer(Protocol):
     def start_after(self, gid: bytes, number: int) -> None:
         """What comes after that number is owed to it; any thread."""
 
+    def start(self, gid: bytes) -> None:
+        """Nobody will say from where on; any thread."""
+
+    def is_held_up(self, gid: bytes) -> bool:
+        """Whether something waits to be told from where on it is owed something."""
+
     def reach(self, gid: bytes, number: int) -> None:
         """The publisher has come to that number; any thread."""
 

@@ -13,9 +13,12 @@ from navette.errors import DecodeError
 from navette.transports.base import Endpoint, TransportObserver
 from navette.transports.leaving import wait_for_at_end
 from navette.transports.zenoh.complaints import Complaints
+from navette.transports.zenoh.kin import has_died, is_kin
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery.desk import Desk
+from navette.transports.zenoh.recovery.hearing import Hearing
 from navette.transports.zenoh.recovery.mail import (
+    Head,
     Kind,
     Letter,
     mail_key,
@@ -23,10 +26,12 @@ from navette.transports.zenoh.recovery.mail import (
     parse_sender,
 )
 from navette.transports.zenoh.recovery.offers import Offers
+from navette.transports.zenoh.recovery.starts import Starts
 from navette.transports.zenoh.recovery.wants import Wants
 
 _TICK_S = 1.0
 _JOIN_S = 1.5
+_BEFORE, _BEHIND = zenoh.Priority.INTERACTIVE_HIGH, zenoh.Priority.DATA
 # Until its token is gone, too; another one may have its name after that.
 _CLOSED_TICKS = 5
 # Sessions and endpoints remembered; a hostile peer may make up any number.
@@ -38,8 +43,8 @@ _open: "weakref.WeakSet[Recovery]" = weakref.WeakSet()
 class Recovery(TransportObserver):
     """What a session does so that what is reliable and was lost on the way comes still.
 
-    ``offers`` are the reliable publishers here, ``wants`` what the reliable
-    subscriptions here miss. Nothing is declared and no thread runs before the first
+    ``offers`` are the reliable publishers here, ``hearing`` the reliable subscriptions,
+    ``wants`` what these miss. Nothing is declared and no thread runs before the first
     of them.
 
     Args:
@@ -62,14 +67,18 @@ class Recovery(TransportObserver):
         self.offers = Offers(self)
         self._stop = threading.Event()
         self._desk = Desk(session, zid, domain_id, complaints, self.offers, self._stop)
+        self.hearing = Hearing()
+        self._starts = Starts(self.hearing, self.post, self._start_ticking)
         self.wants = Wants(
             zid,
+            self.hearing,
+            self._starts,
             self._desk.get,
-            self.post,
             self._start_ticking,
             self._desk.errands,
             max_message_bytes,
         )
+        #: Whom to say that it is over.
         self._peers: dict[str, None] = {}
         #: Endpoint → ticks for which this is remembered.
         self._closed: dict[bytes, int] = {}
@@ -97,9 +106,14 @@ class Recovery(TransportObserver):
     def leave(self, matches: Matches) -> None:
         """That endpoint here is about to close."""
         self.offers.remove(matches.endpoint)
-        hearer = self.wants.remove(matches.endpoint)
-        if hearer is not None:
-            self._desk.cease(hearer)
+        gid, hearer, sessions = self.hearing.remove(matches.endpoint)
+        if hearer is None:
+            return
+        self.wants.drop(hearer)
+        self._starts.drop(hearer)
+        for session in sessions:
+            self.post(session, Letter(Kind.CLOSED, (Head(gid, 0),)))
+        self._desk.cease(hearer)
 
     def farewell(self) -> None:
         """All endpoints here are about to close; said while the session is open."""
@@ -128,16 +142,17 @@ class Recovery(TransportObserver):
         self, publisher: Endpoint, subscription: Endpoint, *, up: bool
     ) -> None:
         if publisher.is_remote:
-            self.wants.on_match(publisher, subscription, up=up)
+            self.hearing.on_match(publisher, subscription, up=up)
         else:
             if up:  # it may have the name of one that was closed
                 self._closed.pop(subscription.gid, None)
-            self.offers.on_match(publisher, subscription.gid if up else None)
+            self.offers.on_match(publisher, subscription.gid, up=up)
 
     # -- letters ---------------------------------------------------------------
 
     def post(self, to: str, letter: Letter) -> None:
         """Send a letter; it may be lost."""
+        _remember(self._peers, to)
         if letter.kind != Kind.BYE:
             if self._stop.is_set():
                 return  # all has been said
@@ -147,6 +162,9 @@ class Recovery(TransportObserver):
             self._session.put(
                 mail_key(self._domain_id, to, self._zid),
                 letter.encode(),
+                # How far a publisher has come is not to be known before its samples
+                # are there; all else had better come before them.
+                priority=_BEHIND if letter.kind == Kind.HEADS else _BEFORE,
                 congestion_control=zenoh.CongestionControl.DROP,
                 allowed_destination=zenoh.Locality.REMOTE,
             )
@@ -155,9 +173,10 @@ class Recovery(TransportObserver):
         """Whether an endpoint that is not seen any more is one of Navette's that has
         not said that it is closed."""
         return (
-            session in self._peers
+            is_kin(session)
             and session not in self._left
             and gid not in self._closed
+            and not has_died(session)
         )
 
     def _on_letter(self, sample: zenoh.Sample) -> None:
@@ -168,29 +187,31 @@ class Recovery(TransportObserver):
             text = f"recovery: letter ignored: {error}"
             self._complaints.once(("letter",), text)
             return
-        is_new = _remember(self._peers, sender)
-        if is_new and letter.kind == Kind.MATCHED:
-            self.post(sender, Letter(Kind.HELLO))
+        _remember(self._peers, sender)
         self._read(sender, letter)
 
     def _read(self, sender: str, letter: Letter) -> None:
+        gids = [head.gid for head in letter.entries]
         if letter.kind == Kind.MATCHED:
-            for head in letter.entries:
-                self.wants.on_matched(sender, head)
+            if gids and (matched := self.hearing.on_matched(sender, letter.entries)):
+                self.wants.retry(matched)
+        elif letter.kind == Kind.WHERE:
+            self.offers.on_where(sender, gids)
         elif letter.kind == Kind.HEADS:
             for head in letter.entries:
-                self.wants.on_head(sender, head)
+                self.hearing.on_head(sender, head)
         elif letter.kind == Kind.CLOSED:
-            gids = [head.gid for head in letter.entries]
             for gid in gids:
                 if len(self._closed) < _MOST_REMEMBERED:
                     self._closed[gid] = _CLOSED_TICKS
             self.offers.on_closed(gids)
             self.wants.on_closed(gids)
+            self._starts.on_closed(gids)
         elif letter.kind == Kind.BYE:
             _remember(self._left, sender)
             self.offers.on_bye(sender)
             self.wants.on_bye(sender)
+            self._starts.on_bye(sender)
 
     # -- the tick --------------------------------------------------------------
 
@@ -209,6 +230,7 @@ class Recovery(TransportObserver):
         while not self._stop.wait(_TICK_S):
             self.offers.tick()
             self.wants.tick()
+            self._starts.tick()
             for gid, ticks in list(self._closed.items()):
                 self._closed[gid] = ticks - 1
                 if ticks <= 1:

@@ -17,16 +17,50 @@ FAR_AHEAD = 1_000_000
 _NEVER = -1
 
 
+class Room:
+    """How many bytes several lanes may hold together."""
+
+    __slots__ = ("_free",)
+
+    def __init__(self, size: int = MOST_HELD_BYTES) -> None:
+        self._free = size
+
+    def take(self, size: int) -> bool:
+        """Whether there was so much room; it is taken then."""
+        fits = size <= self._free
+        self._free -= size if fits else 0
+        return fits
+
+    def give_back(self, size: int) -> None:
+        """So much is free again."""
+        self._free += size
+
+
 class Lane(Generic[T]):
     """Gives each sample once, by ascending numbers; holds back what comes too early.
 
     What is :meth:`missing` is either taken later or given up. It has no lock, thread
     or time of its own: its owner has.
+
+    Args:
+        is_expected: it will be told from where on something is owed; what comes before
+            that is held. Else it starts with what comes first.
     """
 
-    __slots__ = ("_begun", "_bytes", "_held", "_newest", "_next", "_ready", "_stray")
+    __slots__ = (
+        "_begun",
+        "_held",
+        "_is_expected",
+        "_newest",
+        "_next",
+        "_ready",
+        "_room",
+        "_stray",
+    )
 
-    def __init__(self) -> None:
+    def __init__(self, room: Room | None = None, *, is_expected: bool = False) -> None:
+        self._room = room or Room()
+        self._is_expected = is_expected
         # The number that may pass at once; never while something is held.
         self._ready = _NEVER
         self._next = _NEVER
@@ -35,7 +69,6 @@ class Lane(Generic[T]):
         # What would follow one that was far from all others.
         self._stray = _NEVER
         self._held: dict[int, tuple[T, int]] = {}
-        self._bytes = 0
 
     def passes(self, number: int) -> bool:
         """Whether it is the next one, with nothing else to do: the usual case."""
@@ -44,15 +77,31 @@ class Lane(Generic[T]):
         self._ready = number + 1
         return True
 
-    def start_after(self, number: int) -> None:
-        """Samples after ``number`` are owed; where it has started: told of a newest.
+    def start_after(self, number: int) -> list[T]:
+        """Samples after ``number`` are owed: what is to be delivered now.
 
         One not above ``number`` is taken all the same while nothing was delivered: it
-        was on its way when this was said.
+        was on its way when this was said. Nothing where it has started.
         """
-        if self._next == _NEVER:
-            self._next = number + 1
+        if self._next != _NEVER or number < 0:
+            return []
+        self._next = number + 1
         self.reach(number)
+        return self.start()
+
+    def start(self) -> list[T]:
+        """Nobody will say from where on: what is to be delivered now."""
+        self._is_expected = False
+        if self._begun:
+            return []
+        held = [(each, *self._held[each]) for each in sorted(self._held)]
+        self.drop()
+        return [due for each in held for due in self.take(*each)]
+
+    @property
+    def is_held_up(self) -> bool:
+        """Whether something waits for the start."""
+        return bool(self._held) and self._next == _NEVER
 
     def reach(self, number: int) -> None:
         """The publisher has come to ``number``; nothing where it has not started."""
@@ -63,6 +112,9 @@ class Lane(Generic[T]):
     def take(self, number: int, sample: T, size: int) -> list[T]:
         """A sample has come: what is to be delivered now, in order."""
         self._settle()
+        if self._next == _NEVER and self._is_expected and number > 1:
+            self._hold(number, sample, size)
+            return []
         if self._next == _NEVER or (number < self._next and not self._begun):
             self._next = number
         if not self._next - FAR_BEHIND <= number < self._next + FAR_AHEAD:
@@ -114,14 +166,20 @@ class Lane(Generic[T]):
         self._next, self._newest = number + 1, number
         return [*held, sample, *self._released()]
 
+    def drop(self) -> None:
+        """Hold nothing any more."""
+        for number in list(self._held):
+            self._unhold(number)
+
     def _hold(self, number: int, sample: T, size: int) -> None:
-        if len(self._held) < MOST_HELD and self._bytes + size <= MOST_HELD_BYTES:
+        if number in self._held or len(self._held) >= MOST_HELD:
+            return
+        if self._room.take(size):
             self._held[number] = sample, size
-            self._bytes += size
 
     def _unhold(self, number: int) -> T:
         sample, size = self._held.pop(number)
-        self._bytes -= size
+        self._room.give_back(size)
         return sample
 
     def _released(self) -> list[T]:

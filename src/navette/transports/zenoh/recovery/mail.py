@@ -30,12 +30,13 @@ _MOST_BYTES = 1 + MOST_ENTRIES * _HEAD.size
 class Kind(IntEnum):
     """What a letter says."""
 
-    #: You listen to these publishers; you are owed what comes after these numbers.
+    #: This publisher (the first entry) has come so far, and owes these subscriptions of
+    #: yours what comes after their numbers.
     MATCHED = 1
     #: These publishers have come to these numbers.
     HEADS = 2
-    #: Here is one who listens and can ask: the answer to the first letter.
-    HELLO = 3
+    #: What do these publishers owe me? The first letter has not come.
+    WHERE = 3
     #: These publishers and subscriptions are closed, not lost.
     CLOSED = 4
     #: The session ends, with all that is in it.

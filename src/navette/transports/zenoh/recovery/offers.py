@@ -3,11 +3,19 @@
 import threading
 from collections import defaultdict
 from collections.abc import Callable, Iterable
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from navette.transports.qos import ReliabilityPolicy
 from navette.transports.zenoh.matches import Matches
-from navette.transports.zenoh.recovery.mail import Ask, End, Head, Kind, Letter, letters
+from navette.transports.zenoh.recovery.mail import (
+    MOST_ENTRIES,
+    Ask,
+    End,
+    Head,
+    Kind,
+    Letter,
+    letters,
+)
 from navette.transports.zenoh.recovery.retention import Kept, Retention
 
 # So long samples are kept for one whose link was lost, in ticks (seconds).
@@ -25,6 +33,13 @@ class Peers(Protocol):
     def may_return(self, session: str, gid: bytes) -> bool:
         """Whether an endpoint that is not seen any more is one of Navette's that has
         not said that it is closed."""
+
+
+class Debt(NamedTuple):
+    """A subscription of that session is owed what comes after that number."""
+
+    session: str
+    since: int
 
 
 class Offer:
@@ -48,10 +63,9 @@ class Offer:
         self.key = key
         self.matches = matches
         self.retention = retention
-        #: Subscription → its session.
-        self.listeners: dict[bytes, str] = {}
-        #: Subscription → its session, and how many ticks are left.
-        self.owed: dict[bytes, tuple[str, int]] = {}
+        self.listeners: dict[bytes, Debt] = {}
+        #: Those that are away, and for how many ticks they are waited for.
+        self.owed: dict[bytes, tuple[Debt, int]] = {}
         self.seen = 0
         self.quiet = 0
 
@@ -87,7 +101,7 @@ class Offers:
         with self._lock:
             self._offers[gid] = offer
             self._by_endpoint[id(matches.endpoint)] = offer
-        self._update(offer)
+        self._begin(offer, list(matches.by_gid))
 
     def remove(self, endpoint: object) -> None:
         """That publisher is about to close: nobody is to wait for it."""
@@ -96,21 +110,36 @@ class Offers:
             if offer is None:
                 return
             del self._offers[offer.gid]
-            sessions = {*offer.listeners.values(), *(z for z, _ in offer.owed.values())}
+            away = [debt for debt, _ in offer.owed.values()]
+            sessions = {debt.session for debt in (*offer.listeners.values(), *away)}
         for session in sessions:
             self._peers.post(session, Letter(Kind.CLOSED, (Head(offer.gid, 0),)))
 
-    def on_match(self, endpoint: object, met: bytes | None) -> None:
-        """The subscription ``met`` listens to it now; None: one has ceased to."""
+    def on_match(self, endpoint: object, gid: bytes, *, up: bool) -> None:
+        """That subscription listens to that publisher from now on, or no longer."""
         with self._lock:
             offer = self._by_endpoint.get(id(endpoint))
-        if offer is not None:
-            self._update(offer, met)
+        if offer is None:
+            return
+        if up:
+            self._begin(offer, (gid,))
+        else:
+            self._end(offer, gid)
+
+    def on_where(self, session: str, gids: Iterable[bytes]) -> None:
+        """That session has not heard what these publishers owe it."""
+        with self._lock:
+            offers = [self._offers[gid] for gid in gids if gid in self._offers]
+            found = [(offer, _of(offer.listeners, session)) for offer in offers]
+        for offer, debts in found:
+            if debts:
+                # Not how far it has come: that may be on its way.
+                self._tell(session, Head(offer.gid, 0), debts)
 
     def on_closed(self, gids: Iterable[bytes]) -> None:
         """Those subscriptions do not come back."""
         gone = set(gids)
-        self._forget(lambda gid, session: gid in gone)
+        self._forget(lambda gid, _: gid in gone)
 
     def on_bye(self, session: str) -> None:
         """That session does not come back."""
@@ -122,11 +151,14 @@ class Offers:
         with self._lock:
             for offer in self._offers.values():
                 if offer.owed:
-                    left = {g: (z, n - 1) for g, (z, n) in offer.owed.items() if n > 1}
-                    offer.owed = left
+                    offer.owed = {
+                        gid: (debt, ticks - 1)
+                        for gid, (debt, ticks) in offer.owed.items()
+                        if ticks > 1 and self._peers.may_return(debt.session, gid)
+                    }
                     offer.settle()
                 if offer.listeners and offer.fell_silent():
-                    for session in set(offer.listeners.values()):
+                    for session in {debt.session for debt in offer.listeners.values()}:
                         heads[session].append(offer.head)
         for session, entries in heads.items():
             for letter in letters(Kind.HEADS, entries):
@@ -140,34 +172,48 @@ class Offers:
             return "", [], End(ask.last)
         return offer.key, *offer.retention.between(ask)
 
-    def _update(self, offer: Offer, met: bytes | None = None) -> None:
-        now = {
-            remote.gid: key.split("/", 3)[2]
-            for key, remote in dict(offer.matches.remotes).items()
-            if remote.qos.reliability == ReliabilityPolicy.RELIABLE
-        }
+    def _begin(self, offer: Offer, gids: Iterable[bytes]) -> None:
+        """Those listen now, for the first time or again."""
+        matches = offer.matches
+        told: defaultdict[str, list[Head]] = defaultdict(list)
         with self._lock:
-            # One that was lost and is back by now is told anew, too.
-            before = offer.listeners.keys() - {met}
-            new = {now[gid] for gid in now.keys() - before}
-            for gid in offer.listeners.keys() - now.keys():
-                session = offer.listeners[gid]
-                if self._peers.may_return(session, gid):
-                    offer.owed[gid] = session, GRACE_TICKS
-            for gid in now:
-                offer.owed.pop(gid, None)
-            offer.listeners = now
-            offer.settle()
             head, offer.quiet = offer.head, 0
-        for session in new:
-            self._peers.post(session, Letter(Kind.MATCHED, (head,)))
+            for gid in gids:
+                remote, session = matches.by_gid.get(gid), matches.sessions.get(gid)
+                if remote is None or session is None:
+                    continue  # gone again
+                if remote.qos.reliability != ReliabilityPolicy.RELIABLE:
+                    continue
+                owed, _ = offer.owed.pop(gid, (Debt(session, head.number), 0))
+                offer.listeners[gid] = owed
+                told[session].append(Head(gid, owed.since))
+        for session, debts in told.items():
+            self._tell(session, head, debts)
+
+    def _end(self, offer: Offer, gid: bytes) -> None:
+        """That one listens no longer: it was closed, or its link was lost."""
+        with self._lock:
+            debt = offer.listeners.pop(gid, None)
+            if debt is not None and self._peers.may_return(debt.session, gid):
+                offer.owed[gid] = debt, GRACE_TICKS
+            offer.settle()
+
+    def _tell(self, session: str, head: Head, debts: Iterable[Head]) -> None:
+        every = tuple(debts)
+        for i in range(0, len(every), MOST_ENTRIES - 1):
+            entries = head, *every[i : i + MOST_ENTRIES - 1]
+            self._peers.post(session, Letter(Kind.MATCHED, entries))
 
     def _forget(self, is_gone: Callable[[bytes, str], bool]) -> None:
         with self._lock:
             for offer in self._offers.values():
                 if not offer.owed:
                     continue
-                for gid, (session, _) in list(offer.owed.items()):
-                    if is_gone(gid, session):
+                for gid, (debt, _) in list(offer.owed.items()):
+                    if is_gone(gid, debt.session):
                         del offer.owed[gid]
                 offer.settle()
+
+
+def _of(listeners: dict[bytes, Debt], session: str) -> list[Head]:
+    return [Head(gid, d.since) for gid, d in listeners.items() if d.session == session]

@@ -45,7 +45,8 @@ class Retention:
     @property
     def newest(self) -> int:
         """The last number that was sent, or that was for nobody."""
-        return self._newest
+        with self._lock:
+            return self._newest
 
     def admits(self, number: int, listeners: Sized) -> bool:
         """Whether somebody gets it; else it need not be made at all.
@@ -56,11 +57,10 @@ class Retention:
         """
         if self._is_wanted:
             return True
-        self._newest = number
-        if not listeners:
-            return False
         with self._lock:
             self._is_wanted = bool(listeners)
+            if not self._is_wanted:
+                self._newest = number
             return self._is_wanted
 
     def add(self, sample: Kept) -> None:

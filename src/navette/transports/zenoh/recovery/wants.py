@@ -5,27 +5,17 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from navette.transports.base import Endpoint
 from navette.transports.zenoh.recovery.answer import Answer, Parts
 from navette.transports.zenoh.recovery.errands import Errands
 from navette.transports.zenoh.recovery.hearer import Hearer, Want
-from navette.transports.zenoh.recovery.mail import (
-    Ask,
-    End,
-    Head,
-    Kind,
-    Letter,
-)
+from navette.transports.zenoh.recovery.hearing import Hearing
+from navette.transports.zenoh.recovery.mail import Ask, End
+from navette.transports.zenoh.recovery.starts import Starts
 
 # A publisher that cannot be reached is waited for as long as it keeps its samples.
 _GRACE_TICKS = 60
 # One that can be reached and does not answer is asked so often, a tick apart.
 _MOST_TRIES = 3
-# A publisher's first letter may come after its first samples; who writes none for so
-# many ticks is not Navette's.
-_STRANGE_TICKS = 3
-# Publishers whose session is remembered.
-_MOST_HOMES = 20_000
 
 
 Get = Callable[[str, Ask, Hearer, Answer], None]
@@ -36,8 +26,8 @@ class Wants:
 
     Args:
         own_zid: who asks.
+        starts: who waits to be told what it is owed at all.
         get: asks a session, for a subscription.
-        post: sends a letter.
         watch: called when there is something to look at with every tick.
         max_message_bytes: longer messages are not put together.
     """
@@ -45,94 +35,30 @@ class Wants:
     def __init__(
         self,
         own_zid: str,
+        hearing: Hearing,
+        starts: Starts,
         get: Get,
-        post: Callable[[str, Letter], None],
         watch: Callable[[], None],
         errands: Errands,
         max_message_bytes: int,
     ) -> None:
+        self.starts = starts
+        self._hearing = hearing
         self._watch = watch
         self._own_zid = own_zid
         self._longest = max_message_bytes
         self._get = get
-        self._post = post
         self._errands = errands
-        #: Endpoint → gid and subscription.
-        self._hearers: dict[int, tuple[bytes, Hearer]] = {}
-        #: Publisher → those that hear it now; and its session, also when it is away.
-        self._heard: dict[bytes, set[Hearer]] = {}
-        self._homes: dict[bytes, str] = {}
-        #: Publishers that are not Navette's.
-        self._strangers: dict[bytes, None] = {}
-        # Heads of publishers that nobody here knows yet.
-        self._early: dict[bytes, Head] = {}
         self._wants: dict[tuple[Hearer, bytes], Want] = {}
         self._lines: dict[str, deque[Want]] = {}
         self._busy: set[str] = set()
         self._lock = threading.Lock()
 
-    def add(self, gid: bytes, hearer: Hearer) -> None:
-        """A subscription is open, from before it is announced."""
+    def drop(self, hearer: Hearer) -> None:
+        """It is closed."""
         with self._lock:
-            self._hearers[id(hearer.matches.endpoint)] = gid, hearer
-            for publisher in list(hearer.matches.remotes.values()):
-                self._heard.setdefault(publisher.gid, set()).add(hearer)
-
-    def remove(self, endpoint: object) -> Hearer | None:
-        """That subscription is about to close: nobody is to keep anything for it."""
-        with self._lock:
-            own_gid, hearer = self._hearers.pop(id(endpoint), (b"", None))
-            if hearer is None:
-                return None
-            heard = [gid for gid, by in self._heard.items() if hearer in by]
-            sessions = {self._homes[gid] for gid in heard if gid in self._homes}
-            for gid in heard:
-                self._unhear(gid, hearer)
             for key in [key for key in self._wants if key[0] is hearer]:
                 del self._wants[key]
-        for session in sessions:
-            self._post(session, Letter(Kind.CLOSED, (Head(own_gid, 0),)))
-        return hearer
-
-    def on_match(self, publisher: Endpoint, endpoint: object, *, up: bool) -> None:
-        """That subscription hears that publisher from now on, or no longer."""
-        with self._lock:
-            _, hearer = self._hearers.get(id(endpoint), (b"", None))
-            if hearer is None:
-                return
-            if not up:
-                self._unhear(publisher.gid, hearer)
-                self._early.pop(publisher.gid, None)
-                return
-            self._heard.setdefault(publisher.gid, set()).add(hearer)
-            early = self._early.get(publisher.gid)
-        if early is not None:
-            hearer.start_after(*early)
-
-    # -- what the others tell --------------------------------------------------
-
-    def on_matched(self, session: str, head: Head) -> None:
-        """A publisher of that session knows that it is heard here."""
-        with self._lock:
-            if len(self._homes) >= _MOST_HOMES:
-                del self._homes[next(iter(self._homes))]
-            self._homes[head.gid] = session
-            self._strangers.pop(head.gid, None)
-            hearers = list(self._heard.get(head.gid, ()))
-            if not hearers and len(self._early) < _MOST_HOMES:
-                self._early[head.gid] = head
-        for hearer in hearers:
-            hearer.start_after(*head)
-        self._retry(head.gid)
-
-    def on_head(self, session: str, head: Head) -> None:
-        """A publisher of that session has come so far."""
-        with self._lock:
-            if self._homes.get(head.gid) != session:
-                return
-            hearers = list(self._heard.get(head.gid, ()))
-        for hearer in hearers:
-            hearer.reach(*head)
 
     def on_closed(self, gids: Iterable[bytes]) -> None:
         """Those publishers do not come back."""
@@ -141,13 +67,21 @@ class Wants:
 
     def on_bye(self, session: str) -> None:
         """That session does not come back."""
-        self._forsake(lambda want: self._homes.get(want.gid) == session)
+        self._forsake(lambda want: self._hearing.home(want.gid) == session)
+
+    def retry(self, gid: bytes) -> None:
+        """A publisher is back."""
+        with self._lock:
+            for want in [w for w in self._wants.values() if w.is_parked]:
+                if want.gid == gid:
+                    want.tries = 0
+                    self._queue(want)
 
     # -- asking ----------------------------------------------------------------
 
     def can_ask(self, gid: bytes) -> bool:
-        """Whether there is, or may be, somebody to ask for that publisher's samples."""
-        return gid in self._homes or (gid in self._heard and gid not in self._strangers)
+        """Whether there is somebody to ask for that publisher's samples."""
+        return self._hearing.home(gid) is not None
 
     def want(self, hearer: Hearer, gid: bytes) -> None:
         """Something is missing there; nothing new where it is asked for already."""
@@ -164,24 +98,16 @@ class Wants:
         with self._lock:
             for want in [w for w in self._wants.values() if w.is_parked]:
                 want.ticks += 1
-                is_heard = want.hearer in self._heard.get(want.gid, ())
-                if want.gid not in self._homes:
-                    if want.ticks >= _STRANGE_TICKS:
-                        self._note_stranger(want.gid)
-                        hopeless.append(want)
-                elif is_heard and want.tries < _MOST_TRIES:
+                is_heard = self._hearing.hears(want.hearer, want.gid)
+                is_known = self._hearing.home(want.gid) is not None
+                if is_heard and is_known and want.tries < _MOST_TRIES:
                     self._queue(want)
-                elif is_heard or want.ticks >= _GRACE_TICKS:
+                elif is_heard or not is_known or want.ticks >= _GRACE_TICKS:
                     hopeless.append(want)
         self._forsake(lambda want: want in hopeless)
 
-    def _note_stranger(self, gid: bytes) -> None:
-        if len(self._strangers) >= _MOST_HOMES:
-            del self._strangers[next(iter(self._strangers))]
-        self._strangers[gid] = None
-
     def _queue(self, want: Want) -> None:
-        session = self._homes.get(want.gid)
+        session = self._hearing.home(want.gid)
         want.is_parked = session is None
         if session is None:
             return
@@ -253,14 +179,6 @@ class Wants:
             # What came up in between has a want of its own.
             return gap if self._wants.setdefault(key, want) is want else None
 
-    def _retry(self, gid: bytes) -> None:
-        """A publisher is back."""
-        with self._lock:
-            for want in [w for w in self._wants.values() if w.is_parked]:
-                if want.gid == gid:
-                    want.tries = 0
-                    self._queue(want)
-
     def _forsake(self, is_hopeless: Callable[[Want], bool]) -> None:
         with self._lock:
             hopeless = [want for want in self._wants.values() if is_hopeless(want)]
@@ -268,9 +186,3 @@ class Wants:
                 del self._wants[want.hearer, want.gid]
         for want in hopeless:
             want.hearer.give_up(want.gid, None)
-
-    def _unhear(self, gid: bytes, hearer: Hearer) -> None:
-        heard = self._heard.get(gid, set())
-        heard.discard(hearer)
-        if not heard:
-            self._heard.pop(gid, None)

@@ -1,0 +1,72 @@
+"""Names of sessions by which Navette's know each other, and where each of them runs.
+
+A session's id on the network is 16 bytes that may be chosen: a mark, the machine, the
+process, and what makes it unique. Nobody else looks into them.
+"""
+
+import hashlib
+import os
+import secrets
+from functools import cache
+from pathlib import Path
+
+_MARK = "6e617665"  # "nave"
+_FIELD = 8  # hex digits of each of the four parts
+_BOOT = Path("/proc/sys/kernel/random/boot_id")
+_PROCESSES = Path("/proc/self/ns/pid")  # where process ids mean the same
+
+
+def new_zid() -> str:
+    """Of a session of this process that takes part in the recovery."""
+    return f"{_MARK}{_host()}{os.getpid() % 2**32:08x}{secrets.token_hex(_FIELD // 2)}"
+
+
+def is_kin(zid: str) -> bool:
+    """Whether it is a session of Navette's."""
+    return len(zid) == 4 * _FIELD and zid.startswith(_MARK)
+
+
+def host_of(zid: str) -> str:
+    """On which machine (and with which process ids) a session of Navette's runs."""
+    return zid[_FIELD : 2 * _FIELD]
+
+
+def is_neighbour(zid: str) -> bool:
+    """Whether the session runs where the processes can be seen from here."""
+    return is_kin(zid) and host_of(zid) == _host()
+
+
+def has_died(zid: str) -> bool:
+    """Whether the process of the session is known to be gone; False: who knows.
+
+    One whose link was lost may come back, one without a process never will.
+    """
+    if not is_neighbour(zid):
+        return False
+    pid = int(zid[2 * _FIELD : 3 * _FIELD], 16)
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    except (OSError, OverflowError):  # another user's, or nothing that could be asked
+        return False
+    return _is_zombie(pid)
+
+
+def _is_zombie(pid: int) -> bool:
+    """Ended, but its parent has not asked how yet."""
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_bytes()
+    except OSError:
+        return False
+    return stat.rpartition(b")")[2].split()[:1] == [b"Z"]
+
+
+@cache
+def _host() -> str:
+    """The same for processes that see each other, where the system tells of it."""
+    try:
+        place = _BOOT.read_bytes() + os.fsencode(_PROCESSES.readlink())
+    except OSError:
+        return secrets.token_hex(_FIELD // 2)  # then nobody is a neighbour
+    return hashlib.sha256(place).hexdigest()[:_FIELD]
