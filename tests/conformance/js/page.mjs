@@ -25,7 +25,7 @@ try {
   const text = async (selector) => (await page.textContent(selector)).trim();
   const until = (check) => page.waitForFunction(check, null, { timeout: 10_000 });
   await until(() => document.querySelector("#link").className === "live");
-  await until(() => window.headlines.has("Waiting for goal"));
+  await until(() => window.headlines.has("Waiting for a goal"));
   await until(() => /Hz/.test([...document.querySelectorAll("#topics tr")].find((row) => row.cells[0].textContent === "/chatter")?.cells[3].textContent));
   await page.fill("#x", "6");
   await page.fill("#y", "-12,5");
