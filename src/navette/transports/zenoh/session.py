@@ -16,6 +16,7 @@ from navette.transports.zenoh.graph import RemoteGraph
 from navette.transports.zenoh.heard import Heard
 from navette.transports.zenoh.router import RouterRole, refuse
 from navette.transports.zenoh.settings import Settings
+from navette.transports.zenoh.threads import provide_threads
 from navette.transports.zenoh.tokens import SPACE
 
 # Those who are there are listed when the session opens; one that is just leaving, or
@@ -49,6 +50,7 @@ class Session:
         self.heard = Heard()
         self._tokens = f"{SPACE}/{domain_id}/**"
         self._role = RouterRole(settings)
+        provide_threads(settings)
         router = self._role.find_or_serve()
         try:
             self.zenoh = zenoh.open(peer_config(settings, zid))

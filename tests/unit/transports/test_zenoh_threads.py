@@ -1,0 +1,27 @@
+"""Enough threads that lost links do not stop all the others."""
+
+import os
+
+import pytest
+
+from navette.transports.zenoh import Settings
+from navette.transports.zenoh.threads import provide_threads
+
+
+@pytest.mark.parametrize(
+    ("settings", "count"),
+    [(Settings(), 8), (Settings(router=("tcp/10.0.0.1:7447",)), 64)],
+    ids=["one machine", "several"],
+)
+def test_there_are_more_threads_than_links_that_may_be_lost(
+    settings: Settings, count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("ZENOH_RUNTIME", raising=False)
+    provide_threads(settings)
+    assert os.environ["ZENOH_RUNTIME"] == f"(rx:(worker_threads:{count}))"
+
+
+def test_what_the_environment_says_wins(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ZENOH_RUNTIME", "(rx:(worker_threads:4))")
+    provide_threads(Settings())
+    assert os.environ["ZENOH_RUNTIME"] == "(rx:(worker_threads:4))"
