@@ -239,6 +239,60 @@ def test_one_that_does_not_come_back_is_not_waited_for_any_longer(
     until(is_unheard, "the end of the grace time")
 
 
+def test_who_has_died_is_owed_nothing(
+    pair: ZenohPair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seen at once where the process is gone by then, else with the next tick."""
+    dead: set[str] = set()
+    monkeypatch.setattr(hub, "has_died", dead.__contains__)
+    _, speaker = Ear(pair), Speaker(pair)
+    acquaint(pair, speaker)
+    keys = part(pair.far_zenoh)
+    speaker.say(1)
+    assert speaker.puts == 1
+    dead.add(pair.near_zenoh.session.zid)
+
+    def is_unheard() -> bool:
+        before = speaker.puts
+        speaker.say(1)
+        return speaker.puts == before
+
+    until(is_unheard, "a look at the process")
+    meet(pair.far_zenoh, keys)
+    part(pair.far_zenoh)
+    assert is_unheard()
+
+
+def test_those_beside_one_that_has_died_know_it(
+    pair: ZenohPair, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On another machine nothing is known of it; a session there is asked."""
+    _, speaker = Ear(pair), Speaker(pair)
+    third = ZenohTransport(7, lambda: 7, pair.near_zenoh.session.settings)
+    try:
+        zid = third.session.zid
+        keep = third.subscribe(
+            _endpoint(EndpointKind.SUBSCRIPTION, QOS), String, print, shared=False
+        )
+        until(lambda: speaker.port.matched_count == 2, "both listeners")
+        acquaint(pair, speaker)
+        near = pair.near_zenoh._recovery
+        assert near is not None
+        monkeypatch.setattr(hub, "has_died", lambda _: False)
+        graph = pair.far_zenoh.session.graph
+        graph.on_tokens(
+            (key, False) for key in [*graph._nodes, *graph._endpoints] if zid in key
+        )
+        far = pair.far_zenoh._recovery
+        assert far is not None
+        assert far.offers.awaited() == {zid}
+        monkeypatch.setattr(hub, "has_died", zid.__eq__)
+        until(lambda: not far.offers.awaited(), "the answer of the one beside it")
+        assert keep.matched_count == 1
+    finally:
+        third.close()
+
+
 def test_who_leaves_on_purpose_is_owed_nothing(pair: ZenohPair) -> None:
     ear, speaker = Ear(pair), Speaker(pair)
     acquaint(pair, speaker, ear)

@@ -26,14 +26,11 @@ def is_kin(zid: str) -> bool:
     return len(zid) == 4 * _FIELD and zid.startswith(_MARK)
 
 
-def host_of(zid: str) -> str:
-    """On which machine (and with which process ids) a session of Navette's runs."""
-    return zid[_FIELD : 2 * _FIELD]
-
-
-def is_neighbour(zid: str) -> bool:
-    """Whether the session runs where the processes can be seen from here."""
-    return is_kin(zid) and host_of(zid) == _host()
+def runs_beside(zid: str, other: str) -> bool:
+    """Whether two of Navette's sessions run where their processes see each other."""
+    if not (is_kin(zid) and is_kin(other)) or zid == other:
+        return False
+    return zid[_FIELD : 2 * _FIELD] == other[_FIELD : 2 * _FIELD]
 
 
 def has_died(zid: str) -> bool:
@@ -41,7 +38,7 @@ def has_died(zid: str) -> bool:
 
     One whose link was lost may come back, one without a process never will.
     """
-    if not is_neighbour(zid):
+    if not is_kin(zid) or zid[_FIELD : 2 * _FIELD] != _host():
         return False
     pid = int(zid[2 * _FIELD : 3 * _FIELD], 16)
     try:

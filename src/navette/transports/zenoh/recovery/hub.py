@@ -13,7 +13,7 @@ from navette.errors import DecodeError
 from navette.transports.base import Endpoint, TransportObserver
 from navette.transports.leaving import wait_for_at_end
 from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.kin import has_died, is_kin
+from navette.transports.zenoh.kin import has_died, is_kin, runs_beside
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery.desk import Desk
 from navette.transports.zenoh.recovery.hearing import Hearing
@@ -21,9 +21,11 @@ from navette.transports.zenoh.recovery.mail import (
     Head,
     Kind,
     Letter,
+    about_sessions,
     mail_key,
     parse_letter,
     parse_sender,
+    sessions_in,
 )
 from navette.transports.zenoh.recovery.offers import Offers
 from navette.transports.zenoh.recovery.starts import Starts
@@ -34,6 +36,8 @@ _JOIN_S = 1.5
 _BEFORE, _BEHIND = zenoh.Priority.INTERACTIVE_HIGH, zenoh.Priority.DATA
 # Until its token is gone, too; another one may have its name after that.
 _CLOSED_TICKS = 5
+# Of those on one machine, about another one there.
+_MOST_ASKED = 4
 # Sessions and endpoints remembered; a hostile peer may make up any number.
 _MOST_REMEMBERED = 20_000
 
@@ -195,23 +199,44 @@ class Recovery(TransportObserver):
         if letter.kind == Kind.MATCHED:
             if gids and (matched := self.hearing.on_matched(sender, letter.entries)):
                 self.wants.retry(matched)
-        elif letter.kind == Kind.WHERE:
-            self.offers.on_where(sender, gids)
         elif letter.kind == Kind.HEADS:
             for head in letter.entries:
                 self.hearing.on_head(sender, head)
+        elif letter.kind == Kind.WHERE:
+            self.offers.on_where(sender, gids)
         elif letter.kind == Kind.CLOSED:
-            for gid in gids:
-                if len(self._closed) < _MOST_REMEMBERED:
-                    self._closed[gid] = _CLOSED_TICKS
-            self.offers.on_closed(gids)
-            self.wants.on_closed(gids)
-            self._starts.on_closed(gids)
+            self._on_closed(gids)
         elif letter.kind == Kind.BYE:
-            _remember(self._left, sender)
-            self.offers.on_bye(sender)
-            self.wants.on_bye(sender)
-            self._starts.on_bye(sender)
+            self._on_end(sender)
+        else:
+            self._read_of_death(sender, letter)
+
+    def _read_of_death(self, sender: str, letter: Letter) -> None:
+        """Somebody asks whether sessions have died, or says so."""
+        sessions = sessions_in(letter)
+        if letter.kind == Kind.SEEN:
+            for answer in about_sessions(Kind.DIED, filter(has_died, sessions)):
+                self.post(sender, answer)
+            return
+        for zid in sessions:
+            if runs_beside(zid, sender):
+                self._on_end(zid)
+
+    def _on_closed(self, gids: list[bytes]) -> None:
+        """Those endpoints do not come back."""
+        for gid in gids:
+            if len(self._closed) < _MOST_REMEMBERED:
+                self._closed[gid] = _CLOSED_TICKS
+        self.offers.on_closed(gids)
+        self.wants.on_closed(gids)
+        self._starts.on_closed(gids)
+
+    def _on_end(self, session: str) -> None:
+        """That session does not come back."""
+        _remember(self._left, session)
+        self.offers.on_bye(session)
+        self.wants.on_bye(session)
+        self._starts.on_bye(session)
 
     # -- the tick --------------------------------------------------------------
 
@@ -231,10 +256,19 @@ class Recovery(TransportObserver):
             self.offers.tick()
             self.wants.tick()
             self._starts.tick()
+            self._inquire()
             for gid, ticks in list(self._closed.items()):
                 self._closed[gid] = ticks - 1
                 if ticks <= 1:
                     self._closed.pop(gid, None)
+
+    def _inquire(self) -> None:
+        """Whether those that are waited for have died: where they ran, it is known."""
+        for lost in self.offers.awaited():
+            beside = [zid for zid in reversed(self._peers) if runs_beside(zid, lost)]
+            for letter in about_sessions(Kind.SEEN, [lost]):
+                for zid in beside[:_MOST_ASKED]:
+                    self.post(zid, letter)
 
 
 def _remember(known: dict[Any, None], what: Any) -> bool:

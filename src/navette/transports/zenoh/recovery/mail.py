@@ -41,6 +41,13 @@ class Kind(IntEnum):
     CLOSED = 4
     #: The session ends, with all that is in it.
     BYE = 5
+    #: Have these sessions died? They are not to be seen here; they run where you do.
+    SEEN = 6
+    #: These sessions have died: the answer.
+    DIED = 7
+
+
+_WITHOUT_NUMBERS = {Kind.WHERE, Kind.CLOSED, Kind.SEEN, Kind.DIED}
 
 
 class Head(NamedTuple):
@@ -51,13 +58,13 @@ class Head(NamedTuple):
 
 
 class Letter(NamedTuple):
-    """Entries of one kind; where only gids are told the numbers are 0."""
+    """Entries of one kind; where only gids (or sessions) are told the numbers are 0."""
 
     kind: Kind
     entries: tuple[Head, ...] = ()
 
     def encode(self) -> bytes:
-        if self.kind == Kind.CLOSED:
+        if self.kind in _WITHOUT_NUMBERS:
             parts = [_GID.pack(entry.gid) for entry in self.entries]
         else:
             parts = [_HEAD.pack(*entry) for entry in self.entries]
@@ -152,7 +159,7 @@ def parse_letter(data: bytes) -> Letter:
     if data[0] not in {*Kind}:
         raise DecodeError(f"letter of kind {data[0]}, wanted {[*map(int, Kind)]}")
     kind = Kind(data[0])
-    layout = _GID if kind == Kind.CLOSED else _HEAD
+    layout = _GID if kind in _WITHOUT_NUMBERS else _HEAD
     if (len(data) - 1) % layout.size:
         raise DecodeError(f"{kind.name} of {len(data)} bytes is cut off")
     entries = layout.iter_unpack(data[1:])
@@ -195,3 +202,13 @@ def letters(kind: Kind, entries: Iterable[Head]) -> list[Letter]:
     every = tuple(entries)
     step = MOST_ENTRIES
     return [Letter(kind, every[i : i + step]) for i in range(0, len(every), step)]
+
+
+def sessions_in(letter: Letter) -> list[str]:
+    """The sessions that a letter is about."""
+    return [entry.gid.hex() for entry in letter.entries]
+
+
+def about_sessions(kind: Kind, sessions: Iterable[str]) -> list[Letter]:
+    """As many letters as they take; each has 32 hex digits."""
+    return letters(kind, [Head(bytes.fromhex(session), 0) for session in sessions])

@@ -164,6 +164,12 @@ class Offers:
             for letter in letters(Kind.HEADS, entries):
                 self._peers.post(session, letter)
 
+    def awaited(self) -> set[str]:
+        """Sessions that are away and owed something."""
+        with self._lock:
+            offers = list(self._offers.values())
+            return {debt.session for offer in offers for debt, _ in offer.owed.values()}
+
     def answer(self, ask: Ask) -> tuple[str, list[Kept], End]:
         """The key of the topic, and what there is of what is asked for."""
         with self._lock:
@@ -187,6 +193,8 @@ class Offers:
                 owed, _ = offer.owed.pop(gid, (Debt(session, head.number), 0))
                 offer.listeners[gid] = owed
                 told[session].append(Head(gid, owed.since))
+            if told:
+                offer.retention.begin()
         for session, debts in told.items():
             self._tell(session, head, debts)
 

@@ -63,6 +63,11 @@ class Retention:
                 self._newest = number
             return self._is_wanted
 
+    def begin(self) -> None:
+        """Somebody is owed what comes from now on, also if he is away by then."""
+        with self._lock:
+            self._is_wanted = True
+
     def add(self, sample: Kept) -> None:
         """It is about to be sent."""
         kept = self._kept

@@ -5,6 +5,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from functools import partial
 
+from navette.transports.zenoh.kin import has_died
 from navette.transports.zenoh.recovery.answer import Answer, Parts
 from navette.transports.zenoh.recovery.errands import Errands
 from navette.transports.zenoh.recovery.hearer import Hearer, Want
@@ -99,10 +100,12 @@ class Wants:
             for want in [w for w in self._wants.values() if w.is_parked]:
                 want.ticks += 1
                 is_heard = self._hearing.hears(want.hearer, want.gid)
-                is_known = self._hearing.home(want.gid) is not None
-                if is_heard and is_known and want.tries < _MOST_TRIES:
+                home = self._hearing.home(want.gid)
+                if home is None or has_died(home):
+                    hopeless.append(want)
+                elif is_heard and want.tries < _MOST_TRIES:
                     self._queue(want)
-                elif is_heard or not is_known or want.ticks >= _GRACE_TICKS:
+                elif is_heard or want.ticks >= _GRACE_TICKS:
                     hopeless.append(want)
         self._forsake(lambda want: want in hopeless)
 
