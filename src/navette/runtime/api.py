@@ -83,6 +83,9 @@ def shutdown(
 
     Args:
         uninstall_handlers: of signals; default: those of the default context.
+
+    Raises:
+        RCLError: the program has done so already (after a signal did, nothing happens).
     """
     (context or get_default_context()).shutdown()
     if uninstall_handlers is None:

@@ -13,6 +13,7 @@ from weakref import WeakSet
 from navette.errors import InvalidValueError
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.clock import TimeSource
+from navette.runtime.exceptions import RCLError
 from navette.runtime.graph import Graph
 from navette.runtime.lockstep import LockStepClock, clock_of_environment
 from navette.runtime.log import LogHub, StdlibHandler
@@ -77,6 +78,7 @@ class Context:
         self.executor: Any = None
         self._initialized = False
         self._shut_down = False
+        self._shut_down_by_program = False
         self._domain_id = 0
         self._on_shutdown: list[Callable[[], object]] = []
         self._lock = threading.RLock()
@@ -140,15 +142,28 @@ class Context:
         return self._shut_down
 
     def shutdown(self) -> None:
-        """End every spin and wait; a second call does nothing."""
+        """End every spin and wait; after a signal has done so, nothing.
+
+        Raises:
+            RCLError: the program has done so already.
+        """
+        self._end(by_program=True)
+
+    def _end(self, *, by_program: bool) -> None:
         with self._lock:
             if not self._initialized:
                 raise RuntimeError(
                     "the context must be initialised before it can be shut down"
                 )
             if self._shut_down:
+                if by_program and self._shut_down_by_program:
+                    raise RCLError(
+                        "the context was shut down already; try_shutdown() is for "
+                        "where it may have been"
+                    )
                 return
             self._shut_down = True
+            self._shut_down_by_program = by_program
         self.loop.close()
         # The nodes must not be taken from under a callback of another thread; one
         # that blocks for longer (a sleep, a join of this thread) is not waited for.
@@ -166,7 +181,7 @@ class Context:
     def try_shutdown(self) -> None:
         """Shut down if it is valid."""
         if self.ok():
-            self.shutdown()
+            self._end(by_program=False)
 
     def destroy(self) -> None:
         self.try_shutdown()

@@ -22,6 +22,7 @@ from navette.runtime.context import get_default_context, reset_default_context
 from navette.runtime.exceptions import (
     ConditionReachedException,
     NotInitializedException,
+    RCLError,
     ShutdownException,
     TimeoutException,
 )
@@ -50,10 +51,19 @@ def test_life_cycle() -> None:
     node.destroy_node()
     navette.shutdown()
     assert not navette.ok()
-    navette.shutdown()  # a second one does no harm
+    with pytest.raises(RCLError, match="try_shutdown"):
+        navette.shutdown()
     navette.try_shutdown()
     start()
     assert navette.ok()
+
+
+def test_shutdown_after_a_signal_did_so_is_no_error() -> None:
+    navette.init(args=[], clock=VirtualClock())
+    navette.get_default_context().try_shutdown()  # as a signal does
+    navette.shutdown()
+    navette.shutdown()
+    assert not navette.ok()
 
 
 def test_shutdown_before_init_and_init_twice() -> None:
