@@ -1,17 +1,25 @@
 """Servers and clients among those that err, pretend, flood or never end."""
 
 import logging
+import queue
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 import zenoh
-from transport_benches import ZenohPair, until
+from transport_benches import LIMIT_S, ZenohPair, until
 
-from navette.msgs import serialize, type_hash
+from navette.msgs import deserialize, serialize, type_hash
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.rcl_interfaces.srv import GetParameters
-from navette.transports import Endpoint, EndpointKind, EndpointQos, Reply, Request
+from navette.transports import (
+    Endpoint,
+    EndpointKind,
+    EndpointQos,
+    InProcessTransport,
+    Reply,
+    Request,
+)
 from navette.transports.zenoh import ZenohTransport
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.complaints import Complaints
@@ -111,22 +119,80 @@ def test_requests_that_wait_do_not_fill_the_memory(pair: ZenohPair) -> None:
     until(lambda: len(requests) == 3, "the request that fits again")
 
 
-def test_a_number_that_is_under_way_is_not_taken_twice(pair: ZenohPair) -> None:
+def ask(
+    pair: ZenohPair, like: Request, *, a: int, source_ns: int
+) -> queue.Queue[zenoh.Reply]:
+    """A request under a client's own name and number, of whoever knows them."""
+    replies: queue.Queue[zenoh.Reply] = queue.Queue()
+    pair.far_zenoh.session.zenoh.get(
+        data_key(7, "/s", ADD, type_hash(ADD)),
+        zenoh.handlers.Callback(replies.put, indirect=False),
+        payload=serialize(AddTwoInts.Request(a=a)),
+        attachment=Attachment(like.id.sequence, source_ns, like.id.client_gid).encode(),
+    )
+    return replies
+
+
+def sum_of(replies: queue.Queue[zenoh.Reply]) -> int:
+    answer = replies.get(timeout=LIMIT_S)
+    assert answer.ok is not None
+    return deserialize(answer.ok.payload.to_bytes(), AddTwoInts.Response).sum
+
+
+@pytest.mark.parametrize("first", ["client", "stranger"])
+def test_who_uses_a_clients_name_and_number_does_not_stop_its_call(
+    pair: ZenohPair, first: str
+) -> None:
     requests, server = serve(pair.near, ADD)
     replies, client = connect(pair.far, ADD)
     pair.settle()
     client.request(AddTwoInts.Request(a=1), 0, 1)
+    until(lambda: len(requests) == 1, "the request before")
+    guess = requests[0]._replace(id=requests[0].id._replace(sequence=2))
+    if first == "client":
+        client.request(AddTwoInts.Request(a=10), 5, 2)
+        until(lambda: len(requests) == 2, "the true request")
+    stranger = ask(pair, guess, a=666, source_ns=6)
+    if first == "stranger":
+        until(lambda: len(requests) == 2, "the stranger's request")
+        client.request(AddTwoInts.Request(a=10), 5, 2)
+    until(lambda: len(requests) == 3, "both requests")
+    for request in reversed(requests):
+        server.reply(request.id, AddTwoInts.Response(sum=request.message.a))
+    until(lambda: len(replies) == 2, "the replies")
+    assert {r.sequence: r.message.sum for r in replies} == {1: 1, 2: 10}
+    assert sum_of(stranger) == 666
+    assert len(server.waiting) == 0
+
+
+def test_a_request_that_comes_twice_is_done_once_and_both_are_told(
+    pair: ZenohPair,
+) -> None:
+    requests, server = serve(pair.near, ADD)
+    replies, client = connect(pair.far, ADD)
+    pair.settle()
+    client.request(AddTwoInts.Request(a=1), 5, 1)
     until(lambda: len(requests) == 1, "the request")
-    (answer,) = pair.far_zenoh.session.zenoh.get(
-        data_key(7, "/s", ADD, type_hash(ADD)),
-        payload=serialize(AddTwoInts.Request(a=2)),
-        attachment=Attachment(1, 0, requests[0].id.client_gid).encode(),
-    )
-    assert answer.err is not None
-    assert answer.err.payload.to_string() == "request 1 is under way already"
+    twin = ask(pair, requests[0], a=1, source_ns=5)
+    until(lambda: len(server.waiting) == 2, "the other way's")
     server.reply(requests[0].id, AddTwoInts.Response(sum=1))
     until(lambda: len(replies) == 1, "the reply")
-    assert (replies[0].message.sum, len(requests)) == (1, 1)
+    assert (replies[0].message.sum, sum_of(twin), len(requests)) == (1, 1, 1)
+
+
+def test_a_reply_to_who_uses_the_name_of_a_client_here_is_not_for_that_client() -> None:
+    transport = InProcessTransport()
+    requests, server = serve(transport, ADD)
+    end = Endpoint(EndpointKind.CLIENT, "/s", ADD, EndpointQos(), "n", "/", b"its")
+    replies: list[Reply] = []
+    client = transport.connect(end, replies.append)
+    client.request(AddTwoInts.Request(a=1), 0, 1)
+    own = requests[0].id
+    server.reply(own._replace(ticket=1), AddTwoInts.Response(sum=666))
+    server.fail(own._replace(ticket=1), "no")
+    assert replies == []
+    server.reply(own, AddTwoInts.Response(sum=1))
+    assert [reply.message.sum for reply in replies] == [1]
 
 
 def test_a_request_to_another_service_is_refused(pair: ZenohPair) -> None:

@@ -32,17 +32,22 @@ class InProcessService(ServicePort):
         self._table = table
 
     def reply(self, request_id: RequestId, message: Any) -> None:
-        client = self._table.clients_by_gid.get(request_id.client_gid)
+        client = self._client_of(request_id)
         if client is not None:
             client.sink(Reply(copy_message(message), request_id.sequence))
 
     def fail(self, request_id: RequestId, reason: str) -> None:
-        client = self._table.clients_by_gid.get(request_id.client_gid)
+        client = self._client_of(request_id)
         if client is not None:
             client.sink(Reply(None, request_id.sequence, reason))
 
     def close(self) -> None:
         self._table.remove(self)
+
+    def _client_of(self, request_id: RequestId) -> "InProcessClient | None":
+        if request_id.ticket:  # another transport's, in whosever name
+            return None
+        return self._table.clients_by_gid.get(request_id.client_gid)
 
 
 class InProcessClient(ClientPort):

@@ -6,10 +6,15 @@ from typing import Any, NamedTuple
 
 
 class RequestId(NamedTuple):
-    """Whose request it is: a reply goes back to that client under that number."""
+    """Whose request it is: a reply goes back to that client under that number.
+
+    Others may use the same two, by mistake or on purpose: ``ticket`` says at the port
+    that has taken a request which of those it is; 0 in process, where nobody can.
+    """
 
     client_gid: bytes
     sequence: int
+    ticket: int = 0
 
 
 class Request(NamedTuple):

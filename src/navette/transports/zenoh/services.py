@@ -1,8 +1,10 @@
 """Servers of services: a query stays open until its request is answered."""
 
+import hashlib
+import itertools
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import zenoh
 
@@ -24,6 +26,7 @@ from navette.transports.zenoh.matches import Matches
 MOST_WAITING = 10_000
 MOST_OF_THE_LONGEST = 2
 _LONGEST_REASON = 2000
+_MARK_SIZE = 16
 
 
 class ZenohService(ServicePort):
@@ -81,18 +84,18 @@ class ZenohService(ServicePort):
         )
 
     def reply(self, request_id: RequestId, message: Any) -> None:
-        query = self.waiting.take(request_id)
-        if query is None:  # of a client in this process, or answered already
+        queries = self.waiting.take(request_id)
+        if not queries:  # of a client in this process, or answered already
             return
-        attachment = Attachment(
-            request_id.sequence, self._now_ns(), request_id.client_gid
-        )
-        with query:
-            query.reply(self._key, serialize(message), attachment=attachment.encode())
+        number, now_ns, gid = request_id.sequence, self._now_ns(), request_id.client_gid
+        attachment = Attachment(number, now_ns, gid).encode()
+        data = serialize(message)
+        for query in queries:
+            with query:
+                query.reply(self._key, data, attachment=attachment)
 
     def fail(self, request_id: RequestId, reason: str) -> None:
-        query = self.waiting.take(request_id)
-        if query is not None:
+        for query in self.waiting.take(request_id):
             _refuse(query, reason)
 
     def close(self) -> None:
@@ -108,18 +111,19 @@ class ZenohService(ServicePort):
 
     def _on_query(self, query: zenoh.Query) -> None:
         try:
-            request = self._checked(query)
-            self.waiting.add(request.id, query, len(query.payload or b""))
+            request = self._taken(query)
         except DecodeError as error:
             name = self.matches.endpoint.topic
             text = f"service {name}: request ignored: {error}"
             self._complaints.once(("request", name), text)
             _refuse(query, str(error))
             return
-        self._heard.last_ns = request.received_ns
-        self._sink(request)
+        self._heard.last_ns = self._now_ns()
+        if request is not None:
+            self._sink(request)
 
-    def _checked(self, query: zenoh.Query) -> Request:
+    def _taken(self, query: zenoh.Query) -> Request | None:
+        """What is to be done; None: what is under way already."""
         payload, attachment = query.payload, query.attachment
         if payload is None or attachment is None:
             raise DecodeError("without a payload or an attachment")
@@ -133,12 +137,29 @@ class ZenohService(ServicePort):
         if other := self.matches.astray_from(gid):
             raise DecodeError(f"sent to {other}; a link is being renewed")
         interface: Any = get_interface(self.matches.endpoint.type_name)
-        message = deserialize(payload.to_bytes(), interface.Request)
-        return Request(message, source_ns, self._now_ns(), RequestId(gid, sequence))
+        data = payload.to_bytes()
+        message = deserialize(data, interface.Request)
+        ticket = self.waiting.add(attachment.to_bytes(), query, data)
+        if not ticket:
+            return None
+        request_id = RequestId(gid, sequence, ticket)
+        return Request(message, source_ns, self._now_ns(), request_id)
+
+
+class _Wait(NamedTuple):
+    """One request: who is to hear the answer, its bytes, how it is known again."""
+
+    queries: list[zenoh.Query]
+    size: int
+    mark: bytes
 
 
 class Waiting:
     """Queries that are not answered yet, and the bytes that they hold.
+
+    The same request may come twice, by two ways: it is done once, and both are told.
+    Another one under the same client's name and number is a request of its own: it may
+    be a stranger's, and which of the two is cannot be known.
 
     Args:
         most_bytes: of all together.
@@ -146,12 +167,16 @@ class Waiting:
 
     def __init__(self, most_bytes: int) -> None:
         self._most_bytes = most_bytes
-        self._queries: dict[RequestId, tuple[zenoh.Query, int]] = {}
+        #: By ticket, and the tickets by what the requests are known by.
+        self._waits: dict[int, _Wait] = {}
+        self._tickets: dict[bytes, int] = {}
+        self._next = itertools.count(1)
+        self._count = 0
         self._bytes = 0
         self._lock = threading.Lock()
 
     def __len__(self) -> int:
-        return len(self._queries)
+        return self._count
 
     def check_room(self, size: int) -> None:
         """Whether one more fits, before it is decoded.
@@ -159,36 +184,44 @@ class Waiting:
         Raises:
             DecodeError: too many wait already.
         """
-        if len(self._queries) >= MOST_WAITING or self._bytes + size > self._most_bytes:
+        if self._count >= MOST_WAITING or self._bytes + size > self._most_bytes:
             raise DecodeError(
-                f"{len(self._queries)} requests with {self._bytes} bytes wait already"
+                f"{self._count} requests with {self._bytes} bytes wait already"
             )
 
-    def add(self, request_id: RequestId, query: zenoh.Query, size: int) -> None:
-        """Remember it until it is taken.
-
-        Raises:
-            DecodeError: there is one of that client under that number.
-        """
+    def add(self, attachment: bytes, query: zenoh.Query, data: bytes) -> int:
+        """Remember it until it is taken: its ticket; 0 where it is there already."""
+        mark = hashlib.blake2b(attachment + data, digest_size=_MARK_SIZE).digest()
+        size = len(data)
         with self._lock:
-            if request_id in self._queries:
-                raise DecodeError(f"request {request_id.sequence} is under way already")
-            self._queries[request_id] = query, size
+            self._count += 1
             self._bytes += size
+            twin = self._tickets.get(mark)
+            if twin is not None:
+                self._waits[twin].queries.append(query)
+                return 0
+            ticket = self._tickets[mark] = next(self._next)
+            self._waits[ticket] = _Wait([query], size, mark)
+        return ticket
 
-    def take(self, request_id: RequestId) -> zenoh.Query | None:
-        """Remember it no longer; None: it was not there."""
+    def take(self, request_id: RequestId) -> list[zenoh.Query]:
+        """Remember it no longer: those who asked; nobody where it was not there."""
         with self._lock:
-            query, size = self._queries.pop(request_id, (None, 0))
-            self._bytes -= size
-        return query
+            wait = self._waits.pop(request_id.ticket, None)
+            if wait is None:
+                return []
+            del self._tickets[wait.mark]
+            self._count -= len(wait.queries)
+            self._bytes -= wait.size * len(wait.queries)
+        return wait.queries
 
     def take_all(self) -> list[zenoh.Query]:
         """Remember none of them any longer."""
         with self._lock:
-            queries = [query for query, _ in self._queries.values()]
-            self._queries.clear()
-            self._bytes = 0
+            queries = [query for wait in self._waits.values() for query in wait.queries]
+            self._waits.clear()
+            self._tickets.clear()
+            self._count = self._bytes = 0
         return queries
 
 
