@@ -5,7 +5,7 @@ from typing import Any
 
 import zenoh
 
-from navette.transports.zenoh.router import RouterRole
+from navette.transports.zenoh.router import RouterRole, alone
 from navette.transports.zenoh.settings import Settings
 
 
@@ -78,3 +78,10 @@ def test_a_lost_router_is_looked_for_each_time_until_the_close() -> None:
         assert role.looks == count
     role.close()
     assert role.looks == 2
+
+
+def test_why_one_is_alone_is_told_in_plain_words() -> None:
+    far = "tls/192.0.2.7:7447"
+    cannot = f"{far}: Can not bind: Cannot assign requested address (os error 99)"
+    assert "on another machine: it is off, out of reach" in alone([far], [cannot])
+    assert "none can start: no key" in alone([far], ["no key"])

@@ -24,6 +24,9 @@ _LOOKS = 20
 _LOOK_S = 0.05
 _PATIENCE_S = 1.5  # with one that takes calls but does not answer
 
+# What the system says of an address that is another machine's.
+_NOT_HERE = "Cannot assign requested address"
+
 
 class RouterRole:
     """Serves as the router where there is none, from now on until :meth:`close`."""
@@ -132,8 +135,19 @@ class RouterRole:
                 reasons.append(f"{endpoint}: {reason_of(error)}")
             else:
                 return True
-        _log.warning("no router answers, and none can be started: %s", reasons)
+        _log.warning("%s", alone(router_endpoints(self._settings), reasons))
         return False
+
+
+def alone(endpoints: list[str], reasons: list[str]) -> str:
+    """Why there is no router, in the user's words; ``reasons``: of each endpoint."""
+    where = ", ".join(endpoints)
+    if reasons and all(_NOT_HERE in reason for reason in reasons):
+        return (
+            f"no router answers at {where}, on another machine: it is off, out of "
+            "reach, or does not let this one in (navette doctor says which)"
+        )
+    return f"no router answers at {where}, and none can start: {'; '.join(reasons)}"
 
 
 def reason_of(error: zenoh.ZError) -> str:
