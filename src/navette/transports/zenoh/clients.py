@@ -71,11 +71,12 @@ class ZenohClient(ClientPort):
 
     def request(self, message: Any, source_ns: int, sequence: int) -> None:
         self.last = sequence
-        if self._session is None or not self.matches.remotes:
+        session = self._session  # another thread may close it meanwhile
+        if session is None or not self.matches.remotes:
             return
         attachment = Attachment(sequence, source_ns, self._gid)
         call = _Call(self, sequence)
-        self._session.get(
+        session.get(
             self._key,
             zenoh.handlers.Callback(call.on_reply, call.on_end, indirect=False),
             target=zenoh.QueryTarget.ALL_COMPLETE,

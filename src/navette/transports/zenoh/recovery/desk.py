@@ -35,6 +35,7 @@ class Desk:
     Args:
         zid: of ``session``.
         offers: what there is to answer with.
+        is_open: whether a subscription is still one of this session.
         stop: when it is set, what is under way ends.
     """
 
@@ -45,6 +46,7 @@ class Desk:
         domain_id: int,
         complaints: Complaints,
         offers: Offers,
+        is_open: Callable[[Hearer], bool],
         stop: threading.Event,
     ) -> None:
         self.errands = Errands("navette-recovery")
@@ -53,6 +55,7 @@ class Desk:
         self._domain_id = domain_id
         self._complaints = complaints
         self._offers = offers
+        self._is_open = is_open
         self._stop = stop
         self._queryable: Any = None
         self._listening: dict[Hearer, Any] = {}
@@ -107,6 +110,8 @@ class Desk:
                     _direct(partial(self._on_sample, hearer)),
                     allowed_origin=zenoh.Locality.REMOTE,
                 )
+        if not self._is_open(hearer):  # closed meanwhile: nobody else ends this
+            self.cease(hearer)
 
     def _on_sample(self, hearer: Hearer, sample: zenoh.Sample) -> None:
         """A sample or a piece of one, if it was asked for."""

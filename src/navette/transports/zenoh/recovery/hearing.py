@@ -83,6 +83,10 @@ class Hearing:
         for hearer in hearers:
             hearer.reach(*head)
 
+    def knows(self, hearer: Hearer) -> bool:
+        """Whether it is open."""
+        return id(hearer.matches.endpoint) in self._own
+
     def home(self, gid: bytes) -> str | None:
         """Of which session of Navette's the publisher is, also when it is away."""
         return self._homes.get(gid) or self._claimed.get(gid)

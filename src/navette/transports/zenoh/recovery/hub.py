@@ -36,7 +36,7 @@ _JOIN_S = 1.5
 _BEFORE, _BEHIND = zenoh.Priority.INTERACTIVE_HIGH, zenoh.Priority.DATA
 # Until its token is gone, too; another one may have its name after that.
 _CLOSED_TICKS = 5
-# Of those on one machine, about another one there.
+# Sessions that are asked about one of their machine; and what is read of one letter.
 _MOST_ASKED = 4
 # Sessions and endpoints remembered; a hostile peer may make up any number.
 _MOST_REMEMBERED = 20_000
@@ -70,8 +70,16 @@ class Recovery(TransportObserver):
         self._complaints = complaints
         self.offers = Offers(self)
         self._stop = threading.Event()
-        self._desk = Desk(session, zid, domain_id, complaints, self.offers, self._stop)
         self.hearing = Hearing()
+        self._desk = Desk(
+            session,
+            zid,
+            domain_id,
+            complaints,
+            self.offers,
+            self.hearing.knows,
+            self._stop,
+        )
         self._starts = Starts(self.hearing, self.post, self._start_ticking)
         self.wants = Wants(
             zid,
@@ -149,7 +157,8 @@ class Recovery(TransportObserver):
             self.hearing.on_match(publisher, subscription, up=up)
         else:
             if up:  # it may have the name of one that was closed
-                self._closed.pop(subscription.gid, None)
+                with self._lock:
+                    self._closed.pop(subscription.gid, None)
             self.offers.on_match(publisher, subscription.gid, up=up)
 
     # -- letters ---------------------------------------------------------------
@@ -213,7 +222,7 @@ class Recovery(TransportObserver):
 
     def _read_of_death(self, sender: str, letter: Letter) -> None:
         """Somebody asks whether sessions have died, or says so."""
-        sessions = sessions_in(letter)
+        sessions = sessions_in(letter)[:_MOST_ASKED]
         if letter.kind == Kind.SEEN:
             for answer in about_sessions(Kind.DIED, filter(has_died, sessions)):
                 self.post(sender, answer)
@@ -224,8 +233,8 @@ class Recovery(TransportObserver):
 
     def _on_closed(self, gids: list[bytes]) -> None:
         """Those endpoints do not come back."""
-        for gid in gids:
-            if len(self._closed) < _MOST_REMEMBERED:
+        with self._lock:
+            for gid in gids[: _MOST_REMEMBERED - len(self._closed)]:
                 self._closed[gid] = _CLOSED_TICKS
         self.offers.on_closed(gids)
         self.wants.on_closed(gids)
@@ -257,15 +266,14 @@ class Recovery(TransportObserver):
             self.wants.tick()
             self._starts.tick()
             self._inquire()
-            for gid, ticks in list(self._closed.items()):
-                self._closed[gid] = ticks - 1
-                if ticks <= 1:
-                    self._closed.pop(gid, None)
+            with self._lock:
+                self._closed = {g: n - 1 for g, n in self._closed.items() if n > 1}
 
     def _inquire(self) -> None:
         """Whether those that are waited for have died: where they ran, it is known."""
         for lost in self.offers.awaited():
-            beside = [zid for zid in reversed(self._peers) if runs_beside(zid, lost)]
+            newest_first = list(self._peers)[::-1]
+            beside = [zid for zid in newest_first if runs_beside(zid, lost)]
             for letter in about_sessions(Kind.SEEN, [lost]):
                 for zid in beside[:_MOST_ASKED]:
                     self.post(zid, letter)
