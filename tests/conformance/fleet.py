@@ -58,15 +58,25 @@ class Fleet:
         text = (self._folder / name).read_text(encoding="utf-8")
         return text[: text.rfind("\n") + 1].splitlines()
 
-    def track(self, key: str) -> list[dict[str, Any]]:
-        """What the program ``track.py``, started as ``track``, said of ``key``."""
-        said = (line for line in self.said("track") if f'"{key}"' in line)
-        return [json.loads(line) for line in said if line.startswith("{")]
+    def track(self, key: str) -> dict[str, Any]:
+        """What ``track.py``, started as ``track``, said last of ``key``; else empty."""
+        for line in reversed(self.said("track")):
+            if line.startswith("{") and f'"{key}"' in line:
+                return dict(json.loads(line))
+        return {}
 
     def speed(self) -> float:
         """How fast the robot is now, in m/s; not a number before it is known."""
-        speeds = self.track("speed")
-        return float(speeds[-1]["speed"]) if speeds else math.nan
+        return float(self.track("speed").get("speed", math.nan))
+
+    def standstill(self) -> float:
+        """How long, by the robot's clock, it takes from now until the robot stands."""
+        for _ in range(2):  # what is said next may have been heard before
+            said = len(self.said("track"))
+            until(lambda said=said: len(self.said("track")) > said, "news of the robot")
+        begin = float(self.track("speed")["time"])
+        until(lambda: abs(self.speed()) < 0.01, "standing")
+        return float(self.track("speed")["time"]) - begin
 
     def __enter__(self) -> "Fleet":
         return self
@@ -80,5 +90,14 @@ class Fleet:
         for process in self.running.values():
             process.send_signal(signal.SIGCONT)
             process.send_signal(signal.SIGINT)
-        for process in self.running.values():
-            process.wait(20.0)
+        hung = [name for name in self.running if not self._ends(name)]
+        assert not hung, f"did not end after Ctrl-C: {hung}"
+
+    def _ends(self, name: str) -> bool:
+        try:
+            self.running[name].wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            self.running[name].kill()
+            self.running[name].wait()
+            return False
+        return True

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,6 +20,7 @@ class TwoFleets:
     def __init__(self, fleet: Fleet, machines: Machines) -> None:
         self._fleet, self._machines = fleet, machines
         self.said, self.track, self.speed = fleet.said, fleet.track, fleet.speed
+        self.standstill = fleet.standstill
 
     @property
     def wire(self) -> Wire:
@@ -41,6 +43,7 @@ def fleet(tmp_path: Path) -> Iterator[TwoFleets]:
     env = {"NAVETTE_ROUTER": f"tcp/{ROBOT}:7447"}
     with Machines(seed=1) as machines, Fleet(tmp_path, env) as programs:
         yield TwoFleets(programs, machines)
+        machines.wire.mend()  # a good-bye over a bad wire takes its time
 
 
 @pytest.fixture
@@ -55,8 +58,9 @@ def hasty(tmp_path: Path) -> Iterator[TwoFleets]:
     file.write_text(json.dumps(config), encoding="utf-8")
     router = f"tcp/{ROBOT}:7447"
     env = {"NAVETTE_ROUTER": router, "ZENOH_SESSION_CONFIG_URI": str(file)}
-    with Machines(seed=1) as machines, Fleet(tmp_path, env) as programs:
+    with Machines(seed=1, hasty=True) as machines, Fleet(tmp_path, env) as programs:
         yield TwoFleets(programs, machines)
+        machines.wire.mend()
 
 
 def test_what_is_reliable_survives_a_late_lossy_and_broken_wire(
@@ -95,13 +99,13 @@ def test_the_robot_stops_when_cut_off_and_goes_on_when_it_is_back(
     fleet.wire.delay_s, fleet.wire.loss = 0.1, 0.05
     until(lambda: fleet.speed() > 0.5, "driving over a bad wire")
     fleet.wire.is_cut = True
-    cut = fleet.track("speed")[-1]["time"]
-    until(lambda: abs(fleet.speed()) < 0.01, "standing")
-    stood = fleet.track("speed")[-1]["time"]
     # The command timeout (0.5 s), braking from cruise speed, a look at the log.
-    assert stood - cut < 2.0
+    assert fleet.standstill() < 2.0
     fleet.wire.is_cut = False
     until(lambda: fleet.speed() > 0.3, "driving again")
-    until(lambda: fleet.track("planner")[-1]["planner"] == "reached", "the goal")
-    x, y = fleet.track("speed")[-1]["x"], fleet.track("speed")[-1]["y"]
-    assert ((x + 1.0) ** 2 + (y + 7.0) ** 2) ** 0.5 < 0.6
+    far = fleet.track("speed")["x"] + 0.5
+    until(lambda: fleet.track("speed")["x"] > far, "half a metre on a bad wire")
+    fleet.wire.mend()  # five times as fast
+    until(lambda: fleet.track("planner")["planner"] == "reached", "the goal")
+    where = fleet.track("speed")
+    assert math.dist((where["x"], where["y"]), (-1.0, -7.0)) < 0.6

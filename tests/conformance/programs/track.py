@@ -1,4 +1,4 @@
-"""Says where the simulated robot is, and what becomes of its goal: a line of JSON each.
+"""Says where the simulated robot is and when, and what becomes of its goal, in JSON.
 
 Run as a program: the tests read its output.
 """
@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.time import Time
 
 
 class Track(Node):
@@ -24,14 +25,14 @@ class Track(Node):
 
     def on_truth(self, message: Odometry) -> None:
         position, speed = message.pose.pose.position, message.twist.twist.linear.x
-        self.say(x=position.x, y=position.y, speed=speed)
+        time = Time.from_msg(message.header.stamp).nanoseconds / 1e9
+        self.say(time=time, x=position.x, y=position.y, speed=speed)
 
     def on_status(self, message: DiagnosticStatus) -> None:
         self.say(planner=message.message)
 
     def say(self, **what: object) -> None:
-        now = self.get_clock().now().nanoseconds / 1e9
-        print(json.dumps({"time": now, **what}), flush=True)  # noqa: T201
+        print(json.dumps(what), flush=True)  # noqa: T201
 
 
 rclpy.init(args=sys.argv)
