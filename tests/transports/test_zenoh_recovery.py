@@ -413,9 +413,11 @@ def strange_pair(monkeypatch: pytest.MonkeyPatch) -> Iterator[ZenohPair]:
 def test_one_that_is_not_of_navette_is_not_waited_for(strange_pair: ZenohPair) -> None:
     pair = strange_pair
     speaker = Speaker(pair)
+    assert speaker.port.assert_alive()  # to nobody
     speaker.say(5)
     ear = Ear(pair)
     pair.settle()
+    assert not speaker.port.assert_alive()
     speaker.say(5, drop=(6, 8))
     ear.await_(7, 9, 10)
     assert ear.lost == 1

@@ -51,7 +51,7 @@ class Publisher(Generic[MsgT]):
         self._send = ports[0].send if len(ports) == 1 else self._send_to_all
         self._loop = loop
         self._sequence = max((port.used for port in ports), default=0)
-        self._on_assertion: Callable[[], None] | None = None
+        self._on_assertion: Callable[[bool], None] | None = None
         #: What it calls back for.
         self.event_handlers: list[EventHandler] = []
         self._on_destroy = on_destroy
@@ -91,9 +91,12 @@ class Publisher(Generic[MsgT]):
     def watch(
         self,
         on_sample: Callable[[], None],
-        on_assertion: Callable[[], None] | None,
+        on_assertion: Callable[[bool], None] | None,
     ) -> None:
-        """Call back with every message, and with every assertion of liveliness."""
+        """Call back with every message, and with every assertion of liveliness.
+
+        The latter are told whether all who listen hear of it.
+        """
         send = self._send
 
         def watched(message: Any, source_ns: int, sequence: int) -> None:
@@ -106,7 +109,8 @@ class Publisher(Generic[MsgT]):
     def assert_liveliness(self) -> None:
         """Keep the lease of a publisher with manual liveliness."""
         if self._on_assertion is not None:
-            self._on_assertion()
+            told = [port.assert_alive() for port in self.ports]
+            self._on_assertion(all(told))
 
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
         """In process a message is in the queues when ``publish`` returns."""

@@ -44,7 +44,6 @@ class EndpointWatch:
         self._lost = 0
         self._missed = 0
         self._match = QoSMatchedInfo()
-        self._far = 0  # matched subscriptions of other processes
         self._has_warned = False
         self._deadline: Watchdog | None = None
         self._lease: Lease | None = None
@@ -91,8 +90,8 @@ class EndpointWatch:
         return both
 
     @property
-    def on_assertion(self) -> Callable[[], None] | None:
-        """What to call when a publisher asserts that it is alive."""
+    def on_assertion(self) -> Callable[[bool], None] | None:
+        """What to call when a publisher asserts that it is alive; heard by all?"""
         return None if self._lease is None else self._assert
 
     def watched(self, sink: Callable[[Item], None]) -> Callable[[Item], None]:
@@ -182,20 +181,19 @@ class EndpointWatch:
             if self._view is not None:
                 self._view.on_match(publisher, up)
             step = 1 if up else -1
-            self._far += step * subscription.is_remote
             if self._callbacks.matched is not None:
                 total, current = self._match.total_count, self._match.current_count
                 self._match = QoSMatchedInfo(total + up, int(up), current + step, step)
                 self._tell(self._callbacks.matched, self._match, "matched")
 
-    def _assert(self) -> None:
+    def _assert(self, is_heard: bool) -> None:
         assert self._lease is not None, "only a publisher with a lease asserts"
         self._lease.renew()
-        if self._far and not self._has_warned:
+        if not is_heard and not self._has_warned:
             self._has_warned = True
             self._logger.warning(
-                f"topic {self._endpoint.topic}: assert_liveliness() is heard in this "
-                "process only; subscriptions of other processes take a publisher for "
+                f"topic {self._endpoint.topic}: assert_liveliness() is heard by "
+                "Navette's subscriptions only; those of ROS 2 take a publisher for "
                 "alive by its messages: publish one within the lease"
             )
 

@@ -127,6 +127,10 @@ class PublisherPort(ABC):
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
         """Deliver ``message`` as it is now; later edits by the caller are unseen."""
 
+    def assert_alive(self) -> bool:
+        """Say without a sample that it is alive; whether all who listen are told."""
+        return True
+
     @property
     @abstractmethod
     def matched_count(self) -> int:

@@ -138,6 +138,26 @@ def test_liveliness_of_a_publisher_that_asserts_itself(graph: GraphHarness) -> N
     assert (changes[-1], len(lost)) == (Changed(0, 0, -1, 0), 1)
 
 
+def test_an_assertion_that_not_all_hear_is_warned_about_once(
+    graph: GraphHarness, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    qos = QoSProfile(
+        depth=10,
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+        liveliness_lease_duration=Duration(seconds=1),
+    )
+    publisher = graph.node.create_publisher(String, "t", qos)
+    said: list[str] = []
+    graph.context.log.sinks.append(lambda record: said.append(record.message))
+    publisher.assert_liveliness()
+    assert said == []
+    monkeypatch.setattr(type(publisher.ports[0]), "assert_alive", lambda _: False)
+    for _ in range(2):
+        publisher.assert_liveliness()
+    assert len(said) == 1
+    assert "publish one within the lease" in said[0]
+
+
 def test_an_assertion_without_a_lease_is_nothing(graph: GraphHarness) -> None:
     graph.node.create_publisher(String, "t", 10).assert_liveliness()
 

@@ -244,6 +244,15 @@ class RemoteGraph:
         for observer in self.observers:
             observer.message_lost(subscription, count)
 
+    def asserted_by(self, gid: bytes, zid: str) -> None:
+        """That session says that its publisher is alive; nothing where it is not."""
+        with self._lock:
+            name = EndpointKind.SUBSCRIPTION, self._names.get(gid, "")
+            for matches in self._locals.get(name, ()):
+                if gid in matches.asserting and matches.sessions.get(gid) == zid:
+                    self._queue("asserted", matches.by_gid[gid], matches.endpoint)
+        self._tell()
+
     def _asserted(self, matches: Matches, gid: bytes) -> None:
         with self._lock:
             publisher = matches.by_gid.get(gid)

@@ -25,11 +25,13 @@ class ZenohPublisher(PublisherPort):
         used: the last number that was sent under that gid before.
         heard: when something of the others came last.
         retention: what is kept for those that miss something; None: nothing is.
+        asserted: tells those who listen that it is alive; whether all are told.
         closed: called once when the port is closed.
         sent: in lock-step, told the number of each sample; and none may be dropped.
     """
 
     __slots__ = (
+        "_asserted",
         "_closed",
         "_gid",
         "_heard",
@@ -53,6 +55,7 @@ class ZenohPublisher(PublisherPort):
         used: int,
         heard: Heard,
         retention: Retention | None,
+        asserted: Callable[[Matches], bool],
         closed: Callable[["ZenohPublisher"], None],
         sent: Callable[[int], None] | None = None,
     ) -> None:
@@ -62,6 +65,7 @@ class ZenohPublisher(PublisherPort):
         self._gid = gid
         self._heard = heard
         self._retention = retention
+        self._asserted = asserted
         self._latched = qos.is_latched
         self._closed = closed
         self._sent = sent
@@ -93,6 +97,9 @@ class ZenohPublisher(PublisherPort):
             return publisher is not None and bool(publisher.matching_status.matching)
         except zenoh.ZError:  # the session was closed: nobody listens
             return False
+
+    def assert_alive(self) -> bool:
+        return self._asserted(self.matches)
 
     @property
     def used(self) -> int:

@@ -114,6 +114,7 @@ class ZenohTransport(Transport):
                 used,
                 self.session.heard,
                 self._retention(gid, key, token.qos, used, matches),
+                self._assert_alive,
                 self._leave,
                 sent,
             )
@@ -229,6 +230,7 @@ class ZenohTransport(Transport):
             self.domain_id,
             session.complaints,
             session.settings.max_message_bytes,
+            self._graph.asserted_by,
         )
         self._graph.observers.append(recovery)
         return recovery
@@ -249,6 +251,11 @@ class ZenohTransport(Transport):
         retention = Retention(qos.queue_length, used)
         recovery.offers.add(gid, key, matches, retention)
         return retention
+
+    def _assert_alive(self, matches: Matches) -> bool:
+        if self._recovery is None:
+            return not matches.remotes
+        return self._recovery.assert_alive(matches)
 
     # -- inside ----------------------------------------------------------------
 

@@ -5,6 +5,7 @@ import contextlib
 import os
 import threading
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 import zenoh
@@ -54,6 +55,7 @@ class Recovery(TransportObserver):
     Args:
         zid: of ``session``.
         max_message_bytes: longer messages are not put together.
+        on_alive: told of a publisher that says that it is alive, and of its session.
     """
 
     def __init__(
@@ -63,11 +65,13 @@ class Recovery(TransportObserver):
         domain_id: int,
         complaints: Complaints,
         max_message_bytes: int,
+        on_alive: Callable[[bytes, str], None],
     ) -> None:
         self._session = session
         self._zid = zid
         self._domain_id = domain_id
         self._complaints = complaints
+        self._on_alive = on_alive
         self.offers = Offers(self)
         self._stop = threading.Event()
         self.hearing = Hearing()
@@ -154,6 +158,8 @@ class Recovery(TransportObserver):
         self, publisher: Endpoint, subscription: Endpoint, *, up: bool
     ) -> None:
         if publisher.is_remote:
+            if publisher.qos.asserts_itself:
+                self.open()  # for its letters, also where best effort is enough
             self.hearing.on_match(publisher, subscription, up=up)
         else:
             if up:  # it may have the name of one that was closed
@@ -181,6 +187,14 @@ class Recovery(TransportObserver):
                 congestion_control=zenoh.CongestionControl.DROP,
                 allowed_destination=zenoh.Locality.REMOTE,
             )
+
+    def assert_alive(self, matches: Matches) -> bool:
+        """A publisher tells those who hear it; whether all of them read letters."""
+        sessions = {*dict(matches.sessions).values()}
+        letter = Letter(Kind.ALIVE, (Head(matches.endpoint.gid, 0),))
+        for session in filter(is_kin, sessions):
+            self.post(session, letter)
+        return all(map(is_kin, sessions))
 
     def may_return(self, session: str, gid: bytes) -> bool:
         """Whether an endpoint that is not seen any more is one of Navette's that has
@@ -217,6 +231,9 @@ class Recovery(TransportObserver):
             self._on_closed(gids)
         elif letter.kind == Kind.BYE:
             self._on_end(sender)
+        elif letter.kind == Kind.ALIVE:
+            for gid in gids:
+                self._on_alive(gid, sender)
         else:
             self._read_of_death(sender, letter)
 

@@ -45,9 +45,11 @@ class Kind(IntEnum):
     SEEN = 6
     #: These sessions have died: the answer.
     DIED = 7
+    #: These publishers assert that they are alive, without a sample.
+    ALIVE = 8
 
 
-_WITHOUT_NUMBERS = {Kind.WHERE, Kind.CLOSED, Kind.SEEN, Kind.DIED}
+_WITHOUT_NUMBERS = {Kind.WHERE, Kind.CLOSED, Kind.SEEN, Kind.DIED, Kind.ALIVE}
 
 
 class Head(NamedTuple):
