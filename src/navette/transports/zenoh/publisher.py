@@ -1,6 +1,8 @@
 """Publishers: serialise once a message, and only while someone remote listens."""
 
+import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import zenoh
@@ -19,6 +21,9 @@ from navette.transports.zenoh.recovery import Retention
 class ZenohPublisher(PublisherPort):
     """Puts CDR with an attachment; Zenoh keeps the samples of latched topics.
 
+    What it keeps them with, every other session is told of: a latched publisher is
+    declared with its first sample. Each node has one for its log, and many say nothing.
+
     Args:
         qos: as it was announced.
         gid: as hashed from the liveliness token.
@@ -33,9 +38,12 @@ class ZenohPublisher(PublisherPort):
     __slots__ = (
         "_asserted",
         "_closed",
+        "_declare",
         "_gid",
         "_heard",
+        "_is_open",
         "_latched",
+        "_lock",
         "_publisher",
         "_put",
         "_retention",
@@ -69,8 +77,15 @@ class ZenohPublisher(PublisherPort):
         self._latched = qos.is_latched
         self._closed = closed
         self._sent = sent
-        self._publisher: Any = _declare(session, key, qos, lossless=sent is not None)
-        self._put = self._publisher.put
+        self._is_open = True
+        self._lock = threading.Lock()
+        lossless = sent is not None
+        self._declare = partial(_declare, session, key, qos, lossless=lossless)
+        self._publisher: Any = None
+        self._put: Callable[..., None] = self._put_first
+        if not qos.is_latched:
+            self._publisher = self._declare()
+            self._put = self._publisher.put
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
         self.last = sequence
@@ -110,13 +125,24 @@ class ZenohPublisher(PublisherPort):
         return len(self.matches.remotes)
 
     def close(self) -> None:
-        if self._publisher is None:
-            return
-        publisher, self._publisher = self._publisher, None
-        self._latched = False
+        with self._lock:
+            if not self._is_open:
+                return
+            self._is_open = self._latched = False
+            publisher, self._publisher = self._publisher, None
         self._retention = None
         self._closed(self)  # nothing matches from here on: nothing is sent
-        publisher.undeclare()
+        if publisher is not None:
+            publisher.undeclare()
+
+    def _put_first(self, data: Any, *, attachment: bytes) -> None:
+        with self._lock:
+            if not self._is_open:
+                return
+            if self._publisher is None:
+                self._publisher = self._declare()
+            put = self._put = self._publisher.put
+        put(data, attachment=attachment)
 
 
 def _declare(

@@ -20,6 +20,7 @@ from navette.transports.zenoh.attachment import Attachment, decode_attachment
 from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.heard import Heard
 from navette.transports.zenoh.matches import Matches
+from navette.transports.zenoh.queryables import Handler
 
 # Requests that wait at one server, and how many of the longest ones; more are refused.
 # Whoever may ask can fill a slow server, but not the memory.
@@ -33,6 +34,7 @@ class ZenohService(ServicePort):
     """A queryable that hands requests on and remembers whose they are.
 
     Args:
+        declare: takes the queries from now on; returns what ends that.
         now_ns: the time here, for the stamps.
         heard: notes that something came.
         closed: called once when the port is closed.
@@ -48,15 +50,15 @@ class ZenohService(ServicePort):
         "_key",
         "_longest",
         "_now_ns",
-        "_queryable",
         "_sink",
+        "_undeclare",
         "matches",
         "waiting",
     )
 
     def __init__(
         self,
-        session: zenoh.Session,
+        declare: Callable[[str, Handler], Callable[[], None]],
         key: str,
         sink: RequestSink,
         matches: Matches,
@@ -76,12 +78,7 @@ class ZenohService(ServicePort):
         self._longest = max_message_bytes
         self._now_ns = now_ns
         self._closed = closed
-        self._queryable: Any = session.declare_queryable(
-            key,
-            zenoh.handlers.Callback(self._on_query, indirect=False),
-            complete=True,
-            allowed_origin=zenoh.Locality.REMOTE,
-        )
+        self._undeclare: Callable[[], None] | None = declare(key, self._on_query)
 
     def reply(self, request_id: RequestId, message: Any) -> None:
         queries = self.waiting.take(request_id)
@@ -99,11 +96,11 @@ class ZenohService(ServicePort):
             _refuse(query, reason)
 
     def close(self) -> None:
-        if self._queryable is None:
+        if self._undeclare is None:
             return
-        queryable, self._queryable = self._queryable, None
+        undeclare, self._undeclare = self._undeclare, None
         self._closed(self)
-        queryable.undeclare()
+        undeclare()
         for query in self.waiting.take_all():
             _refuse(query, "the server was closed")
 

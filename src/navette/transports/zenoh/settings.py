@@ -45,6 +45,12 @@ class Settings:
     security: Path | None = None
 
     @property
+    def has_rules(self) -> bool:
+        """Whether there may be rules about which keys are used."""
+        files = self.security, self.session_file, self.router_file
+        return any(file is not None for file in files)
+
+    @property
     def is_local(self) -> bool:
         """Whether only processes of this machine are met."""
         return all(map(_is_local, (*self.router, *self.listen)))

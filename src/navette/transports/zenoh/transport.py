@@ -25,6 +25,7 @@ from navette.transports.zenoh.kin import new_zid
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.own_tokens import OwnTokens
 from navette.transports.zenoh.publisher import ZenohPublisher
+from navette.transports.zenoh.queryables import Queryables
 from navette.transports.zenoh.recovery import Recovery, Retention
 from navette.transports.zenoh.services import ZenohService
 from navette.transports.zenoh.session import Session
@@ -74,6 +75,9 @@ class ZenohTransport(Transport):
         # There each publisher is counted from its first sample on.
         reuses = traffic is None
         self._tokens = OwnTokens(self.session, domain_id, reuses_endpoints=reuses)
+        self._queryables = Queryables(
+            self.session.zenoh, shares=not self.session.settings.has_rules
+        )
         self._ports: dict[Port, tuple[EndpointToken, zenoh.LivelinessToken]] = {}
         #: Gids of the publishers here: those they reach in process are not told twice.
         self._own_gids: set[bytes] = set()
@@ -148,10 +152,9 @@ class ZenohTransport(Transport):
 
     def serve(self, endpoint: Endpoint, sink: RequestSink) -> ZenohService:
         def make(token: EndpointToken, _: int, matches: Matches) -> ZenohService:
-            key, session = self._key(token), self.session.zenoh
             return ZenohService(
-                session,
-                key,
+                partial(self._queryables.open, is_of_node=_is_of_node(endpoint)),
+                self._key(token),
                 sink,
                 matches,
                 heard=self.session.heard,
@@ -298,3 +301,8 @@ class ZenohTransport(Transport):
             self._recovery.leave(port.matches)
         self._graph.remove_local(port.matches)
         self._tokens.take_back(token, declared, port.last)
+
+
+def _is_of_node(endpoint: Endpoint) -> bool:
+    """Whether its name is that of its node and one word more."""
+    return endpoint.topic.rpartition("/")[0] == endpoint.node_full_name
