@@ -17,14 +17,16 @@ STACK = ("costmap", "map_memory", "planner", "control")
 PATIENCE_S = 60.0
 
 
-def until(check: Callable[[], bool], what: str) -> None:
+def until(
+    check: Callable[[], bool], what: str, *, patience_s: float = PATIENCE_S
+) -> None:
     """Look again and again; real programs have no virtual clock."""
     pause = threading.Event()
-    for _ in range(round(PATIENCE_S / 0.05)):
+    for _ in range(round(patience_s / 0.05)):
         if check():
             return
         pause.wait(0.05)
-    raise AssertionError(f"not within {PATIENCE_S} s: {what}")
+    raise AssertionError(f"not within {patience_s} s: {what}")
 
 
 class Fleet:

@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -14,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from free_ports import free_endpoint
 from navette.bags import open_bag
 from navette.bags.checking import check_bag
 from navette.bags.message_types import Decoder
@@ -74,9 +74,7 @@ class Talker:
 
 @pytest.fixture
 def router(monkeypatch: pytest.MonkeyPatch) -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    endpoint = free_endpoint()
     monkeypatch.setenv("NAVETTE_ROUTER", endpoint)
     return endpoint
 

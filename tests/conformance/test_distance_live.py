@@ -2,7 +2,6 @@
 
 import os
 import re
-import socket
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -10,6 +9,8 @@ from pathlib import Path
 
 import pytest
 from fleet import Fleet
+
+from free_ports import free_endpoint
 
 DRIVE = Path(__file__).parents[2] / "examples" / "data" / "drive.mcap"
 DISTANCE = "/odom_integrator/distance"
@@ -32,10 +33,7 @@ def navette(env: Mapping[str, str], *words: str) -> str:
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 def test_the_distance_counts_up_while_the_bag_plays(tmp_path: Path) -> None:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        router = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-    env = {"NAVETTE_ROUTER": router}
+    env = {"NAVETTE_ROUTER": free_endpoint()}
     with Fleet(tmp_path, env) as fleet:
         fleet.start("integrator", "odom_integrator")
         once = ("topic", "echo", "--once", "--timeout", "30", DISTANCE)

@@ -2,13 +2,13 @@
 
 import os
 import signal
-import socket
 import subprocess
 from pathlib import Path
 
 import pytest
 from fleet import STACK, Fleet, until
 
+from free_ports import free_endpoint
 from navette.bags import open_bag
 from navette.msgs import deserialize
 from navette.msgs.nav_msgs.msg import Odometry
@@ -26,10 +26,7 @@ UNTIL_S = 6.0
 
 def fleet_in(folder: Path) -> Fleet:
     folder.mkdir()
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    return Fleet(folder, {"NAVETTE_ROUTER": f"tcp/127.0.0.1:{port}"})
+    return Fleet(folder, {"NAVETTE_ROUTER": free_endpoint()})
 
 
 def follow(fleet: Fleet, name: str, *words: str) -> None:

@@ -3,12 +3,13 @@
 import math
 import os
 import signal
-import socket
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from fleet import PROGRAMS, STACK, Fleet, until
+
+from free_ports import free_endpoint
 
 pytestmark = [
     pytest.mark.slow,
@@ -22,10 +23,7 @@ GOAL = (-3.0, -7.0)  # 8 m: far enough for what happens on the way
 
 @pytest.fixture
 def fleet(tmp_path: Path) -> Iterator[Fleet]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    with Fleet(tmp_path, {"NAVETTE_ROUTER": f"tcp/127.0.0.1:{port}"}) as made:
+    with Fleet(tmp_path, {"NAVETTE_ROUTER": free_endpoint()}) as made:
         made.start("sim", "navette", "sim", "--world", "course")
         made.start("track", str(PROGRAMS / "track.py"))
         for stage in STACK:

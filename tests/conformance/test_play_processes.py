@@ -10,8 +10,9 @@ import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "transports"))
 
-from transport_benches import LIMIT_S, free_endpoint, zenoh_environment
+from transport_benches import LIMIT_S, zenoh_environment
 
+from free_ports import free_endpoint
 from navette.bags import BagWriter, OfferedQos, qos_text
 from navette.msgs import definition_text, serialize
 from navette.msgs.std_msgs.msg import String

@@ -1,7 +1,6 @@
 """Two independent programs that speak rmw_zenoh: zenoh-ros2-sdk and pyzeros."""
 
 import os
-import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -11,6 +10,7 @@ from typing import Any
 import pytest
 from fleet import until
 
+from free_ports import free_port
 from navette.msgs import type_hash
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.std_srvs.srv import SetBool
@@ -24,6 +24,7 @@ HASHES = [type_hash("std_msgs/msg/String"), type_hash("std_srvs/srv/SetBool")]
 PROGRAMS = {"zenoh-ros2-sdk": "sdk_peer.py", "pyzeros": "pyzeros_peer.py"}
 # pyzeros compiles its codecs where it finds none (in .cydr_cache): 9 CPU seconds, and
 # 37 with the optimisation that a few messages do not need.
+COMPILING_S = 300.0
 ENV = {"PYTHONWARNINGS": "ignore", "CFLAGS": "-O0 -g0"}
 
 
@@ -81,9 +82,7 @@ class Meeting:
 def meeting(
     request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Meeting]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     monkeypatch.setenv("NAVETTE_ROUTER", f"tcp/127.0.0.1:{port}")
     context = Context(transport="zenoh")
     context.init(args=[], domain_id=7)
@@ -92,7 +91,7 @@ def meeting(
     executor.add_node(node)
     peer = Peer(PROGRAMS[request.param], port, tmp_path / "peer")
     try:
-        until(lambda: bool(peer.said("ready")), "the peer")
+        until(lambda: bool(peer.said("ready")), "the peer", patience_s=COMPILING_S)
         yield Meeting(peer, node, executor)
         assert peer.end() == 0
     finally:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from free_ports import free_port
 from navette import __version__
 
 NAVETTE = [sys.executable, "-c", "from navette.cli import main; main()"]
@@ -31,11 +32,6 @@ def navette(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [*NAVETTE, *arguments], capture_output=True, text=True, check=False, timeout=120
     )
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        return int(probe.getsockname()[1])
 
 
 @pytest.mark.slow

@@ -4,7 +4,6 @@ import json
 import os
 import queue
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -12,6 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+from free_ports import free_endpoint
 
 LIMIT_S = 30.0
 NAVETTE = [sys.executable, "-c", "from navette.cli import main; main()"]
@@ -53,11 +54,9 @@ class Terminals:
     """A program that runs, and a second terminal beside it."""
 
     def __init__(self, folder: Path) -> None:
-        with socket.create_server(("127.0.0.1", 0)) as probe:
-            port = probe.getsockname()[1]
         self.environment = {
             **os.environ,
-            "NAVETTE_ROUTER": f"tcp/127.0.0.1:{port}",
+            "NAVETTE_ROUTER": free_endpoint(),
             "NAVETTE_TRANSPORT": "zenoh",
             "ROS_DOMAIN_ID": "7",
         }

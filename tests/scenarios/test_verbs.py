@@ -4,7 +4,6 @@ import json
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import threading
@@ -14,6 +13,7 @@ from contextlib import ExitStack, contextmanager
 import pytest
 from typer.testing import CliRunner
 
+from free_ports import free_endpoint
 from navette.cli.app import app
 from navette.runtime.clock import Stopwatch
 
@@ -126,10 +126,8 @@ class Child:
 @pytest.fixture(scope="module")
 def environment() -> Iterator[None]:
     """A network of its own, for children and verbs alike."""
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port = probe.getsockname()[1]
     with pytest.MonkeyPatch.context() as patched:
-        patched.setenv("NAVETTE_ROUTER", f"tcp/127.0.0.1:{port}")
+        patched.setenv("NAVETTE_ROUTER", free_endpoint())
         patched.setenv("ROS_DOMAIN_ID", DOMAIN)
         patched.setenv("NAVETTE_TRANSPORT", "zenoh")
         yield

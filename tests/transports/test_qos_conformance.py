@@ -5,8 +5,9 @@ from contextlib import ExitStack
 from typing import Any
 
 import pytest
-from transport_benches import free_endpoint, until
+from transport_benches import until
 
+from free_ports import free_endpoint
 from navette import Context, DurabilityPolicy, Node, QoSProfile
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import (

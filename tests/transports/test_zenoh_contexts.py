@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from transport_benches import free_endpoint, until
+from transport_benches import until
 
+from free_ports import free_endpoint
 from navette import Context, DurabilityPolicy, HistoryPolicy, Node, QoSProfile
 from navette.errors import InvalidValueError
 from navette.msgs import serialize, type_hash

@@ -4,7 +4,9 @@ import subprocess
 import sys
 
 import pytest
-from transport_benches import free_endpoint, zenoh_environment
+from transport_benches import zenoh_environment
+
+from free_ports import free_endpoint
 
 pytestmark = pytest.mark.slow
 

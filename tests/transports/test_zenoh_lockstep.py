@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 import zenoh
-from transport_benches import free_endpoint, until
+from transport_benches import until
 
+from free_ports import free_endpoint
 from navette import Context, DurabilityPolicy, Node, QoSProfile
 from navette.errors import InvalidValueError, LockStepError
 from navette.msgs.example_interfaces.srv import AddTwoInts

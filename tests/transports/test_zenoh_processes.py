@@ -10,8 +10,9 @@ from contextlib import ExitStack
 from typing import Any
 
 import pytest
-from transport_benches import LIMIT_S, free_endpoint, until, zenoh_environment
+from transport_benches import LIMIT_S, until, zenoh_environment
 
+from free_ports import free_endpoint
 from navette import (
     ActionClient,
     AsyncParameterClient,

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 import zenoh
-from transport_benches import LIMIT_S, free_endpoint, until
+from transport_benches import LIMIT_S, until
 
+from free_ports import free_endpoint
 from navette.errors import FileFormatError, InvalidValueError
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Context, Executor, Node, SystemClock

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import ZenohPair, free_endpoint, message_of, until
+from transport_benches import ZenohPair, message_of, until
 
+from free_ports import free_endpoint
 from navette import Context, Node
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import String

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import ZenohPair, free_endpoint, until
+from transport_benches import ZenohPair, until
 
+from free_ports import free_endpoint
 from navette import ActionClient, ActionServer, Context, Future, Node
 from navette.errors import InvalidValueError
 from navette.msgs.example_interfaces.action import Fibonacci

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import LIMIT_S, ZenohPair, free_endpoint, message_of, until
+from transport_benches import LIMIT_S, ZenohPair, message_of, until
 
+from free_ports import free_endpoint
 from navette import Context, Node
 from navette.errors import InvalidValueError, NetworkError
 from navette.msgs import serialize, type_hash

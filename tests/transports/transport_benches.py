@@ -2,7 +2,6 @@
 
 import itertools
 import os
-import socket
 import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -10,6 +9,7 @@ from typing import Any
 
 import zenoh
 
+from free_ports import free_endpoint
 from navette.runtime.clock import Stopwatch
 from navette.transports import (
     Encoded,
@@ -32,13 +32,6 @@ def until(condition: Callable[[], bool], what: str = "the condition") -> None:
     while not condition():
         assert watch.elapsed_s < LIMIT_S, f"{what} did not come about"
         pause.wait(0.001)
-
-
-def free_endpoint() -> str:
-    """A TCP endpoint on the loopback interface that nobody uses."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 def zenoh_environment(router: str, **more: str) -> dict[str, str]:

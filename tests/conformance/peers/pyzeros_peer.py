@@ -60,7 +60,14 @@ async def obey(publisher: Any, client: Any) -> None:
                 say("answer", bool(reply.success), text(reply.message))
 
 
+def compile_codecs() -> None:
+    """Those that it has not found compiled; half a minute of a busy machine."""
+    for kind in (String, SetBool.Request, SetBool.Response):
+        kind().serialize()
+
+
 async def main() -> None:
+    compile_codecs()
     session = open_session()
     with pyzeros.auto_context("peer", zenoh_session=session, domain_id=7):
         publisher = pyzeros.Pub(String, "/from_peer")

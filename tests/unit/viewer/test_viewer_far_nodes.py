@@ -1,6 +1,5 @@
 """Nodes of another session on the network: parameters, signs of life, the last path."""
 
-import socket
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -8,6 +7,7 @@ from typing import Any
 import pytest
 from viewer_harness import PATIENCE_S, Client, Program
 
+from free_ports import free_endpoint
 from navette.msgs import deserialize
 from navette.msgs.nav_msgs.msg import Path
 from navette.msgs.rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
@@ -48,9 +48,7 @@ class Far:
 
 @pytest.fixture
 def program(monkeypatch: pytest.MonkeyPatch) -> Iterator[Program]:
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
-    monkeypatch.setenv("NAVETTE_ROUTER", f"tcp/127.0.0.1:{port}")
+    monkeypatch.setenv("NAVETTE_ROUTER", free_endpoint())
     with Program(transport="zenoh") as running:
         yield running
 
