@@ -3,11 +3,10 @@
 import threading
 from collections import deque
 from collections.abc import Callable
-from types import TracebackType
 from typing import Any
 
 from navette.errors import MessageError
-from navette.msgs import get_interface, type_name
+from navette.msgs import type_name
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context
@@ -20,11 +19,8 @@ from navette.runtime.exceptions import (
 )
 from navette.runtime.future import Answer, Future
 from navette.runtime.qos import QoSProfile
-from navette.runtime.ros_clock import Clock
-from navette.runtime.service_introspection import (
-    ServiceEvents,
-    ServiceIntrospectionState,
-)
+from navette.runtime.service_end import ServiceEnd
+from navette.runtime.service_introspection import ServiceEvents
 from navette.runtime.time import seconds_to_ns
 from navette.transports import ClientPort, Endpoint, Reply, RequestId, Transport
 
@@ -52,7 +48,7 @@ class _Replies(Entity):
         return endpoint.node_full_name, f"reply of service {endpoint.topic}"
 
 
-class Client:
+class Client(ServiceEnd):
     """Calls a service. Made by :meth:`Node.create_client`."""
 
     def __init__(
@@ -77,22 +73,6 @@ class Client:
         self._lock = threading.Lock()
         self._destroyed = False
         self._on_destroy = on_destroy
-
-    @property
-    def srv_type(self) -> Any:
-        return get_interface(self.endpoint.type_name)
-
-    @property
-    def srv_name(self) -> str:
-        return self.endpoint.topic
-
-    @property
-    def service_name(self) -> str:
-        return self.endpoint.topic
-
-    @property
-    def callback_group(self) -> CallbackGroup:
-        return self.group
 
     def open_port(self, transport: Transport) -> None:
         """Ask through that transport too.
@@ -174,15 +154,6 @@ class Client:
                     del self._pending[sequence]
                     return
 
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Publish requests and responses on ``<service>/_service_event``, or stop."""
-        self._events.configure(clock, service_event_qos_profile, introspection_state)
-
     # -- the server ------------------------------------------------------------
 
     def service_is_ready(self) -> bool:
@@ -234,17 +205,6 @@ class Client:
         for future in list(self._pending.values()):
             future.cancel()
         self._on_destroy(self)
-
-    def __enter__(self) -> "Client":
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
-        self.destroy()
 
     def _deadline_ns(self, timeout_sec: float | None) -> int | None:
         if timeout_sec is None or timeout_sec < 0:

@@ -2,11 +2,11 @@
 
 import logging
 from collections.abc import Callable
-from types import TracebackType
 from typing import Any, Generic, TypeVar, cast
 
 from navette.errors import DecodeError, MessageError
 from navette.msgs import deserialize, type_name
+from navette.runtime.destroyable import Destroyable
 from navette.runtime.exceptions import InvalidHandle
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
@@ -19,7 +19,7 @@ MsgT = TypeVar("MsgT")
 _log = logging.getLogger(__name__)
 
 
-class Publisher(Generic[MsgT]):
+class Publisher(Destroyable, Generic[MsgT]):
     """Sends messages to a topic. Made by :meth:`Node.create_publisher`."""
 
     __slots__ = (
@@ -122,17 +122,6 @@ class Publisher(Generic[MsgT]):
             port.close()
         self._send = self._send_nothing
         self._on_destroy(self)
-
-    def __enter__(self) -> "Publisher[MsgT]":
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
-        self.destroy()
 
     def _send_to_all(self, message: Any, source_ns: int, sequence: int) -> None:
         for port in self.ports:

@@ -2,25 +2,21 @@
 
 from collections import deque
 from collections.abc import Callable, Coroutine
-from types import TracebackType
 from typing import Any
 
 from navette.errors import MessageError
-from navette.msgs import get_interface, type_name
+from navette.msgs import type_name
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.events import Entity
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
-from navette.runtime.ros_clock import Clock
-from navette.runtime.service_introspection import (
-    ServiceEvents,
-    ServiceIntrospectionState,
-)
+from navette.runtime.service_end import ServiceEnd
+from navette.runtime.service_introspection import ServiceEvents
 from navette.transports import Endpoint, Request, RequestId, ServicePort
 
 
-class Service(Entity):
+class Service(ServiceEnd, Entity):
     """Answers requests. Made by :meth:`Node.create_service`.
 
     Args:
@@ -69,24 +65,6 @@ class Service(Entity):
         self._queue: deque[Request] = deque()
         self._on_destroy = on_destroy
 
-    @property
-    def srv_type(self) -> Any:
-        # Looked up when needed: making the classes of a node's parameter services
-        # would be most of the cost of the first node.
-        return get_interface(self.endpoint.type_name)
-
-    @property
-    def srv_name(self) -> str:
-        return self.endpoint.topic
-
-    @property
-    def service_name(self) -> str:
-        return self.endpoint.topic
-
-    @property
-    def callback_group(self) -> CallbackGroup:
-        return self.group
-
     def receive(self, request: Request) -> None:
         """Queue a request (the transport's sink)."""
         self._queue.append(request)
@@ -128,15 +106,6 @@ class Service(Entity):
             port.reply(header, response)
         self._events.report(ServiceEventInfo.RESPONSE_SENT, header, response=response)
 
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Publish requests and responses on ``<service>/_service_event``, or stop."""
-        self._events.configure(clock, service_event_qos_profile, introspection_state)
-
     def origin(self) -> tuple[str, str]:
         return self.endpoint.node_full_name, f"service {self.endpoint.topic}"
 
@@ -146,17 +115,6 @@ class Service(Entity):
             port.close()
         self._queue.clear()
         self._on_destroy(self)
-
-    def __enter__(self) -> "Service":
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
-        self.destroy()
 
     def _call(self, request: Request) -> Any:
         if self._deferred:

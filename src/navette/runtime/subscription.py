@@ -3,12 +3,12 @@
 from collections import deque
 from collections.abc import Callable, Sequence
 from enum import Enum
-from types import TracebackType
 from typing import Any, Generic, TypedDict, TypeVar
 
 from navette.msgs import serialize
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.content_filter import ContentFilterOptions
+from navette.runtime.destroyable import Destroyable
 from navette.runtime.events import Entity
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
@@ -35,7 +35,7 @@ class MessageInfo(TypedDict):
     reception_sequence_number: int | None
 
 
-class Subscription(Entity, Generic[MsgT]):
+class Subscription(Destroyable, Entity, Generic[MsgT]):
     """Calls back for each sample. Made by :meth:`Node.create_subscription`."""
 
     class CallbackType(Enum):
@@ -213,17 +213,6 @@ class Subscription(Entity, Generic[MsgT]):
             port.close()
         self._queue.clear()
         self._on_destroy(self)
-
-    def __enter__(self) -> "Subscription[MsgT]":
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
-        self.destroy()
 
     def _unwrapped(self, message: Any) -> Any:
         """The message itself; None if it expired or is not what it should be."""

@@ -1,11 +1,11 @@
 """Timers: a callback every period of a clock."""
 
 from collections.abc import Callable
-from types import TracebackType
 from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.destroyable import Destroyable
 from navette.runtime.events import Entity
 from navette.runtime.ros_clock import (
     Clock,
@@ -35,7 +35,7 @@ class TimerInfo:
         )
 
 
-class Timer(Entity):
+class Timer(Destroyable, Entity):
     """Calls back every ``timer_period_ns`` of its clock; skips beats it is late for.
 
     Made by :meth:`Node.create_timer`.
@@ -171,17 +171,6 @@ class Timer(Entity):
                 clock_type=self._clock.clock_type,
             )
         )
-
-    def __enter__(self) -> "Timer":
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
-        self.destroy()
 
     def _arm(self) -> None:
         self.token = self._clock.schedule(self._next_ns, self)
