@@ -21,6 +21,8 @@ from navette.runtime.signals import (
 @pytest.fixture(autouse=True)
 def fresh_default_context() -> Iterator[None]:
     reset_default_context()
+    # Who is shut down by another thread leaves its handler, as Python wants it.
+    uninstall_signal_handlers()
     yield
     get_default_context().try_shutdown()
     uninstall_signal_handlers()
