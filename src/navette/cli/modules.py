@@ -285,9 +285,9 @@ def _tell_neighbours(client: "Client") -> None:
 
     for domain, other in neighbours(client, _all_clients()):
         note(
-            f"{other.folder} is up in domain {domain} too: these modules meet its nodes "
-            "(if that is not meant: another ROS_DOMAIN_ID, and another port of the "
-            "live view)"
+            f"{other.folder} is up in domain {domain} too: these modules meet its "
+            "nodes (if that is not meant: another ROS_DOMAIN_ID, and another port of "
+            "the live view)"
         )
 
 
