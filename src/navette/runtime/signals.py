@@ -67,7 +67,10 @@ def _on_sigterm(number: int, frame: FrameType | None) -> None:
     # A second one ends the process, should the program not end by itself.
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     _Installed.is_ours = False
-    for context in tuple(current_scope.get().contexts):
+    contexts = [each for each in current_scope.get().contexts if each.ok()]
+    if not contexts:  # another thread has shut them down, and had to leave us here
+        signal.raise_signal(number)
+    for context in contexts:
         context.try_shutdown()
 
 

@@ -1,16 +1,23 @@
 """What SIGTERM does, and what init and shutdown do about it."""
 
+import contextvars
 import signal
 import subprocess
 import sys
 import textwrap
+import threading
 from collections.abc import Iterator
 
 import pytest
 
 import navette
 from navette.runtime import SignalHandlerOptions, VirtualClock
-from navette.runtime.context import get_default_context, reset_default_context
+from navette.runtime.context import (
+    Scope,
+    current_scope,
+    get_default_context,
+    reset_default_context,
+)
 from navette.runtime.signals import (
     get_current_signal_handlers_options,
     install_signal_handlers,
@@ -56,6 +63,33 @@ def test_handlers_of_others_stay() -> None:
         assert signal.getsignal(signal.SIGTERM) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def test_sigterm_ends_a_program_that_another_thread_has_shut_down(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    alone = current_scope.set(Scope())
+    context_of_thread = contextvars.copy_context()
+    try:
+        navette.init(args=[], clock=VirtualClock())
+        thread = threading.Thread(target=context_of_thread.run, args=[navette.shutdown])
+        thread.start()
+        thread.join()
+        assert not navette.ok()
+        _sigterm_reaches_the_program(monkeypatch)
+    finally:
+        current_scope.reset(alone)
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def _sigterm_reaches_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    left = signal.getsignal(signal.SIGTERM)
+    assert callable(left)
+    ends: list[int] = []
+    monkeypatch.setattr(signal, "raise_signal", ends.append)
+    left(signal.SIGTERM, None)
+    assert ends == [signal.SIGTERM]
 
 
 def test_sigterm_ends_the_spin_and_the_program_goes_on() -> None:
