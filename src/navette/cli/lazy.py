@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_group
 
+from navette.cli.garbage import collect
 from navette.cli.interruption import raise_at_interrupt
 
 _PLAIN = (str, int, float, bool)
@@ -62,6 +63,7 @@ def lazy_group(verbs: Mapping[str, Later]) -> type[TyperGroup]:
                 command = self.commands[name] = command.load()
             if not only_looks:
                 raise_at_interrupt()
+                collect()
             return name, command, rest
 
     return LazyGroup

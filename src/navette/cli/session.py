@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Never
 import typer
 
 from navette.cli.escaping import escaped
+from navette.cli.garbage import collect
 from navette.cli.interruption import (
     dying_on_signals,
     ending_on_signals,
@@ -75,6 +76,7 @@ def connect(
         leaving.callback(node.destroy_node)
         executor = Executor(context=joined)
         executor.add_node(node)
+        collect()
         try:
             with ending_on_signals():
                 yield node
