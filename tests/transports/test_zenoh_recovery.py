@@ -7,8 +7,10 @@ from typing import Any
 import pytest
 from transport_benches import ZenohPair, message_of, until
 
+from navette.msgs import serialize
 from navette.msgs.std_msgs.msg import String
 from navette.transports import (
+    Encoded,
     Endpoint,
     EndpointKind,
     EndpointQos,
@@ -20,6 +22,7 @@ from navette.transports import (
 from navette.transports.zenoh import ZenohTransport
 from navette.transports.zenoh import transport as transport_module
 from navette.transports.zenoh.recovery import (
+    absences,
     hub,
     offers,
     retention,
@@ -244,7 +247,7 @@ def test_who_has_died_is_owed_nothing(
 ) -> None:
     """Seen at once where the process is gone by then, else with the next tick."""
     dead: set[str] = set()
-    monkeypatch.setattr(hub, "has_died", dead.__contains__)
+    monkeypatch.setattr(absences, "has_died", dead.__contains__)
     _, speaker = Ear(pair), Speaker(pair)
     acquaint(pair, speaker)
     keys = part(pair.far_zenoh)
@@ -276,9 +279,7 @@ def test_those_beside_one_that_has_died_know_it(
         )
         until(lambda: speaker.port.matched_count == 2, "both listeners")
         acquaint(pair, speaker)
-        near = pair.near_zenoh._recovery
-        assert near is not None
-        monkeypatch.setattr(hub, "has_died", lambda _: False)
+        monkeypatch.setattr(absences, "has_died", lambda _: False)
         graph = pair.far_zenoh.session.graph
         graph.on_tokens(
             (key, False) for key in [*graph._nodes, *graph._endpoints] if zid in key
@@ -324,6 +325,24 @@ def test_a_publisher_that_closes_is_not_waited_for(
     speaker.port.close()
     ear.await_(1, 4)
     assert ear.lost == 2
+
+
+def test_what_is_missed_of_one_that_has_left_by_then_is_not_waited_for(
+    pair: ZenohPair,
+) -> None:
+    """Its last word came before its last sample, by another way."""
+    ear, speaker = Ear(pair), Speaker(pair)
+    acquaint(pair, speaker, ear)
+    speaker.say(3, drop=(2, 3))
+    ear.await_(1)
+    pair.far.close()
+    until(lambda: not pair.near.endpoints(), "its leaving")
+    pair.near_zenoh.session.graph.counts()
+    data = serialize(String(data="3"))
+    item = Encoded(data, String, print), 0, 0, 3
+    ear.port.arrivals.take(speaker.port._gid, item)
+    ear.await_(1, 3)
+    assert ear.lost == 1
 
 
 def test_one_that_never_answers_is_given_up(

@@ -83,6 +83,11 @@ class Hearing:
         for hearer in hearers:
             hearer.reach(*head)
 
+    def sessions(self) -> set[str]:
+        """Of publishers that are heard now."""
+        with self._lock:
+            return {self._homes[gid] for gid in self._heard if gid in self._homes}
+
     def knows(self, hearer: Hearer) -> bool:
         """Whether it is open."""
         return id(hearer.matches.endpoint) in self._own

@@ -164,6 +164,12 @@ class Offers:
             for letter in letters(Kind.HEADS, entries):
                 self._peers.post(session, letter)
 
+    def listening(self) -> set[str]:
+        """Sessions that are there."""
+        with self._lock:
+            offers = list(self._offers.values())
+            return {d.session for offer in offers for d in offer.listeners.values()}
+
     def awaited(self) -> set[str]:
         """Sessions that are away and owed something."""
         with self._lock:

@@ -5,7 +5,6 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from navette.transports.zenoh.kin import has_died
 from navette.transports.zenoh.recovery.answer import Answer, Parts
 from navette.transports.zenoh.recovery.errands import Errands
 from navette.transports.zenoh.recovery.hearer import Hearer, Want
@@ -30,6 +29,7 @@ class Wants:
         starts: who waits to be told what it is owed at all.
         get: asks a session, for a subscription.
         watch: called when there is something to look at with every tick.
+        may_return: whether a publisher of that session that is not seen is only lost.
         max_message_bytes: longer messages are not put together.
     """
 
@@ -41,6 +41,7 @@ class Wants:
         get: Get,
         watch: Callable[[], None],
         errands: Errands,
+        may_return: Callable[[str, bytes], bool],
         max_message_bytes: int,
     ) -> None:
         self.starts = starts
@@ -50,6 +51,7 @@ class Wants:
         self._longest = max_message_bytes
         self._get = get
         self._errands = errands
+        self._may_return = may_return
         self._wants: dict[tuple[Hearer, bytes], Want] = {}
         self._lines: dict[str, deque[Want]] = {}
         self._busy: set[str] = set()
@@ -100,19 +102,23 @@ class Wants:
             for want in [w for w in self._wants.values() if w.is_parked]:
                 want.ticks += 1
                 is_heard = self._hearing.hears(want.hearer, want.gid)
-                home = self._hearing.home(want.gid)
-                if home is None or has_died(home):
-                    hopeless.append(want)
-                elif is_heard and want.tries < _MOST_TRIES:
+                if is_heard and want.tries < _MOST_TRIES:
                     self._queue(want)
-                elif is_heard or want.ticks >= _GRACE_TICKS:
+                elif is_heard or not self._is_awaited(want):
                     hopeless.append(want)
         self._forsake(lambda want: want in hopeless)
+
+    def _is_awaited(self, want: Want) -> bool:
+        """Whether a publisher that is not seen may come back in time."""
+        home = self._hearing.home(want.gid)
+        may_return = home is not None and self._may_return(home, want.gid)
+        return may_return and want.ticks < _GRACE_TICKS
 
     def _queue(self, want: Want) -> None:
         session = self._hearing.home(want.gid)
         want.is_parked = session is None
         if session is None:
+            want.tries = _MOST_TRIES
             return
         self._lines.setdefault(session, deque()).append(want)
         if session not in self._busy:
