@@ -40,6 +40,7 @@ def test_the_distance_counts_up_while_the_bag_plays(tmp_path: Path) -> None:
         assert navette(env, *once) == "data: 0.0\n---\n"
         navette(env, "bag", "play", "-r", "30", str(DRIVE))
         (metres,) = re.findall(r"data: ([\d.]+)", navette(env, *once))
-        # A queue of one: where this machine is busy, a bend is cut short.
-        assert float(metres) == pytest.approx(102.4, rel=0.01)
+        # A queue of one: where this machine is busy, a bend is cut short. The exact
+        # figure is that of test_distance.py.
+        assert 90.0 < float(metres) < 102.5
     assert fleet.running["integrator"].returncode in (0, 130)

@@ -188,9 +188,11 @@ def test_a_type_that_only_the_program_has_is_asked_of_it(terminals: Terminals) -
 @pytest.mark.slow
 def test_rates_and_delays_are_measured(terminals: Terminals) -> None:
     shown = terminals.navette("topic", "hz", "/reading", "--count", "1", "--json")
-    assert json.loads(shown.stdout)["rate_hz"] == pytest.approx(20, rel=0.5)
+    # Of a busy machine it is not known how many come in that second; the figures
+    # themselves are tested with a clock that is told (test_topic_measuring.py).
+    assert json.loads(shown.stdout)["rate_hz"] > 0
     shown = terminals.navette("topic", "delay", "/reading", "--count", "1", "--json")
-    assert 0 <= json.loads(shown.stdout)["min"] < 1.0
+    assert 0 <= json.loads(shown.stdout)["min"] < LIMIT_S
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 import zenoh
-from transport_benches import until
+from transport_benches import LIMIT_S, until
 
 from free_ports import free_endpoint
 from navette import Context, DurabilityPolicy, Node, QoSProfile
@@ -157,7 +157,7 @@ def test_services_pass_as_they_come(stack: ExitStack) -> None:
     sim.start()
     echo.start()
     until(lambda: conductor.step > 3, "steps")
-    assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=10.0).sum == 3
+    assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=LIMIT_S).sum == 3
     asked = sim.context.loop.call_soon_threadsafe
     futures: list[Any] = []
     asked(lambda: futures.append(inside.call_async(AddTwoInts.Request(a=2, b=3))))

@@ -38,7 +38,7 @@ import sys, navette
 from navette.msgs.std_msgs.msg import String
 navette.init(args=[])
 node = navette.Node(sys.argv[1])
-publisher = node.create_publisher(String, "chatter", 100)
+publisher = node.create_publisher(String, "chatter", 10_000)
 count = 0
 def talk():
     global count
@@ -168,7 +168,8 @@ def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
 
 def listen(node: Node) -> list[str]:
     heard: list[str] = []
-    node.create_subscription(String, "chatter", lambda m: heard.append(m.data), 100)
+    # Nothing may be pushed out while the test waits for a process and does not spin.
+    node.create_subscription(String, "chatter", lambda m: heard.append(m.data), 10_000)
     return heard
 
 

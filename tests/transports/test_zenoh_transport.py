@@ -2,6 +2,7 @@
 
 import json
 import logging
+import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -377,8 +378,6 @@ def test_domains_do_not_see_each_other(pair: ZenohPair) -> None:
 
 
 def test_closing_twice_is_harmless_and_leaves_no_thread(pair: ZenohPair) -> None:
-    import threading
-
     before = set(threading.enumerate())
     transport = ZenohTransport(7, lambda: 0, pair.near_zenoh.session.settings)
     transport.announce(NodeInfo("n", "/"))
@@ -386,7 +385,9 @@ def test_closing_twice_is_harmless_and_leaves_no_thread(pair: ZenohPair) -> None
     transport.close()
     port.close()
     transport.close()
-    assert set(threading.enumerate()) == before
+    # A thread of Zenoh's that came by Python is called a dummy, and stays.
+    made = set(threading.enumerate()) - before
+    assert [t for t in made if not isinstance(t, threading._DummyThread)] == []
 
 
 def test_a_network_that_cannot_be_joined_is_a_named_error() -> None:
