@@ -36,7 +36,7 @@ def modules_in(folder: Path) -> frozenset[str]:
         path.stem
         for path in folder.iterdir()
         if path.stem.isidentifier()
-        and not path.stem.startswith("_")
+        and not path.stem.startswith("__")
         and (path.suffix == ".py" or (path / "__init__.py").is_file())
     )
 
@@ -211,7 +211,8 @@ class AliasLoader(_NavetteLoader, Loader):
         )
 
     def contents(self) -> list[str]:
-        return sorted({*_public_names(self._real), *self._submodules()})
+        names = {*_public_names(self._real), *self._submodules()}
+        return sorted(name for name in names if not name.startswith("_"))
 
     def _submodules(self) -> frozenset[str]:
         path = Path(getattr(self._real, "__file__", None) or "")

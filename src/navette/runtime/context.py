@@ -15,6 +15,7 @@ from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.clock import TimeSource
 from navette.runtime.exceptions import RCLError
 from navette.runtime.graph import Graph
+from navette.runtime.handles import Handle
 from navette.runtime.lockstep import LockStepClock, clock_of_environment
 from navette.runtime.log import LogHub, StdlibHandler
 from navette.runtime.log_levels import LoggingSeverity
@@ -135,6 +136,11 @@ class Context:
     def ok(self) -> bool:
         """Whether it is initialised and not shut down."""
         return self._initialized and not self._shut_down
+
+    @property
+    def handle(self) -> Handle:
+        """What rclpy's wait set takes."""
+        return Handle(self)
 
     @property
     def was_shut_down(self) -> bool:

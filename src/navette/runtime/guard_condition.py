@@ -6,6 +6,7 @@ from typing import Any
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context, get_default_context
 from navette.runtime.events import Entity
+from navette.runtime.handles import Handle
 
 
 class GuardCondition(Entity):
@@ -35,9 +36,14 @@ class GuardCondition(Entity):
         self._triggered = False
 
     @property
-    def handle(self) -> "GuardCondition":
+    def handle(self) -> Handle:
         """What a wait set takes."""
-        return self
+        return Handle(self)
+
+    @property
+    def is_triggered(self) -> bool:
+        """Whether its callback has still to run."""
+        return self._triggered
 
     @property
     def callback_group(self) -> CallbackGroup:

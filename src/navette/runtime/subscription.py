@@ -10,6 +10,7 @@ from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.destroyable import Destroyable
 from navette.runtime.events import Entity
+from navette.runtime.handles import SubscriptionHandle
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.qos_events import EventHandler
@@ -204,6 +205,25 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
                 return taken
         return None
 
+    @property
+    def has_samples(self) -> bool:
+        """Whether something waits in the queue."""
+        return bool(self._queue)
+
+    def take_with_info(self, *, raw: bool = False) -> tuple[Any, MessageInfo] | None:
+        """As :meth:`take`, with what is known of the sample; its bytes if ``raw``."""
+        while self._queue:
+            item = self._queue.popleft()
+            message = self._opened(item[0], raw=raw)
+            if message is not None:
+                return message, self._info_of(item)
+        return None
+
+    @property
+    def handle(self) -> SubscriptionHandle:
+        """To poll by, as rclpy's inside does."""
+        return SubscriptionHandle(self)
+
     def origin(self) -> tuple[str, str]:
         return self.endpoint.node_full_name, f"topic {self.endpoint.topic}"
 
@@ -220,25 +240,31 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
             message = message.at(self._loop.clock.now_ns)
         return message.decode() if message.__class__ is Encoded else message
 
-    def _run_with_info(self, item: Item) -> Any:
-        message, source_ns, received_ns, sequence = item
+    def _opened(self, message: Any, *, raw: bool) -> Any:
+        """The message or its bytes; None if it expired or is not what it should be."""
+        if not raw:
+            return self._unwrapped(message)
         if message.__class__ is Expiring:
             message = message.at(self._loop.clock.now_ns)
-            if message is None:
-                return None
-        if message.__class__ is Encoded:
-            message = message.data if self.raw else message.decode()
-            if message is None:
-                return None
-        elif self.raw:
-            message = serialize(message)
-        self._received += 1
+        if message is None:
+            return None
+        return message.data if message.__class__ is Encoded else serialize(message)
+
+    def _run_with_info(self, item: Item) -> Any:
+        message = self._opened(item[0], raw=self.raw)
+        if message is None:
+            return None
+        info = self._info_of(item)
         if not self._informed:
             return self._callback(message)
-        info: MessageInfo = {
+        return self._callback(message, info)
+
+    def _info_of(self, item: Item) -> MessageInfo:
+        _, source_ns, received_ns, sequence = item
+        self._received += 1
+        return {
             "source_timestamp": source_ns,
             "received_timestamp": received_ns,
             "publication_sequence_number": sequence,
             "reception_sequence_number": self._received,
         }
-        return self._callback(message, info)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.events import Entity
+from navette.runtime.handles import Handle
 from navette.runtime.loop import EventLoop
 
 if TYPE_CHECKING:
@@ -79,6 +80,8 @@ class WaitSet:
     def _add(self, kind: str, entity: Any) -> int:
         index = self._counts.get(kind, 0)
         self._counts[kind] = index + 1
+        if isinstance(entity, Handle):
+            entity = entity.entity
         entity.callback = partial(self._note, kind, index)
         return index
 

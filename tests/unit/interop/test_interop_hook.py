@@ -82,6 +82,18 @@ def test_a_missing_attribute_says_what_exists() -> None:
     assert not hasattr(rclpy.qos, "QoS")
 
 
+def test_what_programs_use_of_rclpys_inside() -> None:
+    from rclpy._rclpy_pybind11 import InvalidHandle, RCLError
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+
+    from navette.runtime import exceptions
+    from navette.runtime.handles import PollSet
+
+    assert RCLError is rclpy_implementation.RCLError is exceptions.RCLError
+    assert InvalidHandle is exceptions.InvalidHandle
+    assert rclpy_implementation.WaitSet is PollSet
+
+
 def test_threads_that_import_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     plain, loading = AliasLoader.exec_module, threading.Event()
 

@@ -1,1 +1,1 @@
-"""The one part of rclpy's inside that programs use."""
+"""The parts of rclpy's inside that programs use."""
