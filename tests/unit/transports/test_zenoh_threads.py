@@ -23,6 +23,16 @@ def test_there_are_more_threads_than_links_that_may_be_lost(
     assert text.endswith("))")
 
 
+def test_a_child_has_its_own_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ZENOH_RUNTIME", raising=False)
+    provide_threads(Settings())
+    inherited = os.environ["ZENOH_RUNTIME"]
+    provide_threads(Settings(router=("tcp/10.0.0.1:7447",)))
+    assert os.environ["ZENOH_RUNTIME"] != inherited
+    provide_threads(Settings())
+    assert os.environ["ZENOH_RUNTIME"] == inherited
+
+
 def test_what_the_environment_says_wins(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ZENOH_RUNTIME", "(rx:(worker_threads:4))")
     provide_threads(Settings())

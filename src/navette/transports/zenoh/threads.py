@@ -20,6 +20,11 @@ def provide_threads(settings: Settings) -> None:
     any more, from nobody (decision 0012). One that waits for work costs 13 kB. What the
     environment says wins.
     """
-    counts = _NEAR if settings.is_local else _FAR
+    said = os.environ.get(_VARIABLE)
+    if said in (None, _text(_NEAR), _text(_FAR)):  # the parent's, by this very function
+        os.environ[_VARIABLE] = _text(_NEAR if settings.is_local else _FAR)
+
+
+def _text(counts: dict[str, int]) -> str:
     parts = (f"{name}:(worker_threads:{count})" for name, count in counts.items())
-    os.environ.setdefault(_VARIABLE, f"({','.join(parts)})")
+    return f"({','.join(parts)})"
