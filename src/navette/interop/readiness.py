@@ -14,7 +14,8 @@ from navette.interop.leftovers import warn_of_leftovers
 from navette.runtime.context import Context, Scope
 
 VARIABLE = "NAVETTE_READY_FD"
-_LOOK_S = 0.02
+# Many programs that start at once are not to be slowed down by looking at each.
+_FIRST_LOOK_S, _LONGEST_LOOK_S = 0.01, 0.16
 
 
 class Readiness:
@@ -58,11 +59,12 @@ def _watch(
     is_over: Callable[[], bool],
     on_ready: Callable[[], object] | None,
 ) -> None:
-    pause = threading.Event()
+    pause, look_s = threading.Event(), _FIRST_LOOK_S
     while not (ready := _ready_contexts(scope)):
         if is_over():
             return
-        pause.wait(_LOOK_S)
+        pause.wait(look_s)
+        look_s = min(2 * look_s, _LONGEST_LOOK_S)
     for context in ready:
         context.loop.call_soon_threadsafe(partial(warn_of_leftovers, context), "start")
     if on_ready is not None:

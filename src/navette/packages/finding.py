@@ -169,29 +169,24 @@ def _crawl(root: Path, depth: int) -> Iterator[Package]:
 
 def _package_folders(folder: Path, depth: int) -> Iterator[Path]:
     """Folders with a package.xml, sorted; packages do not lie in one another."""
-    if any((folder / name).exists() for name in _IGNORE_FILES):
-        return
-    if (folder / FILE_NAME).is_file():
-        yield folder
-        return
-    if depth == 0:
-        return
-    for name in _subfolders(folder):
-        yield from _package_folders(folder / name, depth - 1)
-
-
-def _subfolders(folder: Path) -> list[str]:
+    # One look at each: all below is gone through whenever a program starts.
     try:
-        with os.scandir(folder) as entries:
-            return sorted(
-                entry.name
-                for entry in entries
-                if entry.is_dir()
-                and not entry.name.startswith(".")
-                and entry.name not in _OUTPUT_FOLDERS
-            )
+        with os.scandir(folder) as listed:
+            entries = {entry.name: entry for entry in listed}
     except PermissionError:
-        return []  # not ours to read: no package of this user's
+        return  # not ours to read: no package of this user's
+    if not entries.keys().isdisjoint(_IGNORE_FILES):
+        return
+    if FILE_NAME in entries and entries[FILE_NAME].is_file():
+        yield folder
+    elif depth > 0:
+        for name in sorted(filter(_may_hold_packages, entries)):
+            if entries[name].is_dir():
+                yield from _package_folders(folder / name, depth - 1)
+
+
+def _may_hold_packages(name: str) -> bool:
+    return not name.startswith(".") and name not in _OUTPUT_FOLDERS
 
 
 def installed_prefixes() -> tuple[Path, ...]:
