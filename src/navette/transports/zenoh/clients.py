@@ -14,6 +14,8 @@ from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.matches import Matches
 
 _LONGEST_REASON = 2000
+# What is looked at for one request of those that the graph does not list.
+_MOST_OF_STRANGERS = 20
 # What Zenoh tells in place of a reply when the time is over.
 _TIMEOUT = b"Timeout"
 
@@ -117,10 +119,16 @@ class ZenohClient(ClientPort):
         except DecodeError as error:
             name = self.matches.endpoint.topic
             text = f"service {name}: reply ignored: {error}"
-            self._complaints.once(("reply", name), text)
+            self._complaints.once(("reply", name, str(error)), text)
             return _Worth.MALFORMED, Reply(None, sequence, f"malformed reply: {error}")
-        worth = _Worth.ANSWER if self._is_listed(reply) else _Worth.STRANGERS_ANSWER
+        worth = _Worth.ANSWER if self.is_listed(reply) else _Worth.STRANGERS_ANSWER
         return worth, Reply(message, sequence)
+
+    def is_listed(self, reply: zenoh.Reply) -> bool:
+        """Whether the graph has a server of that session."""
+        if reply.replier_id is None:
+            return False
+        return str(reply.replier_id.zid) in tuple(self.matches.sessions.values())
 
     def _failed(self, error: zenoh.ReplyError, sequence: int) -> Reply:
         text = error.payload.to_bytes()[:_LONGEST_REASON]
@@ -128,13 +136,6 @@ class ZenohClient(ClientPort):
             return Reply(None, sequence, text.decode(errors="replace"))
         reason = f"no answer in {self._timeout_s:g} s (NAVETTE_SERVICE_TIMEOUT)"
         return Reply(None, sequence, reason, timed_out=True)
-
-    def _is_listed(self, reply: zenoh.Reply) -> bool:
-        """Whether the graph has a server of that session."""
-        if reply.replier_id is None:
-            return False
-        zid = f"/{reply.replier_id.zid}/"
-        return any(zid in token for token in tuple(self.matches.remotes))
 
     def _checked(self, sample: zenoh.Sample | None, sequence: int) -> Any:
         if sample is None or sample.attachment is None:
@@ -168,17 +169,21 @@ class _Call:
     somebody who only pretends to serve, or is broken: it counts when all have spoken.
     """
 
-    __slots__ = ("_client", "_found", "_sequence", "_worth")
+    __slots__ = ("_client", "_count", "_found", "_sequence", "_worth")
 
     def __init__(self, client: ZenohClient, sequence: int) -> None:
         self._client = client
         self._sequence = sequence
         self._worth = _Worth.NOTHING
+        self._count = 0
         self._found = Reply(None, sequence, "the server went away")
 
     def on_reply(self, reply: zenoh.Reply) -> None:
         """Zenoh has a reply, an error, or the end of the time."""
         if self._worth == _Worth.ANSWER:
+            return
+        self._count += 1
+        if self._count > _MOST_OF_STRANGERS and not self._client.is_listed(reply):
             return
         worth, found = self._client.judged(reply, self._sequence)
         if worth > self._worth:

@@ -112,7 +112,7 @@ class ZenohService(ServicePort):
         except DecodeError as error:
             name = self.matches.endpoint.topic
             text = f"service {name}: request ignored: {error}"
-            self._complaints.once(("request", name), text)
+            self._complaints.once(("request", name, str(error)), text)
             _refuse(query, str(error))
             return
         self._heard.last_ns = self._now_ns()
