@@ -146,9 +146,7 @@ def _type_or_values(
 
 def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
     """Nothing where somebody has begun to type the values."""
-    shell = os.environ.get("_NAVETTE_COMPLETE", "")
-    # Zsh takes no value with quotes and colons in it.
-    if incomplete or not type_name or shell.endswith("zsh"):
+    if incomplete or not type_name:
         return []
     from navette.cli.message_types import full_type_name, installed_class
     from navette.companions.rosidl_runtime_py import message_to_yaml
@@ -158,8 +156,9 @@ def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
         if cls is not None:
             part: Any = getattr(cls, "Goal", getattr(cls, "Request", cls))
             text = message_to_yaml(part(), flow_style=True).strip()
-            # Fish quotes by itself what is inserted.
-            return [f'"{text}"' if shell.endswith("bash") else text]
+            # Fish and zsh quote by themselves what is inserted.
+            in_bash = os.environ.get("_NAVETTE_COMPLETE", "").endswith("bash")
+            return [f'"{text}"' if in_bash else text]
     return []
 
 

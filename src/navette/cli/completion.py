@@ -25,12 +25,29 @@ _navette_completion() {
 }
 complete -o default -F _navette_completion navette
 """
+# Words come as for fish, a line each with its help: Typer's own answer to zsh is a
+# program to run, made of names that strangers chose.
 _ZSH = """\
 #compdef navette
 (( $+functions[compdef] )) || { autoload -Uz compinit && compinit }
 _navette_completion() {
-    eval "$(_TYPER_COMPLETE_ARGS="${words[1,$CURRENT]}" \\
-        _NAVETTE_COMPLETE=complete_zsh navette 2>/dev/null)"
+    local line value
+    local -a words_and_help values
+    for line in "${(@f)$(_TYPER_COMPLETE_ARGS="${words[1,$CURRENT]}" \\
+        _TYPER_COMPLETE_FISH_ACTION=get-args _NAVETTE_COMPLETE=complete_fish \\
+        navette 2>/dev/null)}"; do
+        value="${line%%$'\\t'*}"
+        if [[ "$value" == *' '* ]]; then
+            values+=("${(qqq)value}")
+        elif [[ "$line" == *$'\\t'* ]]; then
+            words_and_help+=("${value//:/\\\\:}:${line#*$'\\t'}")
+        elif [[ -n "$value" ]]; then
+            words_and_help+=("${value//:/\\\\:}")
+        fi
+    done
+    (( $#values )) && compadd -Q -S '' -- "${values[@]}"
+    (( $#words_and_help )) && _describe navette words_and_help
+    (( $#values + $#words_and_help )) || _files
 }
 compdef _navette_completion navette
 """

@@ -51,7 +51,7 @@ def test_a_name_typed_without_its_slash(here: World) -> None:
     [
         ("complete_bash", ['"{a: 0, b: 0}"']),
         ("complete_fish", ["{a: 0, b: 0}"]),
-        ("complete_zsh", []),
+        ("complete_zsh", ["{a: 0, b: 0}"]),
     ],
 )
 def test_values_to_edit(
