@@ -130,6 +130,8 @@ class ZenohTransport(Transport):
     ) -> ZenohSubscription:
         def make(token: EndpointToken, _: int, matches: Matches) -> ZenohSubscription:
             recovery = self._recovery_of(token.qos)
+            if recovery is not None:
+                recovery.open()  # letters come as soon as others know of it
             port = ZenohSubscription(
                 self.session.zenoh,
                 self._key(token),
@@ -239,11 +241,9 @@ class ZenohTransport(Transport):
         return recovery
 
     def _recovery_of(self, qos: EndpointQos) -> Recovery | None:
-        """Ready for an endpoint; None where it takes what comes."""
-        if self._recovery is None or qos.reliability != ReliabilityPolicy.RELIABLE:
-            return None
-        self._recovery.open()
-        return self._recovery
+        """None where an endpoint takes what comes."""
+        is_reliable = qos.reliability == ReliabilityPolicy.RELIABLE
+        return self._recovery if is_reliable else None
 
     def _retention(
         self, gid: bytes, key: str, qos: EndpointQos, used: int, matches: Matches

@@ -42,8 +42,9 @@ class Recovery(TransportObserver):
     """What a session does so that what is reliable and was lost on the way comes still.
 
     ``offers`` are the reliable publishers here, ``hearing`` the reliable subscriptions,
-    ``wants`` what these miss. Nothing is declared and no thread runs before the first
-    of them.
+    ``wants`` what these miss. Nothing is declared before the first subscription here or
+    the first that listens to a publisher here, and no thread runs before there is
+    something to look at.
 
     Args:
         zid: of ``session``.

@@ -27,6 +27,9 @@ _QUIET_TICKS = (1, 2, 4, 8)
 class Peers(Protocol):
     """What is known of other sessions."""
 
+    def open(self) -> None:
+        """Be reachable from now on; opening twice is harmless."""
+
     def post(self, to: str, letter: Letter) -> None:
         """Send a letter; it may be lost."""
 
@@ -201,6 +204,8 @@ class Offers:
                 told[session].append(Head(gid, owed.since))
             if told:
                 offer.retention.begin()
+        if told:
+            self._peers.open()
         for session, debts in told.items():
             self._tell(session, head, debts)
 
