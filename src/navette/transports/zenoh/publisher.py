@@ -48,6 +48,7 @@ class ZenohPublisher(PublisherPort):
         "_put",
         "_retention",
         "_sent",
+        "_session",
         "_used",
         "last",
         "matches",
@@ -77,6 +78,7 @@ class ZenohPublisher(PublisherPort):
         self._latched = qos.is_latched
         self._closed = closed
         self._sent = sent
+        self._session = session
         self._is_open = True
         self._lock = threading.Lock()
         lossless = sent is not None
@@ -99,7 +101,12 @@ class ZenohPublisher(PublisherPort):
             # Zenoh's own, so that what is kept and what is sent are the same bytes.
             size, data = len(data), zenoh.ZBytes(data)
             retention.add((sequence, attachment, data, size))
-        self._put(data, attachment=attachment)
+        try:
+            self._put(data, attachment=attachment)
+        except zenoh.ZError:
+            if self._publisher is not None and not self._session.is_closed():
+                raise
+            return  # closed meanwhile, by another thread: nobody hears it
         if self._sent is not None:
             self._sent(sequence)
 

@@ -1,0 +1,59 @@
+"""Ports that are closed by one thread while another one uses them."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import zenoh
+from transport_benches import ZenohPair, until
+
+from navette.msgs.std_msgs.msg import String
+from navette.transports import Endpoint, EndpointKind, EndpointQos
+
+TYPE = "std_msgs/msg/String"
+
+
+@pytest.fixture
+def pair() -> Iterator[ZenohPair]:
+    pair = ZenohPair()
+    yield pair
+    pair.close()
+
+
+def end(kind: EndpointKind) -> Endpoint:
+    return Endpoint(kind, "/t", TYPE, EndpointQos(), "n", "/", b"")
+
+
+@pytest.fixture
+def port(pair: ZenohPair) -> Any:
+    """A publisher that somebody hears."""
+    pair.near.subscribe(
+        end(EndpointKind.SUBSCRIPTION), String, lambda _: None, shared=False
+    )
+    port = pair.far.advertise(end(EndpointKind.PUBLISHER), String)
+    until(lambda: port.matched_count == 1, "the match")
+    return port
+
+
+def test_a_message_under_way_when_its_publisher_closes_is_no_error(port: Any) -> None:
+    put, tried = port._put, []
+
+    def interrupted(data: Any, attachment: bytes) -> None:
+        port.close()
+        tried.append(data)
+        put(data, attachment=attachment)
+
+    port._put = interrupted
+    port.send(String(data="late"), 0, 1)
+    assert len(tried) == 1
+    port.send(String(data="later"), 0, 2)
+    assert len(tried) == 1
+
+
+def test_what_goes_wrong_while_it_is_open_is_told(port: Any) -> None:
+    def broken(data: Any, attachment: bytes) -> None:
+        raise zenoh.ZError("no")
+
+    port._put = broken
+    with pytest.raises(zenoh.ZError, match="no"):
+        port.send(String(data="a"), 0, 1)
