@@ -89,10 +89,11 @@ const view = {
     this.invalidate();
   },
   follow(follows) { this.follows = follows; this.onFollow?.(follows); this.invalidate(); },
-  /** Everything that is known, in the middle. */
+  /** Everything that is known, and the goal, in the middle. */
   fit() {
     const cloud = [...this.layers.values()].find((layer) => layer instanceof CloudLayer);
-    const box = this.layers.get("/map")?.box() ?? cloud?.box() ?? [-6, -6, 6, 6];
+    const known = this.layers.get("/map")?.box() ?? cloud?.box() ?? [-6, -6, 6, 6];
+    const box = this.goal === null ? known : widened(known, this.goal);
     const { clientWidth: width, clientHeight: height } = this.canvas;
     this.follow(false);
     this.centre = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
@@ -100,6 +101,11 @@ const view = {
     this.invalidate();
   },
 };
+
+/** A box that holds a place too, with a metre around it. */
+function widened([left, low, right, high], [x, y]) {
+  return [Math.min(left, x - 1), Math.min(low, y - 1), Math.max(right, x + 1), Math.max(high, y + 1)];
+}
 
 function listenToPointer(view, onClick) {
   const pointers = new Map();
