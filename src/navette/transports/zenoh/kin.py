@@ -13,7 +13,8 @@ from pathlib import Path
 _MARK = "6e617665"  # "nave"
 _FIELD = 8  # hex digits of each of the four parts
 _BOOT = Path("/proc/sys/kernel/random/boot_id")
-_PROCESSES = Path("/proc/self/ns/pid")  # where process ids mean the same
+# Where process ids mean the same, and where no link is cut.
+_SPACES = Path("/proc/self/ns/pid"), Path("/proc/self/ns/net")
 
 
 def new_zid() -> str:
@@ -63,7 +64,9 @@ def _is_zombie(pid: int) -> bool:
 def _host() -> str:
     """The same for processes that see each other, where the system tells of it."""
     try:
-        place = _BOOT.read_bytes() + os.fsencode(_PROCESSES.readlink())
+        parts = [_BOOT.read_text(), *(str(space.readlink()) for space in _SPACES)]
     except OSError:
         return secrets.token_hex(_FIELD // 2)  # then nobody is a neighbour
-    return hashlib.sha256(place).hexdigest()[:_FIELD]
+    # The name, too: copies of a virtual machine may have been started only once.
+    place = "\n".join((*parts, os.uname().nodename))
+    return hashlib.sha256(place.encode()).hexdigest()[:_FIELD]
