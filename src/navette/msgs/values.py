@@ -123,7 +123,8 @@ def _integer_checker(where: str, base: str) -> Checker:
     allowed = f"an integer from {low} to {high} ({base})"
 
     def check(value: Any) -> int:
-        if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
+        # A bool is an int to Python and to rclpy: `image.is_bigendian = False`.
+        if not isinstance(value, (int, np.integer)):
             raise _refuse(where, value, allowed)
         number = int(value)
         if not low <= number <= high:
