@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 
-from navette.bags import BagWriter
+from navette.bags import BagWriter, open_bag
 from navette.bags.node import RecorderNode
 from navette.errors import FileFormatError, ParameterError
 from navette.msgs.nav_msgs.msg import OccupancyGrid
@@ -122,6 +122,15 @@ def test_more_topics_can_be_taken_up_while_it_runs(tmp_path: Path) -> None:
     assert result.successful
     run.go(1).end()
     assert counts(path) == {"/map": 1, "/lidar": 10}
+
+
+def test_what_is_older_than_half_a_second_is_on_the_disk(tmp_path: Path) -> None:
+    run = Run(tmp_path / "a.mcap").go(3.0)
+    with open_bag(tmp_path / "a.mcap") as reader:  # as who is killed leaves it
+        kept = reader.messages(["/lidar"], on_damage=lambda damage: None)
+        last = [message.stamp_ns for message in kept][-1]
+    assert run.context.clock.now_ns - last <= SECOND // 2
+    run.end()
 
 
 def test_the_same_run_gives_the_same_bytes(tmp_path: Path) -> None:
