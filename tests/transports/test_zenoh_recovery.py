@@ -481,6 +481,7 @@ def test_letters_and_asks_of_any_shape_do_no_harm(
     near, far = pair.near_zenoh.session, pair.far_zenoh.session
     box = mail_key(7, near.zid, far.zid)
     hostile = [b"", b"\x09", b"\x01x", b"\x04x", bytes(100_000), b"\x01" + bytes(24)]
+    hostile += [bytes([kind]) + bytes(16 * 2000) for kind in (3, 4, 6, 7, 8)]
     with caplog.at_level(logging.WARNING):
         for data in [*hostile, b"\x02" + speaker.port._gid + b"\xff" * 8, b"\x03"]:
             far.zenoh.put(box, data)

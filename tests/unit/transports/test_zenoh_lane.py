@@ -169,3 +169,25 @@ def test_every_sample_once_in_order_or_counted_as_lost(
     assert all(b > a for a, b in pairwise(out))
     assert len(out) + lost == newest - first + 1
     assert {*range(max(kept, abandoned + 1), newest + 1)} <= {*out}
+
+
+numbers = st.lists(st.integers(2, 30))
+
+
+@given(first=st.integers(2, 5), before=numbers, after=numbers)
+def test_what_came_before_the_letter_is_in_its_place(
+    first: int, before: list[int], after: list[int]
+) -> None:
+    """The publisher has them all; what it owes from ``first`` on comes, once."""
+    lane: Lane[int] = Lane(is_expected=True)
+    owed_before, owed_after = (
+        [n for n in each if n >= first] for each in (before, after)
+    )
+    out = [due for number in owed_before for due in take(lane, number)]
+    assert out == []
+    out += lane.start_after(first - 1)
+    out += [due for number in owed_after for due in take(lane, number)]
+    while (gap := lane.missing()) is not None:
+        out += take(lane, gap[0])
+    newest = max([first - 1, *owed_before, *owed_after])
+    assert out == list(range(first, newest + 1))
