@@ -256,6 +256,14 @@ def test_heartbeats(beat: Heartbeat, level: Level, text: str) -> None:
     assert (finding.level, finding.text) == (level, text)
 
 
+def test_a_stage_without_a_clock_is_not_said_to_hang() -> None:
+    beat = Heartbeat("/planner/status", "following", level=0, age_s=7.0)
+    ends = (pub(beat.topic, "planner"),)
+    seen = Snapshot(endpoints=ends, heartbeats=(beat,), sim_time={"/planner": True})
+    (found,) = check_stages(seen)
+    assert found.advice.startswith("/planner waits for /clock")
+
+
 def test_what_the_robot_does() -> None:
     stale = Heartbeat("/control/status", "stale_path", 1, 0.1)
     seen = Snapshot(heartbeats=(stale,), speed_mps=0.0)

@@ -63,8 +63,8 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
             NODES,
             name,
             f"{seen.nodes.count(name)} nodes have this name",
-            "a program was started twice, or two need names of their own:"
-            " --ros-args -r __node:=NAME",
+            "a program was started twice (navette ps --all), or two need names of"
+            " their own: --ros-args -r __node:=NAME",
         )
     silent = sorted(name for name, answer in seen.sim_time.items() if answer is None)
     for name in silent:

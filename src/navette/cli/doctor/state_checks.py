@@ -56,8 +56,15 @@ def check_stages(seen: Snapshot) -> Iterator[Finding]:
         yield Finding(Level.NOTE, STAGES, "robot", robot(seen.speed_mps), data=data)
 
 
+def _why_silent(names: set[str], who: str, seen: Snapshot) -> str:
+    if not seen.clock_ticks and any(seen.sim_time.get(name) for name in names):
+        return f"{who} waits for /clock, which does not tick"
+    return f"{who} hangs, is stopped or cut off"
+
+
 def _heartbeat(beat: Heartbeat, seen: Snapshot) -> Finding:
-    who = listed({e.node_full_name for e in seen.publishers(beat.topic)})
+    names = {e.node_full_name for e in seen.publishers(beat.topic)}
+    who = listed(names)
     data = {"state": beat.state, "age_s": beat.age_s}
     if beat.age_s is None or beat.age_s > STALE_AFTER_S:
         age = "silent" if beat.age_s is None else f"silent for {beat.age_s:.1f} s"
@@ -66,7 +73,7 @@ def _heartbeat(beat: Heartbeat, seen: Snapshot) -> Finding:
             STAGES,
             beat.topic,
             f"{age}, last state {beat.state or 'unknown'}{and_the_robot(seen)}",
-            f"{who} hangs, is stopped or cut off: nobody drives on old words",
+            f"{_why_silent(names, who, seen)}: nobody drives on old words",
             data,
         )
     level = Level.GOOD if beat.level == 0 else Level.WARNING
