@@ -12,8 +12,6 @@ _ROS_2 = {
     "ament_copyright": "leave the linters' tests out",
     "ament_flake8": "leave the linters' tests out",
     "ament_pep257": "leave the linters' tests out",
-    "cv_bridge": "numpy.frombuffer(image.data, numpy.uint8).reshape(height, -1) "
-    "gives the rows of a sensor_msgs/msg/Image",
     "launch_testing": "start programs with navette.launch_files or subprocess in a "
     "test of pytest",
     "nav2_simple_commander": "navette.missions drives to goals",

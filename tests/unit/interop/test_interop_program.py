@@ -88,8 +88,8 @@ def test_a_traceback_starts_in_the_program(
     ("line", "said"),
     [
         ("import rospy", "docs/reference/idioms.md"),
-        ("from cv_bridge import CvBridge", "numpy.frombuffer"),
-        ("import cv_bridge.core", "numpy.frombuffer"),
+        ("from rosbag2_py import SequentialReader", "navette.bags"),
+        ("import rosbag2_py.reader", "navette.bags"),
         ("from fleet_msgs.msg import Truck", "NAVETTE_INTERFACE_PATH"),
     ],
 )
