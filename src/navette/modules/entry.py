@@ -75,7 +75,7 @@ class Entry:
         own = {"run": entry} if isinstance(entry, str) else entry
         if not isinstance(own, dict):
             raise InvalidValueError(
-                f"{entry!r}: wanted what stands behind 'navette run', or a mapping"
+                f"{entry!r}: wanted what follows 'navette run', or a mapping"
             )
         for key in own:
             if key not in _KEYS:

@@ -135,7 +135,7 @@ def node(extra: str) -> str:
         ("modules: {m: {node: []}}", "unknown key 'node'; did you mean 'nodes'"),
         ("modules: {m: {nodes: n.py}}", "nodes: 'n.py': wanted a list"),
         ("modules: {m: {nodes: [{name: x}]}}", "nothing to start; wanted one of run"),
-        ("modules: {m: {nodes: [3]}}", "3: wanted what stands behind"),
+        ("modules: {m: {nodes: [3]}}", "3: wanted what follows"),
         ("modules: {m: {nodes: [no.py]}}", "no.py: no such file"),
         ("modules: {m: {nodes: [navette planer]}}", "unknown executable .*'planer'"),
         ("modules: {m: {nodes: [nobody talker]}}", "package 'nobody' not found"),
