@@ -105,8 +105,10 @@ class Hearing:
     def _hear(self, gid: bytes, hearer: Hearer) -> None:
         self._heard.setdefault(gid, set()).add(hearer)
         session = hearer.matches.sessions.get(gid)
-        if session is not None and is_kin(session):
-            self._claimed.pop(gid, None)
+        if session is None:
+            return  # gone again
+        self._claimed.pop(gid, None)
+        if is_kin(session):
             _note(self._homes, gid, session)
 
     def _unhear(self, gid: bytes, hearer: Hearer) -> None:
