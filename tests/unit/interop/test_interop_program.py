@@ -277,6 +277,48 @@ def test_sleeping_in_a_callback_lets_others_run_where_ros_has_threads(
     assert capsys.readouterr().out == other_ran
 
 
+ASKER = """
+import threading
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from std_srvs.srv import Trigger
+
+def answer(request, response):
+    response.message = "here"
+    return response
+
+def ask():
+    timer.cancel()
+    future = client.call_async(Trigger.Request())
+    answered = threading.Event()
+    future.add_done_callback(lambda _: answered.set())
+    print(answered.wait(20.0), future.result().message)
+    told = threading.Event()
+    thread = threading.Thread(target=told.set)
+    other.create_guard_condition(thread.start).trigger()
+    print(told.wait(20.0), threading.Event().wait(0.001))
+    thread.join()
+    raise SystemExit
+
+rclpy.init()
+node, other = rclpy.create_node("n"), rclpy.create_node("m")
+node.create_service(Trigger, "answer", answer)
+client = node.create_client(Trigger, "answer")
+timer = node.create_timer(0.01, ask)
+executor = MultiThreadedExecutor()
+executor.add_node(node)
+executor.add_node(other)
+executor.spin()
+"""
+
+
+def test_an_event_that_an_answer_sets(
+    write: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(write(ASKER)) == 0
+    assert capsys.readouterr().out == "True here\nTrue False\n"
+
+
 def test_an_interrupt_waits_for_the_end_of_an_import(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
