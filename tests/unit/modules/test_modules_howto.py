@@ -1,15 +1,20 @@
-"""The file that docs/howto/modules.md shows is one."""
+"""The files that docs/howto/modules.md and ros2.md show are ones."""
 
 import re
 from pathlib import Path
 from typing import Any
 
-PAGE = Path(__file__).parents[3] / "docs" / "howto" / "modules.md"
+HOWTO = Path(__file__).parents[3] / "docs" / "howto"
+
+
+def yaml_of(page: str) -> str:
+    text = (HOWTO / page).read_text("utf-8")
+    (found,) = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    return str(found)
 
 
 def test_the_example_is_read(bench: Any) -> None:
-    (text,) = re.findall(r"```yaml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
-    bench.write(text)
+    bench.write(yaml_of("modules.md"))
     bench.write("", "drive.py")
     bench.write("", "sensors.launch.py")
     bench.write("/**: {ros__parameters: {use_sim_time: true}}", "robot.yaml")
@@ -25,3 +30,12 @@ def test_the_example_is_read(bench: Any) -> None:
         "clock",
     ]
     assert specs["sensors"].processes[0].restart.limit == 3
+
+
+def test_the_example_for_a_robot_of_ros_2_is_read(bench: Any) -> None:
+    bench.write(yaml_of("ros2.md"))
+    (module,) = bench.specs()
+    names = [process.name for process in module.processes]
+    assert names == ["costmap", "map_memory", "planner", "control"]
+    assert "/lidar:=/scan" in module.processes[0].words
+    assert module.processes[-1].words[-1].startswith("map_frame:=")
