@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow
 
 def printed(words: list[str], *expected: str, own_end_s: float = 0.3) -> ProgramRun:
     """``own_end_s``: so long it may take to end by itself, before Ctrl-C."""
-    run = run_until_printed(words, expected, timeout_s=20.0, own_end_s=own_end_s)
+    run = run_until_printed(words, expected, timeout_s=60.0, own_end_s=own_end_s)
     assert run.is_good, f"{run.faults()}\n{run.output}"
     return run
 
@@ -42,7 +42,7 @@ def test_programs_that_end_by_themselves() -> None:
         "I heard: message 0",
         "I heard: message 1",
         "Publishing: .message 49",
-        own_end_s=20.0,
+        own_end_s=60.0,
     )
     assert not run.interrupted
 
@@ -114,7 +114,7 @@ def test_nodes_of_other_files_in_one_executor() -> None:
 
 def test_events_of_quality_of_service() -> None:
     program = str(PROGRAMS / "events.py")
-    run = printed([program], r"\+1, now 1", "-1, now 0", own_end_s=20.0)
+    run = printed([program], r"\+1, now 1", "-1, now 0", own_end_s=60.0)
     assert not run.interrupted
 
 
@@ -128,7 +128,7 @@ def test_corners_of_the_surface() -> None:
         "ran for pooled",
         "asyncio 7",
         "no node without init",
-        own_end_s=20.0,
+        own_end_s=60.0,
     )
     assert not run.interrupted
     assert "[surface]: before init" in run.output
@@ -137,6 +137,6 @@ def test_corners_of_the_surface() -> None:
 def test_what_navette_has_not_got_is_named(tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     program.write_text("from rclpy.qos import QoSWormhole\n")
-    run = run_until_printed([str(program)], ["has no rclpy.qos.QoSWormhole"], 10.0)
+    run = run_until_printed([str(program)], ["has no rclpy.qos.QoSWormhole"], 60.0)
     assert run.exit_code == 1
     assert not run.missing

@@ -34,7 +34,7 @@ def test_a_choice_of_method_drives_without_contact(
     simulation = simulate(
         world="course",
         robot=robot,
-        goals=((-6.0, -12.0), (6.0, -12.0)),
+        goals=((-6.0, -12.0), (-2.0, -12.0)),
         params_files=(params,),
         max_time_s=90.0,
     )

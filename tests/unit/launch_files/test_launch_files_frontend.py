@@ -12,6 +12,7 @@ from navette.launch_files.launch.frontend import (
     parse_launch_file,
     parse_launch_text,
     parse_substitution,
+    yaml_files,
 )
 from navette.launch_files.launch.substitution import describe_parts
 
@@ -257,12 +258,15 @@ def context(launch: Any) -> LaunchContext:
     return found
 
 
-def test_aliases_cannot_make_a_small_file_large(tmp_path: Path) -> None:
+def test_aliases_cannot_make_a_small_file_large(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(yaml_files, "MAX_ELEMENTS", 5000)  # sooner there
     lines = ["launch:", "- group: &a0 [{log: {message: x}}]"]
     for i in range(1, 12):
         inside = ", ".join([f"{{group: *a{i - 1}}}"] * 9)
         lines.append(f"- group: &a{i} [{inside}]")
     file = tmp_path / "a.launch.yaml"
     file.write_text("\n".join(lines))
-    with pytest.raises(InvalidLaunchFileError, match="more than 100000 elements"):
+    with pytest.raises(InvalidLaunchFileError, match="more than 5000 elements"):
         parse_launch_file(file)
