@@ -4,7 +4,6 @@ import importlib
 import inspect
 import sys
 import threading
-import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 from navette import runtime
 from navette.errors import InvalidValueError
 from navette.interop.missing import advice
+from navette.interop.tracebacks import shortened
 
 SUCCEEDED = 0
 FAILED = 1
@@ -202,4 +202,4 @@ def _print_traceback(error: BaseException) -> None:
         return
     if shown is None and not isinstance(error, SyntaxError):  # a file's own has none
         shown = error.__traceback__
-    traceback.print_exception(type(error), error, shown)
+    sys.stderr.write("".join(shortened(error, shown).format()))
