@@ -78,8 +78,9 @@ def kept(found: tuple[list[Kept], End]) -> tuple[list[int], End]:
 
 def filled(count: int, *, depth: int | None, size: int = 8) -> Retention:
     retention = Retention(depth)
+    retention.begin()
     for number in range(1, count + 1):
-        assert retention.admits(number, {"somebody"})
+        assert retention.keeps(number)
         retention.add(sample(number, size))
     return retention
 
@@ -104,14 +105,15 @@ def test_no_more_is_kept_than_there_is_room_for(
 
 def test_nothing_is_kept_for_nobody() -> None:
     retention = Retention(10)
-    assert not retention.admits(4, {})
+    assert not retention.keeps(4)
     assert retention.newest == 4
-    assert retention.admits(5, {"somebody"})
+    retention.begin()
+    assert retention.keeps(5)
+    assert retention.newest == 4  # until it is added
     retention.add(sample(5))
-    retention.end({"somebody"})
-    assert retention.admits(6, {})  # owed until it is said otherwise
-    retention.end({})
-    assert not retention.admits(7, {})
+    assert kept(retention.between(Ask(GID, 1, 9))) == ([5], End(5))
+    retention.end()
+    assert not retention.keeps(7)
     assert kept(retention.between(Ask(GID, 1, 9))) == ([], End(7))
 
 

@@ -92,7 +92,7 @@ class ZenohPublisher(PublisherPort):
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
         self.last = sequence
         retention, remotes = self._retention, self.matches.remotes
-        is_kept = retention is not None and retention.admits(sequence, remotes)
+        is_kept = retention is not None and retention.keeps(sequence)
         if not (is_kept or remotes or self._latched or self._is_awaited(source_ns)):
             return
         attachment = Attachment(sequence, source_ns, self._gid).encode()

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple, Protocol
 
 from navette.transports.qos import ReliabilityPolicy
+from navette.transports.zenoh.kin import is_kin
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.recovery.mail import (
     MOST_ENTRIES,
@@ -78,8 +79,8 @@ class Offer:
 
     def settle(self) -> None:
         """Keep nothing where nobody is owed anything."""
-        if not self.owed:
-            self.retention.end(self.matches.remotes)
+        if not self.owed and not self.listeners:
+            self.retention.end()
 
     def fell_silent(self) -> bool:
         """Whether to tell where it is; asked at every tick."""
@@ -192,18 +193,14 @@ class Offers:
         matches = offer.matches
         told: defaultdict[str, list[Head]] = defaultdict(list)
         with self._lock:
+            found = [(gid, session) for gid in gids if (session := _kin(matches, gid))]
+            if found:
+                offer.retention.begin()
             head, offer.quiet = offer.head, 0
-            for gid in gids:
-                remote, session = matches.by_gid.get(gid), matches.sessions.get(gid)
-                if remote is None or session is None:
-                    continue  # gone again
-                if remote.qos.reliability != ReliabilityPolicy.RELIABLE:
-                    continue
+            for gid, session in found:
                 owed, _ = offer.owed.pop(gid, (Debt(session, head.number), 0))
                 offer.listeners[gid] = owed
                 told[session].append(Head(gid, owed.since))
-            if told:
-                offer.retention.begin()
         if told:
             self._peers.open()
         for session, debts in told.items():
@@ -236,3 +233,11 @@ class Offers:
 
 def _of(listeners: dict[bytes, Debt], session: str) -> list[Head]:
     return [Head(gid, d.since) for gid, d in listeners.items() if d.session == session]
+
+
+def _kin(matches: Matches, gid: bytes) -> str:
+    """The session of a subscription that is to be owed something, if it is there."""
+    remote, session = matches.by_gid.get(gid), matches.sessions.get(gid, "")
+    if remote is None or remote.qos.reliability != ReliabilityPolicy.RELIABLE:
+        return ""
+    return session if is_kin(session) else ""

@@ -2,7 +2,7 @@
 
 import threading
 from collections import deque
-from collections.abc import Iterator, Sized
+from collections.abc import Iterator
 from typing import Any
 
 from navette.transports.zenoh.recovery.mail import Ask, End, Piece
@@ -48,23 +48,21 @@ class Retention:
         with self._lock:
             return self._newest
 
-    def admits(self, number: int, listeners: Sized) -> bool:
-        """Whether somebody gets it; else it need not be made at all.
+    def keeps(self, number: int) -> bool:
+        """Whether the sample of that number is to be added.
 
-        Who begins to listen either is seen here, or sees here that this number was
-        before its time. From the first listener on everything is kept, until
-        :meth:`end`.
+        Who begins to be owed something has it either added, or sees here that this
+        number was before its time.
         """
         if self._is_wanted:
             return True
         with self._lock:
-            self._is_wanted = bool(listeners)
             if not self._is_wanted:
                 self._newest = number
             return self._is_wanted
 
     def begin(self) -> None:
-        """Somebody is owed what comes from now on, also if he is away by then."""
+        """Somebody is owed what comes from now on."""
         with self._lock:
             self._is_wanted = True
 
@@ -99,13 +97,12 @@ class Retention:
                 found.append(sample)
             return found, End(min(ask.last, self._newest))
 
-    def end(self, listeners: Sized) -> None:
-        """Nobody is owed anything, unless somebody listens by now."""
+    def end(self) -> None:
+        """Nobody is owed anything any more."""
         with self._lock:
-            if not listeners:
-                self._is_wanted = False
-                self._kept.clear()
-                self._bytes = 0
+            self._is_wanted = False
+            self._kept.clear()
+            self._bytes = 0
 
 
 def pieces(sample: Kept, ask: Ask) -> Iterator[tuple[bytes, Any]]:
