@@ -48,7 +48,7 @@ def complete_running_modules(incomplete: str) -> list[str]:
 Words = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="[MODULE]... [NAME:=VALUE]...",
+        metavar="MODULE | NAME:=VALUE",
         help="Modules, all if none is named, and values for the file's arguments.",
         autocompletion=complete_modules,
     ),
@@ -56,7 +56,7 @@ Words = Annotated[
 Modules = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="[MODULE]...",
+        metavar="MODULE",
         help="All of the project, if none is named.",
         autocompletion=complete_running_modules,
     ),
