@@ -182,6 +182,7 @@ def test_keep_all_keeps_all(bench: Bench) -> None:
     for number in range(100):
         publisher.send(String(data=str(number)), 0, number + 1)
     items, _ = bench.subscription(qos=qos)
+    until(lambda: len(items) >= 100, "the past")
     bench.settle()
     assert len(items) == 100
 

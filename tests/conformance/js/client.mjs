@@ -63,4 +63,4 @@ function end() {
     process.exit(0);
   }
 }
-setTimeout(() => { console.error("timed out; saw", JSON.stringify(Object.keys(seen.messages)), seen.errors); process.exit(1); }, 10_000);
+setTimeout(() => { console.error("timed out; saw", JSON.stringify(Object.keys(seen.messages)), seen.errors); process.exit(1); }, 60_000);

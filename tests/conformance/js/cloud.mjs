@@ -15,7 +15,7 @@ try {
   page.on("console", (message) => { if (message.type() === "error") problems.push(message.text()); });
   page.on("pageerror", (error) => problems.push(String(error)));
   await page.goto(url);
-  const until = (check) => page.waitForFunction(check, null, { timeout: 10_000 });
+  const until = (check) => page.waitForFunction(check, null, { timeout: 60_000 });
   const button = page.locator("tr", { hasText: "PointCloud2" }).locator("button");
   const offered = await button.textContent();
   await button.click();

@@ -23,7 +23,7 @@ try {
   });
   await page.goto(url);
   const text = async (selector) => (await page.textContent(selector)).trim();
-  const until = (check) => page.waitForFunction(check, null, { timeout: 10_000 });
+  const until = (check) => page.waitForFunction(check, null, { timeout: 60_000 });
   await until(() => document.querySelector("#link").className === "live");
   await until(() => window.headlines.has("Waiting for a goal"));
   await until(() => /Hz/.test([...document.querySelectorAll("#topics tr")].find((row) => row.cells[0].textContent === "/chatter")?.cells[3].textContent));
@@ -40,7 +40,7 @@ try {
   await page.focus("#above canvas");
   await page.keyboard.down("ArrowUp");
   await page.keyboard.down("ArrowLeft");
-  await page.waitForFunction(() => [...document.querySelectorAll("#topics tr")].some((row) => row.cells[0].textContent === "/cmd_vel" && /Hz/.test(row.cells[3].textContent)), null, { timeout: 10_000 });
+  await page.waitForFunction(() => [...document.querySelectorAll("#topics tr")].some((row) => row.cells[0].textContent === "/cmd_vel" && /Hz/.test(row.cells[3].textContent)), null, { timeout: 60_000 });
   await page.keyboard.up("ArrowUp");
   await page.keyboard.up("ArrowLeft");
   const rows = await page.$$eval("#topics tr", (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));

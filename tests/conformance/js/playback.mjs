@@ -16,10 +16,10 @@ try {
   page.on("console", (message) => { if (message.type() === "error") problems.push(message.text()); });
   page.on("pageerror", (error) => problems.push(String(error)));
   await page.goto(url);
-  const until = (check, argument) => page.waitForFunction(check, argument, { timeout: 10_000 });
+  const until = (check, argument) => page.waitForFunction(check, argument, { timeout: 60_000 });
   const place = async () => (await page.textContent("#playback output")).split(" / ").map((text) => text.split(":").reduce((sum, part) => sum * 60 + Number(part), 0));
   const status = (wanted) => until((s) => document.querySelector("#playback").dataset.status === s, wanted);
-  await page.waitForSelector("#playback", { state: "visible", timeout: 10_000 });
+  await page.waitForSelector("#playback", { state: "visible", timeout: 60_000 });
   await status("paused");
   const [, length] = await place();
 
