@@ -19,6 +19,7 @@ from navette.cli.arguments import (
     spread_lists,
     without_daemon,
 )
+from navette.cli.completing_installed import complete_robots, complete_worlds
 from navette.cli.completion import is_completing, keep_quiet
 from navette.cli.lazy import lazy_group
 from navette.cli.verbs import VERBS
@@ -45,6 +46,7 @@ World = Annotated[
         metavar="[WORLD]",
         help="A built-in world (arena, empty, …) or a file: .sdf, .world, .xml (MJCF),"
         " .urdf, or a ROS map .yaml.",
+        autocompletion=complete_worlds,
     ),
 ]
 Robot = Annotated[
@@ -53,6 +55,7 @@ Robot = Annotated[
         metavar="NAME|PATH",
         help="A built-in robot (jackal, turtlebot3_burger, husky, course) or a model"
         " file; by default the world's own.",
+        autocompletion=complete_robots,
     ),
 ]
 Start = Annotated[

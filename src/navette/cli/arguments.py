@@ -13,6 +13,10 @@ LIST_OPTIONS = (
     *("--param-prefixes", "--prefixes"),
 )
 _ASKS_DAEMON = ("topic", "node", "param", "service", "action", "lifecycle", "component")
+_NAMES_ITS_NODE = {
+    *(("param", each) for each in ("get", "set", "describe", "load", "delete")),
+    *(("lifecycle", each) for each in ("set", "list")),
+}
 OPTIONAL_VALUES = {"--clock": "40"}
 
 
@@ -52,16 +56,20 @@ def without_daemon(arguments: Sequence[str]) -> list[str]:
     """Leave out what tells ROS 2's command how to discover: ``--no-daemon`` and such.
 
     Why: scripts that were written for it have them, and here they mean nothing: there
-    is no daemon, and what runs is known at once.
+    is no daemon, what runs is known at once, and a node that is named is found even
+    if its name is a hidden one.
     """
     # Before the verb stands at most --domain-id N.
-    verb = next((w for w in arguments if w[:1] != "-" and not w.isdigit()), "")
-    if verb not in _ASKS_DAEMON:
+    words = [w for w in arguments if w[:1] != "-" and not w.isdigit()]
+    if not words or words[0] not in _ASKS_DAEMON:
         return list(arguments)
+    nothing = {"--no-daemon"}
+    if tuple(words[:2]) in _NAMES_ITS_NODE:
+        nothing.add("--include-hidden-nodes")
     kept: list[str] = []
     skipping = False
     for word in arguments:
-        if not (skipping or word == "--no-daemon" or word.startswith("--spin-time=")):
+        if not (skipping or word in nothing or word.startswith("--spin-time=")):
             kept += [] if word == "--spin-time" else [word]
         skipping = word == "--spin-time" and not skipping
     return kept

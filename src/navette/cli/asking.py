@@ -1,6 +1,8 @@
 """Asking running nodes by their services, all at once, and not for ever."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from navette.cli.nearest import did_you_mean
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 
 ANSWER_S = 2.0
 """Who has not answered by then hangs, or is stopped."""
+
+_patience_s = ContextVar("_patience_s", default=ANSWER_S)
 
 GET_STATE = "lifecycle_msgs/srv/GetState"
 
@@ -37,12 +41,28 @@ class Answer(NamedTuple):
     reason: str = ""
 
 
+@contextmanager
+def patient(seconds: float) -> Iterator[None]:
+    """Inside, answers are waited for so long."""
+    before = _patience_s.set(seconds)
+    try:
+        yield
+    finally:
+        _patience_s.reset(before)
+
+
+def patience_s() -> float:
+    """How long an answer is waited for, in seconds."""
+    return _patience_s.get()
+
+
 def ask_all(
-    node: "Node", questions: Sequence[Question], timeout_s: float = ANSWER_S
+    node: "Node", questions: Sequence[Question], timeout_s: float | None = None
 ) -> list[Answer]:
     """Ask all of them at the same time; an answer each, in that order.
 
-    A service that nobody serves is not waited for.
+    A service that nobody serves is not waited for, the others for :func:`patience_s`
+    if no time is given.
     """
     from navette.msgs import get_interface
 
@@ -55,7 +75,8 @@ def ask_all(
         client = node.create_client(get_interface(question.type_name), question.service)
         request = client.srv_type.Request(**question.fields)
         futures.append(client.call_async(request))
-    wait_for(node, lambda: all(f is None or f.done() for f in futures), timeout_s)
+    limit_s = patience_s() if timeout_s is None else timeout_s
+    wait_for(node, lambda: all(f is None or f.done() for f in futures), limit_s)
     return [
         answer(future, question.service)
         for future, question in zip(futures, questions, strict=True)

@@ -1,4 +1,4 @@
-"""What the shell offers at Tab: names of what runs and of what is installed.
+"""What the shell offers at Tab: names of what runs.
 
 A completion says nothing where it knows nothing: no message would fit into a half
 typed line.
@@ -7,12 +7,16 @@ typed line.
 import os
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from navette.cli.asking import Question, ask_all, managed_nodes, node_names
+from navette.cli.completing_installed import (
+    chosen,
+    complete_action_types,
+    complete_service_types,
+)
 from navette.cli.session import connect, endpoints, is_hidden, service_endpoints
 from navette.errors import NavetteError
 
@@ -22,31 +26,26 @@ if TYPE_CHECKING:
 _ANSWER_S = 0.5
 
 
-def complete_from(*words: str) -> Callable[[str], list[str]]:
-    """One of a few words."""
-    return lambda incomplete: _chosen(incomplete, words)
-
-
 def complete_nodes(incomplete: str) -> list[str]:
     """Full names of nodes."""
-    return _running(incomplete, node_names)
+    return running(incomplete, node_names)
 
 
 def complete_topics(incomplete: str) -> list[str]:
     """Full names of topics."""
-    return _running(incomplete, lambda here: (e.topic for e in endpoints(here)))
+    return running(incomplete, lambda here: (e.topic for e in endpoints(here)))
 
 
 def complete_services(incomplete: str) -> list[str]:
     """Full names of services."""
-    return _running(incomplete, lambda here: (e.topic for e in service_endpoints(here)))
+    return running(incomplete, lambda here: (e.topic for e in service_endpoints(here)))
 
 
 def complete_actions(incomplete: str) -> list[str]:
     """Full names of actions."""
     from navette.runtime.action import get_action_names_and_types
 
-    return _running(
+    return running(
         incomplete, lambda here: (n for n, _ in get_action_names_and_types(here))
     )
 
@@ -62,9 +61,36 @@ def complete_parameters(ctx: typer.Context, incomplete: str) -> list[str]:
     )
 
 
+def complete_parameter_value(ctx: typer.Context, incomplete: str) -> list[str]:
+    """The value that the parameter named before has; of a switch, both."""
+    name = str(ctx.params.get("name") or "")
+    if not name:
+        return []
+
+    def values(response: Any) -> Iterable[str]:
+        from navette.runtime.parameter import parameter_value_to_python
+        from navette.runtime.parameter_files import format_value
+
+        for each in response.values:
+            value = parameter_value_to_python(each)
+            if isinstance(value, bool):
+                yield from ("true", "false")
+            elif value is not None:
+                yield format_value(value)
+
+    return _asked(
+        ctx,
+        incomplete,
+        "get_parameters",
+        "rcl_interfaces/srv/GetParameters",
+        values,
+        names=[name],
+    )
+
+
 def complete_managed_nodes(incomplete: str) -> list[str]:
     """Full names of the nodes that have a lifecycle."""
-    return _running(incomplete, managed_nodes)
+    return running(incomplete, managed_nodes)
 
 
 def complete_transitions(ctx: typer.Context, incomplete: str) -> list[str]:
@@ -78,27 +104,10 @@ def complete_transitions(ctx: typer.Context, incomplete: str) -> list[str]:
     )
 
 
-def complete_types(incomplete: str) -> list[str]:
-    """Every interface that is installed, as ``pkg/msg/Name``."""
-    return _types(incomplete, "msg", "srv", "action")
-
-
-def complete_messages(incomplete: str) -> list[str]:
-    return _types(incomplete, "msg")
-
-
-def complete_service_types(incomplete: str) -> list[str]:
-    return _types(incomplete, "srv")
-
-
-def complete_action_types(incomplete: str) -> list[str]:
-    return _types(incomplete, "action")
-
-
 def complete_type_of_service(ctx: typer.Context, incomplete: str) -> list[str]:
     """The type of the service named before, if it is served; else every type."""
     name = f"/{str(ctx.params.get('service') or '').lstrip('/')}"
-    served = _running(
+    served = running(
         incomplete,
         lambda here: (e.type_name for e in service_endpoints(here, name)),
     )
@@ -110,7 +119,7 @@ def complete_type_of_action(ctx: typer.Context, incomplete: str) -> list[str]:
     from navette.runtime.action import get_action_names_and_types
 
     name = f"/{str(ctx.params.get('action') or '').lstrip('/')}"
-    served = _running(
+    served = running(
         incomplete,
         lambda here: dict(get_action_names_and_types(here)).get(name, []),
     )
@@ -162,49 +171,7 @@ def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
     return []
 
 
-def complete_packages(incomplete: str) -> list[str]:
-    """Packages, installed or in the workspace."""
-    from navette.packages import find_packages
-
-    return _chosen(incomplete, find_packages())
-
-
-def complete_programs(ctx: typer.Context, incomplete: str) -> list[str]:
-    """Of ``navette run``: packages with programs, those of a package, files here."""
-    from navette.packages import find_packages
-
-    before = list(ctx.params.get("words") or ())
-    packages = find_packages()
-    if len(before) == 1 and before[0] in packages:
-        return _chosen(incomplete, (e.name for e in packages[before[0]].executables()))
-    if before:
-        return []
-    built_in = packages["navette"].executables() if "navette" in packages else ()
-    names = [each.name for each in built_in]
-    names += [name for name, each in packages.items() if each.executables()]
-    return _chosen(incomplete, [*names, *_files_here("*.py")])
-
-
-def complete_launch_files(ctx: typer.Context, incomplete: str) -> list[str]:
-    """Of ``navette launch``: files here, packages, the launch files of a package."""
-    from navette.packages import find_packages
-
-    before = list(ctx.params.get("words") or ())
-    packages = find_packages()
-    if len(before) == 1 and before[0] in packages:
-        folder = packages[before[0]].share / "launch"
-        return _chosen(incomplete, (path.name for path in folder.glob("*launch*")))
-    if before:
-        return []
-    names = [n for n, p in packages.items() if (p.share / "launch").is_dir()]
-    return _chosen(incomplete, [*names, *_files_here("*launch*")])
-
-
-def _files_here(pattern: str) -> list[str]:
-    return [path.name for path in Path.cwd().glob(pattern) if path.is_file()]
-
-
-def _running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[str]:
+def running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[str]:
     """Names out of what runs; those for machines only where their start is typed."""
     hidden = "_" in incomplete
     with suppress(NavetteError, typer.Exit), connect() as here:
@@ -212,7 +179,7 @@ def _running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[
         # A name may be typed without the slash that it begins with.
         if incomplete and not incomplete.startswith("/"):
             found += [name.removeprefix("/") for name in found]
-        return _chosen(incomplete, found)
+        return chosen(incomplete, found)
     return []
 
 
@@ -221,32 +188,15 @@ def _asked(
     incomplete: str,
     service: str,
     type_name: str,
-    names: Callable[[Any], Iterable[str]],
+    words: Callable[[Any], Iterable[str]],
+    **fields: Any,
 ) -> list[str]:
-    """Names out of what the node named before answers."""
+    """Words out of what the node named before answers."""
     node = str(ctx.params.get("node_name") or "").strip("/")
-    question = Question(f"/{node}/{service}", type_name, {})
+    question = Question(f"/{node}/{service}", type_name, fields)
 
     def ask(here: "Node") -> Iterable[str]:
         (answer,) = ask_all(here, [question], _ANSWER_S)
-        return names(answer.response) if answer.response is not None else ()
+        return words(answer.response) if answer.response is not None else ()
 
-    return _running(incomplete, ask) if node else []
-
-
-def _types(incomplete: str, *kinds: str) -> list[str]:
-    from navette.companions.rosidl_runtime_py import get_interfaces
-
-    return _chosen(
-        incomplete,
-        (
-            f"{package}/{name}"
-            for package, names in get_interfaces().items()
-            for name in names
-            if name.partition("/")[0] in kinds
-        ),
-    )
-
-
-def _chosen(incomplete: str, names: Iterable[str]) -> list[str]:
-    return sorted({name for name in names if name.startswith(incomplete)})
+    return running(incomplete, ask) if node else []

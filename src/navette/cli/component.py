@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from navette.cli.asking import Answer, Question, ask_all, chosen_node, node_names
-from navette.cli.completing import complete_nodes, complete_packages
+from navette.cli.completing import complete_nodes
+from navette.cli.completing_installed import complete_packages
 from navette.cli.output import note, show, show_json, styled
 from navette.cli.session import FAILED, connect, fail, service_endpoints
 from navette.errors import InvalidValueError

@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from navette.errors import InvalidValueError
@@ -37,6 +38,27 @@ def from_yaml(text: str) -> Any:
     except yaml.YAMLError as error:
         reason = getattr(error, "problem", None) or str(error)
         raise InvalidValueError(f"{text!r} is not YAML: {reason}") from None
+
+
+def from_yaml_file(path: Path) -> list[Any]:
+    """What each of the documents in a file says, with ``---`` between them.
+
+    Raises:
+        InvalidValueError: it cannot be read, is no YAML, or there is none in it.
+    """
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        with path.open(encoding="utf-8") as file:
+            documents = [each for each in yaml.load_all(file, loader) if each]
+    except OSError as error:
+        raise InvalidValueError(f"{path}: {error.strerror}") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise InvalidValueError(f"{path} is not YAML: {error}") from None
+    if not documents:
+        raise InvalidValueError(f"{path}: there is no message in it")
+    return documents
 
 
 def from_stdin() -> str:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_launch_files
+from navette.cli.completing_installed import complete_launch_files
 
 Words = Annotated[
     list[str],

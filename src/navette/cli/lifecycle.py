@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from navette.cli.asking import (
+    ANSWER_S,
     GET_STATE,
     Question,
+    answer,
     ask,
     ask_all,
     chosen_node,
@@ -16,7 +18,7 @@ from navette.cli.asking import (
 from navette.cli.completing import complete_managed_nodes, complete_transitions
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import harmless, note, show, show_json, styled
-from navette.cli.session import FAILED, connect, fail
+from navette.cli.session import FAILED, connect, fail, wait_for
 
 if TYPE_CHECKING:
     from navette.runtime import Node
@@ -117,12 +119,7 @@ def set_(
         name = _managed(here, node_name)
         available = transitions(here, name)
         chosen = _chosen(transition, [each.transition for each in available])
-        response = ask(
-            here,
-            f"{name}/change_state",
-            "lifecycle_msgs/srv/ChangeState",
-            transition=chosen,
-        )
+        response = _change(here, name, chosen)
     if not response.success:
         fail("Transitioning failed")
     show("Transitioning successful")
@@ -155,6 +152,21 @@ def transitions(here: "Node", name: str, *, every: bool = False) -> list[Any]:
     service = "get_transition_graph" if every else "get_available_transitions"
     type_name = "lifecycle_msgs/srv/GetAvailableTransitions"
     return list(ask(here, f"{name}/{service}", type_name).available_transitions)
+
+
+def _change(here: "Node", name: str, transition: Any) -> Any:
+    """Ask for a transition and wait as long as it takes: drivers take their time."""
+    from navette.msgs.lifecycle_msgs.srv import ChangeState
+
+    client = here.create_client(ChangeState, f"{name}/change_state")
+    if not client.wait_for_service(ANSWER_S):
+        fail(f"nobody serves {client.srv_name}")
+    asked = client.call_async(ChangeState.Request(transition=transition))
+    if not wait_for(here, asked.done, ANSWER_S):
+        note(f"{name} is at it; Ctrl-C ends the wait for it, not the transition")
+        wait_for(here, lambda: asked.done() or not client.service_is_ready())
+    got = answer(asked, client.srv_name)
+    return fail(got.reason) if got.response is None else got.response
 
 
 def _managed(here: "Node", name: str) -> str:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from navette.cli.completing import complete_packages
+from navette.cli.completing_installed import complete_packages
 
 if TYPE_CHECKING:
     from navette.packages import Package

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_programs
+from navette.cli.completing_installed import complete_programs
 
 Words = Annotated[
     list[str],

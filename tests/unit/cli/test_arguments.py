@@ -34,6 +34,10 @@ def test_what_only_a_daemon_understands_is_left_out() -> None:
     assert without_daemon(typed) == ["topic", "list", "-t", "-v"]
     typed = ["--domain-id", "3", "node", "list", "--no-daemon"]
     assert without_daemon(typed) == typed[:-1]
+    typed = "param get /n p --include-hidden-nodes --hide-type".split()
+    assert without_daemon(typed) == "param get /n p --hide-type".split()
+    typed = "param list --include-hidden-nodes".split()
+    assert without_daemon(typed) == typed
     others = ["launch", "x", "--no-daemon"]
     assert without_daemon(others) == others
     assert without_daemon([]) == []

@@ -9,7 +9,9 @@ import pytest
 from verb_world import World, world
 
 from navette.cli import completing
+from navette.cli import completing_installed as installed
 from navette.cli.completion import Shell, install_script
+from navette.cli.topic.completing_fields import complete_fields
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Node
@@ -76,7 +78,7 @@ def test_a_message_and_a_goal_to_edit(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_one_of_a_few_words() -> None:
-    assert completing.complete_from("reliable", "best_effort")("r") == ["reliable"]
+    assert installed.complete_from("reliable", "best_effort")("r") == ["reliable"]
 
 
 def test_names_that_a_node_answers(here: World) -> None:
@@ -92,6 +94,33 @@ def test_names_that_a_node_answers(here: World) -> None:
     assert completing.complete_parameters(typed("nobody"), "") == []
 
 
+def test_the_value_of_a_parameter(here: World) -> None:
+    def offered(name: str, incomplete: str = "") -> list[str]:
+        typed: Any = SimpleNamespace(params={"node_name": "talker", "name": name})
+        return completing.complete_parameter_value(typed, incomplete)
+
+    assert offered("speed") == ["1.0"]
+    assert offered("use_sim_time") == ["false", "true"]
+    assert offered("use_sim_time", "t") == ["true"]
+    assert offered("none_such") == offered("") == []
+
+
+def test_the_fields_of_a_topics_messages(here: World) -> None:
+    odometry: Any = SimpleNamespace(params={"type_name": "nav_msgs/Odometry"})
+    assert complete_fields(odometry, "tw") == [
+        "twist", "twist.covariance", "twist.twist",
+    ]  # fmt: skip
+    assert complete_fields(odometry, "pose.pose.pos") == [
+        "pose.pose.position", "pose.pose.position.x", "pose.pose.position.y",
+        "pose.pose.position.z",
+    ]  # fmt: skip
+    assert complete_fields(odometry, "pose.covariance.x") == []
+    assert complete_fields(odometry, "nothing.") == []
+    chatter: Any = SimpleNamespace(params={"topic": "chatter"})
+    assert complete_fields(chatter, "") == ["data"]
+    assert complete_fields(SimpleNamespace(params={}), "") == []  # type: ignore[arg-type]
+
+
 def test_the_type_of_what_is_served(here: World) -> None:
     served: Any = SimpleNamespace(params={"service": "add"})
     wanted = ["example_interfaces/srv/AddTwoInts"]
@@ -103,12 +132,14 @@ def test_the_type_of_what_is_served(here: World) -> None:
 
 
 def test_names_of_what_is_installed() -> None:
-    assert "std_msgs/msg/String" in completing.complete_messages("std_msgs/msg/S")
-    assert completing.complete_service_types("std_srvs/srv/E") == ["std_srvs/srv/Empty"]
-    assert completing.complete_action_types("example_interfaces/") == [
+    assert "std_msgs/msg/String" in installed.complete_messages("std_msgs/msg/S")
+    assert installed.complete_service_types("std_srvs/srv/E") == ["std_srvs/srv/Empty"]
+    assert installed.complete_action_types("example_interfaces/") == [
         "example_interfaces/action/Fibonacci"
     ]
-    assert "nav_msgs" in completing.complete_packages("nav")
+    assert "nav_msgs" in installed.complete_packages("nav")
+    assert installed.complete_worlds("ar") == ["arena"]
+    assert installed.complete_robots("turtle") == ["turtlebot3_burger"]
 
 
 @pytest.mark.parametrize(
@@ -152,10 +183,10 @@ def test_programs_and_launch_files(
     monkeypatch.chdir(tmp_path)
     nothing: Any = SimpleNamespace(params={})
     of_arm: Any = SimpleNamespace(params={"words": ["arm"]})
-    assert completing.complete_programs(nothing, "ar") == ["arm", "artist.py"]
-    assert completing.complete_programs(of_arm, "") == ["wave"]
-    assert "planner" in completing.complete_programs(nothing, "pl")
-    assert completing.complete_launch_files(nothing, "ar") == ["arm"]
-    assert completing.complete_launch_files(of_arm, "") == ["arm.launch.py"]
+    assert installed.complete_programs(nothing, "ar") == ["arm", "artist.py"]
+    assert installed.complete_programs(of_arm, "") == ["wave"]
+    assert "planner" in installed.complete_programs(nothing, "pl")
+    assert installed.complete_launch_files(nothing, "ar") == ["arm"]
+    assert installed.complete_launch_files(of_arm, "") == ["arm.launch.py"]
     further: Any = SimpleNamespace(params={"words": ["arm", "wave"]})
-    assert completing.complete_programs(further, "") == []
+    assert installed.complete_programs(further, "") == []

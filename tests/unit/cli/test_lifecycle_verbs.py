@@ -2,11 +2,18 @@
 
 import json
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from verb_world import World, world
 
-from navette.runtime import Node
+from navette.msgs.lifecycle_msgs.msg import Transition, TransitionDescription
+from navette.msgs.lifecycle_msgs.srv import (
+    ChangeState,
+    GetAvailableTransitions,
+    GetState,
+)
+from navette.runtime import Future, Node
 from navette.runtime.lifecycle import LifecycleNode, TransitionCallbackReturn
 from navette.runtime.lifecycle.state_machine import LifecycleState
 
@@ -25,6 +32,33 @@ def here() -> Iterator[World]:
         here.graph.add(LifecycleNode("arm", context=here.context))
         here.graph.add(Node("plain", context=here.context))
         yield here
+
+
+def test_a_transition_that_takes_its_time(here: World) -> None:
+    node = here.graph.add(Node("driver", context=here.context))
+    hardware = here.graph.add(Node("hardware", context=here.context))
+    node.create_service(GetState, "~/get_state", lambda request, response: response)
+
+    def transitions(request: Any, response: Any) -> Any:
+        response.available_transitions = [
+            TransitionDescription(transition=Transition(id=1, label="configure"))
+        ]
+        return response
+
+    async def change(request: Any, response: Any) -> Any:
+        done: Future[None] = Future()
+        hardware.create_timer(20.0, lambda: done.done() or done.set_result(None))
+        await done
+        response.success = True
+        return response
+
+    node.create_service(
+        GetAvailableTransitions, "~/get_available_transitions", transitions
+    )
+    node.create_service(ChangeState, "~/change_state", change)
+    done = here.run("lifecycle", "set", "driver", "configure")
+    assert (done.out, done.code) == ("Transitioning successful\n", 0)
+    assert done.err.startswith("/driver is at it")
 
 
 def test_nodes(here: World) -> None:

@@ -27,7 +27,7 @@ def strict(text: str) -> Any:
 
 def test_numbers_that_json_has_not_are_null() -> None:
     scan = LaserScan(ranges=[1.5, math.inf, math.nan], angle_min=-math.inf)
-    read = strict(text_of(scan, None, Style(as_json=True)))
+    read = strict(text_of(scan, (), Style(as_json=True)))
     assert read["ranges"] == [1.5, None, None]
     assert read["angle_min"] is None
     assert strict(json_text({"a": (math.nan, [2])}, indent=2)) == {"a": [None, [2]]}
@@ -47,7 +47,7 @@ def test_what_others_sent_does_not_act_on_a_terminal(
     monkeypatch.setenv("NO_COLOR", "1")
     message = String(data=HOSTILE)
     for style in (Style(), Style(csv=True), Style(as_json=True)):
-        shown = text_of(message, None, style)
+        shown = text_of(message, (), style)
         assert not set(shown) & set(HOSTILE.replace("a", "")) - set("[2J31mabc"), style
     note(HOSTILE)
     with pytest.raises(typer.Exit):
@@ -59,16 +59,16 @@ def test_a_text_that_only_turns_letters_round_is_escaped_in_yaml_too(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     message = String(data="\u202eabc")
-    assert text_of(message, None, Style()) == "data: \u202eabc\n---"
+    assert text_of(message, (), Style()) == "data: \u202eabc\n---"
     for module in ("output", "topic.printing"):
         monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
     monkeypatch.setenv("NO_COLOR", "1")
-    assert text_of(message, None, Style()) == "data: \\u202eabc\n---"
+    assert text_of(message, (), Style()) == "data: \\u202eabc\n---"
 
 
 def test_json_in_a_pipe_is_the_same_value() -> None:
     message = String(data=HOSTILE)
-    assert strict(text_of(message, None, Style(as_json=True))) == {"data": HOSTILE}
+    assert strict(text_of(message, (), Style(as_json=True))) == {"data": HOSTILE}
 
 
 def test_rows_of_numbers_end_between_two_of_them(
@@ -79,7 +79,7 @@ def test_rows_of_numbers_end_between_two_of_them(
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "30")
     scan = LaserScan(ranges=[float(i) for i in range(9)])
-    text = text_of(scan, None, Style())
+    text = text_of(scan, (), Style())
     assert text.splitlines()[-5:] == [
         "ranges: [0.0, 1.0, 2.0, 3.0,",
         "         4.0, 5.0, 6.0, 7.0,",

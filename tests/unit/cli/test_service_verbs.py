@@ -194,7 +194,7 @@ def test_call_of_a_server_that_fails(here: World, adder: Node) -> None:
     here.graph.executor.remove_node(adder)
     done = here.run("service", "call", "/add", "-w", "1")
     assert done.code == 1
-    assert done.err == "navette: service /add: no response in 1 s\n"
+    assert done.err == "navette: service /add: no response in 1 s (-w S waits longer)\n"
 
 
 def test_echo(here: World, adder: Node) -> None:

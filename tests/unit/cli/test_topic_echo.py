@@ -97,16 +97,20 @@ SCAN = LaserScan(ranges=[float(i) for i in range(200)], intensities=[1.5])
          "ranges:\n- 0.0\n- 1.0\n- '...'\nintensities:\n- 1.5\n---"),
         ({"no_arr": True}, "ranges: '<sequence type: float, length: 200>'\n"
                            "intensities: '<sequence type: float, length: 1>'\n---"),
-        ({"path": "ranges[3]"}, "3.0\n---"),
-        ({"path": "ranges[-2:]"}, "- 198.0\n- 199.0\n---"),
-        ({"path": "ranges", "truncate_length": 1}, "- 0.0\n- '...'\n---"),
-        ({"path": "ranges", "truncate_length": 1, "flow_style": True},
+        ({"paths": ["ranges[3]"]}, "3.0\n---"),
+        ({"paths": ["ranges[-2:]"]}, "- 198.0\n- 199.0\n---"),
+        ({"paths": ["ranges"], "truncate_length": 1}, "- 0.0\n- '...'\n---"),
+        ({"paths": ["ranges"], "truncate_length": 1, "flow_style": True},
          "[0.0, '...']\n---"),
-        ({"path": "intensities", "csv": True}, "1.5"),
-        ({"path": "header", "csv": True}, "0,0,"),
-        ({"path": "header.stamp", "flow_style": True}, "{sec: 0, nanosec: 0}\n---"),
-        ({"path": "header.stamp.sec"}, "0\n---"),
-        ({"path": "intensities", "as_json": True}, "[1.5]"),
+        ({"paths": ["intensities"], "csv": True}, "1.5"),
+        ({"paths": ["header"], "csv": True}, "0,0,"),
+        ({"paths": ["header.stamp"], "flow_style": True}, "{sec: 0, nanosec: 0}\n---"),
+        ({"paths": ["header.stamp.sec"]}, "0\n---"),
+        ({"paths": ["intensities"], "as_json": True}, "[1.5]"),
+        ({"paths": ["ranges[1]", "header.stamp"]}, "1.0\nsec: 0\nnanosec: 0\n---"),
+        ({"paths": ["ranges[1]", "header.stamp"], "csv": True}, "1.0,0,0"),
+        ({"paths": ["ranges[1]", "header.stamp.sec"], "as_json": True},
+         '{"ranges[1]": 1.0, "header.stamp.sec": 0}'),
     ],
 )  # fmt: skip
 def test_shortening_and_parts(
@@ -118,7 +122,7 @@ def test_shortening_and_parts(
     latch(talker, "scan", SCAN)
     echo_of(talker, "scan", count=1, **options)
     out = capsys.readouterr().out
-    whole = "path" in options
+    whole = "paths" in options
     assert out == f"{last_lines}\n" if whole else out.endswith(f"{last_lines}\n")
 
 
@@ -126,9 +130,9 @@ def test_arrays_are_cut_at_128_items_unless_asked(
     talker: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     latch(talker, "scan", SCAN)
-    echo_of(talker, "scan", count=1, path="ranges")
+    echo_of(talker, "scan", count=1, paths=["ranges"])
     assert capsys.readouterr().out.count("\n") == 128 + 2  # the dots and the dashes
-    echo_of(talker, "scan", count=1, path="ranges", truncate_length=None)
+    echo_of(talker, "scan", count=1, paths=["ranges"], truncate_length=None)
     assert capsys.readouterr().out.count("\n") == 200 + 1
 
 
@@ -192,7 +196,7 @@ def test_filters_look_into_arrays_and_constants(
     text = (
         "any(r > 198 for r in m.ranges) and len(m.ranges) == 200 and m.ranges[0] == 0"
     )
-    echo_of(talker, "scan", count=1, filter=text, path="intensities", csv=True)
+    echo_of(talker, "scan", count=1, filter=text, paths=["intensities"], csv=True)
     assert capsys.readouterr().out == "1.5\n"
 
 
@@ -241,7 +245,7 @@ def test_wrong_paths_are_refused_before_any_message(
 ) -> None:
     talker.create_publisher(PoseArray, "poses", 10)
     with pytest.raises(MessageError, match=reason):
-        echo_of(talker, "poses", count=1, path=path)
+        echo_of(talker, "poses", count=1, paths=[path])
 
 
 def test_a_path_into_many_skips_messages_that_are_too_short(
@@ -251,7 +255,7 @@ def test_a_path_into_many_skips_messages_that_are_too_short(
         return PoseArray(poses=[Pose(position=Point(x=float(i)))] * (i % 3))
 
     publish_each(talker, "poses", poses)
-    echo_of(talker, "poses", count=2, path="poses[1].position.x")
+    echo_of(talker, "poses", count=2, paths=["poses[1].position.x"])
     shown = capsys.readouterr()
     assert shown.out == "2.0\n---\n5.0\n---\n"
     assert shown.err == "poses[1].position.x: some messages have not so many elements\n"
@@ -266,7 +270,7 @@ def test_it_waits_for_a_topic_and_says_so(
         timer.cancel()
         publish_each(talker, "late", lambda i: String(data=f"{i}"))
 
-    echo_of(talker, "late", count=1, path="data")
+    echo_of(talker, "late", count=1, paths=["data"])
     shown = capsys.readouterr()
     assert shown.out == "1\n---\n"
     assert shown.err == "waiting for /late, which nobody publishes yet\n"
@@ -326,7 +330,7 @@ def test_on_a_terminal_names_are_coloured_and_control_characters_do_not_act(
     assert capsys.readouterr().out == (
         '\x1b[36mdata\x1b[0m: "a\\e[2Jb"\n\x1b[2m---\x1b[0m\n'
     )
-    echo_of(talker, "chatter", count=1, path="data")
+    echo_of(talker, "chatter", count=1, paths=["data"])
     assert "\x1b[2J" not in capsys.readouterr().out
 
 
@@ -382,8 +386,8 @@ def test_on_a_terminal_numbers_stand_beside_each_other(
         "intensities: [-1.0]",
         "---",
     ]
-    echo_of(talker, "scan", count=1, path="ranges[:2]")
+    echo_of(talker, "scan", count=1, paths=["ranges[:2]"])
     assert capsys.readouterr().out == "[1.5, .inf]\n---\n"
     latch(talker, "poses", PoseArray(poses=[Pose()]))
-    echo_of(talker, "poses", count=1, path="poses")
+    echo_of(talker, "poses", count=1, paths=["poses"])
     assert capsys.readouterr().out.splitlines()[:2] == ["- position:", "    x: 0.0"]

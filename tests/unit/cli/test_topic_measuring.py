@@ -18,12 +18,20 @@ from navette.cli.topic.meters import (
     RateMeter,
     Spread,
 )
+from navette.cli.topic.qos_options import QosWishes
 from navette.msgs import serialize
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.sensor_msgs.msg import Imu
 from navette.msgs.std_msgs.msg import Header, Int32, String
-from navette.runtime import Context, Executor, Node, SystemClock, VirtualClock
+from navette.runtime import (
+    Context,
+    Executor,
+    Node,
+    ReliabilityPolicy,
+    SystemClock,
+    VirtualClock,
+)
 from navette.runtime.time import ns_to_stamp, stamp_to_ns
 
 MS = 1_000_000
@@ -68,6 +76,20 @@ def test_hz_as_ros2_prints_it(talker: Node, capsys: pytest.CaptureFixture[str]) 
         "average rate: 10.000\n"
         "\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 18\n"
     )
+
+
+def test_a_quality_of_service_of_ones_own(talker: Node) -> None:
+    publish_each(talker, "chatter", 0.1, lambda _: String())
+    seen: list[Any] = []
+    talker.create_timer(
+        0.35, lambda: seen.extend(talker.get_subscriptions_info_by_topic("chatter"))
+    )
+    run(talker, "chatter", **RATE, qos=QosWishes(reliability="reliable"))
+    run(talker, "chatter", **RATE)
+    first, last = seen[0].qos_profile, seen[-1].qos_profile
+    assert first.reliability == ReliabilityPolicy.RELIABLE
+    assert last.reliability == ReliabilityPolicy.BEST_EFFORT
+    assert (first.depth, last.depth) == (1000, 1000)
 
 
 def test_hz_of_several_topics_is_a_table(

@@ -1,12 +1,14 @@
 """navette topic pub: partial YAML, stamps, rates, waiting; in virtual time."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 import typer
 from topic_world import navette, program, shared_graph
 
+from navette.cli.filling import from_yaml
 from navette.cli.session import connect
 from navette.cli.topic.pub_options import PublishOptions
 from navette.cli.topic.publishing import filled_message, publish
@@ -79,7 +81,7 @@ def test_headers_and_times_are_stamped_when_sent(listener: Node) -> None:
     assert [m.header.stamp for _, m in heard] == [ns_to_stamp(0), ns_to_stamp(10**9)]
 
     message, stamps = filled_message(
-        PointStamped, "{header: {stamp: now, frame_id: map}}"
+        PointStamped, {"header": {"stamp": "now", "frame_id": "map"}}
     )
     for stamp in stamps:
         stamp(ns_to_stamp(7))
@@ -87,10 +89,28 @@ def test_headers_and_times_are_stamped_when_sent(listener: Node) -> None:
     assert message.header.frame_id == "map"
 
 
+def test_what_echo_wrote_is_published_again(listener: Node, tmp_path: Path) -> None:
+    heard = hear(listener, Twist, "cmd_vel")
+    file = tmp_path / "drive.yaml"
+    file.write_text("linear:\n  x: 1.0\n---\nlinear:\n  x: 2.0\n---\n")
+    pub(listener, "cmd_vel", "geometry_msgs/Twist", yaml_file=file, rate_hz=2.0)
+    assert [(at_s, m.linear.x) for at_s, m in heard] == [(0.0, 1.0), (0.5, 2.0)]
+    pub(listener, "cmd_vel", "geometry_msgs/Twist", yaml_file=file, once=True)
+    assert [m.linear.x for _, m in heard] == [1.0, 2.0, 1.0]
+    for text, reason in (("---\n", "no message"), ("{", "is not YAML"), (None, "No")):
+        other = tmp_path / "other.yaml"
+        if text:
+            other.write_text(text)
+        else:
+            other.unlink()
+        with pytest.raises(InvalidValueError, match=reason):
+            pub(listener, "cmd_vel", "geometry_msgs/Twist", yaml_file=other)
+
+
 def test_a_value_alone_is_the_field_of_a_message_that_has_one() -> None:
     assert filled_message(String, "hello")[0] == String(data="hello")
-    assert filled_message(String, "5")[0] == String(data="5")
-    assert filled_message(Empty, "")[0] == Empty()
+    assert filled_message(String, 5)[0] == String(data="5")
+    assert filled_message(Empty, None)[0] == Empty()
 
 
 @pytest.mark.parametrize(
@@ -107,7 +127,7 @@ def test_a_value_alone_is_the_field_of_a_message_that_has_one() -> None:
 )
 def test_what_does_not_fit_is_refused(kind: Any, text: str, reason: str) -> None:
     with pytest.raises(InvalidValueError, match=reason):
-        filled_message(kind, text)
+        filled_message(kind, from_yaml(text))
 
 
 def test_it_waits_for_who_hears_it(

@@ -4,7 +4,8 @@ from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_action_types, complete_actions
+from navette.cli.completing import complete_actions
+from navette.cli.completing_installed import complete_action_types
 
 ActionName = Annotated[
     str,

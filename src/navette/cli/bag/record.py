@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navette.cli.completing import complete_topics
+from navette.cli.completing_installed import complete_messages
 from navette.cli.output import note
 from navette.cli.session import FAILED
 
@@ -15,7 +17,11 @@ if TYPE_CHECKING:
 
 TopicNames = Annotated[
     list[str] | None,
-    typer.Argument(metavar="[TOPIC]...", help="Record these topics."),
+    typer.Argument(
+        metavar="[TOPIC]...",
+        help="Record these topics.",
+        autocompletion=complete_topics,
+    ),
 ]
 All = Annotated[
     bool, typer.Option("--all", "-a", help="Record every topic, raw images too.")
@@ -25,7 +31,12 @@ Regex = Annotated[
 ]
 TopicTypes = Annotated[
     list[str] | None,
-    typer.Option("--topic-types", metavar="TYPE...", help="Topics of these types."),
+    typer.Option(
+        "--topic-types",
+        metavar="TYPE...",
+        help="Topics of these types.",
+        autocompletion=complete_messages,
+    ),
 ]
 Exclude = Annotated[
     str,
@@ -39,12 +50,20 @@ Exclude = Annotated[
 ]
 ExcludeTopics = Annotated[
     list[str] | None,
-    typer.Option("--exclude-topics", metavar="TOPIC...", help="Leave out these."),
+    typer.Option(
+        "--exclude-topics",
+        metavar="TOPIC...",
+        help="Leave out these.",
+        autocompletion=complete_topics,
+    ),
 ]
 ExcludeTypes = Annotated[
     list[str] | None,
     typer.Option(
-        "--exclude-topic-types", metavar="TYPE...", help="Leave out these types."
+        "--exclude-topic-types",
+        metavar="TYPE...",
+        help="Leave out these types.",
+        autocompletion=complete_messages,
     ),
 ]
 Hidden = Annotated[

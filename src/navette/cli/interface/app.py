@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_packages, complete_types
+from navette.cli.completing_installed import complete_packages, complete_types
 from navette.cli.output import show as put
 from navette.cli.output import show_json
 from navette.cli.session import fail

@@ -1,6 +1,9 @@
 """Parameters in words, as ``ros2 param`` has them."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
+
+from navette.cli.output import aligned, cut_to_width, harmless, styled
 
 if TYPE_CHECKING:
     from navette.runtime import Parameter
@@ -77,3 +80,35 @@ def descriptor_lines(descriptor: Any) -> list[str]:
 def _limits(descriptor: Any) -> Any:
     ranges = [*descriptor.floating_point_range, *descriptor.integer_range]
     return ranges[0] if ranges else None
+
+
+def name_lines(
+    found: dict[str, list[str]],
+    kinds: dict[tuple[str, str], str],
+    held: dict[tuple[str, str], str],
+    *,
+    with_nodes: bool,
+) -> Iterator[str]:
+    """A name per line; for a person with its value, in columns.
+
+    Args:
+        found: node → names.
+        kinds: (node, name) → type, where they are wanted.
+        held: (node, name) → value, where a person reads it.
+    """
+    for node, names in found.items():
+        if with_nodes and names:
+            yield styled(f"{node}:", bold=True)
+        if not held:
+            for name in names:
+                kind = f" (type: {kinds[node, name]})" if kinds else ""
+                yield harmless(f"  {name}{kind}")
+            continue
+        rows = [
+            (name, *([kinds[node, name]] if kinds else []), held[node, name])
+            for name in names
+        ]
+        width = max(map(len, names), default=0)
+        for line in aligned(rows):
+            text = cut_to_width(harmless(f"  {line}"))
+            yield text[: width + 2] + styled(text[width + 2 :], dim=True)

@@ -5,7 +5,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from navette.cli.asking import ANSWER_S, Question, answer, ask_all, served
+from navette.cli.asking import Question, answer, ask_all, patience_s, served
 from navette.cli.nearest import did_you_mean
 from navette.cli.param.text import type_word
 from navette.cli.session import fail, wait_for
@@ -265,13 +265,13 @@ def _client(here: "Node", node: str) -> "AsyncParameterClient":
     from navette.runtime.parameter_client import AsyncParameterClient
 
     client = AsyncParameterClient(here, node)
-    if not client.wait_for_services(ANSWER_S):
+    if not client.wait_for_services(patience_s()):
         fail(f"node {node} has no parameter services")
     return client
 
 
 def _answered(here: "Node", future: Any, node: str) -> Any:
-    wait_for(here, future.done, ANSWER_S)
+    wait_for(here, future.done, patience_s())
     got = answer(future, f"of {node}'s parameters")
     if got.response is None:
         fail(got.reason)

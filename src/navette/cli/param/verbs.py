@@ -6,11 +6,9 @@ from typing import Annotated, Any
 
 import typer
 
-from navette.cli.asking import chosen_node, node_names
-from navette.cli.completing import complete_nodes, complete_parameters
+from navette.cli.asking import ANSWER_S, chosen_node, node_names, patient
+from navette.cli.completing import complete_parameter_value
 from navette.cli.output import (
-    aligned,
-    cut_to_width,
     harmless,
     is_terminal,
     note,
@@ -19,6 +17,15 @@ from navette.cli.output import (
     styled,
 )
 from navette.cli.param import text, values
+from navette.cli.param.options import (
+    AnyNode,
+    Hidden,
+    Json,
+    Name,
+    Names,
+    NodeName,
+    Timeout,
+)
 from navette.cli.session import connect, fail
 from navette.errors import InvalidValueError
 
@@ -27,37 +34,6 @@ param = typer.Typer(
     help="Read and change the parameters of nodes that run.",
     no_args_is_help=True,
 )
-
-NodeName = Annotated[
-    str,
-    typer.Argument(metavar="NODE", help="As /planner.", autocompletion=complete_nodes),
-]
-AnyNode = Annotated[
-    str | None,
-    typer.Argument(
-        metavar="[NODE]", help="By default every node.", autocompletion=complete_nodes
-    ),
-]
-Name = Annotated[
-    str,
-    typer.Argument(
-        metavar="NAME",
-        help="The parameter's name, as limits.max_speed_mps.",
-        autocompletion=complete_parameters,
-    ),
-]
-Names = Annotated[
-    list[str],
-    typer.Argument(
-        metavar="NAME...",
-        help="The parameters' names.",
-        autocompletion=complete_parameters,
-    ),
-]
-Hidden = Annotated[
-    bool, typer.Option("--include-hidden-nodes", help="Also nodes named _name.")
-]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 
 
 @param.command("list")
@@ -80,11 +56,12 @@ def list_(
         bool, typer.Option("--param-type", help="With their types.")
     ] = False,
     include_hidden_nodes: Hidden = False,
+    timeout_s: Timeout = ANSWER_S,
     as_json: Json = False,
 ) -> None:
     """List parameters: of a node, or of all."""
     pattern = _pattern(filter_)
-    with connect() as here:
+    with connect() as here, patient(timeout_s):
         every = node_names(here, hidden=include_hidden_nodes)
         nodes = [chosen_node(here, node_name)] if node_name else every
         listed = values.names(here, nodes, prefixes or ())
@@ -106,7 +83,8 @@ def list_(
             }
         )
     else:
-        _show_names(found, kinds, held, with_nodes=node_name is None)
+        for line in text.name_lines(found, kinds, held, with_nodes=node_name is None):
+            show(line)
     if node_name and listed.silent:
         raise typer.Exit(1)
 
@@ -122,32 +100,6 @@ def _pattern(text: str | None) -> re.Pattern[str] | None:
         ) from None
 
 
-def _show_names(
-    found: dict[str, list[str]],
-    kinds: dict[tuple[str, str], str],
-    held: dict[tuple[str, str], str],
-    *,
-    with_nodes: bool,
-) -> None:
-    """A name per line; for a person with its value, in columns."""
-    for node, names in found.items():
-        if with_nodes and names:
-            show(styled(f"{node}:", bold=True))
-        if not held:
-            for name in names:
-                kind = f" (type: {kinds[node, name]})" if kinds else ""
-                show(harmless(f"  {name}{kind}"))
-            continue
-        rows = [
-            (name, *([kinds[node, name]] if kinds else []), held[node, name])
-            for name in names
-        ]
-        width = max(map(len, names), default=0)
-        for line in aligned(rows):
-            text = cut_to_width(harmless(f"  {line}"))
-            show(text[: width + 2] + styled(text[width + 2 :], dim=True))
-
-
 @param.command()
 def get(
     node_name: NodeName,
@@ -155,10 +107,11 @@ def get(
     hide_type: Annotated[
         bool, typer.Option("--hide-type", help="Only the value.")
     ] = False,
+    timeout_s: Timeout = ANSWER_S,
     as_json: Json = False,
 ) -> None:
     """Print a parameter's value."""
-    with connect() as here:
+    with connect() as here, patient(timeout_s):
         node = chosen_node(here, node_name)
         got = values.get(here, node, [name])[name]
     if as_json:
@@ -176,16 +129,19 @@ def set_(
     value: Annotated[
         str,
         typer.Argument(
-            metavar="VALUE", help="As YAML: 1.5, true, text, \"'5'\", [1, 2]."
+            metavar="VALUE",
+            help="As YAML: 1.5, true, text, \"'5'\", [1, 2].",
+            autocompletion=complete_parameter_value,
         ),
     ],
+    timeout_s: Timeout = ANSWER_S,
 ) -> None:
     """Set a parameter of a node that runs.
 
     A whole number will do where a double is wanted. A value that the node refuses
     changes nothing: the reason is printed and the exit code is 1.
     """
-    with connect() as here:
+    with connect() as here, patient(timeout_s):
         node = chosen_node(here, node_name)
         result = values.set_values(here, node, {name: values.parsed(value)})[0]
     if not result.successful:
@@ -195,9 +151,14 @@ def set_(
 
 
 @param.command()
-def describe(node_name: NodeName, names: Names, as_json: Json = False) -> None:
+def describe(
+    node_name: NodeName,
+    names: Names,
+    timeout_s: Timeout = ANSWER_S,
+    as_json: Json = False,
+) -> None:
     """Say what a parameter means, its type and its limits."""
-    with connect() as here:
+    with connect() as here, patient(timeout_s):
         node = chosen_node(here, node_name)
         described = values.describe(here, node, names)
     if as_json:
@@ -222,13 +183,14 @@ def dump(
         ),
     ] = None,
     include_hidden_nodes: Hidden = False,
+    timeout_s: Timeout = ANSWER_S,
 ) -> None:
     """Print a node's parameters as a parameter file; without NODE, all nodes'.
 
     What is printed can be given to --params-file, params: in a launch file, and
     navette param load.
     """
-    with connect() as here:
+    with connect() as here, patient(timeout_s):
         every = node_names(here, hidden=include_hidden_nodes)
         nodes = [chosen_node(here, node_name)] if node_name else every
         dumped = values.dump(here, nodes)
@@ -252,9 +214,10 @@ def load(
     no_use_wildcard: Annotated[
         bool, typer.Option("--no-use-wildcard", help="Not what stands under /**.")
     ] = False,
+    timeout_s: Timeout = ANSWER_S,
 ) -> None:
     """Set what a parameter file has for a node."""
-    with connect() as here:
+    with connect() as here, patient(timeout_s):
         node = chosen_node(here, node_name)
         wanted = values.from_file(
             parameter_file, node, use_wildcard=not no_use_wildcard
@@ -272,9 +235,9 @@ def load(
 
 
 @param.command()
-def delete(node_name: NodeName, name: Name) -> None:
+def delete(node_name: NodeName, name: Name, timeout_s: Timeout = ANSWER_S) -> None:
     """Delete a parameter; nodes allow it for those without a fixed type."""
-    with connect() as here:
+    with connect() as here, patient(timeout_s):
         node = chosen_node(here, node_name)
         result = values.delete(here, node, name)
     if not result.successful:

@@ -104,7 +104,10 @@ def _call_once(
     if not as_json:
         show(f"{styled('requester: making request:', dim=True)} {request!r}\n")
     if not wait_for(here, future.done, patience_s):
-        fail(f"service {client.srv_name}: no response in {patience_s:g} s")
+        fail(
+            f"service {client.srv_name}: no response in {patience_s:g} s"
+            " (-w S waits longer)"
+        )
     if future.exception() is not None:
         fail(str(future.exception()))
     response: Any = future.result()

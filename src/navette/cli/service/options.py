@@ -4,7 +4,8 @@ from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_service_types, complete_services
+from navette.cli.completing import complete_services
+from navette.cli.completing_installed import complete_service_types
 
 ServiceName = Annotated[
     str,

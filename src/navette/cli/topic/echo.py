@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from collections.abc import Sequence
 from typing import Any
 
 import yaml
@@ -36,8 +37,8 @@ def echo(node: Node, options: EchoOptions) -> None:
     if options.timeout_s is not None:
         deadline_ns = node.context.clock.now_ns + round(options.timeout_s * 1e9)
     cls = topic_class(node, options.topic, options.type_name, options.timeout_s)
-    path = parse_field_path(options.path, type_name(cls)) if options.path else None
-    screen = Screen(options, path)
+    name = type_name(cls)
+    screen = Screen(options, [parse_field_path(p, name) for p in options.paths or ()])
 
     def receive(message: Any, info: dict[str, Any]) -> None:
         if options.raw or keep(message):
@@ -62,9 +63,9 @@ def echo(node: Node, options: EchoOptions) -> None:
 class Screen:
     """Where messages are printed, and how many were."""
 
-    def __init__(self, options: EchoOptions, path: FieldPath | None) -> None:
+    def __init__(self, options: EchoOptions, paths: Sequence[FieldPath]) -> None:
         self._options = options
-        self._path = path
+        self._paths = paths
         self._style = options.style
         self._said_short = False
         self._clears = options.clear and is_terminal()
@@ -95,16 +96,15 @@ class Screen:
     def _text(self, message: Any) -> str | None:
         if self._options.raw:
             return f"{message!r}\n{SEPARATOR}"
-        if self._path is None:
-            return text_of(message, None, self._style)
         try:
-            value = self._path.of(message)
+            parts = [(path, path.of(message)) for path in self._paths]
         except IndexError:
             if not self._said_short:
-                note(f"{self._path.text}: some messages have not so many elements")
+                names = ", ".join(path.text for path in self._paths)
+                note(f"{names}: some messages have not so many elements")
             self._said_short = True
             return None
-        return text_of(value, self._path, self._style)
+        return text_of(message, parts, self._style)
 
     def _with_info(self, text: str, info: dict[str, Any]) -> str:
         if self._style.csv:

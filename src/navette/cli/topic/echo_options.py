@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_messages
+from navette.cli.completing_installed import complete_messages
+from navette.cli.topic.completing_fields import complete_fields
 from navette.cli.topic.options import Filter, TopicName
 from navette.cli.topic.qos_options import QosWishes
 from navette.cli.topic.style import Style
@@ -33,12 +34,13 @@ class EchoOptions:
         float | None,
         typer.Option("--timeout", min=0.0, metavar="S", help="Wait no longer."),
     ] = None
-    path: Annotated[
-        str | None,
+    paths: Annotated[
+        list[str] | None,
         typer.Option(
             "--field",
             metavar="PATH",
-            help="Only a part, as in pose.position.x or ranges[0].",
+            help="Only a part, as in pose.position.x or ranges[0]; repeat for more.",
+            autocompletion=complete_fields,
         ),
     ] = None
     filter: Filter = None

@@ -1,11 +1,12 @@
 """``pose.position.x``, ``ranges[0]``, ``poses[-1].pose``: a part of a message."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 from navette.errors import MessageError
-from navette.msgs.interface import FieldType
+from navette.msgs.interface import Field, FieldType
 from navette.msgs.registry import get_message_spec
 
 _STEP = re.compile(r"\.?(?P<name>[A-Za-z]\w*)|\[(?P<index>-?\d{1,9}|-?\d*:-?\d*)\]")
@@ -55,6 +56,27 @@ def parse_field_path(text: str, type_name: str) -> FieldPath:
             f"field {text[:60]!r}: wanted a path such as pose.position.x or ranges[0]"
         )
     return FieldPath(text, tuple(steps), found)
+
+
+def field_paths(begun: str, type_name: str) -> Iterator[str]:
+    """Paths that go on from one that somebody has begun to type, two names deep.
+
+    Raises:
+        MessageError: what stands before its last dot leads nowhere.
+    """
+    before = begun.rpartition(".")[0]
+    owner = parse_field_path(before, type_name).type if before else FieldType(type_name)
+    for field in _fields(owner):
+        path = f"{before}.{field.name}" if before else field.name
+        yield path
+        for below in _fields(field.type):
+            yield f"{path}.{below.name}"
+
+
+def _fields(owner: FieldType) -> tuple[Field, ...]:
+    """Those of a message; of many messages none."""
+    is_one = owner.is_message and owner.is_scalar
+    return get_message_spec(owner.base).fields if is_one else ()
 
 
 def _step(

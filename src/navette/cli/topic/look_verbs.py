@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from navette.cli.asking import note_none
-from navette.cli.completing import complete_messages
+from navette.cli.completing_installed import complete_messages
 from navette.cli.output import show, show_json
 from navette.cli.session import connect, fail
 from navette.cli.topic.options import Hidden, Json, TopicName

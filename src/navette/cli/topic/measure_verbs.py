@@ -8,6 +8,7 @@ from navette.cli.completing import complete_topics
 from navette.cli.output import note
 from navette.cli.session import connect, follow_clock, is_simulated
 from navette.cli.topic.options import Filter, TopicName
+from navette.cli.topic.qos_options import QosWishes
 
 if TYPE_CHECKING:
     from navette.cli.topic.meters import Spread
@@ -49,6 +50,8 @@ def hz(
     ] = False,
     count: Count = None,
     as_json: Json = False,
+    *,
+    qos: QosWishes,
 ) -> None:
     """Measure how often messages come, and how evenly."""
     from navette.cli.topic.measuring import MeasureOptions, measure
@@ -61,6 +64,7 @@ def hz(
         filter=filter_,
         count=count,
         as_json=as_json,
+        qos=qos,
     )
     with connect() as node:
         if use_sim_time and not wall_time:
@@ -74,6 +78,8 @@ def bw(
     use_sim_time: SimTime = False,
     count: Count = None,
     as_json: Json = False,
+    *,
+    qos: QosWishes,
 ) -> None:
     """Measure how many bytes per second a topic carries."""
     from navette.cli.topic.measuring import MeasureOptions, measure
@@ -85,6 +91,7 @@ def bw(
         value=len,
         count=count,
         as_json=as_json,
+        qos=qos,
     )
     with connect() as node:
         if use_sim_time:
@@ -109,6 +116,8 @@ def delay(
     wall_time: WallTime = False,
     count: Count = None,
     as_json: Json = False,
+    *,
+    qos: QosWishes,
 ) -> None:
     """Measure how long after their header's stamp messages come.
 
@@ -126,6 +135,7 @@ def delay(
         needs_header=True,
         count=count,
         as_json=as_json,
+        qos=qos,
         remark=of_other_times,
     )
     with connect() as node:

@@ -1,7 +1,7 @@
 """Listens to topics and prints what a meter makes of it, every second."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from navette.cli.message_types import topic_class
@@ -17,6 +17,8 @@ from navette.cli.output import (
 from navette.cli.session import fail, wait_for
 from navette.cli.topic.filtering import message_filter
 from navette.cli.topic.meters import Meter, RateMeter, Spread
+from navette.cli.topic.qos_choice import wished_profile
+from navette.cli.topic.qos_options import QosWishes
 from navette.msgs import type_name
 from navette.msgs.registry import get_message_spec
 from navette.runtime import Clock, Node, QoSProfile, ReliabilityPolicy
@@ -41,6 +43,7 @@ class MeasureOptions:
     filter: str | None = None
     count: int | None = None
     as_json: bool = False
+    qos: QosWishes = field(default_factory=QosWishes)
     #: What to say of unlikely figures, once.
     remark: Callable[[Any], str] = lambda _: ""
 
@@ -146,8 +149,18 @@ def _listen(node: Node, name: str, meter: Meter, options: MeasureOptions) -> Non
             note("time has reset, resetting counters")
 
     node.create_subscription(
-        cls, topic, receive, _QOS, raw=options.raw, shared=not options.raw
-    )
+        cls, topic, receive, _profile(options.qos), raw=options.raw,
+        shared=not options.raw,
+    )  # fmt: skip
+
+
+def _profile(wishes: QosWishes) -> QoSProfile:
+    if wishes.is_empty:
+        return _QOS
+    profile = wished_profile(wishes, "sensor_data")
+    if wishes.depth is None:
+        profile.depth = _QOS.depth
+    return profile
 
 
 def _arrival_ns(node: Node, info: dict[str, int]) -> int:

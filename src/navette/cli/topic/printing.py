@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from collections.abc import Sequence
 from typing import Any
 
 from navette.cli.output import harmless, is_terminal, json_text, styled
@@ -15,24 +16,34 @@ from navette.companions.rosidl_runtime_py.convert import (
 from navette.msgs import Message, to_dict
 
 SEPARATOR = "---"
+Part = tuple[FieldPath, Any]
 _KEY = re.compile(r"^([ ]*(?:- )*)([A-Za-z]\w*)(?=:)", re.MULTILINE)
 
 
-def text_of(value: Any, field: FieldPath | None, style: Style) -> str:
-    """A message, or the part of one that ``field`` leads to."""
+def text_of(message: Any, parts: Sequence[Part], style: Style) -> str:
+    """A message, or the parts of it that were asked for."""
     if style.as_json:
-        return json_text(_jsonable(value))
+        return json_text(_json_of(message, parts))
     if style.csv:
-        return harmless(_csv(value, field, style))
-    return f"{_yaml(value, field, style)}{styled(SEPARATOR, dim=True)}"
+        texts = [_csv(value, field, style) for field, value in parts]
+        return harmless(
+            ",".join(texts) if parts else message_to_csv(message, **_shortened(style))
+        )
+    texts = [_yaml(value, field, style) for field, value in parts]
+    if not parts:
+        texts = [_yaml(message, None, style)]
+    return f"{''.join(texts)}{styled(SEPARATOR, dim=True)}"
 
 
-def _csv(value: Any, field: FieldPath | None, style: Style) -> str:
-    shortened = _shortened(style)
-    if isinstance(value, Message):
-        return message_to_csv(value, **shortened)
-    assert field is not None, "a message itself is a Message"
-    return value_to_csv(value, field.type, **shortened)
+def _json_of(message: Any, parts: Sequence[Part]) -> Any:
+    """The message or the one part; several by their paths."""
+    if len(parts) < 2:
+        return _jsonable(parts[0][1] if parts else message)
+    return {field.text: _jsonable(value) for field, value in parts}
+
+
+def _csv(value: Any, field: FieldPath, style: Style) -> str:
+    return value_to_csv(value, field.type, **_shortened(style))
 
 
 def _yaml(value: Any, field: FieldPath | None, style: Style) -> str:

@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_message_values, complete_messages
+from navette.cli.completing import complete_message_values
+from navette.cli.completing_installed import complete_messages
 from navette.cli.topic.options import TopicName
 from navette.cli.topic.qos_options import QosWishes
 from navette.errors import InvalidValueError
@@ -37,6 +39,14 @@ class PublishOptions:
     stdin: Annotated[
         bool, typer.Option("--stdin", help="Read the YAML from standard input.")
     ] = False
+    yaml_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--yaml-file",
+            metavar="FILE",
+            help="Publish what topic echo wrote there: one message after the other.",
+        ),
+    ] = None
     rate_hz: Annotated[
         float, typer.Option("--rate", "-r", metavar="HZ", help="How often.")
     ] = 1.0
@@ -89,6 +99,8 @@ class PublishOptions:
             raise InvalidValueError(
                 f"--rate {self.rate_hz!r}: wanted a number above 0, in Hz"
             )
+        if self.stdin and self.yaml_file is not None:
+            raise InvalidValueError("--stdin and --yaml-file: wanted one of them")
         if self.once and self.times:
             raise InvalidValueError("--once and --times: wanted one of them")
         if self.max_wait_s is not None and not self.subscriptions_wanted:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from navette.cli.filling import from_stdin, from_yaml
+from navette.cli.filling import from_stdin, from_yaml, from_yaml_file
 from navette.cli.message_types import topic_class
 from navette.cli.nearest import did_you_mean
 from navette.cli.output import is_terminal, note, show
@@ -35,13 +35,18 @@ Stamp = Callable[[Any], None]
 def publish(node: Node, options: PublishOptions) -> None:
     """Publish until it was often enough."""
     cls = topic_class(node, options.topic, options.type_name)
-    message, stamps = filled_message(
-        cls, from_stdin() if options.stdin else options.values
-    )
+    messages = [filled_message(cls, values) for values in _typed(options)]
+    wanted = options.wanted
+    if options.yaml_file is not None:
+        wanted = min(wanted or len(messages), len(messages))
     profile = wished_profile(options.qos, "default")
     publisher = node.create_publisher(cls, options.topic, profile)
     _wait_for_subscriptions(node, publisher, options)
-    if stamps and not options.wall_time and is_simulated(node):
+    if (
+        any(stamps for _, stamps in messages)
+        and not options.wall_time
+        and is_simulated(node)
+    ):
         follow_clock(node)
         wait_for(node, lambda: node.get_clock().now_ns > 0, _CLOCK_TIMEOUT_S)
     show("publisher: beginning loop")
@@ -49,8 +54,9 @@ def publish(node: Node, options: PublishOptions) -> None:
 
     def send() -> None:
         nonlocal count
-        if options.wanted and count >= options.wanted:
+        if wanted and count >= wanted:
             return
+        message, stamps = messages[count % len(messages)]
         now = node.get_clock().now().to_msg()
         for stamp in stamps:
             stamp(now)
@@ -62,18 +68,24 @@ def publish(node: Node, options: PublishOptions) -> None:
     send()
     clock = Clock(clock_type=ClockType.STEADY_TIME, context=node.context)
     node.create_timer(1.0 / options.rate_hz, send, clock=clock)
-    wait_for(node, lambda: bool(options.wanted) and count >= options.wanted)
+    wait_for(node, lambda: bool(wanted) and count >= wanted)
     # Time to reach the wire, and for who hears late to take it.
     wait_for(node, lambda: False, options.keep_alive_s)
 
 
-def filled_message(cls: Any, text: str) -> tuple[Any, list[Stamp]]:
+def _typed(options: PublishOptions) -> list[Any]:
+    """What a message, or each of several, is to be filled with."""
+    if options.yaml_file is not None:
+        return from_yaml_file(options.yaml_file)
+    return [from_yaml(from_stdin() if options.stdin else options.values)]
+
+
+def filled_message(cls: Any, values: Any) -> tuple[Any, list[Stamp]]:
     """The message, and what to call with the time before it is sent.
 
     Raises:
-        InvalidValueError: not YAML, or a field or value does not fit.
+        InvalidValueError: a field or value does not fit.
     """
-    values = from_yaml(text)
     fields = get_message_spec(type_name(cls)).fields
     if values is not None and not isinstance(values, dict):
         values = {_only_field(type_name(cls), fields, values): values}

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from navette.cli.completing import complete_from
+from navette.cli.completing_installed import complete_from
 
 PANEL = "Quality of service"
 

@@ -1,0 +1,103 @@
+"""What the shell offers at Tab: names of what is installed, and files here."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import typer
+
+
+def complete_from(*words: str) -> Callable[[str], list[str]]:
+    """One of a few words."""
+    return lambda incomplete: chosen(incomplete, words)
+
+
+def complete_types(incomplete: str) -> list[str]:
+    """Every interface that is installed, as ``pkg/msg/Name``."""
+    return _types(incomplete, "msg", "srv", "action")
+
+
+def complete_messages(incomplete: str) -> list[str]:
+    return _types(incomplete, "msg")
+
+
+def complete_service_types(incomplete: str) -> list[str]:
+    return _types(incomplete, "srv")
+
+
+def complete_action_types(incomplete: str) -> list[str]:
+    return _types(incomplete, "action")
+
+
+def complete_packages(incomplete: str) -> list[str]:
+    """Packages, installed or in the workspace."""
+    from navette.packages import find_packages
+
+    return chosen(incomplete, find_packages())
+
+
+def complete_programs(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Of ``navette run``: packages with programs, those of a package, files here."""
+    from navette.packages import find_packages
+
+    before = list(ctx.params.get("words") or ())
+    packages = find_packages()
+    if len(before) == 1 and before[0] in packages:
+        return chosen(incomplete, (e.name for e in packages[before[0]].executables()))
+    if before:
+        return []
+    built_in = packages["navette"].executables() if "navette" in packages else ()
+    names = [each.name for each in built_in]
+    names += [name for name, each in packages.items() if each.executables()]
+    return chosen(incomplete, [*names, *_files_here("*.py")])
+
+
+def complete_launch_files(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Of ``navette launch``: files here, packages, the launch files of a package."""
+    from navette.packages import find_packages
+
+    before = list(ctx.params.get("words") or ())
+    packages = find_packages()
+    if len(before) == 1 and before[0] in packages:
+        folder = packages[before[0]].share / "launch"
+        return chosen(incomplete, (path.name for path in folder.glob("*launch*")))
+    if before:
+        return []
+    names = [n for n, p in packages.items() if (p.share / "launch").is_dir()]
+    return chosen(incomplete, [*names, *_files_here("*launch*")])
+
+
+def _files_here(pattern: str) -> list[str]:
+    return [path.name for path in Path.cwd().glob(pattern) if path.is_file()]
+
+
+def complete_worlds(incomplete: str) -> list[str]:
+    """Built-in worlds; the shell offers files where none begins so."""
+    from navette.sim.library import world_names
+
+    return chosen(incomplete, world_names())
+
+
+def complete_robots(incomplete: str) -> list[str]:
+    """Built-in robots; the shell offers files where none begins so."""
+    from navette.sim.library import robot_names
+
+    return chosen(incomplete, robot_names())
+
+
+def _types(incomplete: str, *kinds: str) -> list[str]:
+    from navette.companions.rosidl_runtime_py import get_interfaces
+
+    return chosen(
+        incomplete,
+        (
+            f"{package}/{name}"
+            for package, names in get_interfaces().items()
+            for name in names
+            if name.partition("/")[0] in kinds
+        ),
+    )
+
+
+def chosen(incomplete: str, names: Iterable[str]) -> list[str]:
+    """Those that begin so, sorted."""
+    return sorted({name for name in names if name.startswith(incomplete)})
