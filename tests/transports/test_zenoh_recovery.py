@@ -442,6 +442,7 @@ def test_one_that_is_not_of_navette_is_not_waited_for(strange_pair: ZenohPair) -
     ear = Ear(pair)
     pair.settle()
     assert not speaker.port.assert_alive()
+    assert not speaker.port._retention.keeps(5)
     speaker.say(5, drop=(6, 8))
     ear.await_(7, 9, 10)
     ear.await_loss(1)
