@@ -104,7 +104,7 @@ class ZenohPublisher(PublisherPort):
         try:
             self._put(data, attachment=attachment)
         except zenoh.ZError:
-            if self._publisher is not None and not self._session.is_closed():
+            if self._is_open and not self._session.is_closed():
                 raise
             return  # closed meanwhile, by another thread: nobody hears it
         if self._sent is not None:
