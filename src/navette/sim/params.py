@@ -45,7 +45,11 @@ class SimParams(Params):
         choices=("true", "wheel"),
     )
     wheel_noise: float = param(
-        0.0, "stddev of a wheel's measured travel, relative", at_least=0.0, at_most=0.5
+        0.0,
+        "stddev of a wheel's measured travel after a metre; grows with the way's root",
+        unit="m",
+        at_least=0.0,
+        at_most=0.5,
     )
     lidar_noise_m: float = param(
         -1.0, "stddev of ranges; -1 = as the robot's file says", unit="m", at_least=-1.0
