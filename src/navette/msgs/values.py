@@ -292,8 +292,9 @@ def _as_array(
         return np.zeros(0, dtype)
     try:
         found = np.array(value)
-        # Among integers, numpy makes floats or objects of those around 2**63 and up.
-        if dtype.kind in "iu" and found.dtype.kind in "fO" and _all_integers(value):
+        # Among integers, numpy makes floats or objects of those around 2**63 and up,
+        # and bools of bools, which are integers to Python.
+        if dtype.kind in "iu" and found.dtype.kind in "fOb" and _all_integers(value):
             found = np.array(value, dtype)
     except (ValueError, OverflowError):
         raise _refuse(where, value, allowed) from None
@@ -301,10 +302,7 @@ def _as_array(
 
 
 def _all_integers(values: Iterable[Any]) -> bool:
-    return all(
-        isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-        for value in values
-    )
+    return all(isinstance(value, (int, np.integer)) for value in values)
 
 
 def _cast(

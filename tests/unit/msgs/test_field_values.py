@@ -44,6 +44,7 @@ def test_integers_take_numpy_scalars() -> None:
     assert UInt64(data=2**64 - 1).data == 2**64 - 1
     assert Char(data=255).data == 255
     assert type(Int8(data=True).data) is int  # as programs set Image.is_bigendian
+    assert list(OccupancyGrid(data=[True, False]).data) == [1, 0]
     assert Bool(data=np.True_).data is True
     assert type(String(data=np.str_("a")).data) is str
 
