@@ -22,6 +22,7 @@ from navette.cli.arguments import (
 from navette.cli.completing_installed import complete_robots, complete_worlds
 from navette.cli.completion import is_completing, keep_quiet
 from navette.cli.lazy import lazy_group
+from navette.cli.remarks import complain
 from navette.cli.verbs import VERBS
 from navette.errors import NavetteError
 
@@ -224,7 +225,7 @@ def main() -> None:
     try:
         (_built[0] if _built else app)(args=arguments, prog_name="navette")
     except NavetteError as error:
-        typer.secho(f"navette: {error}", fg="red", err=True)
+        complain(str(error))
         raise SystemExit(USAGE_ERROR) from None
     except SystemExit as end:
         _end_at_once(end.code)

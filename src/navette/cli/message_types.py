@@ -108,6 +108,11 @@ def _class_from_outside(node: Node, name: str, of: list[Endpoint]) -> Any:
     return found
 
 
+def if_unknown(name: str) -> str:
+    """For a type that nobody uses: what was probably meant if nobody defines it."""
+    return "" if installed_class(name) is not None else near_types(name)
+
+
 def near_types(name: str) -> str:
     """What was probably meant: another name of that package, or that name elsewhere."""
     *rest, last = name.split("/")

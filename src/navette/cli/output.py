@@ -13,6 +13,7 @@ from typing import Any
 import typer
 
 from navette.cli.escaping import escaped, escaped_json
+from navette.cli.remarks import remark
 from navette.cli.session import fail
 
 
@@ -55,10 +56,7 @@ def harmless(text: str) -> str:
 
 def note(text: str) -> None:
     """Tell a person something beside the result: to standard error."""
-    dim = sys.stderr.isatty() and "NO_COLOR" not in os.environ
-    text = escaped(text)
-    sys.stderr.write((typer.style(text, dim=True) if dim else text) + "\n")
-    sys.stderr.flush()
+    remark(text)
 
 
 def show(text: str = "") -> None:

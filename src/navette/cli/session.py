@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Never
 
 import typer
 
-from navette.cli.escaping import escaped
 from navette.cli.garbage import collect
 from navette.cli.interruption import (
     dying_on_signals,
     ending_on_signals,
     interruptible,
 )
+from navette.cli.remarks import complain
 from navette.errors import CallbackError
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ def is_of_every_node(service: str) -> bool:
 
 def fail(message: str) -> Never:
     """End the command: what was asked for failed (exit code 1)."""
-    typer.secho(f"navette: {escaped(message)}", fg="red", err=True)
+    complain(message)
     raise typer.Exit(FAILED)
 
 

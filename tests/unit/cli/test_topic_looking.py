@@ -167,6 +167,8 @@ def test_find_nothing(talker: Node) -> None:
     shown = navette("topic", "find", "std_msgs/msg/Bool")
     assert (shown.exit_code, shown.stdout) == (1, "")
     assert shown.stderr == "navette: no topic carries std_msgs/msg/Bool\n"
+    shown = navette("topic", "find", "std_msgs/Strin")
+    assert "; did you mean std_msgs/msg/String?" in shown.stderr
 
 
 def test_the_domain_as_an_option(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 import typer
+from topic_world import navette
 
 from navette.cli.session import connect, follow_clock, is_simulated
 from navette.cli.topic import measure_verbs
@@ -19,6 +20,7 @@ from navette.cli.topic.meters import (
     Spread,
 )
 from navette.cli.topic.qos_options import QosWishes
+from navette.errors import InvalidValueError
 from navette.msgs import serialize
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.rosgraph_msgs.msg import Clock
@@ -76,6 +78,44 @@ def test_hz_as_ros2_prints_it(talker: Node, capsys: pytest.CaptureFixture[str]) 
         "average rate: 10.000\n"
         "\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 18\n"
     )
+
+
+def test_one_that_nobody_publishes_yet_does_not_keep_the_others_waiting(
+    talker: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    publish_each(talker, "chatter", 0.1, lambda _: String())
+
+    def begin() -> None:
+        late.cancel()
+        publish_each(talker, "later", 0.05, lambda _: String())
+
+    late = talker.create_timer(1.5, begin)
+    run(talker, "chatter", "chater", "later", count=3, **RATE)
+    out, err = capsys.readouterr()
+    assert "nobody publishes /chater yet; did you mean /chatter?" in err
+    tables = out.split("topic")[1:]
+    assert ["/later" in table for table in tables] == [False, False, True]
+
+
+def test_all_topics_and_those_that_come(
+    talker: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    publish_each(talker, "chatter", 0.1, lambda _: String())
+    publish_each(talker, "_own", 0.1, lambda _: String())
+    run(
+        talker, all_topics=True, make_meter=lambda: LoadMeter(100), value=len, count=2
+    )  # fmt: skip
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["topic", "bandwidth", "window", "mean", "min", "max"]
+    assert [line.split()[0] for line in lines if line.startswith("/")] == [
+        "/chatter", "/chatter",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("words", [("hz",), ("bw",), ("hz", "/x", "--all")])
+def test_names_or_all(words: tuple[str, ...]) -> None:
+    with pytest.raises(InvalidValueError, match="or --all"):
+        raise navette("topic", *words).exception or AssertionError("it ran")
 
 
 def test_a_quality_of_service_of_ones_own(talker: Node) -> None:

@@ -51,6 +51,8 @@ def type_(action: ActionName) -> None:
 
 def find(action_type: ActionType, count: Count = False, as_json: Json = False) -> None:
     """List the actions of a type."""
+    from navette.cli.message_types import if_unknown
+
     parts = action_type.split("/")
     full = f"{parts[0]}/action/{parts[1]}" if len(parts) == 2 else action_type
     with connect() as here:
@@ -60,7 +62,7 @@ def find(action_type: ActionType, count: Count = False, as_json: Json = False) -
     elif as_json:
         show_json(found)
     else:
-        for name in found or fail(f"no action is of type {full}"):
+        for name in found or fail(f"no action is of type {full}{if_unknown(full)}"):
             show(name)
 
 

@@ -1,6 +1,7 @@
 """The verbs of ``navette interface``, and their options."""
 
 import sys
+from collections.abc import Iterable
 from typing import Annotated
 
 import typer
@@ -88,13 +89,13 @@ def package(
     only_msgs: OnlyMsgs = False,
     only_srvs: OnlySrvs = False,
     only_actions: OnlyActions = False,
+    as_json: Json = False,
 ) -> None:
     """List the interfaces of a package."""
     from navette.cli.interface import listing
 
     kinds = listing.chosen_kinds(only_msgs, only_srvs, only_actions)
-    for line in listing.interfaces_of(name, kinds):
-        put(line)
+    _put_all(listing.interfaces_of(name, kinds), as_json=as_json)
 
 
 @interface.command()
@@ -102,13 +103,20 @@ def packages(
     only_msgs: OnlyMsgs = False,
     only_srvs: OnlySrvs = False,
     only_actions: OnlyActions = False,
+    as_json: Json = False,
 ) -> None:
     """List the packages that define interfaces."""
     from navette.cli.interface import listing
 
-    for name in listing.packages(
-        listing.chosen_kinds(only_msgs, only_srvs, only_actions)
-    ):
+    kinds = listing.chosen_kinds(only_msgs, only_srvs, only_actions)
+    _put_all(listing.packages(kinds), as_json=as_json)
+
+
+def _put_all(names: Iterable[str], *, as_json: bool) -> None:
+    if as_json:
+        show_json(list(names))
+        return
+    for name in names:
         put(name)
 
 

@@ -155,8 +155,9 @@ def _explain(here: "Node", node: str, refused: Mapping[str, Any]) -> None:
     known = names(here, [node]).found.get(node, [])
     there = _found(here, node, [name for name in refused if name in known])
     for name, (parameter, result) in refused.items():
-        if name not in known:
-            result.reason += did_you_mean(name, known)
+        if name not in known and (hint := did_you_mean(name, known)):
+            # Instead of all the names that there are.
+            result.reason = f"node {node} has no parameter {name!r}{hint}"
         elif there.get(name) == parameter:
             result.successful, result.reason = True, "it is so already"
 

@@ -79,6 +79,8 @@ def find(
     as_json: Json = False,
 ) -> None:
     """List the services of a type."""
+    from navette.cli.message_types import if_unknown
+
     parts = service_type.split("/")
     full = f"{parts[0]}/srv/{parts[1]}" if len(parts) == 2 else service_type
     with connect() as here:
@@ -89,7 +91,7 @@ def find(
     elif as_json:
         show_json(found)
     else:
-        for name in found or fail(f"no service is of type {full}"):
+        for name in found or fail(f"no service is of type {full}{if_unknown(full)}"):
             show(name)
 
 

@@ -80,8 +80,10 @@ def find(
         bool, typer.Option("--count-topics", "-c", "--count", help="Only how many.")
     ] = False,
     include_hidden_topics: Hidden = False,
+    as_json: Json = False,
 ) -> None:
     """List the topics that carry a type."""
+    from navette.cli.message_types import if_unknown
     from navette.cli.topic import listing
     from navette.msgs.registry import full_name
 
@@ -91,7 +93,9 @@ def find(
     found = [each.name for each in every if wanted in each.types]
     if count_topics:
         show(str(len(found)))
+    elif as_json:
+        show_json(found)
     elif found:
         show("\n".join(found))
     else:
-        fail(f"no topic carries {wanted}")
+        fail(f"no topic carries {wanted}{if_unknown(wanted)}")

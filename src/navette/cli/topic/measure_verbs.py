@@ -9,6 +9,7 @@ from navette.cli.output import note
 from navette.cli.session import connect, follow_clock, is_simulated
 from navette.cli.topic.options import Filter, TopicName
 from navette.cli.topic.qos_options import QosWishes
+from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from navette.cli.topic.meters import Spread
@@ -33,15 +34,20 @@ WallTime = Annotated[
 Json = Annotated[bool, typer.Option("--json", help="A line of JSON each second.")]
 
 
+Topics = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="TOPIC...", help="Topics to measure.", autocompletion=complete_topics
+    ),
+]
+AllTopics = Annotated[
+    bool, typer.Option("--all", "-a", help="All topics, also those that come later.")
+]
+
+
 def hz(
-    topics: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="TOPIC",
-            help="Topics to measure.",
-            autocompletion=complete_topics,
-        ),
-    ],
+    topics: Topics = None,
+    all_topics: AllTopics = False,
     window: Window = 10000,
     filter_: Filter = None,
     use_sim_time: SimTime = False,
@@ -58,7 +64,8 @@ def hz(
     from navette.cli.topic.meters import RateMeter
 
     options = MeasureOptions(
-        topics=topics,
+        topics=_wanted(topics, all_topics=all_topics),
+        all_topics=all_topics,
         make_meter=lambda: RateMeter(window),
         raw=filter_ is None,
         filter=filter_,
@@ -73,7 +80,8 @@ def hz(
 
 
 def bw(
-    topic: TopicName,
+    topics: Topics = None,
+    all_topics: AllTopics = False,
     window: Window = 100,
     use_sim_time: SimTime = False,
     count: Count = None,
@@ -81,12 +89,13 @@ def bw(
     *,
     qos: QosWishes,
 ) -> None:
-    """Measure how many bytes per second a topic carries."""
+    """Measure how many bytes per second topics carry."""
     from navette.cli.topic.measuring import MeasureOptions, measure
     from navette.cli.topic.meters import LoadMeter
 
     options = MeasureOptions(
-        topics=[topic],
+        topics=_wanted(topics, all_topics=all_topics),
+        all_topics=all_topics,
         make_meter=lambda: LoadMeter(window),
         value=len,
         count=count,
@@ -97,6 +106,12 @@ def bw(
         if use_sim_time:
             follow_clock(node)
         measure(node, options)
+
+
+def _wanted(topics: list[str] | None, *, all_topics: bool) -> list[str]:
+    if bool(topics) == all_topics:
+        raise InvalidValueError("wanted the names of topics, or --all")
+    return topics or []
 
 
 def of_other_times(figures: "Spread") -> str:

@@ -4,7 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import typer
+
 from navette.cli.message_types import topic_class
+from navette.cli.nearest import did_you_mean
 from navette.cli.output import (
     aligned,
     cut_to_width,
@@ -14,9 +17,9 @@ from navette.cli.output import (
     show,
     styled,
 )
-from navette.cli.session import fail, wait_for
+from navette.cli.session import endpoints, fail, is_hidden, wait_for
 from navette.cli.topic.filtering import message_filter
-from navette.cli.topic.meters import Meter, RateMeter, Spread
+from navette.cli.topic.meters import Meter
 from navette.cli.topic.qos_choice import wished_profile
 from navette.cli.topic.qos_options import QosWishes
 from navette.msgs import type_name
@@ -35,6 +38,8 @@ class MeasureOptions:
     """What to measure, and how much of it to say."""
 
     topics: list[str]
+    #: Whatever there is, also what comes later.
+    all_topics: bool = False
     make_meter: Callable[[], Meter]
     #: What the meter needs of a message (of its bytes, where ``raw``).
     value: Callable[[Any], int] = lambda _: 0
@@ -50,26 +55,61 @@ class MeasureOptions:
 
 def measure(node: Node, options: MeasureOptions) -> None:
     """Print figures every second, until it was often enough."""
-    meters: dict[str, Meter] = {}
-    for name in options.topics:
-        meter = options.make_meter()
-        _listen(node, name, meter, options)
-        meters[node.resolve_topic_name(name)] = meter
-    report = Report(node, meters, options)
+    measured = Measured(node, options)
+    report = Report(node, measured, options)
     # Of the wall: simulated time may stand.
     clock = Clock(clock_type=ClockType.STEADY_TIME, context=node.context)
+    node.create_timer(PERIOD_S, measured.look_for_more, clock=clock)
     node.create_timer(PERIOD_S, report.print, clock=clock)
     wait_for(node, lambda: report.is_full)
+
+
+class Measured:
+    """The topics that are listened to, each with its meter; more may come."""
+
+    def __init__(self, node: Node, options: MeasureOptions) -> None:
+        self._node = node
+        self._options = options
+        self.meters: dict[str, Meter] = {}
+        self._unknown: set[str] = set()
+        self._missing = [node.resolve_topic_name(name) for name in options.topics]
+        self.are_many = options.all_topics or len(self._missing) > 1
+        if not self.are_many:
+            topic_class(node, self._missing[0])  # waits, and says what is wrong
+        self.look_for_more()
+        if self._missing:
+            every = [each.topic for each in endpoints(node)]
+            for name in self._missing:
+                note(f"nobody publishes {name} yet{did_you_mean(name, every)}")
+
+    def look_for_more(self) -> None:
+        """Listen to those that have come by now."""
+        if self._options.all_topics:
+            there = {each.topic for each in endpoints(self._node)}
+            new = there - set(self.meters) - self._unknown
+            names = sorted(name for name in new if not is_hidden(name))
+        else:
+            names = [name for name in self._missing if endpoints(self._node, name)]
+        for name in names:
+            meter = self._options.make_meter()
+            try:
+                _listen(self._node, name, meter, self._options)
+            except typer.Exit:  # it has said why
+                if not self.are_many:
+                    raise
+                self._unknown.add(name)
+            else:
+                self.meters[name] = meter
+        done = self._unknown.union(self.meters)
+        self._missing = [name for name in self._missing if name not in done]
 
 
 class Report:
     """Prints the figures of one topic, or a table of those of several."""
 
-    def __init__(
-        self, node: Node, meters: dict[str, Meter], options: MeasureOptions
-    ) -> None:
+    def __init__(self, node: Node, measured: Measured, options: MeasureOptions) -> None:
         self._node = node
-        self._meters = meters
+        self._measured = measured
         self._options = options
         self._count = 0
         self._lines_above = 0
@@ -85,9 +125,9 @@ class Report:
         if self.is_full:
             return
         now_ns = self._node.get_clock().now_ns
-        found = {
+        found: dict[str, tuple[Meter, Any]] = {
             topic: (meter, figures)
-            for topic, meter in self._meters.items()
+            for topic, meter in self._measured.meters.items()
             if (figures := meter.figures(now_ns)) is not None
         }
         if not found:
@@ -100,7 +140,7 @@ class Report:
         if self._options.as_json:
             for topic, (meter, figures) in found.items():
                 show(json_text({"topic": topic, **meter.to_json(figures)}))
-        elif len(self._meters) == 1:
+        elif not self._measured.are_many:
             ((meter, figures),) = found.values()
             show(_emphasised(meter.text(figures)))
             remark = self._options.remark(figures)
@@ -110,21 +150,11 @@ class Report:
         else:
             self._print_table(found)
 
-    def _print_table(self, found: dict[str, tuple[Meter, Spread]]) -> None:
-        head = ("topic", "rate", "min_delta", "max_delta", "std_dev", "window")
-        rows = [
-            (
-                topic,
-                f"{RateMeter.rate_hz(figures):.3f}",
-                f"{figures.min:.3f}",
-                f"{figures.max:.3f}",
-                f"{figures.std_dev:.5f}",
-                str(figures.window),
-            )
-            for topic, (_, figures) in found.items()
-        ]
+    def _print_table(self, found: dict[str, tuple[Meter, Any]]) -> None:
+        head = next(iter(found.values()))[0].columns
+        rows = [(t, *meter.row(figures)) for t, (meter, figures) in found.items()]
         # A line that wraps would be two of those that are written over.
-        first, *lines = map(cut_to_width, aligned([head, *rows], gap=3))
+        first, *lines = map(cut_to_width, aligned([("topic", *head), *rows], gap=3))
         width = max(map(len, (first, *lines)))
         text = "\n".join([styled(first, dim=True), "=" * width, *lines, ""])
         if is_terminal() and self._lines_above:

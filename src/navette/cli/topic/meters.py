@@ -8,7 +8,7 @@ import math
 from abc import ABC, abstractmethod
 from collections import deque
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 _UNITS = ((1e6, "MB"), (1e3, "KB"), (1.0, "B"))
 
@@ -75,6 +75,13 @@ class Meter(ABC):
     def to_json(self, figures: Any) -> dict[str, Any]:
         return asdict(figures)
 
+    columns: ClassVar[tuple[str, ...]] = ()
+    """What :meth:`row` has."""
+
+    def row(self, figures: Any) -> tuple[str, ...]:
+        """The figures beside those of other topics."""
+        return ()
+
     @abstractmethod
     def _take(self, now_ns: int, value: int, last_ns: int | None) -> None:
         """Keep what is needed of a message; ``last_ns``: when the last one came."""
@@ -111,6 +118,17 @@ class RateMeter(Meter):
 
     def text(self, figures: Spread) -> str:
         return f"average rate: {self.rate_hz(figures):.3f}\n{figures.text}"
+
+    columns = ("rate", "min_delta", "max_delta", "std_dev", "window")
+
+    def row(self, figures: Spread) -> tuple[str, ...]:
+        return (
+            f"{self.rate_hz(figures):.3f}",
+            f"{figures.min:.3f}",
+            f"{figures.max:.3f}",
+            f"{figures.std_dev:.5f}",
+            str(figures.window),
+        )
 
     def to_json(self, figures: Spread) -> dict[str, Any]:
         return {"rate_hz": self.rate_hz(figures), **asdict(figures)}
@@ -176,15 +194,24 @@ class LoadMeter(Meter):
         )
 
     def text(self, figures: Load) -> str:
-        scale, unit = next(
-            (each for each in _UNITS if figures.bytes_per_s >= each[0]), _UNITS[-1]
-        )
-
-        def shown(size: float) -> str:
-            return f"{size:.0f} B" if unit == "B" else f"{size / scale:.2f} {unit}"
-
+        per_s, *sizes = _sizes_text(figures)
+        mean, least, most = sizes
         return (
-            f"{shown(figures.bytes_per_s)}/s from {figures.window} messages\n"
-            f"\tMessage size mean: {shown(figures.mean)} "
-            f"min: {shown(figures.min)} max: {shown(figures.max)}"
+            f"{per_s}/s from {figures.window} messages\n"
+            f"\tMessage size mean: {mean} min: {least} max: {most}"
         )
+
+    columns = ("bandwidth", "window", "mean", "min", "max")
+
+    def row(self, figures: Load) -> tuple[str, ...]:
+        per_s, *sizes = _sizes_text(figures)
+        return (f"{per_s}/s", str(figures.window), *sizes)
+
+
+def _sizes_text(figures: Load) -> list[str]:
+    """Bytes per second, mean, least, most: in the unit of the first."""
+    scale, unit = next(
+        (each for each in _UNITS if figures.bytes_per_s >= each[0]), _UNITS[-1]
+    )
+    sizes = (figures.bytes_per_s, figures.mean, figures.min, figures.max)
+    return [f"{s:.0f} B" if unit == "B" else f"{s / scale:.2f} {unit}" for s in sizes]
