@@ -14,7 +14,7 @@ from typing import Any
 
 PROGRAMS = Path(__file__).parent / "programs"
 STACK = ("costmap", "map_memory", "planner", "control")
-PATIENCE_S = 60.0
+PATIENCE_S = 180.0  # never reached but by a fault
 
 
 def until(

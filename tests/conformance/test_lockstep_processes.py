@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from fleet import STACK, Fleet, until
+from fleet import PATIENCE_S, STACK, Fleet, until
 
 from free_ports import free_endpoint
 from navette.bags import open_bag
@@ -37,7 +37,7 @@ def end_of(fleet: Fleet, name: str) -> int:
     """The exit code; one that does not end says where it is."""
     process = fleet.running[name]
     try:
-        return process.wait(60.0)
+        return process.wait(PATIENCE_S)
     except subprocess.TimeoutExpired:
         process.send_signal(signal.SIGABRT)
         return process.wait(20.0)
@@ -71,21 +71,21 @@ def test_two_drives_of_the_split_stack_are_the_same(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "said"),
-    [(signal.SIGKILL, "gone at"), (signal.SIGSTOP, "no answer within 2 s")],
+    ("kind", "limit", "said"),
+    [(signal.SIGKILL, "60", "gone at"), (signal.SIGSTOP, "2", "no answer within 2 s")],
 )
 def test_who_dies_or_hangs_is_named(
-    kind: signal.Signals, said: str, tmp_path: Path
+    kind: signal.Signals, limit: str, said: str, tmp_path: Path
 ) -> None:
     with fleet_in(tmp_path / "run") as fleet:
         for stage in ("planner", "control"):
             follow(fleet, stage, *WORLD)
-        run = ("--lockstep", "planner,control", "--lockstep-limit", "2")
+        run = ("--lockstep", "planner,control", "--lockstep-limit", limit)
         fleet.start("sim", "navette", "sim", *WORLD, *run)
         until(lambda: "begins, with" in "".join(fleet.said("sim")), "the beginning")
         fleet.running["control"].send_signal(kind)
-        assert fleet.running["sim"].wait(30.0) == 1
-        assert fleet.running["planner"].wait(30.0) == 1
+        assert end_of(fleet, "sim") == 1
+        assert end_of(fleet, "planner") == 1
         (error,) = [line for line in fleet.said("sim") if "navette:" in line]
         assert error.startswith(f"navette: lock-step: {said}")
         assert "/control" in error  # and who waits for its messages
