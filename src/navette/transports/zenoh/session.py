@@ -28,7 +28,8 @@ _ASK_S = 2.0
 _CLOSE_S = 1.5
 # Tokens that wait to be read; who declares more at once waits for the reader.
 _CHANNEL = 10_000
-_SHORTEST_PAUSE_S, _LONGEST_PAUSE_S = 0.002, 0.064
+_SHORTEST_PAUSE_S, _LONGEST_PAUSE_S = 0.002, 0.128
+_PAUSES_GROW = 4  # times, while tokens come in crowds
 
 _open: "weakref.WeakSet[Session]" = weakref.WeakSet()
 
@@ -105,8 +106,8 @@ class Session:
 
         One that comes after a silence is taken at once, then there is a pause; those
         that come meanwhile are taken together: each time costs two changes of threads,
-        here and in who waits for news of the graph. Pauses double while tokens come
-        and halve while none do.
+        here and in who waits for news of the graph. Pauses grow while several come at
+        once, and halve while none do.
         """
         pause_s = 0.0
         with contextlib.suppress(zenoh.ZError):
@@ -116,8 +117,11 @@ class Session:
                     pause_s /= 2
                 else:
                     first = first or self._samples.recv()
-                    self.graph.on_tokens(map(_change, self._all(first)))
-                    pause_s = min(max(2 * pause_s, _SHORTEST_PAUSE_S), _LONGEST_PAUSE_S)
+                    samples = self._all(first)
+                    self.graph.on_tokens(map(_change, samples))
+                    if len(samples) > 1:
+                        pause_s = min(_PAUSES_GROW * pause_s, _LONGEST_PAUSE_S)
+                    pause_s = max(pause_s, _SHORTEST_PAUSE_S)
                 self._closing.wait(pause_s)
 
     def _all(self, first: zenoh.Sample) -> list[zenoh.Sample]:
