@@ -19,6 +19,7 @@ def test_navettes_sessions_know_each_other() -> None:
     one, other = kin.new_zid(), kin.new_zid()
     assert one != other
     assert kin.is_kin(one)
+    assert one.endswith("00")  # so that ROS 2's nodes call it
     assert kin.runs_beside(one, other)
     assert not kin.runs_beside(one, one)
     assert not kin.runs_beside(one, one[:8] + "0" * 8 + one[16:])

@@ -12,6 +12,10 @@ from pathlib import Path
 
 _MARK = "6e617665"  # "nave"
 _FIELD = 8  # hex digits of each of the four parts
+# Of two peers the one with the greater id calls the other, as rmw_zenoh sets it; the
+# last byte counts most. ROS 2's nodes listen on their own machine only: from another
+# one they are reached if they call, so Navette's id is to be the smaller.
+_LOW = "00"
 _BOOT = Path("/proc/sys/kernel/random/boot_id")
 # Where process ids mean the same, and where no link is cut.
 _SPACES = Path("/proc/self/ns/pid"), Path("/proc/self/ns/net")
@@ -19,7 +23,8 @@ _SPACES = Path("/proc/self/ns/pid"), Path("/proc/self/ns/net")
 
 def new_zid() -> str:
     """Of a session of this process that takes part in the recovery."""
-    return f"{_MARK}{_host()}{os.getpid() % 2**32:08x}{secrets.token_hex(_FIELD // 2)}"
+    unique = secrets.token_hex(_FIELD // 2 - len(_LOW) // 2)
+    return f"{_MARK}{_host()}{os.getpid() % 2**32:08x}{unique}{_LOW}"
 
 
 def is_kin(zid: str) -> bool:

@@ -1,0 +1,29 @@
+"""A peer set as rmw_zenoh sets it, on another machine: it cannot be called."""
+
+import json
+
+import zenoh
+from transport_benches import until
+
+from free_ports import free_endpoint
+from navette.transports.zenoh import Settings, ZenohTransport
+
+STRATEGY = {"peer": {"to_router": "always", "to_peer": "greater-zid"}}
+
+
+def test_it_calls_navette() -> None:
+    router = free_endpoint()
+    near = ZenohTransport(7, lambda: 5, Settings(router=(router,)))
+    config = zenoh.Config()
+    for key, value in {
+        "mode": "peer",
+        "connect/endpoints": [router],
+        "listen/endpoints": [],
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/autoconnect_strategy": STRATEGY,
+    }.items():
+        config.insert_json5(key, json.dumps(value))
+    with zenoh.open(config) as far:
+        wanted = near.session.zid
+        until(lambda: wanted in map(str, far.info.peers_zid()), "its link to Navette")
+    near.close()
