@@ -42,7 +42,7 @@ def test_what_others_sent_does_not_act_on_a_terminal(
     assert escaped("a\tb\n" + HOSTILE) == (
         "a\tb\n\\x1b[2J\\x9b31m\\x07\\u202eabc\\u2028\\x0d"
     )
-    for module in ("output", "topic.printing"):
+    for module in ("output", "message_yaml"):
         monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
     monkeypatch.setenv("NO_COLOR", "1")
     message = String(data=HOSTILE)
@@ -60,7 +60,7 @@ def test_a_text_that_only_turns_letters_round_is_escaped_in_yaml_too(
 ) -> None:
     message = String(data="\u202eabc")
     assert text_of(message, (), Style()) == "data: \u202eabc\n---"
-    for module in ("output", "topic.printing"):
+    for module in ("output", "message_yaml"):
         monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
     monkeypatch.setenv("NO_COLOR", "1")
     assert text_of(message, (), Style()) == "data: \\u202eabc\n---"
@@ -74,7 +74,7 @@ def test_json_in_a_pipe_is_the_same_value() -> None:
 def test_rows_of_numbers_end_between_two_of_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    for module in ("output", "topic.printing"):
+    for module in ("output", "message_yaml"):
         monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "30")

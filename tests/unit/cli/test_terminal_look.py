@@ -9,6 +9,8 @@ from verb_world import World, world
 
 from navette.cli.doctor.findings import Finding, Level
 from navette.cli.doctor.report import report_lines
+from navette.cli.message_yaml import yaml_of
+from navette.msgs.example_interfaces.action import Fibonacci
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Node
@@ -91,3 +93,13 @@ def test_the_doctors_lines_are_wrapped_under_themselves() -> None:
 def test_what_others_say_does_not_move_the_cursor() -> None:
     finding = Finding(Level.NOTE, "Stages", "/s", "calm \x1b[2J")
     assert report_lines([finding], everything=True)[1] == "  · /s  calm \\x1b[2J"
+
+
+def test_messages_are_indented_and_their_numbers_side_by_side(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("navette.cli.message_yaml.is_terminal", lambda: True)
+    message = Fibonacci.Result(sequence=list(range(12)))
+    assert yaml_of(message, indent=4) == (
+        "    sequence: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10,\n               11]\n"
+    )

@@ -322,7 +322,7 @@ def test_qos_wishes_are_kept(talker: Node) -> None:
 def test_on_a_terminal_names_are_coloured_and_control_characters_do_not_act(
     talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in ("output", "topic.printing"):  # which is where each looks it up
+    for module in ("output", "message_yaml"):  # which is where each looks it up
         monkeypatch.setattr(f"navette.cli.{module}.is_terminal", lambda: True)
     monkeypatch.delenv("NO_COLOR", raising=False)
     latch(talker, "chatter", String(data="a\x1b[2Jb"))
@@ -376,7 +376,7 @@ def test_the_command_passes_its_options_on() -> None:
 def test_on_a_terminal_numbers_stand_beside_each_other(
     talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("navette.cli.topic.printing.is_terminal", lambda: True)
+    monkeypatch.setattr("navette.cli.message_yaml.is_terminal", lambda: True)
     monkeypatch.setenv("NO_COLOR", "1")
     scan = LaserScan(ranges=[1.5, float("inf"), 1e-30, 4.0], intensities=[-1.0])
     latch(talker, "scan", scan)

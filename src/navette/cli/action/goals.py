@@ -8,8 +8,9 @@ from navette.cli.action.looking import actions, types_of
 from navette.cli.action.options import ActionName, Json
 from navette.cli.completing import complete_goal
 from navette.cli.filling import filled, from_stdin, type_and_values
+from navette.cli.message_yaml import yaml_of
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import note, show, show_json, styled
+from navette.cli.output import is_terminal, note, show, show_json, styled
 from navette.cli.session import FAILED, connect, fail, service_endpoints, wait_for
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from navette.runtime.action.client import ClientGoalHandle
 
 _CANCEL_S = 5.0
+_INDENT = 4
 
 
 def send_goal(
@@ -69,7 +71,7 @@ def send_goal(
         if not client.wait_for_server(wait or None):
             fail(f"nobody serves the action {name}")
         report = _Report(as_json=as_json)
-        report.say("Sending goal:", f" {_yaml(goal)}")
+        report.say("Sending goal:", _yaml(goal, " "))
         sent = client.send_goal_async(goal, report.feedback if feedback else None)
         try:
             status = _follow(here, client, sent, timeout, report)
@@ -88,7 +90,7 @@ class _Report:
 
     def say(self, title: str, text: str = "") -> None:
         if not self._as_json:
-            show(styled(title, bold=True) + (f"\n    {text}" if text else ""))
+            show(styled(title, bold=True) + (f"\n{text}" if text else ""))
 
     def feedback(self, message: Any) -> None:
         if self._as_json:
@@ -172,10 +174,11 @@ def _cancel(here: "Node", sent: "Future[ClientGoalHandle]", report: _Report) -> 
         report.say("Goal canceled.")
 
 
-def _yaml(message: Any) -> str:
-    from navette.companions.rosidl_runtime_py import message_to_yaml
-
-    return message_to_yaml(message)
+def _yaml(message: Any, before: str = "") -> str:
+    """All lines indented for a person; in a pipe the first, as ROS 2 prints it."""
+    if is_terminal():
+        return yaml_of(message, indent=_INDENT)
+    return " " * _INDENT + before + yaml_of(message)
 
 
 def _fields(message: Any) -> Any:

@@ -1,10 +1,12 @@
 """``navette service echo``: the calls of a service, where it tells of them."""
 
+import re
 from functools import partial
 from typing import Annotated, Any
 
 import typer
 
+from navette.cli.message_yaml import yaml_of
 from navette.cli.output import note, show
 from navette.cli.service.looking import types_of
 from navette.cli.service.options import ServiceName
@@ -86,13 +88,13 @@ def _as_csv(event: Any, shortened: dict[str, Any]) -> str:
 
 def _as_yaml(event: Any, shortened: dict[str, Any], *, flow_style: bool) -> str:
     """The event, with the kind of event in words."""
-    from navette.companions.rosidl_runtime_py import message_to_yaml
-
     number = event.info.event_type
-    text = message_to_yaml(event, **shortened, flow_style=flow_style)
+    text = yaml_of(event, **shortened, flow_style=flow_style)
     # The first field of all: what is said further on stays as it is.
-    said = f"event_type: {number}"
-    return f"{text.replace(said, f'event_type: {_event_words()[number]}', 1)}---"
+    word = _event_words().get(number, number)
+    return (
+        re.sub(rf"(event_type\S*: ){number}\b", rf"\g<1>{word}", text, count=1) + "---"
+    )
 
 
 def _event_words() -> dict[int, str]:

@@ -1,23 +1,20 @@
 """Messages as text on a terminal or in a pipe: YAML, CSV, JSON, raw."""
 
-import re
-import shutil
 from collections.abc import Sequence
 from typing import Any
 
-from navette.cli.output import harmless, is_terminal, json_text, styled
+from navette.cli.message_yaml import yaml_of
+from navette.cli.output import harmless, json_text, styled
 from navette.cli.topic.field_path import FieldPath
 from navette.cli.topic.style import Style
 from navette.companions.rosidl_runtime_py.convert import (
     message_to_csv,
     value_to_csv,
-    yaml_pieces,
 )
 from navette.msgs import Message, to_dict
 
 SEPARATOR = "---"
 Part = tuple[FieldPath, Any]
-_KEY = re.compile(r"^([ ]*(?:- )*)([A-Za-z]\w*)(?=:)", re.MULTILINE)
 
 
 def text_of(message: Any, parts: Sequence[Part], style: Style) -> str:
@@ -49,17 +46,12 @@ def _csv(value: Any, field: FieldPath, style: Style) -> str:
 def _yaml(value: Any, field: FieldPath | None, style: Style) -> str:
     if field is not None and field.type.is_scalar and not field.type.is_message:
         return harmless(value_to_csv(value, field.type)) + "\n"
-    pieces = yaml_pieces(
+    return yaml_of(
         value,
         None if field is None else field.type,
         **_shortened(style),
         flow_style=style.flow_style,
-        width=shutil.get_terminal_size().columns if is_terminal() else None,
     )
-    if not is_terminal():
-        return "".join(pieces)
-    # Arrays of numbers, every second piece, have nothing to escape or to colour.
-    return "".join(p if n % 2 else _readable(p) for n, p in enumerate(pieces))
 
 
 def _shortened(style: Style) -> dict[str, Any]:
@@ -78,8 +70,3 @@ def _jsonable(value: Any) -> Any:
     if isinstance(value, list):
         return [_jsonable(item) for item in value]
     return value.tolist() if hasattr(value, "tolist") else value
-
-
-def _readable(yaml: str) -> str:
-    """For a person: names apart from values, and nothing that acts on the terminal."""
-    return _KEY.sub(lambda m: m[1] + styled(m[2], fg="cyan"), harmless(yaml))
