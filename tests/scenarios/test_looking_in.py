@@ -14,7 +14,7 @@ import pytest
 
 from free_ports import free_endpoint
 
-LIMIT_S = 30.0
+LIMIT_S = 60.0
 NAVETTE = [sys.executable, "-c", "from navette.cli import main; main()"]
 PROGRAM = """
 import sys

@@ -17,7 +17,7 @@ from free_ports import free_endpoint
 from navette.cli.app import app
 from navette.runtime.clock import Stopwatch
 
-LIMIT_S = 30.0
+LIMIT_S = 60.0
 DOMAIN = "37"
 
 TALKER = """

@@ -58,7 +58,7 @@ class Member:
         )
 
     def wait(self) -> None:
-        self._thread.join(30.0)
+        self._thread.join(60.0)
         assert not self._thread.is_alive()
 
     def _spin(self) -> None:

@@ -23,7 +23,7 @@ from navette.transports import (
 )
 from navette.transports.zenoh import Settings, ZenohTransport
 
-LIMIT_S = 20.0
+LIMIT_S = 60.0
 
 
 def until(condition: Callable[[], bool], what: str = "the condition") -> None:

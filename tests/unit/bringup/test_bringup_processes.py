@@ -17,7 +17,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's"),
 ]
-WAIT_S = 30.0
+WAIT_S = 60.0
 HOLD = "import os, signal; os.open('{pipe}', os.O_WRONLY); signal.pause()"
 # A node that starts a process of its own, which leaves the node's group; both hold the
 # pipe open as long as they live.

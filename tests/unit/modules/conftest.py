@@ -14,7 +14,7 @@ from navette.modules.project import find_project
 from navette.modules.reading import read_project
 from navette.modules.session import ProcessView, until_down, until_settled, views
 
-WAIT_S = 30.0
+WAIT_S = 60.0
 
 
 class Bench:

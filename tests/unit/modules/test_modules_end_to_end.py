@@ -25,7 +25,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(os.name != "posix", reason="supervisors need Unix sockets"),
 ]
-WAIT_S = 30.0
+WAIT_S = 60.0
 
 # Holds a named pipe open as long as it lives.
 HOLD = (

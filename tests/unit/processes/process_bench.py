@@ -5,7 +5,7 @@ import threading
 
 from navette.processes import ChildProcess, Keeper, StartOptions
 
-WAIT_S = 20.0
+WAIT_S = 60.0
 
 
 class Heard:

@@ -18,7 +18,7 @@ linux = pytest.mark.skipif(
     not Path("/proc/self").is_dir(), reason="needs Linux's /proc"
 )
 slow = pytest.mark.slow
-WAIT_S = 20.0
+WAIT_S = 60.0
 
 # Each process of the tests holds the writing end of a pipe.
 STUBBORN = """

@@ -18,7 +18,7 @@ from navette.runtime import Context, Executor, Node, Parameter, SystemClock
 from navette.viewer.node import ViewerNode
 from navette.viewer.playback import Playback
 
-PATIENCE_S = 10.0  # only a broken test waits this long
+PATIENCE_S = 60.0  # only a broken test waits this long
 
 
 class Program:
