@@ -1,8 +1,9 @@
 """The node ``viewer``: shows every topic of its context to Foxglove and browsers.
 
-Two threads meet here. Node methods run on the executor's thread; :class:`_Bridge`
-turns the hub's wishes (socket thread) into events of the executor, and what goes to
-clients passes through the server's queue. Neither thread waits for the other.
+Two threads meet here. Node methods run on the executor's thread; the
+:class:`~navette.viewer.bridge.Bridge` turns the hub's wishes (socket thread) into
+events of the executor, and what goes to clients passes through the server's queue.
+Neither thread waits for the other.
 
 Before any topic exists it shows none; topics appear as the graph changes. A topic
 that no client watches is not subscribed, but for those whose last message is kept
@@ -37,13 +38,14 @@ from navette.runtime.stage import StageNode
 from navette.runtime.subscription import Subscription
 from navette.viewer.assets import AssetFolders
 from navette.viewer.beats import Beats
-from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
+from navette.viewer.bridge import Bridge
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
 from navette.viewer.parameter_desk import ParameterDesk
 from navette.viewer.params import ViewerParams
 from navette.viewer.playback import Playback
-from navette.viewer.publishing import decode_message
+from navette.viewer.playback_desk import PlaybackDesk
+from navette.viewer.publishing import ClientPublishers
 from navette.viewer.questions import Questions
 from navette.viewer.remote_parameters import LIST, RemoteParameters
 from navette.viewer.server import ViewerServer
@@ -78,21 +80,22 @@ class ViewerNode(StageNode):
             "viewer", context=context, parameter_overrides=parameter_overrides
         )
         self._watched: dict[Watch, Subscription[Any]] = {}
-        self._opened: dict[tuple[int, int], tuple[str, Publisher[Any]]] = {}
         self._definitions: dict[str, str | None] = {}
         self._refreshing = False
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
-        self._playback = playback
-        self._playback_request = ""
         self._hub = Hub(
-            _Bridge(self),
+            Bridge(self),
             name="Navette",
             # The same for a reconnecting client, another for another run.
             session_id=f"navette-{id(self):x}",
             assets=AssetFolders(asset_folders or {}),
             playback_range=None if playback is None else _range(playback),
         )
+        self.client_publishers = ClientPublishers(
+            self._publisher, self.destroy_publisher
+        )
+        self.playback = PlaybackDesk(playback, self._hub, self._call)
         self._look_after_nodes()
         try:
             self._server = self._make_server()
@@ -110,8 +113,7 @@ class ViewerNode(StageNode):
         )
         self._stop_listening = self.context.graph.on_change(self._on_graph_change)
         self._refresh()
-        if playback is not None:
-            playback.on_change(self._report_playback)
+        self.playback.begin()
 
     @property
     def port(self) -> int:
@@ -219,58 +221,17 @@ class ViewerNode(StageNode):
         if subscription is not None:
             self.destroy_subscription(subscription)
 
+    def _publisher(self, type_name: str, topic: str) -> Publisher[Any]:
+        interface = get_interface(type_name)
+        return self.create_publisher(interface, topic, qos_profile_default)
+
     def _forward(self, watch: Watch, payload: bytes) -> None:
         self._server.offer(watch, self._now_ns(), payload)
 
-    def open_publisher(self, client: int, channel: ClientChannel) -> None:
-        """Raises NavetteError for what cannot be published; as do the next ones."""
-        publisher: Publisher[Any] = self.create_publisher(
-            get_interface(channel.type_name), channel.topic, qos_profile_default
-        )
-        self._opened[client, channel.id] = channel.encoding, publisher
-
-    def close_publisher(self, client: int, channel_id: int) -> None:
-        opened = self._opened.pop((client, channel_id), None)
-        if opened is not None:
-            self.destroy_publisher(opened[1])
-
-    def publish_for(self, client: int, channel_id: int, data: bytes) -> None:
-        opened = self._opened.get((client, channel_id))
-        if opened is not None:
-            encoding, publisher = opened
-            publisher.publish(decode_message(encoding, publisher.msg_type, data))
-
-    def control_playback(self, request: ControlPlayback) -> None:
-        """Do what a client's playback bar asks for; all clients hear of it."""
-        if self._playback is None:
-            return
-        self._playback_request = request.request_id
-        try:
-            self._playback.control(
-                play=request.play, speed=request.speed, seek_ns=request.seek_ns
-            )
-        finally:
-            if self._playback_request:  # nothing changed: say how it is all the same
-                self._report_playback(False)
-
-    def step_playback(self) -> None:
-        """The recording's next message."""
-        if self._playback is not None:
-            self._playback.step()
-
-    def _report_playback(self, jumped: bool) -> None:
-        if self._playback is not None:
-            request_id, self._playback_request = self._playback_request, ""
-            report = partial(
-                self._hub.set_playback, did_seek=jumped, request_id=request_id
-            )
-            self._server.call(report, self._playback.state())
-
     def _now_ns(self) -> int:
         """The time that clients are shown; from any thread."""
-        if self._playback is not None:
-            return self._playback.state().position_ns
-        return self.get_clock().now_ns
+        position_ns = self.playback.position_ns()
+        return self.get_clock().now_ns if position_ns is None else position_ns
 
     # -- between the threads -------------------------------------------------------
 
@@ -289,6 +250,10 @@ class ViewerNode(StageNode):
         finally:
             self._server.call(self._hub.done, client)
 
+    def _call(self, function: Callable[..., None], *args: Any) -> None:
+        """Run a method of the hub on the socket thread."""
+        self._server.call(function, *args)
+
     # -- inside --------------------------------------------------------------------
 
     def _look_after_nodes(self) -> None:
@@ -298,9 +263,6 @@ class ViewerNode(StageNode):
         def now_s() -> float:
             return wall.elapsed_s
 
-        def call(function: Callable[..., None], *args: Any) -> None:
-            self._server.call(function, *args)
-
         def client_of(service: str, type_name: str) -> Client:
             return self.create_client(get_interface(type_name), service)
 
@@ -309,14 +271,15 @@ class ViewerNode(StageNode):
             questions,
             lambda name, value: _parameter(name, value).to_parameter_msg(),
             now_s,
-            changed=partial(call, self._hub.parameters_changed),
-            described=partial(call, self._hub.describe),
+            changed=partial(self._call, self._hub.parameters_changed),
+            described=partial(self._call, self._hub.describe),
         )
-        nodes_here = self._context_nodes
-        self.desk = ParameterDesk(self._hub, call, nodes_here, self._remote, _parameter)
+        self.desk = ParameterDesk(
+            self._hub, self._call, self._context_nodes, self._remote, _parameter
+        )
         self._beats = Beats(
             self._hub,
-            call,
+            self._call,
             self.run_soon,
             self._who_is_there,
             questions,
@@ -381,56 +344,6 @@ class ViewerNode(StageNode):
             "topics": len(self._hub.channels),
             "time_s": self._now_ns() / 1e9,
         }
-
-
-class _Bridge:
-    """The hub's :class:`~navette.viewer.session.Robot`: wishes become events."""
-
-    def __init__(self, node: ViewerNode) -> None:
-        self._node = node
-
-    def watch(self, watch: Watch) -> None:
-        self._node.run_soon(partial(self._node.watch, watch), "watch")
-
-    def unwatch(self, watch: Watch) -> None:
-        self._node.run_soon(partial(self._node.unwatch, watch), "unwatch")
-
-    def open_publisher(self, client: int, channel: ClientChannel) -> None:
-        self._ask(client, partial(self._node.open_publisher, client, channel))
-
-    def close_publisher(self, client: int, channel_id: int) -> None:
-        self._ask(client, partial(self._node.close_publisher, client, channel_id))
-
-    def publish(self, client: int, channel_id: int, data: bytes) -> None:
-        self._ask(client, partial(self._node.publish_for, client, channel_id, data))
-
-    def get_parameters(
-        self, client: int, names: tuple[str, ...], request_id: str | None
-    ) -> None:
-        ask = partial(self._node.desk.get, client, names, request_id)
-        self._node.run_soon(ask, "request")
-
-    def set_parameters(
-        self,
-        client: int,
-        parameters: tuple[WireParameter, ...],
-        request_id: str | None,
-    ) -> None:
-        ask = partial(self._node.desk.set, client, parameters, request_id)
-        self._node.run_soon(ask, "request")
-
-    def describe_parameters(self, client: int) -> None:
-        ask = partial(self._node.desk.describe, client)
-        self._node.run_soon(ask, "request")
-
-    def control_playback(self, client: int, request: ControlPlayback) -> None:
-        self._ask(client, partial(self._node.control_playback, request))
-
-    def step_playback(self, client: int) -> None:
-        self._ask(client, self._node.step_playback)
-
-    def _ask(self, client: int, work: Callable[[], None]) -> None:
-        self._node.run_soon(partial(self._node.answer, client, work), "request")
 
 
 def _parameter(name: str, value: Any) -> Parameter[Any]:

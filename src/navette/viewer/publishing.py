@@ -1,10 +1,54 @@
-"""What clients publish: bytes to messages."""
+"""What clients publish: bytes to messages, and by which publishers."""
 
 import json
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Protocol
 
 from navette.errors import DecodeError
 from navette.msgs import Message, deserialize, from_dict
+from navette.viewer.frames import ClientChannel
+
+
+class OpenPublisher(Protocol):
+    """A publisher of the graph."""
+
+    @property
+    def msg_type(self) -> type[Message]: ...
+    def publish(self, message: Any) -> None: ...
+
+
+class ClientPublishers:
+    """The publishers that clients have opened, each by the client's number for it.
+
+    All methods raise NavetteError for what cannot be published.
+
+    Args:
+        create: makes a publisher of a type's name and a topic.
+        destroy: lets go of one.
+    """
+
+    def __init__(
+        self,
+        create: Callable[[str, str], OpenPublisher],
+        destroy: Callable[[Any], object],
+    ) -> None:
+        self._create, self._destroy = create, destroy
+        self._opened: dict[tuple[int, int], tuple[str, OpenPublisher]] = {}
+
+    def open(self, client: int, channel: ClientChannel) -> None:
+        publisher = self._create(channel.type_name, channel.topic)
+        self._opened[client, channel.id] = channel.encoding, publisher
+
+    def close(self, client: int, channel_id: int) -> None:
+        opened = self._opened.pop((client, channel_id), None)
+        if opened is not None:
+            self._destroy(opened[1])
+
+    def publish(self, client: int, channel_id: int, data: bytes) -> None:
+        opened = self._opened.get((client, channel_id))
+        if opened is not None:
+            encoding, publisher = opened
+            publisher.publish(decode_message(encoding, publisher.msg_type, data))
 
 
 def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
