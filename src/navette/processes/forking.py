@@ -211,7 +211,9 @@ class _Link:
             self._control.shutdown(socket.SHUT_WR)
 
     def _listen(self) -> None:
-        with self._control.makefile("rb") as lines:
+        # Reset: it has died before it read a request.
+        reset = contextlib.suppress(ConnectionResetError)
+        with self._control.makefile("rb") as lines, reset:
             for line in lines:
                 told = json.loads(line)
                 if "ended" in told:

@@ -10,6 +10,7 @@ import pytest
 from process_bench import Bench, Heard
 
 from navette.processes import ChildProcess, StartOptions
+from navette.processes.forking import Wish, _Link
 
 pytestmark = [
     pytest.mark.slow,
@@ -158,6 +159,17 @@ def test_a_killed_zygote_takes_its_children_along(programs: Programs) -> None:
     os.kill(zygote, signal.SIGKILL)
     assert heard.wait_over() == -9
     assert programs.tell()["parent"] not in (os.getpid(), zygote)
+
+
+def test_a_zygote_that_dies_before_it_reads_starts_nothing() -> None:
+    gone: list[int] = []
+    link = _Link(dict(os.environ), gone.append)
+    os.kill(link.pid, signal.SIGSTOP)
+    link._control.sendall(b"unread")
+    os.kill(link.pid, signal.SIGKILL)
+    link.thread.join(20.0)
+    assert gone == [link.pid]
+    assert link.start(Wish((), {}, None, False, ())) is None
 
 
 def test_closing_ends_the_children_and_the_zygote(programs: Programs) -> None:
