@@ -1,9 +1,12 @@
-"""The simulated robot: worlds, physics and sensors on MuJoCo."""
+"""The simulated robot: worlds, physics and sensors on MuJoCo.
+
+MuJoCo is loaded with the first name that needs it: who reads worlds and robots, as each
+stage does for its robot's parameters, needs none of it.
+"""
+
+from typing import TYPE_CHECKING, Any
 
 from navette.sim.builder import World
-from navette.sim.clearance import Clearance
-from navette.sim.contacts import ContactEpisode
-from navette.sim.imu import ImuReading
 from navette.sim.library import (
     Robot,
     identify_robot,
@@ -12,12 +15,17 @@ from navette.sim.library import (
     robot_names,
     world_names,
 )
-from navette.sim.lidar import Scan
 from navette.sim.params import SimParams
 from navette.sim.profile import derive_parameters, footprint_of
-from navette.sim.robot_state import Motion
 from navette.sim.scene import Model, Scene
-from navette.sim.simulator import Simulator
+
+if TYPE_CHECKING:
+    from navette.sim.clearance import Clearance
+    from navette.sim.contacts import ContactEpisode
+    from navette.sim.imu import ImuReading
+    from navette.sim.lidar import Scan
+    from navette.sim.robot_state import Motion
+    from navette.sim.simulator import Simulator
 
 __all__ = [
     # worlds and robots
@@ -42,3 +50,18 @@ __all__ = [
     "Scan",
     "Simulator",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module 'navette.sim' has no attribute {name!r}")
+    from navette.sim.clearance import Clearance
+    from navette.sim.contacts import ContactEpisode
+    from navette.sim.imu import ImuReading
+    from navette.sim.lidar import Scan
+    from navette.sim.robot_state import Motion
+    from navette.sim.simulator import Simulator
+
+    loaded = (Clearance, ContactEpisode, ImuReading, Motion, Scan, Simulator)
+    globals().update({each.__name__: each for each in loaded})
+    return globals()[name]
