@@ -22,4 +22,4 @@ def test_the_program_runs_and_ends_on_ctrl_c() -> None:
         assert process.stdout.readline() == "heard: Hello, ROS 2!\n"
         assert process.stdout.readline() == "heard: Hello, ROS 2!\n"
         process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=10) == 0
+        assert process.wait(timeout=60) == 0

@@ -38,7 +38,7 @@ def test_a_wait_ends_between_two_events(number: int, code: int) -> None:
     def run(is_interrupted: Condition) -> None:
         signal.raise_signal(number)
         seen.append("the event under way is finished")
-        assert woken.wait(10.0)
+        assert woken.wait(60.0)
         assert is_interrupted()
 
     with pytest.raises(typer.Exit) as ended, ending_on_signals():
@@ -90,7 +90,7 @@ def test_an_event_that_does_not_end_is_given_up(
 
     def run(is_interrupted: Condition) -> None:
         signal.raise_signal(signal.SIGINT)
-        assert gone.wait(10.0)
+        assert gone.wait(60.0)
 
     with pytest.raises(typer.Exit), ending_on_signals():
         interruptible(run, lambda: None)

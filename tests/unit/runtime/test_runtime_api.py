@@ -187,7 +187,7 @@ def test_rate_sleeps_while_another_thread_spins() -> None:
     timer = node.create_timer(0.001, spinning.set)
     thread = threading.Thread(target=navette.spin, args=(node,))
     thread.start()
-    assert spinning.wait(5.0)
+    assert spinning.wait(60.0)
     timer.cancel()
     rate = node.create_rate(200.0)
     before = node.get_clock().now()
@@ -195,7 +195,7 @@ def test_rate_sleeps_while_another_thread_spins() -> None:
     rate.sleep()
     assert (node.get_clock().now() - before).nanoseconds >= 5_000_000
     navette.shutdown()
-    thread.join(5.0)
+    thread.join(60.0)
     assert not thread.is_alive()
 
 
@@ -253,12 +253,12 @@ def test_shutdown_from_another_thread_waits_for_the_callback() -> None:
 
     def slow() -> None:
         begun.set()
-        assert closing.wait(5.0)
+        assert closing.wait(60.0)
         node.create_publisher(String, "still_there", 1)
         order.append("callback ends")
 
     def close() -> None:
-        assert begun.wait(5.0)
+        assert begun.wait(60.0)
         node.context.on_shutdown(lambda: order.append("nodes go"))
         closing.set()
         navette.shutdown()
@@ -408,7 +408,7 @@ def test_handlers_run_in_other_threads_one_at_a_time() -> None:
         handler, _, _ = executor.wait_for_ready_callbacks()
         thread = threading.Thread(target=handler, name="worker")
         thread.start()
-        thread.join(10.0)
+        thread.join(60.0)
         assert names == ["worker"]
 
 

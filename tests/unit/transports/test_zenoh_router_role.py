@@ -62,7 +62,7 @@ def test_a_close_just_when_the_router_is_lost_ends() -> None:
     role._lost = CloseComesBetween(role)
     thread = role.begin()
     role.lose()
-    thread.join(10.0)
+    thread.join(60.0)
     assert not thread.is_alive()
     role.close()
     assert role.looks == 0
@@ -73,7 +73,7 @@ def test_a_lost_router_is_looked_for_each_time_until_the_close() -> None:
     role.begin()
     for count in (1, 2):
         role.lose()
-        assert role.has_looked.wait(10.0)
+        assert role.has_looked.wait(60.0)
         role.has_looked.clear()
         assert role.looks == count
     role.close()

@@ -158,7 +158,7 @@ def client(tape: Tape) -> Iterator[Client]:
 
 def wait_for_state(client: Client) -> tuple[int, int, float, bool, str]:
     while True:
-        frame = client.socket.recv(timeout=10.0)
+        frame = client.socket.recv(timeout=60.0)
         if isinstance(frame, bytes) and frame[0] == 5:
             return read_state(frame)
 
