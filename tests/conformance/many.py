@@ -3,13 +3,13 @@
 import os
 import re
 import signal
-import socket
 import subprocess
 import sys
 import threading
 from dataclasses import dataclass
 from pathlib import Path
 
+from free_ports import free_endpoint
 from navette.runtime.clock import Stopwatch
 
 PROGRAM = Path(__file__).parent / "programs" / "one_of_many.py"
@@ -48,14 +48,12 @@ def meet(count: int, folder: Path, patience_s: float) -> Meeting:
     """Launch so many processes of four topics each; ends when all see all."""
     file = folder / "many.launch.py"
     file.write_text(_LAUNCH.format(program=str(PROGRAM), count=count))
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port = probe.getsockname()[1]
     watch, before = Stopwatch(), os.times()
     process = subprocess.Popen(
         [sys.executable, "-m", "navette", "launch", "--processes", str(file)],
         env={
             **os.environ,
-            "NAVETTE_ROUTER": f"tcp/127.0.0.1:{port}",
+            "NAVETTE_ROUTER": free_endpoint(),
             "NAVETTE_TRANSPORT": "zenoh",
             "ROS_DOMAIN_ID": DOMAIN,
             "ROS_LOG_DIR": str(folder / "log"),

@@ -96,11 +96,11 @@ class ViewerNode(StageNode):
             self._publisher, self.destroy_publisher
         )
         self.playback = PlaybackDesk(playback, self._hub, self._call)
-        self._look_after_nodes()
         try:
+            self._look_after_nodes()
             self._server = self._make_server()
             self._server.start()
-        except NavetteError:
+        except BaseException:
             super().destroy_node()
             raise
         self.add_on_set_parameters_callback(_refuse_changes)
