@@ -107,6 +107,9 @@ class Client:
                 f"ws://{address}",
                 subprotocols=[Subprotocol(subprotocol)],
                 open_timeout=PATIENCE_S,
+                # Of a client that vanishes the thread stays, and its pings would draw
+                # from the random numbers that Hypothesis watches in a later test.
+                ping_interval=None,
                 max_size=None,
                 **options,
             )
