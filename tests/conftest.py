@@ -1,7 +1,8 @@
 """Settings shared by all tests."""
 
+import logging
 import os
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 
 import pytest
 from hypothesis import settings
@@ -14,6 +15,16 @@ settings.load_profile("navette")
 # Tests run side by side and must not meet; those of the network say so themselves, and
 # have a router of their own.
 os.environ["NAVETTE_TRANSPORT"] = "inprocess"
+
+
+@pytest.fixture(autouse=True)
+def logs_end_with_their_test() -> Iterator[None]:
+    """A context that a test leaves open writes nothing into the next one's output."""
+    package = logging.getLogger("navette")
+    handlers, level = package.handlers[:], package.level
+    yield
+    package.handlers[:] = [each for each in package.handlers if each in handlers]
+    package.setLevel(level)
 
 
 @pytest.hookimpl(wrapper=True)
