@@ -1,5 +1,6 @@
 """What readers of files of chunks have in common."""
 
+from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -15,7 +16,7 @@ Convert = Callable[[bytes], bytes]
 FOREVER_NS = 2**63 - 1
 
 
-class ChunkedReader:
+class ChunkedReader(ABC):
     """A :class:`~navette.bags.bag.BagReader` over the index of a file of chunks.
 
     A derived class fills ``path``, ``topics``, ``chunks``, ``problems`` and the
@@ -38,15 +39,15 @@ class ChunkedReader:
 
     # -- what a format brings ----------------------------------------------------
 
-    def _read_chunk(self, chunk: Chunk) -> bytes:
-        raise NotImplementedError
+    @abstractmethod
+    def _read_chunk(self, chunk: Chunk) -> bytes: ...
 
-    def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
-        raise NotImplementedError
+    @abstractmethod
+    def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]: ...
 
+    @abstractmethod
     def close(self) -> None:
         """Close the file; twice is harmless."""
-        raise NotImplementedError
 
     def _add_channel(
         self, number: int, topic: BagTopic, convert: Convert | None = None
@@ -73,13 +74,13 @@ class ChunkedReader:
         """
         return self._entries(chunk, self._read_chunk(chunk))
 
+    @abstractmethod
     def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
         """Stamps by channel as an index has them; None where there is none.
 
         Raises:
             FileFormatError: the index is damaged.
         """
-        raise NotImplementedError
 
     @property
     def files(self) -> tuple[Path, ...]:

@@ -1,17 +1,18 @@
 """What can be destroyed, and is at the end of a ``with``."""
 
+from abc import ABC, abstractmethod
 from types import TracebackType
 from typing import Self
 
 
-class Destroyable:
+class Destroyable(ABC):
     """``with node.create_subscription(…): …`` destroys it at the end."""
 
     __slots__ = ()
 
+    @abstractmethod
     def destroy(self) -> None:
         """Leave for good."""
-        raise NotImplementedError
 
     def __enter__(self) -> Self:
         return self
