@@ -19,7 +19,6 @@ from contextlib import contextmanager
 from typing import Any
 
 INTERRUPTED = 128 + signal.SIGINT
-TERMINATED = 128 + signal.SIGTERM
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 # How long an event may go on after Ctrl-C: a message of megabytes is being printed.
