@@ -1,9 +1,10 @@
-"""Rewrites the modules and stubs of all packages from their definitions.
+"""Write the modules and type stubs of all interface packages.
 
-    python -m navette.msgs.generate            write what changed
-    python -m navette.msgs.generate --check    name what would change; exit 1 if any
+    python -m navette.msgs.generate
 
-Run it after a file under ``definitions/`` was added or changed, and commit the result.
+The modules (``std_msgs/msg.py``, …) are committed: run the command after adding a file
+under ``definitions/`` and commit them. The stubs (``std_msgs/msg.pyi``, …) are not:
+building the package runs this command, and so does whoever runs mypy on a checkout.
 """
 
 import sys
@@ -16,7 +17,7 @@ ROOT = Path(__file__).parent
 
 
 def generated_files() -> dict[Path, str]:
-    """Path below this folder and text of every generated file."""
+    """Return the text of every generated file by its path below this folder."""
     files = {}
     for folder in sorted(DEFINITIONS.iterdir()):
         package = folder.name
@@ -29,36 +30,18 @@ def generated_files() -> dict[Path, str]:
     return files
 
 
-def outdated_files() -> list[Path]:
-    """Generated files whose committed text differs from what is generated now."""
-    return [
-        path
-        for path, text in generated_files().items()
-        if not (ROOT / path).is_file() or (ROOT / path).read_text("utf-8") != text
-    ]
-
-
 def write_files() -> list[Path]:
-    """Write every file that differs; returns their paths."""
-    texts = generated_files()
-    changed = outdated_files()
-    for path in changed:
-        (ROOT / path).parent.mkdir(exist_ok=True)
-        (ROOT / path).write_text(texts[path], "utf-8", newline="\n")
+    """Write the files whose text changed and return their paths."""
+    changed = []
+    for path, text in generated_files().items():
+        target = ROOT / path
+        if not target.is_file() or target.read_text("utf-8") != text:
+            target.parent.mkdir(exist_ok=True)
+            target.write_text(text, "utf-8", newline="\n")
+            changed.append(path)
     return changed
 
 
-def main(arguments: list[str]) -> int:
-    """The command; returns its exit code."""
-    is_check = arguments == ["--check"]
-    if arguments and not is_check:
-        sys.stderr.write("usage: python -m navette.msgs.generate [--check]\n")
-        return 2
-    changed = outdated_files() if is_check else write_files()
-    for path in changed:
-        sys.stdout.write(f"{path}\n")
-    return 1 if is_check and changed else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    for path in write_files():
+        sys.stdout.write(f"{path}\n")

@@ -15,7 +15,6 @@ from navette.msgs.registry import get_spec
 
 _WHAT = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 _GENERATED = "# Written by python -m navette.msgs.generate; do not edit.\n"
-_STUB_HEAD = f"{_GENERATED}# ruff: noqa\n# fmt: off\n"
 _NUMPY = {
     "char": "np.uint8",
     **{base: f"np.{base}" for base in (*INTEGER_RANGES, *FLOATS) if base != "char"},
@@ -63,7 +62,7 @@ class _StubWriter:
 
     def text(self) -> str:
         """The whole stub."""
-        lines = [_STUB_HEAD]
+        lines = [_GENERATED]
         body = "\n\n".join(self._blocks)
         if "array[" in body:
             lines += ["from array import array", ""]

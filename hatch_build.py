@@ -1,0 +1,23 @@
+"""Build hook: generate the type stubs of the messages before a wheel is built."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+
+class StubHook(BuildHookInterface):  # type: ignore[type-arg]
+    """Write the stubs into the source tree, from which wheels take them.
+
+    Editable installs (``pip install -e .``) run the hook too, so that mypy finds the
+    stubs in a checkout.
+    """
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Run the generator; it needs only the standard library."""
+        environment = {**os.environ, "PYTHONPATH": str(Path(self.root, "src"))}
+        command = [sys.executable, "-B", "-m", "navette.msgs.generate"]
+        subprocess.run(command, env=environment, check=True, stdout=subprocess.DEVNULL)
