@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import CodeType
 from typing import Any
 
 from navette.bags.bag import BagMessage, BagReader, BagTopic, OnDamage
@@ -12,7 +11,8 @@ from navette.bags.folder_reader import FolderReader, Metadata
 from navette.bags.message_types import Decoder
 from navette.bags.opening import open_bag
 from navette.bags.writing import TopicWriter, completed
-from navette.errors import FileFormatError, InvalidValueError, NavetteError
+from navette.errors import FileFormatError, InvalidValueError
+from navette.msgs.expressions import Expression, ExpressionError
 
 Progress = Callable[[BagMessage], None]
 
@@ -58,32 +58,21 @@ def _search(pattern: str, text: str) -> bool:
         ) from None
 
 
-class _Expression:
-    """A condition that the user writes in Python, as ``rosbag filter`` takes it."""
+class _Condition:
+    """Condition on the messages of a bag, as ``rosbag filter`` takes it."""
 
     def __init__(self, text: str) -> None:
-        try:
-            self._code: CodeType = compile(text, "<expression>", "eval")
-        except (SyntaxError, ValueError) as error:
-            raise InvalidValueError(f"expression {text!r}: {error}") from None
-        self._text = text
+        self._expression = Expression(text, names=("topic", "t", "m"))
         self._decoders: dict[BagTopic, Decoder] = {}
 
     def __call__(self, message: BagMessage) -> bool:
-        names = _Names(self, message)
         try:
-            # The user's own condition, from the command line.
-            return bool(eval(self._code, {"__builtins__": __builtins__}, names))
-        except NavetteError:
-            raise
-        except Exception as error:  # whatever the user's expression raises
-            raise InvalidValueError(
-                f"expression {self._text!r}, {message.topic.name} at "
-                f"{message.stamp_ns} ns: {type(error).__name__}: {error}"
-            ) from error
+            return bool(self._expression.value(_Names(self, message)))
+        except ExpressionError as error:
+            where = f"{message.topic.name} at {message.stamp_ns} ns"
+            raise InvalidValueError(f"{where}: {error}") from None
 
     def decode(self, message: BagMessage) -> Any:
-        """The message as an object."""
         decoder = self._decoders.get(message.topic)
         if decoder is None:
             decoder = self._decoders[message.topic] = Decoder(message.topic)
@@ -91,17 +80,17 @@ class _Expression:
 
 
 class _Names(dict[str, Any]):
-    """Decodes the message only where the expression asks for it."""
+    """Values of the names; ``m`` is decoded only if the expression reads it."""
 
-    def __init__(self, expression: _Expression, message: BagMessage) -> None:
+    def __init__(self, condition: _Condition, message: BagMessage) -> None:
         super().__init__(topic=message.topic.name, t=message.stamp_ns / 1e9)
-        self._expression = expression
+        self._condition = condition
         self._message = message
 
     def __missing__(self, name: str) -> Any:
         if name != "m":
             raise KeyError(name)
-        return self._expression.decode(self._message)
+        return self._condition.decode(self._message)
 
 
 def join(paths: Sequence[Path]) -> BagReader:
@@ -156,7 +145,7 @@ def _chosen(
     on_message: Progress | None,
     on_damage: OnDamage | None,
 ) -> Iterator[BagMessage]:
-    expression = _Expression(choice.expression) if choice.expression else None
+    expression = _Condition(choice.expression) if choice.expression else None
     taken = {t: completed(t) for t in reader.topics if choice.takes(t)}
     for message in reader.messages(
         {topic.name for topic in taken},

@@ -67,7 +67,7 @@ def test_a_part_of_a_recording(tmp_path: Path) -> None:
     [
         (Choice(regex="["), "is no regular expression"),
         (Choice(expression="m +"), "expression 'm \\+'"),
-        (Choice(expression="m.nothing"), "/chatter at .*AttributeError"),
+        (Choice(expression="m.nothing"), "/chatter at .*'nothing' of String"),
     ],
 )
 @pytest.mark.parametrize("name", ["b.bag", "b.mcap", "b.db3"])

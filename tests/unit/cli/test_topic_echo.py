@@ -15,7 +15,7 @@ from navette.cli.topic.echo_options import EchoOptions
 from navette.cli.topic.qos_options import QosWishes
 from navette.cli.topic.style import Style
 from navette.errors import InvalidValueError, MessageError
-from navette.expressions import ExpressionError
+from navette.msgs.expressions import ExpressionError
 from navette.msgs.geometry_msgs.msg import Point, Pose, PoseArray
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import Float64, Header, Int32, String

@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from navette.expressions import ExpressionError, evaluate
 from navette.launch_files.launch.errors import SubstitutionFailure
 from navette.launch_files.launch.substitution import (
     SomeSubstitutionsType,
@@ -11,6 +10,7 @@ from navette.launch_files.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from navette.msgs.expressions import ExpressionError, evaluate
 
 if TYPE_CHECKING:
     from navette.launch_files.launch.launch_context import LaunchContext
@@ -22,7 +22,7 @@ _HINT = "for more than an expression, use OpaqueFunction in a Python launch file
 class PythonExpression(Substitution):
     """The text of a Python expression's value (``$(eval '1 + 1')``).
 
-    Expressions are bounded: see :mod:`navette.expressions`.
+    Expressions are bounded: see :mod:`navette.msgs.expressions`.
 
     Args:
         expression: joined to one expression.
