@@ -25,10 +25,16 @@ from skimage.graph import MCP_Geometric
 
 from navette.geometry import Pose2
 from navette.grids import GridSpec
-from navette.planning import Goal, Planner, PlannerParams, dijkstra
-from navette.planning.astar import AStar
-from navette.planning.string_pulling import centers, pull
-from navette.planning.traversal import LETHAL, MOVES, Cell, EdgeTable, steps_cost
+from navette.navigation.planning import Goal, Planner, PlannerParams, dijkstra
+from navette.navigation.planning.astar import AStar
+from navette.navigation.planning.string_pulling import centers, pull
+from navette.navigation.planning.traversal import (
+    LETHAL,
+    MOVES,
+    Cell,
+    EdgeTable,
+    steps_cost,
+)
 
 Query = tuple[Cell, Cell]
 

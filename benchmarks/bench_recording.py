@@ -15,9 +15,9 @@ from harness import Benchmark, optional
 from mcap.reader import make_reader
 
 from navette.bags import BagWriter
-from navette.launch import RunOptions
-from navette.launch.simulation import Simulation
 from navette.msgs import definition_text, serialize
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
 
 mcap_ros2: Any = optional("mcap_ros2.writer")
 rosbags: Any = optional("rosbags.rosbag2")

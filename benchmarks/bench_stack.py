@@ -13,8 +13,8 @@ import statistics
 from courses import HARD_RUNS, SEVEN_GOALS, Drive
 from harness import Benchmark, Figure
 
-from navette.launch import RunOptions
-from navette.launch.simulation import Simulation
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
 
 REACH_M = 0.6
 CLEARANCE_M = 0.10

@@ -10,9 +10,9 @@ from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.play import PlayOptions, PlayState
 from navette.bags.play.node import PlayerNode
 from navette.bags.writing import open_writer
-from navette.localization.distance.node import OdomIntegratorNode
 from navette.msgs import definition_text, serialize, type_hash
 from navette.msgs.gnss_driver.msg import Gps
+from navette.navigation.localization.distance.node import OdomIntegratorNode
 from navette.runtime import Context, Executor, Parameter, VirtualClock, ns_to_stamp
 
 TOPIC = "/gnss_driver/odometry"

@@ -21,9 +21,9 @@ def free_port() -> int:
 
 
 def main() -> None:
-    from navette.launch import RunOptions, demo_goals
-    from navette.launch.simulation import Simulation
     from navette.msgs.nav_msgs.msg import Odometry
+    from navette.navigation.stack import RunOptions, demo_goals
+    from navette.navigation.stack.simulation import Simulation
     from navette.runtime import Node
 
     imported = time.perf_counter()

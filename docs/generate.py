@@ -7,7 +7,7 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from navette.launch.stack import NODE_CLASSES
+from navette.navigation.stack.stack import NODE_CLASSES
 from navette.params import Params, info_of
 
 PAGE = Path(__file__).parent / "reference" / "nodes.md"

@@ -21,12 +21,12 @@ from navette import (
 )
 from navette.geometry import Footprint, Pose2, yaw_of
 from navette.grids import grid_from_message
-from navette.launch import RunOptions, demo_goals
-from navette.launch.simulation import Simulation
 from navette.msgs.geometry_msgs.msg import Pose
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.nav_msgs.msg import Path as PathMessage
 from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.navigation.stack import RunOptions, demo_goals
+from navette.navigation.stack.simulation import Simulation
 
 PICTURE = Path(__file__).parent / "images" / "drive.png"
 MOMENT_S = 41.0

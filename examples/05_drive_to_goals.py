@@ -9,8 +9,8 @@ Prints::
 
 import math
 
-from navette.launch import RunOptions
-from navette.launch.simulation import Simulation
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
 
 options = RunOptions(
     world="arena",

@@ -9,8 +9,8 @@ Prints::
 import math
 
 from navette.geometry import Pose2
-from navette.launch import RunOptions
-from navette.launch.simulation import Simulation
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
 from navette.sim import World
 
 slalom = World("slalom").add_walls((14.0, 5.0))

@@ -12,8 +12,8 @@ import math
 import tempfile
 from pathlib import Path
 
-from navette.launch import RunOptions
-from navette.launch.simulation import Simulation
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
 
 PARAMETERS = """
 planner:

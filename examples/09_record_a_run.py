@@ -13,10 +13,10 @@ from pathlib import Path
 
 from mcap.reader import make_reader
 
-from navette.launch import RunOptions
-from navette.launch.simulation import Simulation
 from navette.msgs import deserialize
 from navette.msgs.nav_msgs.msg import Odometry
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
 
 with tempfile.TemporaryDirectory() as folder:
     bag = Path(folder) / "run.mcap"

@@ -15,8 +15,8 @@ import tempfile
 from contextlib import redirect_stdout
 from pathlib import Path
 
-from navette.bringup import launch
-from navette.interop import install
+from navette.ros2.launch import launch
+from navette.ros2.names import install
 
 GREETER = """
 import rclpy

@@ -14,10 +14,10 @@ Prints::
 import math
 
 import navette
-from navette.launch.robot import simulate_robot
 from navette.msgs import from_dict
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.msgs.nav_msgs.msg import Odometry
+from navette.navigation.stack.robot import simulate_robot
 
 GO = from_dict(Twist, {"linear": {"x": 0.2}})  # m/s
 TURN = from_dict(Twist, {"angular": {"z": 0.5}})  # rad/s

@@ -14,8 +14,8 @@ import math
 import numpy as np
 
 import navette
-from navette.launch.robot import simulate_robot
 from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.navigation.stack.robot import simulate_robot
 
 
 class NearestThing(navette.Node):

@@ -10,12 +10,12 @@ Prints::
 import numpy as np
 
 import navette
-from navette.launch.robot import simulate_robot
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_srvs.srv import SetBool
 from navette.msgs.visualization_msgs.msg import Marker
+from navette.navigation.stack.robot import simulate_robot
 
 GAIN = 1.5  # rad/s of turn for each rad that the pillar is off the axis
 STOP_AT_M = 2.0

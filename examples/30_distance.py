@@ -15,10 +15,10 @@ from pathlib import Path
 
 import navette
 from navette.bags import open_bag
-from navette.launch.replay import Replay
-from navette.localization import Odometer
 from navette.msgs.gnss_driver.msg import Gps
 from navette.msgs.std_msgs.msg import Float64
+from navette.navigation.localization import Odometer
+from navette.navigation.stack.replay import Replay
 
 DRIVE = Path(__file__).parent / "data" / "drive.mcap"
 PARAMETERS = """

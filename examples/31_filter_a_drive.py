@@ -22,10 +22,10 @@ import numpy as np
 
 import navette
 from navette.bags import open_bag
-from navette.launch.replay import Replay
-from navette.localization.ekf.node import EkfNode
 from navette.msgs import deserialize
 from navette.msgs.nav_msgs.msg import Odometry
+from navette.navigation.localization.ekf.node import EkfNode
+from navette.navigation.stack.replay import Replay
 
 DRIVE = Path(__file__).parent / "data" / "drive.mcap"
 # In robot_localization's words. The order of the 15: x y z, roll pitch yaw, vx vy vz,

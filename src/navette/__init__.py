@@ -6,7 +6,7 @@ first used, so that ``import navette`` costs next to nothing.
 
 from typing import TYPE_CHECKING, Any
 
-from navette._version import __version__
+__version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from navette.runtime import *  # noqa: F403 - for editors; see _RUNTIME_NAMES

@@ -16,8 +16,8 @@ from bag_samples import sample, write_sample
 from navette.bags import open_bag
 from navette.bags.editing import copy
 from navette.bags.writing import open_writer
-from navette.launch import RunOptions
-from navette.launch.simulation import Simulation
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
 
 
 @pytest.fixture(scope="module")

@@ -15,9 +15,9 @@ from test_viewer_javascript import run_node
 
 from navette.bags import BagWriter
 from navette.bags.play import PlayOptions
-from navette.launch.playback import Playback
 from navette.msgs import definition_text, serialize
 from navette.msgs.std_msgs.msg import String
+from navette.navigation.stack.playback import Playback
 from navette.viewer.playback import PlaybackState, PlaybackStatus
 from navette.viewer.replies import playback_state, server_info
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from test_viewer_javascript import run_node
 
-from navette.companions.sensor_msgs_py.point_cloud2 import read_points
 from navette.msgs.sensor_msgs.msg import PointCloud2, PointField
 from navette.msgs.std_msgs.msg import Header
+from navette.ros2.packages.sensor_msgs_py.point_cloud2 import read_points
 from navette.runtime import Context, Node
 
 sys.path.append(str(Path(__file__).parents[1] / "unit" / "viewer"))

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navette.control import (
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+from navette.navigation.control import (
     ControlParams,
     FollowerInputs,
     InputAges,
     PathFollower,
 )
-from navette.errors import InvalidValueError
-from navette.geometry import Pose2
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)
 metres = st.floats(-20, 20)

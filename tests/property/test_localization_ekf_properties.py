@@ -7,9 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navette.localization.ekf import Fused, Measurement, OrderedEkf, PlanarEkf
-from navette.localization.ekf.measurement import expected, expected_jacobian
-from navette.localization.ekf.state import (
+from navette.navigation.localization.ekf import (
+    Fused,
+    Measurement,
+    OrderedEkf,
+    PlanarEkf,
+)
+from navette.navigation.localization.ekf.measurement import expected, expected_jacobian
+from navette.navigation.localization.ekf.state import (
     SIZE,
     VX,
     VY,

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from navette.geometry import Footprint, Pose2
 from navette.grids import GridSpec
-from navette.planning import Goal, Planner, PlannerParams
+from navette.navigation.planning import Goal, Planner, PlannerParams
 
 OUTLINE = (0.6, 0.25, -0.2, 0.25, -0.2, -0.25, 0.6, -0.25)
 """A body that sweeps much more when it turns than it is wide (m)."""

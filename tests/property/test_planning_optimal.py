@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from navette.planning import breadth_first, dijkstra
-from navette.planning.astar import AStar
-from navette.planning.string_pulling import centers, line_cost, pull
-from navette.planning.traversal import (
+from navette.navigation.planning import breadth_first, dijkstra
+from navette.navigation.planning.astar import AStar
+from navette.navigation.planning.string_pulling import centers, line_cost, pull
+from navette.navigation.planning.traversal import (
     DEAREST,
     DIAGONAL,
     LETHAL,

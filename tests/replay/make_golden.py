@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 from stages import STAGES, Stage
 
 from navette.bags import BagReader, BagWriter, open_bag, qos_text
-from navette.launch.options import RunOptions
-from navette.launch.simulation import Simulation
+from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.simulation import Simulation
 
 WORLD = "course"
 GOALS = ((-6.0, -12.0),)

@@ -7,7 +7,7 @@ import pytest
 from make_golden import LONGEST_BYTES
 from stages import STAGES, Stage, replay
 
-from navette.costmap.node import CostmapNode
+from navette.navigation.costmap.node import CostmapNode
 from navette.runtime import Context, Node
 
 by_name = pytest.mark.parametrize("stage", STAGES, ids=lambda stage: stage.name)

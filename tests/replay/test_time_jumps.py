@@ -13,13 +13,6 @@ from navette.bags.compare.fields import message_differences
 from navette.bags.compare.tolerance import EXACT
 from navette.bags.play import PlayOptions
 from navette.bags.play.node import PlayerNode
-from navette.companions.message_filters import (
-    ApproximateTimeSynchronizer,
-    Cache,
-    Subscriber,
-)
-from navette.launch.recorded_parameters import give_recorded_parameters
-from navette.launch.stack import node_class
 from navette.msgs.geometry_msgs.msg import (
     PointStamped,
     Transform,
@@ -28,6 +21,13 @@ from navette.msgs.geometry_msgs.msg import (
 )
 from navette.msgs.std_msgs.msg import Header
 from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.navigation.stack.recorded_parameters import give_recorded_parameters
+from navette.navigation.stack.stack import node_class
+from navette.ros2.packages.message_filters import (
+    ApproximateTimeSynchronizer,
+    Cache,
+    Subscriber,
+)
 from navette.runtime import Time, TransformListener, VirtualClock, ns_to_stamp
 from navette.runtime.tf import Buffer
 from navette.testing import GraphHarness

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from navette.launch import RunOptions
-from navette.launch.simulation import Simulation
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
 from navette.sim import Scene
 
 MakeSimulation = Callable[..., Simulation]

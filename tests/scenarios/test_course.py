@@ -7,7 +7,7 @@ import pytest
 from courses import HARD_RUNS, SEVEN_GOALS, Drive
 
 from navette.geometry import Pose2
-from navette.launch.simulation import Simulation
+from navette.navigation.stack.simulation import Simulation
 
 from .conftest import MakeSimulation
 

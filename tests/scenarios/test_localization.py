@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from navette.launch.options import RunOptions
-from navette.launch.scene import resolve_scene
-from navette.launch.stack import NavigationStack
-from navette.localization.ekf.node import EkfNode
 from navette.msgs.nav_msgs.msg import Odometry
+from navette.navigation.localization.ekf.node import EkfNode
+from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.scene import resolve_scene
+from navette.navigation.stack.stack import NavigationStack
 from navette.runtime import Context, Executor, Parameter, VirtualClock
 from navette.sim.node import SimNode
 

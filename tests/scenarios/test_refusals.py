@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from navette.launch.simulation import Simulation
 from navette.msgs.geometry_msgs.msg import PointStamped
+from navette.navigation.stack.simulation import Simulation
 from navette.sim import World
 
 from .conftest import MakeSimulation

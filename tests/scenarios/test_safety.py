@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from navette.errors import CallbackError
-from navette.launch.monitor import LATCHED
-from navette.launch.simulation import Simulation
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.navigation.stack.monitor import LATCHED
+from navette.navigation.stack.simulation import Simulation
 
 from .conftest import MakeSimulation
 

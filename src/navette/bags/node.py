@@ -37,7 +37,7 @@ from navette.runtime.qos import (
     QoSReliabilityPolicy,
 )
 from navette.runtime.ros_clock import Clock
-from navette.runtime.stage import StageNode
+from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.time import ClockType
 from navette.runtime.timer import Timer
 

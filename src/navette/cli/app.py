@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_group
 
-from navette._version import __version__
+from navette import __version__
 from navette.cli.arguments import (
     fill_values,
     join_pairs,
@@ -27,7 +27,7 @@ from navette.cli.verbs import VERBS
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
-    from navette.launch import RunOptions
+    from navette.navigation.stack import RunOptions
 
 app = typer.Typer(
     name="navette",
@@ -144,7 +144,7 @@ def demo(
     Drives a few goals at once, then waits for more from the live view.
     Ctrl-C ends it.
     """
-    from navette.launch import RunOptions, demo_goals
+    from navette.navigation.stack import RunOptions, demo_goals
 
     options = RunOptions(
         world="arena",
@@ -179,7 +179,7 @@ def sim(
     exits 0 only if all were reached without contact.
     """
     from navette.geometry import Pose2
-    from navette.launch import RunOptions
+    from navette.navigation.stack import RunOptions
 
     options = RunOptions(
         world=world,

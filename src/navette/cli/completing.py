@@ -158,7 +158,7 @@ def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
     if incomplete or not type_name:
         return []
     from navette.cli.message_types import full_type_name, installed_class
-    from navette.companions.rosidl_runtime_py import message_to_yaml
+    from navette.ros2.packages.rosidl_runtime_py import message_to_yaml
 
     with suppress(NavetteError):
         cls = installed_class(full_type_name(type_name, kind))

@@ -30,14 +30,14 @@ def complete_action_types(incomplete: str) -> list[str]:
 
 def complete_packages(incomplete: str) -> list[str]:
     """Packages, installed or in the workspace."""
-    from navette.packages import find_packages
+    from navette.ros2.workspace import find_packages
 
     return chosen(incomplete, find_packages())
 
 
 def complete_programs(ctx: typer.Context, incomplete: str) -> list[str]:
     """Of ``navette run``: packages with programs, those of a package, files here."""
-    from navette.packages import find_packages
+    from navette.ros2.workspace import find_packages
 
     before = list(ctx.params.get("words") or ())
     packages = find_packages()
@@ -53,7 +53,7 @@ def complete_programs(ctx: typer.Context, incomplete: str) -> list[str]:
 
 def complete_launch_files(ctx: typer.Context, incomplete: str) -> list[str]:
     """Of ``navette launch``: files here, packages, the launch files of a package."""
-    from navette.packages import find_packages
+    from navette.ros2.workspace import find_packages
 
     before = list(ctx.params.get("words") or ())
     packages = find_packages()
@@ -85,7 +85,7 @@ def complete_robots(incomplete: str) -> list[str]:
 
 
 def _types(incomplete: str, *kinds: str) -> list[str]:
-    from navette.companions.rosidl_runtime_py import get_interfaces
+    from navette.ros2.packages.rosidl_runtime_py import get_interfaces
 
     return chosen(
         incomplete,

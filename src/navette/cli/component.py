@@ -160,7 +160,7 @@ def types(as_json: Json = False) -> None:
     """List the components that installed packages have registered."""
     from importlib.metadata import entry_points
 
-    from navette.bringup.components import GROUP
+    from navette.ros2.launch.components import GROUP
 
     found: dict[str, list[str]] = {}
     for point in entry_points(group=GROUP):

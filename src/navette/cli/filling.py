@@ -16,7 +16,7 @@ def filled(message_class: Any, text: str) -> Any:
     Raises:
         InvalidValueError: not a YAML mapping, or a field or value does not fit.
     """
-    from navette.companions.rosidl_runtime_py import set_message_fields
+    from navette.ros2.packages.rosidl_runtime_py import set_message_fields
 
     message = message_class()
     fields = from_yaml(text)

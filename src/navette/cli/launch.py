@@ -43,15 +43,15 @@ def launch(
     Ctrl-C ends everything it started. Exit code 1: the launch failed or a process
     died.
     """
-    from navette.processes import Keeper
+    from navette.supervisor import Keeper
 
     with closing(Keeper()) as keeper:
         if processes and not show_args and Path(words[0]).is_file():
             keeper.prepare()  # imports there what is imported here meanwhile
-        from navette.bringup import launch as run_launch
-        from navette.bringup import parse_launch_arguments, show_arguments
-        from navette.bringup.session import find_launch_file
-        from navette.interop import install
+        from navette.ros2.launch import launch as run_launch
+        from navette.ros2.launch import parse_launch_arguments, show_arguments
+        from navette.ros2.launch.session import find_launch_file
+        from navette.ros2.names import install
 
         install(instead_of_ros=on_navette)
         path, rest = find_launch_file(words)

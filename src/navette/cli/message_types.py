@@ -74,7 +74,7 @@ def full_type_name(type_name: str, kind: str) -> str:
 
 def installed_class(name: str) -> Any:
     """The class of a type that is installed or in the workspace; None if it is not."""
-    from navette.packages import activate
+    from navette.ros2.workspace import activate
 
     for look_further in (lambda: None, activate):
         look_further()

@@ -28,7 +28,7 @@ def yaml_of(
         indent: of a person's lines, in characters.
         shortened: as of ``message_to_yaml``.
     """
-    from navette.companions.rosidl_runtime_py.convert import yaml_pieces
+    from navette.ros2.packages.rosidl_runtime_py.convert import yaml_pieces
 
     if not is_terminal():
         return "".join(yaml_pieces(value, field_type, **shortened))

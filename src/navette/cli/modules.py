@@ -12,12 +12,12 @@ from navette.cli.output import note, show, show_json
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
-    from navette.modules.client import Client
-    from navette.modules.log_book import LogReader
-    from navette.modules.project import Project
-    from navette.modules.reading import ProjectFile
-    from navette.modules.session import ProcessView
-    from navette.modules.usage import Usage
+    from navette.supervisor.client import Client
+    from navette.supervisor.log_book import LogReader
+    from navette.supervisor.project import Project
+    from navette.supervisor.reading import ProjectFile
+    from navette.supervisor.session import ProcessView
+    from navette.supervisor.usage import Usage
 
 _FAILED = 1
 _INTERRUPTED = 130
@@ -27,7 +27,7 @@ _LOOK_S = 0.1
 
 def complete_modules(incomplete: str) -> list[str]:
     """Names of the modules of the project's file, for the shell."""
-    from navette.modules.reading import read_project
+    from navette.supervisor.reading import read_project
 
     try:
         names = read_project(_project(None), {}).names
@@ -162,7 +162,7 @@ def ps(
 ) -> None:
     """List the modules' processes: state, pid, since when, use, restarts, reason."""
     from navette.cli.modules_view import as_record, show_processes
-    from navette.modules.session import views
+    from navette.supervisor.session import views
 
     clients = _all_clients() if all_projects else [_client(_project(file))]
     everything: list[dict[str, object]] = []
@@ -225,7 +225,7 @@ def logs(
 def _project(file: Path | None) -> "Project":
     if os.name != "posix":
         raise NavetteError("modules need Linux or macOS; navette launch works here")
-    from navette.modules.project import find_project
+    from navette.supervisor.project import find_project
 
     return find_project(Path.cwd(), file)
 
@@ -234,8 +234,8 @@ def _read(
     words: Sequence[str], file: Path | None
 ) -> "tuple[Project, ProjectFile, list[str]]":
     """The project, its file, and the names of modules among the words."""
-    from navette.bringup import parse_launch_arguments
-    from navette.modules.reading import read_project
+    from navette.ros2.launch import parse_launch_arguments
+    from navette.supervisor.reading import read_project
 
     project = _project(file)
     arguments = parse_launch_arguments(word for word in words if ":=" in word)
@@ -250,13 +250,13 @@ def _read(
 
 
 def _client(project: "Project") -> "Client":
-    from navette.modules.client import Client
+    from navette.supervisor.client import Client
 
     return Client(project)
 
 
 def _all_clients() -> "list[Client]":
-    from navette.modules.client import known_projects
+    from navette.supervisor.client import known_projects
 
     return [_client(project) for project in known_projects()]
 
@@ -265,7 +265,7 @@ def _watch_start(
     client: "Client", names: Sequence[str], timeout_s: float, *, stay: bool
 ) -> None:
     from navette.cli.modules_view import Progress, show_addresses, show_trouble
-    from navette.modules.session import last_words, until_settled
+    from navette.supervisor.session import last_words, until_settled
 
     found = Progress().show(until_settled(client, names, timeout_s))
     troubled = [view for view in found if view.is_in_trouble]
@@ -281,7 +281,7 @@ def _watch_start(
 
 def _tell_neighbours(client: "Client") -> None:
     """Two systems in one domain drive each other's robot."""
-    from navette.modules.session import neighbours
+    from navette.supervisor.session import neighbours
 
     for domain, other in neighbours(client, _all_clients()):
         note(
@@ -293,8 +293,8 @@ def _tell_neighbours(client: "Client") -> None:
 
 def _end(client: "Client", names: Sequence[str] | None) -> None:
     from navette.cli.modules_view import Progress
-    from navette.modules.session import until_down, views
-    from navette.modules.specs import State
+    from navette.supervisor.session import until_down, views
+    from navette.supervisor.specs import State
 
     found = views(client.down(names))
     first = [view for view in found if names is None or view.module in names]
@@ -337,7 +337,7 @@ def _watch_files(client: "Client", words: Sequence[str], file: Path | None) -> N
 
 
 def _reader(project: "Project", modules: Sequence[str]) -> "LogReader":
-    from navette.modules.log_book import LogReader
+    from navette.supervisor.log_book import LogReader
 
     wanted = set(modules)
     return LogReader(
@@ -348,7 +348,7 @@ def _reader(project: "Project", modules: Sequence[str]) -> "LogReader":
 
 def _usage(found: "Sequence[ProcessView]") -> "dict[int, Usage]":
     """Process id → what it uses."""
-    from navette.modules.usage import usage_of
+    from navette.supervisor.usage import usage_of
 
     return usage_of(view.pid for view in found if view.pid)
 
@@ -364,7 +364,7 @@ def _tell_who_wrote(project: "Project", modules: Sequence[str]) -> None:
 
 
 def _nothing_is_up(client: "Client") -> None:
-    from navette.modules.client import died
+    from navette.supervisor.client import died
 
     show(f"nothing is up in {client.project.folder}")
     pid = died(client.project)

@@ -15,12 +15,12 @@ from rich.table import Table
 from rich.text import Text
 
 from navette.cli.output import aligned, is_terminal, show
-from navette.modules.session import ProcessView
-from navette.modules.specs import State
+from navette.supervisor.session import ProcessView
+from navette.supervisor.specs import State
 
 if TYPE_CHECKING:
-    from navette.modules.log_book import LogLine
-    from navette.modules.usage import Usage
+    from navette.supervisor.log_book import LogLine
+    from navette.supervisor.usage import Usage
 
 _MARKS = {
     State.WAITING: ("·", "dim"),

@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 
 from navette.cli.output import note
 from navette.errors import NavetteError
-from navette.modules.watching import FileWatch
+from navette.supervisor.watching import FileWatch
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from navette.modules.client import Client
-    from navette.modules.project import Project
-    from navette.modules.reading import ProjectFile
-    from navette.modules.specs import ModuleSpec
+    from navette.supervisor.client import Client
+    from navette.supervisor.project import Project
+    from navette.supervisor.reading import ProjectFile
+    from navette.supervisor.specs import ModuleSpec
 
 Read = Callable[[], "tuple[Project, ProjectFile, list[str]]"]
 

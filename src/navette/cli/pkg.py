@@ -8,7 +8,7 @@ import typer
 from navette.cli.completing_installed import complete_packages
 
 if TYPE_CHECKING:
-    from navette.packages import Package
+    from navette.ros2.workspace import Package
 
 pkg = typer.Typer(
     name="pkg",
@@ -54,7 +54,7 @@ def create(
     Its tests pass at once (pytest), colcon builds it on ROS 2, and Navette runs it
     from its folder. A name that ends in _msgs makes a package of interfaces.
     """
-    from navette.packages import create_package
+    from navette.ros2.workspace import create_package
 
     here = Path.cwd()
     folder = destination_directory or (
@@ -76,7 +76,7 @@ def list_(
     ] = False,
 ) -> None:
     """List all packages: the workspace's, installed ones and Navette's own."""
-    from navette.packages import find_packages
+    from navette.ros2.workspace import find_packages
 
     for package in find_packages().values():
         place = f"\t{package.origin.value}\t{package.folder}" if paths else ""
@@ -91,7 +91,7 @@ def prefix(
     ] = False,
 ) -> None:
     """Print where a package is."""
-    from navette.packages import find_package
+    from navette.ros2.workspace import find_package
 
     package = find_package(name)
     typer.echo(package.share if share else package.prefix)
@@ -112,7 +112,7 @@ def executables(
     ] = False,
 ) -> None:
     """List the programs that navette run PACKAGE EXECUTABLE can run."""
-    from navette.packages import find_package, find_packages
+    from navette.ros2.workspace import find_package, find_packages
 
     packages = [find_package(name)] if name else list(find_packages().values())
     for package in packages:

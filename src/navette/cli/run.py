@@ -34,10 +34,10 @@ def run(words: Words, on_navette: OnNavette = False, path: SearchPath = None) ->
     import rclpy, std_msgs.msg, tf2_ros, … mean Navette's modules. Where ROS 2 is
     installed, the program runs on ROS 2, unless --navette is given.
     """
-    from navette.interop import install, installed_rclpy
-    from navette.interop.process import run_alone, run_together
-    from navette.interop.targets import read_programs
-    from navette.packages import activate
+    from navette.ros2.names import install, installed_rclpy
+    from navette.ros2.names.process import run_alone, run_together
+    from navette.ros2.names.targets import read_programs
+    from navette.ros2.workspace import activate
 
     sys.path[:0] = map(str, path or ())
     real = installed_rclpy()

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from navette.cli.status import StatusScreen
 from navette.errors import CallbackError
-from navette.launch.options import RunOptions
+from navette.navigation.stack.options import RunOptions
 
 if TYPE_CHECKING:
-    from navette.launch.simulation import Simulation
+    from navette.navigation.stack.simulation import Simulation
 
 SUCCEEDED = 0
 FAILED = 1
@@ -28,7 +28,7 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
     screen = StatusScreen(options)
     with screen.starting():
         # Imported here: the first time ever this compiles the kernels.
-        from navette.launch.simulation import Simulation
+        from navette.navigation.stack.simulation import Simulation
 
         simulation = Simulation(options, on_change=screen.on_change)
     try:

@@ -9,12 +9,12 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from navette.launch.options import RunOptions
-from navette.launch.summary import RunSummary
+from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.summary import RunSummary
 
 if TYPE_CHECKING:
-    from navette.launch.monitor import Progress
-    from navette.launch.simulation import Simulation
+    from navette.navigation.stack.monitor import Progress
+    from navette.navigation.stack.simulation import Simulation
 
 _REFRESH_HZ = 8
 _WIDTH = 24

@@ -1,24 +1,24 @@
 """``python -m navette.cli.zygote``: imports what every small node needs, then splits.
 
-Started by ``navette.processes``; whatever else a program needs, it imports itself.
+Started by ``navette.supervisor``; whatever else a program needs, it imports itself.
 """
 
 from pathlib import Path
 
 import navette.cli.run
-import navette.interop.process
-import navette.interop.ros2.rclpy.node
-import navette.interop.targets
 import navette.msgs.geometry_msgs.msg
 import navette.msgs.rcl_interfaces.srv
 import navette.msgs.std_msgs.msg
-import navette.packages
+import navette.ros2.names.process
+import navette.ros2.names.rclpy.node
+import navette.ros2.names.targets
+import navette.ros2.workspace
 import navette.runtime
 import navette.transports.zenoh.transport
 from navette.cli.app import build
-from navette.interop.hook import modules_in
 from navette.msgs import type_hash
-from navette.processes.zygote import main
+from navette.ros2.names.hook import modules_in
+from navette.supervisor.zygote import main
 
 # Their definitions are read, and their hashes computed, once for all.
 _OF_EVERY_NODE = (
@@ -36,6 +36,6 @@ _OF_EVERY_NODE = (
 if __name__ == "__main__":
     for name in _OF_EVERY_NODE:
         type_hash(name)
-    modules_in(Path(navette.interop.ros2.rclpy.__file__).parent)
+    modules_in(Path(navette.ros2.names.rclpy.__file__).parent)
     build("run")
     main()

@@ -66,9 +66,9 @@ from navette.runtime.rate import Rate
 from navette.runtime.ros_clock import Clock, JumpThreshold, ROSClock, TimeJump
 from navette.runtime.service import Service
 from navette.runtime.signals import SignalHandlerOptions
-from navette.runtime.stage import Input, Output, StageNode
-from navette.runtime.stage_params import declare_params
-from navette.runtime.status import StatusReporter, status_output
+from navette.runtime.stage.params import declare_params
+from navette.runtime.stage.stage_node import Input, Output, StageNode
+from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.subscription import MessageInfo, Subscription
 from navette.runtime.tf import (
     Buffer,

@@ -18,7 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
-from navette._version import __version__
+from navette import __version__
 from navette.errors import NavetteError, ParameterError, UnknownNameError
 from navette.msgs import definition_text, get_interface
 from navette.msgs.rcl_interfaces.msg import ParameterEvent, SetParametersResult
@@ -34,7 +34,7 @@ from navette.runtime.qos import (
     qos_profile_default,
     qos_profile_parameter_events,
 )
-from navette.runtime.stage import StageNode
+from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.subscription import Subscription
 from navette.viewer.assets import AssetFolders
 from navette.viewer.beats import Beats

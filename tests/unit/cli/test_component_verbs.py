@@ -8,7 +8,7 @@ from types import ModuleType
 import pytest
 from verb_world import World, world
 
-from navette.bringup.components import ComponentManager
+from navette.ros2.launch.components import ComponentManager
 from navette.runtime import Context, Node
 
 

@@ -395,7 +395,7 @@ def test_programs_that_were_left_running() -> None:
         (("/usr/bin/python3", "/opt/venv/bin/navette", "sim"), True),
         (("python3.12", "-m", "navette", "sim"), True),
         (("python3", "-u", "-m", "navette", "run", "a.py"), True),
-        (("python3", "-m", "navette.modules.daemon"), False),
+        (("python3", "-m", "navette.supervisor.daemon"), False),
         (("vim", "navette"), False),
         (("python3", "talker.py"), False),
         ((), False),

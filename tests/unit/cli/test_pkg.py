@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from navette.cli.app import app
 from navette.cli.arguments import spread_lists
-from navette.packages import PackageNotFoundError
+from navette.ros2.workspace import PackageNotFoundError
 
 
 @pytest.fixture

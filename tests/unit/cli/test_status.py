@@ -7,8 +7,8 @@ import pytest
 from rich.console import Console
 
 from navette.cli.status import StatusScreen
-from navette.launch import RunOptions
-from navette.launch.monitor import Progress
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.monitor import Progress
 
 
 @pytest.mark.parametrize("columns", [30, 60, 80, 200])

@@ -187,7 +187,7 @@ def test_rosout_carries_the_nodes_own_words(graph: GraphHarness) -> None:
 
 @pytest.fixture
 def algorithm_logger() -> logging.Logger:
-    return logging.getLogger("navette.planning.astar")
+    return logging.getLogger("navette.navigation.planning.astar")
 
 
 def test_what_an_algorithm_logs_is_its_nodes(
@@ -234,7 +234,8 @@ def test_what_a_clock_logs_while_it_waits_is_no_nodes(
         node.create_timer(0.5, lambda: None)
         graph.run_for(2.0)
         assert logs.messages == []
-    assert "[navette.planning.astar]: still waiting" in capsys.readouterr().err
+    output = capsys.readouterr().err
+    assert "[navette.navigation.planning.astar]: still waiting" in output
 
 
 def test_two_nodes_of_one_name_are_warned_about(

@@ -8,7 +8,7 @@ from navette.geometry import Pose2, Transform3, quaternion_from_yaw
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime import Node, ns_to_stamp
-from navette.runtime.odometry import PoseTracker
+from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.tf import StaticTransformBroadcaster, TransformBroadcaster
 from navette.runtime.tf.conversions import transform_stamped
 from navette.testing import GraphHarness

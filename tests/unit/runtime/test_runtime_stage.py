@@ -17,7 +17,7 @@ from navette.runtime import (
     StatusReporter,
     status_output,
 )
-from navette.runtime.stage_params import declare_params
+from navette.runtime.stage.params import declare_params
 from navette.testing import GraphHarness
 
 

@@ -11,7 +11,7 @@ from navette.errors import ParameterError
 from navette.geometry import Pose2
 from navette.msgs.geometry_msgs.msg import Twist, Vector3
 from navette.runtime import Context, Executor, Node, Parameter, VirtualClock
-from navette.runtime.odometry import PoseTracker
+from navette.runtime.stage.odometry import PoseTracker
 from navette.sim import Scene, World, load_robot, load_world
 from navette.sim.node import SimNode
 

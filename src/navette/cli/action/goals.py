@@ -182,7 +182,7 @@ def _yaml(message: Any, before: str = "") -> str:
 
 
 def _fields(message: Any) -> Any:
-    from navette.companions.rosidl_runtime_py import message_to_ordereddict
+    from navette.ros2.packages.rosidl_runtime_py import message_to_ordereddict
 
     return message_to_ordereddict(message)
 

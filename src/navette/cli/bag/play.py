@@ -12,7 +12,7 @@ import typer
 if TYPE_CHECKING:
     from navette.bags.play import PlayOptions
     from navette.bags.play.node import PlayerNode
-    from navette.launch.playback import Playback
+    from navette.navigation.stack.playback import Playback
 
 FAILED = 1
 INTERRUPTED = 130
@@ -131,7 +131,7 @@ def _play(
     from navette.cli.bag.play_screen import PlayScreen
     from navette.cli.keyboard import listening_to_keys
     from navette.errors import CallbackError
-    from navette.launch.playback import Playback
+    from navette.navigation.stack.playback import Playback
 
     with ExitStack() as stack:
         stack.enter_context(_terminate_as_interrupt())
@@ -186,11 +186,11 @@ def _play_with(words: list[str], run: Callable[[], int]) -> int:
     """The bag and the programs, a thread each; the end of the bag ends them all."""
     import shlex
 
-    from navette.interop import install
-    from navette.interop.process import run_together
-    from navette.interop.program import Program
-    from navette.interop.targets import read_programs
-    from navette.packages import activate
+    from navette.ros2.names import install
+    from navette.ros2.names.process import run_together
+    from navette.ros2.names.program import Program
+    from navette.ros2.names.targets import read_programs
+    from navette.ros2.workspace import activate
 
     def play_and_end() -> int:
         code = run()

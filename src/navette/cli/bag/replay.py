@@ -10,7 +10,7 @@ import typer
 
 if TYPE_CHECKING:
     from navette.bags.compare import Comparison
-    from navette.launch.replay import MakeNode
+    from navette.navigation.stack.replay import MakeNode
     from navette.runtime import Node
     from navette.runtime.overrides import ParameterOverrides
 
@@ -109,7 +109,7 @@ def replay(
     from navette.bags.play import PlayOptions
     from navette.cli.bag.replay_report import as_document, report
     from navette.cli.output import show_json
-    from navette.launch.replay import Replay
+    from navette.navigation.stack.replay import Replay
 
     tolerances = Tolerances.parse(tolerance or ())
     comparison: Comparison | None = None
@@ -155,11 +155,11 @@ def replay(
 def _maker(name: str) -> "MakeNode":
     """A stage by its name, or a class by where it is."""
     if ":" not in name:
-        from navette.launch.stack import node_class
+        from navette.navigation.stack.stack import node_class
 
         stage: Callable[..., Node] = node_class(name)
         return lambda context: stage(context=context)
-    from navette.interop.node_classes import load_node_class
+    from navette.ros2.names.node_classes import load_node_class
 
     kind: Callable[[], Node] = load_node_class(name)
     return lambda context: kind()
@@ -170,8 +170,8 @@ def _robot_parameters(
 ) -> "Callable[[ParameterOverrides], None]":
     if world is None and robot is None:
         return lambda overrides: None
-    from navette.launch.options import RunOptions
-    from navette.launch.scene import resolve_scene
+    from navette.navigation.stack.options import RunOptions
+    from navette.navigation.stack.scene import resolve_scene
 
     options = RunOptions(world=world or "empty", robot=robot)
     return resolve_scene(options).override_parameters

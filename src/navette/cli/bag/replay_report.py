@@ -5,7 +5,7 @@ from typing import Any
 
 from navette.bags.compare import Comparison, TopicComparison
 from navette.cli.output import aligned, note, show, styled
-from navette.launch.replay import ReplaySummary
+from navette.navigation.stack.replay import ReplaySummary
 
 
 def report(

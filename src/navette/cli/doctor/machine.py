@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from navette._version import __version__
+from navette import __version__
 from navette.cli.doctor.findings import Finding, Level
 from navette.cli.doctor.graph_checks import NODES
 from navette.cli.doctor.ports import (
@@ -72,7 +72,7 @@ def _version_of(distribution: str) -> str | None:
 
 def _optional_parts() -> Iterator[Finding]:
     """What Navette uses where it is there; nothing of it is needed."""
-    from navette.interop import installed_rclpy
+    from navette.ros2.names import installed_rclpy
 
     browser = next((name for name in _BROWSERS if shutil.which(name)), None)
     library = next((n for n, file in _GL_LIBRARIES.items() if _loads(file)), None)

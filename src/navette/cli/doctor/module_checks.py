@@ -11,8 +11,8 @@ MODULES = "Modules"
 
 def modules_here() -> list[dict[str, Any]]:
     """What the supervisor of this folder's project tells; empty without one."""
-    from navette.modules.client import Client
-    from navette.modules.project import find_project
+    from navette.supervisor.client import Client
+    from navette.supervisor.project import find_project
 
     client = Client(find_project(Path.cwd()))
     return client.status() if client.is_there() else []

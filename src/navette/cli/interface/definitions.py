@@ -10,16 +10,16 @@ from navette.cli.message_types import installed_class, interface_class, near_typ
 from navette.cli.output import harmless, is_terminal, styled
 from navette.cli.peer_definitions import described_by_peers
 from navette.cli.session import connect, endpoints, fail, service_endpoints
-from navette.companions.rosidl_runtime_py import (
-    get_interface_path,
-    get_interfaces,
-    message_to_yaml,
-)
 from navette.errors import InvalidNameError, UnknownNameError
 from navette.msgs.definition_sections import read_definition, split_sections
 from navette.msgs.definition_text import interface_text
 from navette.msgs.parser import parse_message, without_comment
 from navette.msgs.registry import full_name
+from navette.ros2.packages.rosidl_runtime_py import (
+    get_interface_path,
+    get_interfaces,
+    message_to_yaml,
+)
 
 _SEPARATOR = "---"
 _INDENT, _INDENT_ON_TERMINAL = "\t", "    "

@@ -5,11 +5,11 @@ from enum import Enum
 
 from navette.cli.nearest import did_you_mean
 from navette.cli.session import fail
-from navette.companions.rosidl_runtime_py.get_interfaces import (
+from navette.errors import UnknownNameError
+from navette.ros2.packages.rosidl_runtime_py.get_interfaces import (
     get_interface_packages,
     get_interfaces,
 )
-from navette.errors import UnknownNameError
 
 
 class Kind(Enum):

@@ -97,7 +97,7 @@ def _call_once(
     *,
     as_json: bool,
 ) -> None:
-    from navette.companions.rosidl_runtime_py import message_to_ordereddict
+    from navette.ros2.packages.rosidl_runtime_py import message_to_ordereddict
 
     client.wait_for_service(patience_s)
     future = client.call_async(request)

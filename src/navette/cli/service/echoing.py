@@ -81,7 +81,7 @@ def echo(
 
 
 def _as_csv(event: Any, shortened: dict[str, Any]) -> str:
-    from navette.companions.rosidl_runtime_py import message_to_csv
+    from navette.ros2.packages.rosidl_runtime_py import message_to_csv
 
     return message_to_csv(event, **shortened)
 

@@ -7,11 +7,11 @@ from navette.cli.message_yaml import yaml_of
 from navette.cli.output import harmless, json_text, styled
 from navette.cli.topic.field_path import FieldPath
 from navette.cli.topic.style import Style
-from navette.companions.rosidl_runtime_py.convert import (
+from navette.msgs import Message, to_dict
+from navette.ros2.packages.rosidl_runtime_py.convert import (
     message_to_csv,
     value_to_csv,
 )
-from navette.msgs import Message, to_dict
 
 SEPARATOR = "---"
 Part = tuple[FieldPath, Any]

@@ -16,12 +16,12 @@ from navette.cli.session import (
 )
 from navette.cli.topic.pub_options import PublishOptions
 from navette.cli.topic.qos_choice import wished_profile
-from navette.companions.rosidl_runtime_py import set_message_fields
 from navette.errors import InvalidValueError
 from navette.msgs import type_name
 from navette.msgs.interface import Field
 from navette.msgs.registry import get_message_spec
 from navette.msgs.values import shortened
+from navette.ros2.packages.rosidl_runtime_py import set_message_fields
 from navette.runtime import Clock, Node, Publisher
 from navette.runtime.time import ClockType
 from navette.transports import EndpointKind

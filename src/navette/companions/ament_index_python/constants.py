@@ -1,6 +1,0 @@
-"""ament_index_python.constants."""
-
-from navette.packages.finding import AMENT_VARIABLE
-
-AMENT_PREFIX_PATH_ENV_VAR = AMENT_VARIABLE
-RESOURCE_INDEX_SUBFOLDER = "share/ament_index/resource_index"

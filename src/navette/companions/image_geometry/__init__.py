@@ -1,8 +1,0 @@
-"""image_geometry: pixels and points of cameras."""
-
-from navette.companions.image_geometry.cameramodels import (
-    PinholeCameraModel,
-    StereoCameraModel,
-)
-
-__all__ = ["PinholeCameraModel", "StereoCameraModel"]

@@ -1,5 +1,0 @@
-"""sensor_msgs_py: point clouds as numpy arrays."""
-
-from navette.companions.sensor_msgs_py import point_cloud2
-
-__all__ = ["point_cloud2"]

@@ -1,8 +1,0 @@
-"""ROS 2's module of this name: the type of arguments that may be several entities."""
-
-from navette.launch_files.launch.launch_description_entity import (
-    SomeEntitiesType,
-    SomeEntitiesType_types_tuple,
-)
-
-__all__ = ["SomeEntitiesType", "SomeEntitiesType_types_tuple"]

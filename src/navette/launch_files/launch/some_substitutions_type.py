@@ -1,8 +1,0 @@
-"""ROS 2's module of this name: the type of arguments that may be substitutions."""
-
-from navette.launch_files.launch.substitution import (
-    SomeSubstitutionsType,
-    SomeSubstitutionsType_types_tuple,
-)
-
-__all__ = ["SomeSubstitutionsType", "SomeSubstitutionsType_types_tuple"]

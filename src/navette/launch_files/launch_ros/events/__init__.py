@@ -1,6 +1,0 @@
-"""ROS 2's ``launch_ros.events``."""
-
-from navette.launch_files.launch_ros.events import lifecycle
-from navette.launch_files.launch_ros.events.matchers import matches_node_name
-
-__all__ = ["lifecycle", "matches_node_name"]

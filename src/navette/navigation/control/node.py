@@ -1,0 +1,316 @@
+"""The node ``control``: path, odometry and costmap in, velocity commands out.
+
+It publishes nothing before its first path. On /cmd_vel it falls silent a few zeros
+after it came to rest, so that a person can drive; with a path it publishes at every
+tick, zeros where an input is stale. When it is destroyed it sends a last zero.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2, yaw_of
+from navette.grids import grid_from_message
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.msgs.geometry_msgs.msg import Pose, Twist
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
+from navette.navigation.control.command_gate import InputAges
+from navette.navigation.control.obstacles import obstacle_points
+from navette.navigation.control.params import ControlParams
+from navette.navigation.control.path_follower import PathFollower
+from navette.navigation.control.prediction import advanced
+from navette.navigation.control.records import (
+    UNKNOWN_POSE,
+    FollowerInputs,
+    FollowerOutput,
+)
+from navette.navigation.control.states import ControlState
+from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.stage_node import Input, Output, StageNode
+from navette.runtime.stage.status import StatusReporter, status_output
+from navette.runtime.time import stamp_to_ns
+
+_NEVER = -(1 << 62)
+_LONGEST_PREDICTION_S = 0.25
+_TICKS_PER_REPORT = 5
+# What a planner says of itself until its first goal.
+_NO_GOAL_YET = "waiting_for_goal"
+
+
+class ControlNode(StageNode):
+    """Follows /path until its end; stops on anything it cannot trust."""
+
+    PARAMS = ControlParams
+    INPUTS = (
+        Input(
+            topic="/path",
+            type="nav_msgs/msg/Path",
+            role="what to follow; an empty path stops",
+            callback="on_path",
+        ),
+        Input(
+            topic="/odom/filtered",
+            type="nav_msgs/msg/Odometry",
+            role="where the robot is and how it moves",
+            rate_hz=10.0,
+            timeout_s=0.14,
+            callback="on_odometry",
+        ),
+        Input(
+            topic="/costmap",
+            type="nav_msgs/msg/OccupancyGrid",
+            role="obstacles that the body must clear",
+            rate_hz=10.0,
+            timeout_s=0.19,
+            callback="on_costmap",
+        ),
+        Input(
+            topic="/planner/status",
+            type="diagnostic_msgs/msg/DiagnosticStatus",
+            role="sign of life of whoever made the path",
+            rate_hz=2.0,
+            timeout_s=2.0,
+            depth=1,
+            latched=True,
+            callback="on_planner_status",
+        ),
+    )
+    OUTPUTS = (
+        Output(
+            topic="/cmd_vel",
+            type="geometry_msgs/msg/Twist",
+            role="velocity command",
+            rate_hz=20.0,
+        ),
+        status_output("/control/status"),
+    )
+
+    _zeros_left = 0  # also while half made
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("control", **kwargs)
+        params: ControlParams = self.params
+        self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
+        self._follower = PathFollower(params)
+        self._path = np.empty((0, 3))
+        self._costmap: OccupancyGrid | None = None  # not placed yet
+        self._base_T_costmap: tuple[str, Pose2] | None = None  # fixed, by frame
+        self._costmap_ns = self._placed_ns = _NEVER  # arrival of the newest, the placed
+        self._odometry: Odometry | None = None  # newest, not used yet
+        self._odometry_ns = self._located_ns = _NEVER  # arrival of it, of the one used
+        self._planner_ns = _NEVER
+        self._planner_said = ""
+        self._ticks_to_report = 0
+        self._status = StatusReporter(self, "/control/status")
+        self._timer = self.create_timer(1 / params.rate_hz, self._tick)
+
+    def on_path(self, msg: Path) -> None:
+        """Take over a new path, or say why not."""
+        self._planner_ns = self._now_ns
+        self._zeros_left = self.params.idle_zeros
+        self._path = np.empty((0, 3))
+        frame = msg.header.frame_id
+        if msg.poses and frame != self.params.map_frame:
+            self.get_logger().error(
+                f"path in frame {frame!r}: wanted {self.params.map_frame!r}"
+            )
+            self._follower.reset(ControlState.UNKNOWN_FRAME)
+            return
+        self._take_path(_poses(msg))
+
+    def on_odometry(self, msg: Odometry) -> None:
+        """Keep the newest for the next tick; odometry may come much more often."""
+        self._odometry = msg
+        self._odometry_ns = self._now_ns
+
+    def on_costmap(self, msg: OccupancyGrid) -> None:
+        """Keep the newest costmap until the pose at its stamp is known."""
+        self._costmap = msg
+        self._costmap_ns = self._now_ns
+
+    def on_planner_status(self, msg: DiagnosticStatus) -> None:
+        """The planner is alive; one that begins anew knows nothing of the path."""
+        self._planner_ns = self._now_ns
+        before, self._planner_said = self._planner_said, msg.message
+        began_anew = msg.message == _NO_GOAL_YET and before not in ("", _NO_GOAL_YET)
+        if began_anew and self._follower.has_path:
+            self.get_logger().warning("the planner was started anew: path dropped")
+            self.on_path(Path())
+
+    def on_params_changed(self, old: ControlParams) -> None:
+        """Follow the same path with the new parameters."""
+        params: ControlParams = self.params
+        if (params.base_frame, params.map_frame) != (old.base_frame, old.map_frame):
+            self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
+            self._base_T_costmap = None
+            self._located_ns = _NEVER
+        if params.rate_hz != old.rate_hz:
+            self.destroy_timer(self._timer)
+            self._timer = self.create_timer(1 / params.rate_hz, self._tick)
+        drove = self._follower.has_path
+        self._follower = PathFollower(params)
+        self._placed_ns = _NEVER
+        if drove:
+            self._take_path(self._path)
+
+    def on_time_jump(self) -> None:
+        """Nothing that came before holds: stop, and wait for the next path."""
+        self._tracker.reset()
+        self._follower = PathFollower(self.params)
+        self._path = np.empty((0, 3))
+        self._costmap = self._odometry = None
+        self._costmap_ns = self._placed_ns = _NEVER
+        self._odometry_ns = self._located_ns = _NEVER
+        self._planner_ns = _NEVER
+
+    def destroy_node(self) -> None:
+        """Stop the robot, then end."""
+        if self._zeros_left and self.context.ok():
+            self.publish("/cmd_vel", Twist())
+            self._zeros_left = 0
+        super().destroy_node()
+
+    @property
+    def _now_ns(self) -> int:
+        return self.get_clock().now_ns
+
+    def _take_path(self, poses: np.ndarray[Any, np.dtype[np.float64]]) -> None:
+        try:
+            self._follower.set_path(poses)
+        except InvalidValueError as error:
+            self.get_logger().error(str(error))
+            self._follower.reset(ControlState.INVALID_PATH)
+            return
+        self._path = poses
+
+    def _tick(self) -> None:
+        """Locate the robot, place the costmap, ask the follower, publish."""
+        self._locate()
+        self._place_costmap()
+        speed, turn_rate = self._tracker.velocity
+        pose = self._pose_now() or UNKNOWN_POSE
+        inputs = FollowerInputs(pose, speed, turn_rate, self._ages())
+        output = self._follower.step(inputs, 1 / self.params.rate_hz)
+        self._send(output)
+        self._report(output)
+
+    def _locate(self) -> None:
+        if self._odometry is not None and self._tracker.update(self._odometry):
+            self._located_ns = self._odometry_ns
+        self._odometry = None
+
+    def _ages(self) -> InputAges:
+        return InputAges(
+            odometry_s=self._age_s(self._located_ns),
+            costmap_s=self._age_s(self._placed_ns),
+            planner_s=self._age_s(self._planner_ns),
+        )
+
+    def _age_s(self, arrival_ns: int) -> float:
+        """Seconds since an arrival; infinite for never and after time jumped back."""
+        age_ns = self._now_ns - arrival_ns
+        return age_ns / 1e9 if arrival_ns != _NEVER and age_ns >= 0 else math.inf
+
+    def _pose_at(self, stamp_ns: int) -> Pose2 | None:
+        """Pose of the base at a stamp: from the history, or a short way ahead of it."""
+        newest, latest_ns = self._tracker.latest, self._tracker.stamp_ns
+        if newest is None or latest_ns is None:
+            return None
+        if stamp_ns <= latest_ns:
+            return self._tracker.pose_at(stamp_ns)
+        seconds = min((stamp_ns - latest_ns) / 1e9, _LONGEST_PREDICTION_S)
+        return advanced(newest, *self._tracker.velocity, seconds)
+
+    def _pose_now(self) -> Pose2 | None:
+        """Pose of the base at this tick; odometry from ahead of the clock as it is."""
+        stamp_ns = self._tracker.stamp_ns
+        return None if stamp_ns is None else self._pose_at(max(self._now_ns, stamp_ns))
+
+    def _place_costmap(self) -> None:
+        """Turn the newest costmap into obstacles, once its place is known."""
+        msg, params = self._costmap, self.params
+        if msg is None or not (params.collision_check and self._follower.has_path):
+            return
+        map_T_frame = self._placement(msg)
+        around = self._pose_now()
+        if map_T_frame is None or around is None:
+            return
+        self._costmap = None
+        try:
+            cells, spec = grid_from_message(msg)
+        except InvalidValueError as error:
+            # Nothing is placed: the last good one ages, and then the robot stops.
+            self.get_logger().error(
+                f"costmap not used: {error}", throttle_duration_sec=1.0
+            )
+            return
+        points = obstacle_points(
+            cells,
+            spec,
+            map_T_frame,
+            lethal=params.lethal_cost,
+            around=around,
+            reach=self._follower.obstacle_reach_m,
+        )
+        self._follower.set_obstacles(points, spec.resolution / 2)
+        self._placed_ns = self._costmap_ns
+
+    def _placement(self, msg: OccupancyGrid) -> Pose2 | None:
+        """Pose of the costmap's frame on the map at the costmap's stamp."""
+        frame = msg.header.frame_id
+        if frame == self.params.map_frame:
+            return Pose2(0.0, 0.0, 0.0)
+        if self._base_T_costmap is None or self._base_T_costmap[0] != frame:
+            base_T_frame = self._tracker.transform_to_base(frame)
+            if base_T_frame is None:
+                return None
+            self._base_T_costmap = (frame, base_T_frame)
+        map_T_base = self._pose_at(stamp_to_ns(msg.header.stamp))
+        return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
+
+    def _send(self, output: FollowerOutput) -> None:
+        """Publish the command; at rest a few zeros and then nothing."""
+        if output.state.rests:
+            if not self._zeros_left:
+                return
+            self._zeros_left -= 1
+        twist = Twist()
+        twist.linear.x, twist.angular.z = output.command
+        self.publish("/cmd_vel", twist)
+
+    def _report(self, output: FollowerOutput) -> None:
+        """Publish the state: at once when it changes, with figures now and then."""
+        self._ticks_to_report -= 1
+        if self._ticks_to_report > 0 and self._status.state == output.state:
+            return
+        self._ticks_to_report = _TICKS_PER_REPORT
+        self._status.report(
+            str(output.state),
+            _level(output.state),
+            speed_mps=output.command.speed,
+            turn_rate_radps=output.command.turn_rate,
+            cross_track_m=output.cross_track_m,
+            heading_error_rad=output.heading_error_rad,
+            distance_left_m=output.distance_left_m,
+            clearance_m=output.clearance_m,
+        )
+
+
+def _level(state: ControlState) -> bytes:
+    if state.moves or state in (ControlState.IDLE, ControlState.REACHED):
+        return StatusReporter.OK
+    warnings = (ControlState.BLOCKED, ControlState.OFF_PATH, ControlState.MISSED_GOAL)
+    return StatusReporter.WARN if state in warnings else StatusReporter.ERROR
+
+
+def _pose(msg: Pose) -> Pose2:
+    q = msg.orientation
+    return Pose2(msg.position.x, msg.position.y, yaw_of((q.x, q.y, q.z, q.w)))
+
+
+def _poses(msg: Path) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Poses (N, 3) x, y, yaw of a path."""
+    rows = [_pose(stamped.pose) for stamped in msg.poses]
+    return np.array(rows, np.float64).reshape(-1, 3)

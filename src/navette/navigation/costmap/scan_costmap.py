@@ -1,0 +1,120 @@
+"""From one laser scan to a costmap around the sensor."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+from navette.grids import (
+    UNKNOWN,
+    GridSpec,
+    beam_directions,
+    cost_table,
+    inflate,
+    trace_beams,
+)
+from navette.navigation.costmap.grazing import grazing_margins
+from navette.navigation.costmap.params import CostmapParams
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """One turn of a planar scanner (as sensor_msgs/LaserScan)."""
+
+    ranges: NDArray[np.float32]
+    """(N,) metres; what is no measurement: see :func:`navette.grids.trace_beams`"""
+    angle_min: float
+    """of the first beam, rad from the sensor's x axis, counter-clockwise"""
+    angle_increment: float
+    """between beams, rad"""
+    range_min: float
+    """m; readings up to it are no information"""
+    range_max: float
+    """m; readings from it on mean: nothing up to there"""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.angle_min) and math.isfinite(self.angle_increment)):
+            raise InvalidValueError(
+                f"scan: angle_min {self.angle_min}, angle_increment "
+                f"{self.angle_increment}; wanted finite values"
+            )
+        if not 0.0 <= self.range_min < self.range_max:
+            raise InvalidValueError(
+                f"scan: range_min {self.range_min}, range_max {self.range_max}; "
+                f"wanted 0 <= range_min < range_max"
+            )
+
+
+class ScanCostmap:
+    """Makes costmaps: trace the beams, mark the hits, inflate.
+
+    The grid is a square about the sensor, in the sensor's frame, with an odd number
+    of cells: the sensor sits in the middle of the middle cell.
+    """
+
+    def __init__(self, params: CostmapParams) -> None:
+        self.params = params
+        cells = 2 * math.ceil(params.size / params.resolution / 2 - 0.5 - 1e-9) + 1
+        corner = -cells * params.resolution / 2
+        self.spec = GridSpec(
+            params.resolution, cells, cells, Pose2(corner, corner, 0.0)
+        )
+        self._table = cost_table(
+            "linear" if params.inflation_method == "linear" else "exponential",
+            inflation_radius=params.inflation_radius,
+            resolution=params.resolution,
+            max_cost=params.max_cost,
+            decay=params.inflation_decay,
+        )
+        self._beams: tuple[float, float, int] | None = None
+        self._directions = np.empty((0, 2))
+
+    def build(self, scan: Scan) -> NDArray[np.int8]:
+        """The costmap (H, W) of one scan: -1 unknown, 0 free … 100 hit.
+
+        A cell gets its inflated cost only where the scan saw it. An unknown cell
+        beside an obstacle stays unknown: a map keeps what it knows there (the far
+        side of a box, a post in the shadow of another), and would lose it to a cost.
+        """
+        directions = self._directions_of(scan)
+        cost = np.full(self.spec.shape, UNKNOWN, np.int8)
+        # No beam leaves the grid later than along its diagonal.
+        reach = min(scan.range_max, 1.5 * self.spec.width * self.spec.resolution)
+        if scan.range_min < reach:
+            trace_beams(
+                cost,
+                self.spec,
+                (0.0, 0.0),
+                directions,
+                scan.ranges,
+                range_min=scan.range_min,
+                range_max=reach,
+                margins=self._margins(scan, directions),
+            )
+        return inflate(cost, self._table, raise_unknown=False)
+
+    def warm_up(self) -> None:
+        """Load or compile the kernels now, not at the first scan."""
+        self.build(Scan(np.ones(2, np.float32), 0.0, 0.1, 0.1, 2.0))
+
+    def _margins(
+        self, scan: Scan, directions: NDArray[np.float64]
+    ) -> NDArray[np.float32]:
+        return grazing_margins(
+            scan.ranges,
+            directions,
+            range_min=scan.range_min,
+            range_max=scan.range_max,
+            clearance=self.params.resolution * math.sqrt(0.5),
+            most=self.params.grazing_margin,
+        )
+
+    def _directions_of(self, scan: Scan) -> NDArray[np.float64]:
+        """The beams' unit vectors; a scanner repeats them, so they are kept."""
+        beams = (scan.angle_min, scan.angle_increment, len(scan.ranges))
+        if beams != self._beams:
+            self._directions, self._beams = beam_directions(*beams), beams
+        return self._directions

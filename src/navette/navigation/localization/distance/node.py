@@ -1,0 +1,112 @@
+"""The distance node: positions or velocities → distance travelled.
+
+Publishes 0.0 until the first message came, and the distance so far ten times a second
+from then on, also while nothing comes.
+"""
+
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from navette.geometry.geodesy import GeoPoint
+from navette.msgs.geometry_msgs.msg import TwistStamped
+from navette.msgs.gnss_driver.msg import Gps
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.msgs.sensor_msgs.msg import NavSatFix, NavSatStatus
+from navette.msgs.std_msgs.msg import Float64
+from navette.navigation.localization.distance.odometer import Odometer, Step
+from navette.navigation.localization.distance.params import DistanceParams
+from navette.runtime import Input, Output, StageNode, stamp_to_ns
+
+_PERIOD_S = 0.1
+
+
+class OdomIntegratorNode(StageNode):
+    """Sums the distance travelled, by position or by velocity."""
+
+    PARAMS = DistanceParams
+    FIXED_AT_START = ("topic", "topic_type", "queue_size")
+    INPUTS: ClassVar = (
+        Input(
+            topic="/gnss_driver/odometry",
+            type="gnss_driver/msg/Gps",
+            role="where the robot is and how fast; parameters name other topics",
+            rate_hz=100.0,
+            depth=1,
+            callback="on_message",
+        ),
+    )
+    OUTPUTS: ClassVar = (
+        Output(
+            topic="/odom_integrator/distance",
+            type="std_msgs/msg/Float64",
+            role="distance travelled, m; 0.0 before the first message",
+            rate_hz=10.0,
+        ),
+    )
+
+    params: DistanceParams
+
+    def __init__(self, node_name: str = "odom_integrator", **kwargs: Any) -> None:
+        super().__init__(node_name, **kwargs)
+        self._odometer = Odometer(self.params.max_gap_ns)
+        self.create_timer(_PERIOD_S, self.on_timer)
+
+    def inputs(self) -> tuple[Input, ...]:
+        (usual,) = self.INPUTS
+        p = self.params
+        return (replace(usual, topic=p.topic, type=p.topic_type, depth=p.queue_size),)
+
+    @property
+    def distance(self) -> float:
+        """Metres so far."""
+        return self._odometer.distance
+
+    def on_message(self, msg: "Gps | NavSatFix | TwistStamped | Odometry") -> None:
+        """Add the way since the message before."""
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        if self.params.by_velocity:
+            step = self._odometer.step_velocity(_velocity(msg), stamp_ns)
+        elif isinstance(msg, NavSatFix):
+            step = self._step_fix(msg, stamp_ns)
+        else:
+            step = self._odometer.step_position(_position(msg), stamp_ns)
+        self._tell(step, stamp_ns)
+
+    def on_timer(self) -> None:
+        """Publish the distance so far."""
+        self.publish("/odom_integrator/distance", Float64(data=self.distance))
+
+    def on_params_changed(self, old: DistanceParams) -> None:
+        """The distance stays; the next message is where counting goes on."""
+        self._odometer.max_gap_ns = self.params.max_gap_ns
+        self._odometer.pause()
+
+    def _step_fix(self, fix: NavSatFix, stamp_ns: int) -> Step:
+        if fix.status.status == NavSatStatus.STATUS_NO_FIX:
+            return Step.REFUSED
+        place = GeoPoint(fix.latitude, fix.longitude, fix.altitude)
+        return self._odometer.step_place(place, stamp_ns)
+
+    def _tell(self, step: Step, stamp_ns: int) -> None:
+        if step is Step.REFUSED:
+            self.get_logger().warning(
+                f"message at {stamp_ns / 1e9:.3f} s not used: no fix, or not a number",
+                throttle_duration_sec=5.0,
+            )
+        elif step in (Step.GAP, Step.WENT_BACK):
+            self.get_logger().info(
+                f"{step.value}: counting goes on from {stamp_ns / 1e9:.3f} s"
+            )
+
+
+def _position(msg: Any) -> tuple[float, float, float]:
+    pose = msg.localization if isinstance(msg, Gps) else msg.pose.pose
+    return pose.position.x, pose.position.y, pose.position.z
+
+
+def _velocity(msg: Any) -> tuple[float, float, float]:
+    if isinstance(msg, Gps):
+        v = msg.localization.linear_velocity
+        return v.x, v.y, v.z
+    linear = (msg.twist.twist if isinstance(msg, Odometry) else msg.twist).linear
+    return linear.x, linear.y, linear.z

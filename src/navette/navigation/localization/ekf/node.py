@@ -1,0 +1,253 @@
+"""The filter's node: odometry, IMU, GNSS, … → where the robot is.
+
+Before the first measurement it publishes nothing. When no sensor says anything it goes
+on by prediction for ``sensor_timeout``, then publishes nothing until one does again, so
+that what drives by it stops. Stamps are those of the measurements, and only go ahead;
+after a jump of the measurements' time (a bag that loops) it begins anew.
+"""
+
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from navette.errors import NavetteError, ParameterError, TransformError
+from navette.geometry import Transform3
+from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.navigation.localization.ekf.filter import Estimate, Fused, PlanarEkf
+from navette.navigation.localization.ekf.history import OrderedEkf
+from navette.navigation.localization.ekf.messages import (
+    odometry_message,
+    pose_of,
+    transform_message,
+)
+from navette.navigation.localization.ekf.params import (
+    FIXED_AT_START,
+    SOURCES,
+    EkfParams,
+)
+from navette.navigation.localization.ekf.sensors import KINDS, Sensor
+from navette.navigation.localization.ekf.state import PLANAR, planar_covariance
+from navette.runtime import (
+    Buffer,
+    Input,
+    Output,
+    StageNode,
+    TransformListener,
+    stamp_to_ns,
+)
+
+_COMPLAINT_NS = 5_000_000_000
+
+
+def _input(source: str, type_name: str, role: str) -> Input:
+    role = f"{role}; the parameter of that name says which topic"
+    return Input(topic=source, type=type_name, role=role, callback=f"on_{source}")
+
+
+class EkfNode(StageNode):
+    """Extended Kalman filter in the plane, in robot_localization's words."""
+
+    PARAMS = EkfParams
+    FIXED_AT_START = FIXED_AT_START
+    INPUTS: ClassVar = (
+        _input("odom0", "nav_msgs/msg/Odometry", "wheel odometry"),
+        _input("odom1", "nav_msgs/msg/Odometry", "other odometry"),
+        _input("pose0", "geometry_msgs/msg/PoseWithCovarianceStamped", "a pose"),
+        _input("twist0", "geometry_msgs/msg/TwistWithCovarianceStamped", "velocity"),
+        _input("imu0", "sensor_msgs/msg/Imu", "heading, turn rate, acceleration"),
+        _input("gps0", "sensor_msgs/msg/NavSatFix", "the antenna's place"),
+    )
+    OUTPUTS: ClassVar = (
+        Output(
+            topic="/odom/filtered",
+            type="nav_msgs/msg/Odometry",
+            role="where the robot takes itself to be",
+            rate_hz=30.0,
+        ),
+        Output(
+            topic="/tf", type="tf2_msgs/msg/TFMessage", role="the same", rate_hz=30.0
+        ),
+    )
+
+    params: EkfParams
+    _is_fresh: bool  # since the last publication, a sensor said something
+    _arrived_ns: int  # when one last did
+    _published_ns: int  # stamp of the last publication
+    _is_silent: bool  # for want of measurements
+
+    def __init__(self, node_name: str = "ekf", **kwargs: Any) -> None:
+        super().__init__(node_name, **kwargs)
+        self._complained_ns: dict[str, int] = {}
+        self._buffer = Buffer(node=self)
+        # A filter on the map asks where odometry has the robot: the moving frames.
+        self._listener = TransformListener(
+            self._buffer, self, static_only=not self._is_on_map
+        )
+        self._start()
+        self._timer = self.create_timer(1.0 / self.params.frequency, self.on_timer)
+
+    def inputs(self) -> tuple[Input, ...]:
+        if not self.params.used:
+            raise ParameterError(
+                f"node {self.get_fully_qualified_name()}: no input; wanted the topic "
+                f"of at least one of {', '.join(SOURCES)}"
+            )
+        return tuple(
+            replace(
+                usual,
+                topic=getattr(self.params, usual.topic),
+                depth=getattr(self.params, f"{usual.topic}_queue_size"),
+            )
+            for usual in self.INPUTS
+            if usual.topic in self.params.used
+        )
+
+    def on_odom0(self, msg: Any) -> None:
+        self._take("odom0", msg)
+
+    def on_odom1(self, msg: Any) -> None:
+        self._take("odom1", msg)
+
+    def on_pose0(self, msg: Any) -> None:
+        self._take("pose0", msg)
+
+    def on_twist0(self, msg: Any) -> None:
+        self._take("twist0", msg)
+
+    def on_imu0(self, msg: Any) -> None:
+        self._take("imu0", msg)
+
+    def on_gps0(self, msg: Any) -> None:
+        self._take("gps0", msg)
+
+    def on_timer(self) -> None:
+        """Publish the estimate: the newest, or one predicted from it."""
+        newest_ns = self._filter.ekf.stamp_ns
+        if newest_ns is None:
+            return
+        waited_ns = 0 if self._is_fresh else self._now_ns() - self._arrived_ns
+        if waited_ns > round(self.params.sensor_timeout * 1e9):
+            self._fall_silent()
+            return
+        self._is_fresh = False
+        estimate = self._filter.ekf.estimate_at(newest_ns + waited_ns)
+        if estimate is not None and estimate.stamp_ns > self._published_ns:
+            self._published_ns = estimate.stamp_ns
+            self._publish(estimate)
+
+    def on_params_changed(self, old: EkfParams) -> None:
+        """Another rate applies at once; anything else begins anew."""
+        if self.params.frequency != old.frequency:
+            self.destroy_timer(self._timer)
+            self._timer = self.create_timer(1.0 / self.params.frequency, self.on_timer)
+        if replace(self.params, frequency=old.frequency) != old:
+            self._start()
+
+    def base_in(self, child: str) -> Transform3:
+        """child_T_base of a frame fixed to the robot."""
+        return self._lookup(child, self.params.base_link_frame)
+
+    def in_world(self, frame: str) -> Transform3:
+        """world_T_frame of a frame that poses are given in."""
+        return self._lookup(self.params.world_frame, frame)
+
+    @property
+    def _is_on_map(self) -> bool:
+        params = self.params
+        return params.world_frame == params.map_frame != params.odom_frame
+
+    def _start(self) -> None:
+        params = self.params
+        noise, initial = (
+            planar_covariance(getattr(params, name), name)
+            for name in ("process_noise_covariance", "initial_estimate_covariance")
+        )
+        self._filter = OrderedEkf(
+            PlanarEkf(noise, initial, np.array(params.initial_state)[PLANAR]),
+            round(params.history_length * 1e9),
+            round(params.max_gap * 1e9),
+        )
+        self._sensors: dict[str, Sensor] = {
+            source: KINDS[source](source, params, self) for source in params.used
+        }
+        self._reset()
+
+    def _reset(self) -> None:
+        self._filter.reset()
+        for sensor in self._sensors.values():
+            sensor.reset()
+        self._is_fresh = False
+        self._arrived_ns = 0
+        self._published_ns = -1
+        self._is_silent = False
+
+    def _take(self, source: str, msg: Any) -> None:
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        if self._filter.begins_anew(source, stamp_ns):
+            self.get_logger().info(
+                f"{source}: time jumped to {stamp_ns / 1e9:.3f} s, the filter begins "
+                "anew"
+            )
+            self._reset()
+        try:
+            for measurement in self._sensors[source].measurements(msg, stamp_ns):
+                self._fused(source, stamp_ns, self._filter.step(measurement))
+        except NavetteError as error:
+            self._complain(source, f"{source} not used: {error}")
+
+    def _fused(self, source: str, stamp_ns: int, fused: Fused) -> None:
+        if fused is not Fused.USED:
+            at = f"{source} at {stamp_ns / 1e9:.3f} s"
+            self._complain(source, f"{at} not used: {fused.value}")
+        if fused in (Fused.USED, Fused.REJECTED):
+            self._is_fresh = True
+            self._arrived_ns = self._now_ns()
+            self._is_silent = False
+
+    def _publish(self, estimate: Estimate) -> None:
+        params = self.params
+        message = odometry_message(estimate, params.world_frame, params.base_link_frame)
+        self.publish("/odom/filtered", message)
+        if params.publish_tf:
+            self._publish_transform(estimate)
+
+    def _publish_transform(self, estimate: Estimate) -> None:
+        params = self.params
+        child = params.base_link_frame
+        transform = Transform3.from_pose2(pose_of(estimate))
+        if self._is_on_map:
+            child = params.odom_frame
+            try:
+                base_T_odom = self._lookup(params.base_link_frame, child)
+            except TransformError as error:
+                self._complain("tf", f"/tf not published: {error}")
+                return
+            transform = transform @ base_T_odom
+        stamped = transform_message(
+            estimate.stamp_ns, params.world_frame, child, transform
+        )
+        self.publish("/tf", TFMessage(transforms=[stamped]))
+
+    def _lookup(self, target: str, source: str) -> Transform3:
+        if target == source:
+            return Transform3.identity()
+        try:
+            return self._buffer.lookup(target, source, 0)
+        except TransformError as error:
+            raise TransformError(f"no transform {target} → {source}: {error}") from None
+
+    def _fall_silent(self) -> None:
+        if not self._is_silent:
+            self._is_silent = True
+            self.get_logger().warning("nothing published: no sensor says anything")
+
+    def _complain(self, about: str, text: str) -> None:
+        """Log a warning, for each thing at most one in five seconds."""
+        now_ns = self._now_ns()
+        if now_ns - self._complained_ns.get(about, -_COMPLAINT_NS) >= _COMPLAINT_NS:
+            self._complained_ns[about] = now_ns
+            self.get_logger().warning(text)
+
+    def _now_ns(self) -> int:
+        return self.get_clock().now().nanoseconds

@@ -1,0 +1,289 @@
+"""Messages → measurements, one object per input of the filter."""
+
+import logging
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2, Transform3, yaw_of
+from navette.geometry.geodesy import GeoPoint, LocalPlane
+from navette.geometry.se3 import multiply, rotate
+from navette.msgs.geometry_msgs.msg import Pose
+from navette.msgs.sensor_msgs.msg import Imu, NavSatFix, NavSatStatus
+from navette.navigation.localization.ekf.measurement import Measurement
+from navette.navigation.localization.ekf.params import EkfParams
+from navette.navigation.localization.ekf.readings import (
+    LEAST_VARIANCE,
+    FirstPoseIsZero,
+    PoseChanges,
+    Reading,
+    Selection,
+    measured,
+    pose_reading,
+    turned,
+    twist_reading,
+    without_variance,
+)
+from navette.navigation.localization.ekf.state import AX, VX, VYAW, YAW, Array, X, Y
+
+_LOG = logging.getLogger(__name__)
+_PLANAR = np.ix_([0, 1, 5], [0, 1, 5])  # x, y, and turning about z, of six
+
+
+class Frames(Protocol):
+    """How frames lie; a TransformError where that is not known."""
+
+    def base_in(self, child: str) -> Transform3: ...  # child_T_base
+    def in_world(self, frame: str) -> Transform3: ...  # world_T_frame
+
+
+class Sensor(ABC):
+    """One input of the filter.
+
+    Args:
+        source: its parameter's name, ``odom0`` and so on.
+        params: the filter's.
+        frames: where its frames lie.
+    """
+
+    def __init__(self, source: str, params: EkfParams, frames: Frames) -> None:
+        self.source = source
+        self.params = params
+        self.frames = frames
+        self.selection = Selection.from_config(params.config_of(source))
+        self._missing: set[str] = set()  # what was complained about
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the messages so far."""
+        self._changes = PoseChanges(round(self.params.max_gap * 1e9))
+        self._first = FirstPoseIsZero()
+
+    @abstractmethod
+    def measurements(self, msg: Any, stamp_ns: int) -> Iterator[Measurement]:
+        """What a message says.
+
+        Raises:
+            InvalidValueError: it is not finite, or its covariance is none.
+            TransformError: its frame is not connected.
+        """
+
+    def _option(self, name: str) -> Any:
+        return getattr(self.params, f"{self.source}_{name}")
+
+    def _pose(
+        self, msg: Any, child: str, stamp_ns: int, threshold: float
+    ) -> Iterator[Measurement]:
+        """From a PoseWithCovariance in the frame of the message's header."""
+        if not self.selection.pose:
+            return
+        reading = pose_reading(
+            stamp_ns,
+            self._pose_of(msg.pose.pose),
+            _planar(msg.pose.covariance),
+            self.frames.base_in(child).to_pose2(),
+        )
+        _check(reading)
+        if self._option("differential"):
+            change = self._changes.step(reading)
+            if change is not None:
+                yield self._measured(change, VX, self._as_twist(), threshold)
+            return
+        if self._option("relative"):
+            reading = self._first.step(reading)
+        else:
+            world_T_frame = self.frames.in_world(msg.header.frame_id).to_pose2()
+            reading = turned(reading, world_T_frame)
+        yield self._measured(reading, X, self.selection.pose, threshold)
+
+    def _pose_of(self, pose: Pose) -> Pose2:
+        """The heading as 0 where it is not asked for: many senders leave it out."""
+        yaw = yaw_of(_quaternion(pose.orientation)) if YAW in self.selection.pose else 0
+        return Pose2(pose.position.x, pose.position.y, yaw)
+
+    def _twist(
+        self, twist: Any, child: str, stamp_ns: int, threshold: float
+    ) -> Iterator[Measurement]:
+        """From a TwistWithCovariance in the frame ``child``."""
+        if not self.selection.twist:
+            return
+        linear, angular = twist.twist.linear, twist.twist.angular
+        reading = twist_reading(
+            stamp_ns,
+            np.array([linear.x, linear.y, angular.z]),
+            _planar(twist.covariance),
+            self.frames.base_in(child).to_pose2(),
+        )
+        _check(reading)
+        yield self._measured(reading, VX, self.selection.twist, threshold)
+
+    def _as_twist(self) -> tuple[int, ...]:
+        return tuple(index + VX for index in self.selection.pose)
+
+    def _measured(
+        self, reading: Reading, first: int, chosen: tuple[int, ...], threshold: float
+    ) -> Measurement:
+        missing = without_variance(reading, first, chosen)
+        if missing and missing not in self._missing:
+            self._missing.add(missing)
+            _LOG.warning(
+                "%s: it gives no variance of %s; %g is taken",
+                self.source,
+                missing,
+                LEAST_VARIANCE,
+            )
+        return measured(self.source, reading, first, chosen, threshold)
+
+
+class OdometrySensor(Sensor):
+    """nav_msgs/msg/Odometry: pose and velocity."""
+
+    def measurements(self, msg: Any, stamp_ns: int) -> Iterator[Measurement]:
+        child = msg.child_frame_id
+        limit = self._option("pose_rejection_threshold")
+        yield from self._pose(msg, child, stamp_ns, limit)
+        limit = self._option("twist_rejection_threshold")
+        yield from self._twist(msg.twist, child, stamp_ns, limit)
+
+
+class PoseSensor(Sensor):
+    """geometry_msgs/msg/PoseWithCovarianceStamped: the base's pose."""
+
+    def measurements(self, msg: Any, stamp_ns: int) -> Iterator[Measurement]:
+        child, limit = self.params.base_link_frame, self._option("rejection_threshold")
+        yield from self._pose(msg, child, stamp_ns, limit)
+
+
+class TwistSensor(Sensor):
+    """geometry_msgs/msg/TwistWithCovarianceStamped: velocity in its own frame."""
+
+    def measurements(self, msg: Any, stamp_ns: int) -> Iterator[Measurement]:
+        child = msg.header.frame_id
+        limit = self._option("rejection_threshold")
+        yield from self._twist(msg.twist, child, stamp_ns, limit)
+
+
+class ImuSensor(Sensor):
+    """sensor_msgs/msg/Imu: heading, turn rate, acceleration.
+
+    Mounted in any attitude; that its acceleration is not the base's own while the
+    robot turns is left out of account.
+    """
+
+    def measurements(self, msg: Imu, stamp_ns: int) -> Iterator[Measurement]:
+        imu_R_base = self.frames.base_in(msg.header.frame_id).rotation
+        if self.selection.pose:
+            yield self._heading(msg, stamp_ns, imu_R_base)
+        if self.selection.twist:
+            rate, covariance = _in_base(
+                imu_R_base, msg.angular_velocity, msg.angular_velocity_covariance
+            )
+            limit = self._option("twist_rejection_threshold")
+            reading = Reading(stamp_ns, rate[2:], covariance[2:, 2:])
+            _check(reading)
+            yield self._measured(reading, VYAW, self.selection.twist, limit)
+        if self.selection.acceleration:
+            yield self._acceleration(msg, stamp_ns, imu_R_base)
+
+    def _heading(self, msg: Imu, stamp_ns: int, imu_R_base: Any) -> Measurement:
+        covariance = np.asarray(msg.orientation_covariance, float).reshape(3, 3)
+        if covariance[0, 0] == -1.0:
+            raise InvalidValueError("it says that it measures no orientation")
+        yaw = yaw_of(multiply(_quaternion(msg.orientation), imu_R_base))
+        reading = Reading(stamp_ns, np.array([0.0, 0.0, yaw]), np.zeros((3, 3)))
+        reading.covariance[2, 2] = covariance[2, 2]
+        _check(reading)
+        if self._option("relative"):
+            reading = self._first.step(reading)
+        return self._measured(
+            reading, X, (YAW,), self._option("pose_rejection_threshold")
+        )
+
+    def _acceleration(self, msg: Imu, stamp_ns: int, imu_R_base: Any) -> Measurement:
+        force, covariance = _in_base(
+            imu_R_base, msg.linear_acceleration, msg.linear_acceleration_covariance
+        )
+        if self._option("remove_gravitational_acceleration"):
+            world_R_base = multiply(_quaternion(msg.orientation), imu_R_base)
+            up = rotate(_inverse(world_R_base), (0.0, 0.0, 1.0))
+            force = force - self.params.gravitational_acceleration * np.array(up)
+        reading = Reading(stamp_ns, force[:2], covariance[:2, :2])
+        _check(reading)
+        limit = self._option("linear_acceleration_rejection_threshold")
+        return self._measured(reading, AX, self.selection.acceleration, limit)
+
+
+class GpsSensor(Sensor):
+    """sensor_msgs/msg/NavSatFix: where its antenna is, east and north of the datum."""
+
+    def reset(self) -> None:
+        super().reset()
+        datum = self.params.datum
+        self._plane = None if datum is None else LocalPlane(datum)
+
+    def measurements(self, msg: NavSatFix, stamp_ns: int) -> Iterator[Measurement]:
+        if msg.status.status == NavSatStatus.STATUS_NO_FIX:
+            raise InvalidValueError("it has no fix")
+        place = GeoPoint(msg.latitude, msg.longitude, msg.altitude)
+        if not place.is_valid:
+            raise InvalidValueError(f"{place}: no place")
+        antenna = self.frames.base_in(msg.header.frame_id).inverse().translation
+        if self._plane is None:
+            self._plane = LocalPlane(place)
+        covariance = np.asarray(msg.position_covariance, float).reshape(3, 3)[:2, :2]
+        reading = Reading(stamp_ns, np.array(self._plane.east_north(place)), covariance)
+        _check(reading)
+        limit = self._option("rejection_threshold")
+        seen = self._measured(reading, X, (X, Y), limit)
+        yield replace(seen, lever=(antenna[0], antenna[1]))
+
+
+KINDS: dict[str, type[Sensor]] = {
+    "odom0": OdometrySensor,
+    "odom1": OdometrySensor,
+    "pose0": PoseSensor,
+    "twist0": TwistSensor,
+    "imu0": ImuSensor,
+    "gps0": GpsSensor,
+}
+
+
+def _check(reading: Reading) -> None:
+    if not np.all(np.isfinite(reading.values)):
+        raise InvalidValueError(f"{reading.values.tolist()} are not finite")
+    if not reading.is_valid:
+        raise InvalidValueError(
+            f"its covariance {reading.covariance.tolist()} is not finite, not "
+            "symmetric, or has negative eigenvalues"
+        )
+
+
+def _planar(covariance: Any) -> Array:
+    """(3, 3) of x, y and turning about z, from a message's (36,)."""
+    planar: Array = np.asarray(covariance, float).reshape(6, 6)[_PLANAR]
+    return planar
+
+
+def _quaternion(q: Any) -> tuple[float, float, float, float]:
+    if not 0.9 < math.hypot(q.x, q.y, q.z, q.w) < 1.1:
+        values = [q.x, q.y, q.z, q.w]
+        raise InvalidValueError(f"its orientation {values} is no rotation")
+    return (q.x, q.y, q.z, q.w)
+
+
+def _inverse(q: tuple[float, float, float, float]) -> Any:
+    return (-q[0], -q[1], -q[2], q[3])
+
+
+def _in_base(imu_R_base: Any, vector: Any, covariance: Any) -> tuple[Array, Array]:
+    """A vector (3,) and its covariance (3, 3) along the base's axes."""
+    base_R_imu = _inverse(imu_R_base)
+    columns = [rotate(base_R_imu, axis) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    R = np.array(columns, dtype=float).T
+    turned_covariance = R @ np.asarray(covariance, float).reshape(3, 3) @ R.T
+    return R @ np.array([vector.x, vector.y, vector.z]), turned_covariance

@@ -1,0 +1,68 @@
+"""When a costmap is worth fusing."""
+
+from navette.geometry import angle_difference
+from navette.navigation.mapping.memory import MapMemory, PlacedCostmap
+from navette.navigation.mapping.params import MapMemoryParams
+
+
+class FusionGate:
+    """Decides which costmaps join the map.
+
+    - The first one with anything known in it: at once.
+    - On the timer: when the robot moved or turned far enough since the last.
+    - On arrival: when it contradicts the map near the robot (something moved, or came
+      into view), so that a robot that waits, or one that is fast, is not left with an
+      old map until the next timer; not more often than ``change_period``.
+
+    Never while the robot spins, falls or tilts: its scan is smeared, or of another
+    height than the robot drives at.
+    """
+
+    def __init__(self, params: MapMemoryParams) -> None:
+        self.params = params
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget what was fused."""
+        self._last: PlacedCostmap | None = None
+        self._last_ns = 0
+
+    def on_arrival(
+        self, costmap: PlacedCostmap, memory: MapMemory, now_ns: int
+    ) -> bool:
+        """Whether to fuse a costmap that has just arrived."""
+        if self._is_unsteady(costmap):
+            return False
+        if self._last is None:
+            return True
+        if not self.params.fuse_on_change:
+            return False
+        if now_ns - self._last_ns < round(self.params.change_period * 1e9):
+            return False
+        changes = memory.changes(costmap)
+        return max(changes) >= self.params.change_cells
+
+    def on_timer(self, newest: PlacedCostmap) -> bool:
+        """Whether to fuse the newest costmap on the timer."""
+        last = self._last
+        if self._is_unsteady(newest) or last is newest:
+            return False
+        if last is None:
+            return True
+        moved = last.map_T_base.distance_to(newest.map_T_base)
+        turned = abs(angle_difference(newest.map_T_base.yaw, last.map_T_base.yaw))
+        return (
+            moved >= self.params.update_distance or turned >= self.params.update_angle
+        )
+
+    def fused(self, costmap: PlacedCostmap, now_ns: int) -> None:
+        """Remember that ``costmap`` joined the map."""
+        self._last, self._last_ns = costmap, now_ns
+
+    def _is_unsteady(self, costmap: PlacedCostmap) -> bool:
+        motion, params = costmap.motion, self.params
+        return (
+            abs(motion.yaw_rate) > params.max_yaw_rate
+            or abs(motion.vertical_speed) > params.max_vertical_speed
+            or motion.tilt > params.max_tilt
+        )

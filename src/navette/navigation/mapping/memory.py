@@ -1,0 +1,188 @@
+"""The map: what the costmaps seen so far add up to."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Footprint, Pose2
+from navette.grids import (
+    FREE,
+    LETHAL,
+    UNKNOWN,
+    Changes,
+    GridSpec,
+    accumulate,
+    compare,
+    merge,
+)
+from navette.navigation.mapping.extent import grow_to_hold, known_corners
+from navette.navigation.mapping.params import MapMemoryParams
+from navette.navigation.mapping.under_body import cells_under
+
+
+class Motion(NamedTuple):
+    """How the robot moved when a costmap was seen."""
+
+    yaw_rate: float = 0.0
+    """rad/s"""
+    vertical_speed: float = 0.0
+    """m/s"""
+    tilt: float = 0.0
+    """angle between the body's z axis and the map's, rad"""
+
+
+STEADY = Motion()
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedCostmap:
+    """A costmap with the pose that the robot had when it was seen."""
+
+    cells: NDArray[np.int8]
+    """(h, w) -1 unknown, 0 free … 100 lethal"""
+    spec: GridSpec
+    """where it lies in the map frame"""
+    sensor: tuple[float, float]
+    """(x, y) of the sensor in the map frame, m"""
+    map_T_base: Pose2
+    """at ``stamp_ns``"""
+    stamp_ns: int
+    motion: Motion = STEADY
+
+
+class MapMemory:
+    """Fuses placed costmaps into a map that grows as needed.
+
+    ``overwrite`` and ``max`` keep occupancy; ``log_odds`` keeps a field of evidence
+    (NaN = never seen) and gives occupancy on request.
+    """
+
+    def __init__(self, params: MapMemoryParams) -> None:
+        self.configure(params)
+        self.reset()
+
+    def configure(self, params: MapMemoryParams) -> None:
+        """Use other values from now on; :meth:`MapMemoryParams.shape` must not change.
+
+        A map that has outgrown a smaller ``max_size`` keeps its size.
+        """
+        self.params = params
+        self._footprint = (
+            Footprint.from_flat(params.footprint) if params.footprint else None
+        )
+
+    def reset(self) -> None:
+        """Forget everything: all cells unknown, the extent as at the start."""
+        params = self.params
+        edge = max(1, round(params.size / params.resolution))
+        corner = edge * params.resolution / 2
+        origin = Pose2(params.center_x - corner, params.center_y - corner, 0.0)
+        self.spec = GridSpec(params.resolution, edge, edge, origin)
+        self._cells = np.full(self.spec.shape, UNKNOWN, np.int8)
+        self._log_odds: NDArray[np.float32] | None = None
+        if params.fusion == "log_odds":
+            self._log_odds = np.full(self.spec.shape, np.nan, np.float32)
+
+    def fuse(self, costmap: PlacedCostmap) -> bool:
+        """Lay a costmap into the map; False = it holds no known cell, nothing done."""
+        corners = known_corners(costmap.cells, costmap.spec)
+        if corners is None:
+            return False
+        self._grow(corners)
+        if self._log_odds is not None:
+            self._add_evidence(self._log_odds, costmap)
+        else:
+            merge(
+                self._cells,
+                self.spec,
+                costmap.cells,
+                costmap.spec,
+                "max" if self.params.fusion == "max" else "overwrite",
+                sensor=costmap.sensor,
+                erase_within=self.params.erase_range,
+            )
+        if self._footprint is not None:
+            self._free_under(self._footprint, costmap.map_T_base)
+        if self._log_odds is not None:
+            self._cells = self._occupancy_of(self._log_odds)
+        return True
+
+    def occupancy(self) -> NDArray[np.int8]:
+        """(H, W) -1 unknown, 0 free … 100 lethal, as :attr:`spec` lies; a copy."""
+        return self._cells.copy()
+
+    def changes(self, costmap: PlacedCostmap) -> Changes:
+        """Obstacle cells near the robot in which a costmap contradicts the map."""
+        return compare(
+            self._cells,
+            self.spec,
+            costmap.cells,
+            costmap.spec,
+            center=costmap.sensor,
+            radius=self.params.change_range,
+        )
+
+    def warm_up(self) -> None:
+        """Load or compile the kernels now, not at the first costmap."""
+        trial = MapMemory(replace(self.params, size=self.params.resolution))
+        cells = np.full((1, 1), LETHAL, np.int8)
+        spec = GridSpec(self.params.resolution, 1, 1, trial.spec.origin)
+        here = trial.spec.origin
+        costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0)
+        trial.fuse(costmap)
+        trial.changes(costmap)
+
+    def _grow(self, corners: NDArray[np.float64]) -> None:
+        growth = grow_to_hold(
+            self.spec, corners, chunk=self.params.growth, max_size=self.params.max_size
+        )
+        if growth is None:
+            return
+        pad = (growth.rows, growth.columns)
+        self.spec = growth.spec
+        self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
+        if self._log_odds is not None:
+            self._log_odds = np.pad(self._log_odds, pad, constant_values=np.nan)
+
+    def _add_evidence(
+        self, log_odds: NDArray[np.float32], costmap: PlacedCostmap
+    ) -> None:
+        accumulate(
+            log_odds,
+            self.spec,
+            costmap.cells,
+            costmap.spec,
+            hit=_log_odds(self.params.hit_probability),
+            miss=_log_odds(self.params.miss_probability),
+            limit=_log_odds(self.params.belief_limit),
+        )
+
+    def _occupancy_of(self, log_odds: NDArray[np.float32]) -> NDArray[np.int8]:
+        """100 from the threshold on, 0 up to one miss's belief, percent between."""
+        known = ~np.isnan(log_odds)
+        belief = 1.0 / (1.0 + np.exp(-log_odds[known]))
+        percent = np.minimum(np.rint(100 * belief), LETHAL - 1)
+        percent[belief >= self.params.occupied_threshold - 1e-6] = LETHAL
+        percent[belief <= self.params.miss_probability + 1e-6] = FREE
+        cells = np.full(log_odds.shape, UNKNOWN, np.int8)
+        cells[known] = percent
+        return cells
+
+    def _free_under(self, footprint: Footprint, map_T_base: Pose2) -> None:
+        """The robot stands there: no obstacle does, and nothing is unknown."""
+        rows, columns = cells_under(footprint, map_T_base, self.spec)
+        if self._log_odds is not None:
+            miss = np.float32(_log_odds(self.params.miss_probability))
+            there = self._log_odds[rows, columns]
+            self._log_odds[rows, columns] = np.fmin(there, miss)
+            return
+        there_now = self._cells[rows, columns]
+        clear = (there_now == UNKNOWN) | (there_now == LETHAL)
+        self._cells[rows[clear], columns[clear]] = FREE
+
+
+def _log_odds(probability: float) -> float:
+    return math.log(probability / (1.0 - probability))

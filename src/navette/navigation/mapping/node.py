@@ -1,0 +1,194 @@
+"""The map memory node: costmaps and odometry → map.
+
+An all-unknown map is published at the start, latched; then one after each costmap
+that joins it. Costmaps are placed with the pose interpolated at their stamp; without
+odometry or transforms they are dropped and the map stays as it is.
+"""
+
+import math
+from typing import Any, ClassVar
+
+from navette.errors import InvalidValueError
+from navette.grids import grid_from_message, grid_to_message, placed
+from navette.msgs.geometry_msgs.msg import Quaternion
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.navigation.mapping.gate import FusionGate
+from navette.navigation.mapping.memory import STEADY, MapMemory, Motion, PlacedCostmap
+from navette.navigation.mapping.params import MapMemoryParams
+from navette.navigation.mapping.placement import PlacementQueue, Ready
+from navette.runtime import Input, Output, StageNode, stamp_to_ns
+from navette.runtime.stage.odometry import PoseTracker
+
+# A stamp this much older than the last one fused is of a new run: a simulation that
+# was reset, a bag that starts over.
+NEW_RUN_NS = 1_000_000_000
+
+
+class MapMemoryNode(StageNode):
+    """Keeps the map."""
+
+    PARAMS = MapMemoryParams
+    INPUTS: ClassVar = (
+        Input(
+            topic="/costmap",
+            type="nav_msgs/msg/OccupancyGrid",
+            role="what is dangerous around the robot",
+            rate_hz=10.0,
+            timeout_s=0.5,
+            callback="on_costmap",
+        ),
+        Input(
+            topic="/odom/filtered",
+            type="nav_msgs/msg/Odometry",
+            role="where the robot is",
+            rate_hz=10.0,
+            timeout_s=0.5,
+            callback="on_odometry",
+        ),
+    )
+    OUTPUTS: ClassVar = (
+        Output(
+            topic="/map",
+            type="nav_msgs/msg/OccupancyGrid",
+            role="what the robot remembers",
+            depth=1,
+            latched=True,
+        ),
+    )
+
+    params: MapMemoryParams
+
+    def __init__(self, node_name: str = "map_memory", **kwargs: Any) -> None:
+        super().__init__(node_name, **kwargs)
+        self._tracker = self._new_tracker()
+        self._start()
+        self._memory.warm_up()
+        self._timer = self.create_timer(self.params.update_period, self.on_timer)
+
+    def on_odometry(self, msg: Odometry) -> None:
+        """Follow the robot; place the costmaps that waited for this."""
+        self._tracker.update(msg)
+        twist = msg.twist.twist
+        self._motion = Motion(
+            twist.angular.z, twist.linear.z, _tilt_of(msg.pose.pose.orientation)
+        )
+        if self._waiting:
+            self._place_waiting()
+
+    def on_costmap(self, msg: OccupancyGrid) -> None:
+        """Place the costmap as soon as its pose is known."""
+        stamp_ns = stamp_to_ns(msg.header.stamp)
+        if stamp_ns < self._last_stamp_ns - NEW_RUN_NS:
+            self.get_logger().info(
+                "time went back: the map starts anew", throttle_duration_sec=5.0
+            )
+            self._restart()
+        self._waiting.add(msg, stamp_ns, self._now_ns())
+        self._place_waiting()
+
+    def on_timer(self) -> None:
+        """Fuse the newest costmap if the robot moved far enough."""
+        if self._newest is not None and self._gate.on_timer(self._newest):
+            self._fuse(self._newest)
+
+    def on_params_changed(self, old: MapMemoryParams) -> None:
+        """Values that shape the map start it anew; the others apply from now on."""
+        if self.params.update_period != old.update_period:
+            self.destroy_timer(self._timer)
+            self._timer = self.create_timer(self.params.update_period, self.on_timer)
+        if self.params.shape() != old.shape():
+            if self.params.frames() != old.frames():
+                self._tracker = self._new_tracker()
+            self._start()
+        else:
+            self._memory.configure(self.params)
+            self._gate.params = self.params
+
+    def on_time_jump(self) -> None:
+        """The clock was set back: the map starts anew."""
+        self._tracker.reset()
+        self._restart()
+
+    def _new_tracker(self) -> PoseTracker:
+        return PoseTracker(self, self.params.base_frame, self.params.map_frame)
+
+    def _start(self) -> None:
+        self._memory = MapMemory(self.params)
+        self._gate = FusionGate(self.params)
+        self._restart()
+
+    def _restart(self) -> None:
+        self._motion = STEADY
+        self._memory.reset()
+        self._gate.reset()
+        self._waiting = PlacementQueue[OccupancyGrid](
+            round(self.params.pose_wait * 1e9)
+        )
+        self._newest: PlacedCostmap | None = None
+        self._last_stamp_ns = 0
+        self._publish_map(self._now_ns())
+
+    def _place_waiting(self) -> None:
+        tracker = self._tracker
+        ready, dropped = self._waiting.take(
+            tracker.pose_at, tracker.stamp_ns, self._now_ns()
+        )
+        for lost in dropped:
+            self._complain(f"{lost.reason} (stamp {lost.stamp_ns / 1e9:.3f} s)")
+        for each in ready:
+            costmap = self._placed(each)
+            if costmap is not None:
+                self._take(costmap)
+
+    def _placed(self, ready: Ready[OccupancyGrid]) -> PlacedCostmap | None:
+        frame_id = ready.item.header.frame_id
+        base_T_sensor = self._tracker.transform_to_base(frame_id)
+        if base_T_sensor is None:
+            self._complain(f"no transform from its frame {frame_id!r} to the base")
+            return None
+        map_T_sensor = ready.map_T_base @ base_T_sensor
+        try:
+            cells, spec = grid_from_message(ready.item)
+            there = placed(spec, map_T_sensor)
+        except InvalidValueError as error:
+            self._complain(str(error))
+            return None
+        return PlacedCostmap(
+            cells,
+            there,
+            (map_T_sensor.x, map_T_sensor.y),
+            ready.map_T_base,
+            ready.stamp_ns,
+            self._motion,
+        )
+
+    def _take(self, costmap: PlacedCostmap) -> None:
+        self._newest = costmap
+        if self._gate.on_arrival(costmap, self._memory, self._now_ns()):
+            self._fuse(costmap)
+
+    def _fuse(self, costmap: PlacedCostmap) -> None:
+        if not self._memory.fuse(costmap):
+            return
+        self._gate.fused(costmap, self._now_ns())
+        self._last_stamp_ns = costmap.stamp_ns
+        self._publish_map(costmap.stamp_ns)
+
+    def _publish_map(self, stamp_ns: int) -> None:
+        memory, frame_id = self._memory, self.params.map_frame
+        message = grid_to_message(memory.occupancy(), memory.spec, frame_id, stamp_ns)
+        self.publish("/map", message)
+
+    def _complain(self, reason: str) -> None:
+        self.get_logger().warning(
+            f"costmap not used: {reason}", throttle_duration_sec=5.0
+        )
+
+    def _now_ns(self) -> int:
+        return self.get_clock().now().nanoseconds
+
+
+def _tilt_of(q: Quaternion) -> float:
+    """Angle between the turned z axis and z, rad."""
+    upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y)
+    return math.acos(min(1.0, max(-1.0, upright)))

@@ -1,0 +1,77 @@
+"""Breadth-first search: the way with the fewest moves (Moore 1959).
+
+The simplest search of all, kept to learn from and to compare with. It sees free and
+closed cells only, no costs. Straight moves are tried first, so that among ways of
+equally many moves the straighter one is found. Diagonal moves need both orthogonal
+neighbours free.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from navette.navigation.planning.traversal import (
+    Cell,
+    EdgeTable,
+    require_inside,
+    steps_cost,
+    with_rim,
+)
+
+
+def search(
+    cost: NDArray[np.uint8],
+    start: Cell,
+    goal: Cell,
+    *,
+    table: EdgeTable | None = None,
+) -> tuple[NDArray[np.int64], int] | None:
+    """Cells (N, 2) row, column from start to goal, and what they cost in units.
+
+    None when there is no way, or an end is closed. Costs are counted, not minded.
+    """
+    table = table or EdgeTable()
+    require_inside(start, cost.shape, "start")
+    require_inside(goal, cost.shape, "goal")
+    rimmed = with_rim(cost)
+    stride = rimmed.shape[1]
+    closed = table.straight[rimmed].reshape(-1) == 0
+    here = (start[0] + 1) * stride + start[1] + 1
+    there = (goal[0] + 1) * stride + goal[1] + 1
+    if closed[here] or closed[there]:
+        return None
+    # The flood runs from the goal, so that following parents leads to the goal.
+    parent = np.full(closed.size, -1, np.int32)
+    _flood(closed, stride, here, there, parent, np.empty(closed.size, np.int32))
+    if parent[here] < 0:
+        return None
+    chain = [here]
+    while chain[-1] != there:
+        chain.append(int(parent[chain[-1]]))
+    cells = np.column_stack(np.divmod(np.array(chain), stride)) - 1
+    return cells, steps_cost(cells, cost, table)
+
+
+@njit(cache=True)
+def _flood(
+    closed: Any, stride: int, start: int, goal: int, parent: Any, queue: Any
+) -> None:
+    """Set the parents (towards the goal; −1 none) of cells until the start has one."""
+    steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)
+    queue[0], head, tail = goal, 0, 1
+    parent[goal] = goal
+    while head < tail and parent[start] < 0:
+        index = np.int64(queue[head])
+        head += 1
+        for k in range(8):
+            reached = index + steps[k]
+            if parent[reached] >= 0 or closed[reached]:
+                continue
+            vertical, sideways = index + steps[(k - 4) >> 1], index + steps[2 + (k & 1)]
+            if k >= 4 and (closed[vertical] or closed[sideways]):
+                continue
+            parent[reached] = index
+            queue[tail] = reached
+            tail += 1

@@ -1,0 +1,170 @@
+"""The way of a body where the way of a point will not do.
+
+The search with headings drives where the body fits barely: backwards out of a
+corner, along a wall, to the nearest pose that fits at a tight goal. Its paths are
+jagged, so only the tight part is taken from it: before and after, the path follows
+the grid's route wherever the body fits along that.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from navette.geometry import Pose2
+from navette.navigation.planning import lattice, path_shape
+from navette.navigation.planning.dijkstra import Field, cost_to_go
+from navette.navigation.planning.footprint_check import check_path
+from navette.navigation.planning.goals import cells_within
+from navette.navigation.planning.lattice_motions import Motions
+from navette.navigation.planning.lattice_search import GOOD_ENOUGH_M, GREED
+from navette.navigation.planning.params import PlannerParams
+from navette.navigation.planning.path_shape import Poses, joined
+from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
+from navette.navigation.planning.route import GridRouter
+from navette.navigation.planning.traversal import STRAIGHT
+
+# What a metre from the exact goal is worth in metres driven.
+_GOAL_PULL = 5.0
+_TAILS_TRIED = 8
+
+
+@dataclass(frozen=True)
+class Target:
+    """The goal in the map frame; any pose within the tolerance may do."""
+
+    x: float
+    y: float
+    yaw: float | None
+    tolerance_m: float
+
+
+@dataclass(frozen=True)
+class DetourResult:
+    """Poses (N, 3), None when there are none; effort spent; budget used up."""
+
+    poses: Poses | None
+    expansions: int
+    exhausted: bool
+
+
+class DetourPlanner:
+    """Plans on one grid for one body."""
+
+    def __init__(
+        self,
+        grid: PlanningGrid,
+        body: BodyShape,
+        params: PlannerParams,
+        router: GridRouter,
+    ) -> None:
+        self.grid, self.body, self.params, self.router = grid, body, params, router
+        step = min(0.3, max(0.2 * body.circumscribed_m, 2 * grid.spec.resolution))
+        self.motions = Motions(
+            step_m=step,
+            reach_m=body.circumscribed_m,
+            sample_m=min(params.path_spacing_m, step / 2),
+            turn_cost_m=params.turn_cost_m,
+            reverse_factor=params.reverse_factor,
+        )
+
+    def plan(self, start: Pose2, target: Target, route: Poses | None) -> DetourResult:
+        """Poses that the body can drive; ``route`` is the grid's, which it cannot."""
+        before = self._usable_beginning(route)
+        found = self._search(before, start, target)
+        effort = found.expansions
+        if not len(found.poses) and len(before):
+            before = before[:0]
+            found = self._search(before, start, target)
+            effort += found.expansions
+        if not len(found.poses):
+            return DetourResult(None, effort, found.exhausted)
+        poses = self._with_route_after(found.poses, target)
+        return DetourResult(joined(before, poses), effort, False)
+
+    def cost(self, poses: Poses) -> float:
+        """See :func:`.path_shape.path_cost`."""
+        return path_shape.path_cost(
+            poses,
+            self.grid,
+            turn_cost_m=self.params.turn_cost_m,
+            reverse_factor=self.params.reverse_factor,
+        )
+
+    def _usable_beginning(self, route: Poses | None) -> Poses:
+        """The part of the grid's route up to the last place with room to turn."""
+        nothing = np.empty((0, 3))
+        if route is None:
+            return nothing
+        bad = check_path(route, self.grid, self.body).first_bad
+        if bad is None or bad == 0:
+            return nothing
+        roomy = self._has_room(route[:bad])
+        left = np.cumsum(path_shape.lengths(route[: bad + 1])[::-1])[::-1]
+        usable = np.flatnonzero(roomy & (left >= self.body.circumscribed_m))
+        return route[: usable[-1] + 1] if len(usable) else nothing
+
+    def _has_room(self, poses: Poses) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+        """Where the body can turn in place."""
+        cells = np.floor(self.grid.to_cells(poses[:, :2])).astype(np.int64)
+        distance = self.grid.distance_m[cells[:, 1], cells[:, 0]]
+        needed = self.body.circumscribed_m + self.grid.margin_m
+        return np.asarray(distance >= needed + self.grid.spec.resolution)
+
+    def _search(
+        self, before: Poses, start: Pose2, target: Target
+    ) -> lattice.LatticeResult:
+        begin = Pose2(*map(float, before[-1])) if len(before) else start
+        grid, params = self.grid, self.params
+        world = lattice.LatticeWorld(
+            distance_m=grid.distance_m,
+            factor=grid.factor(),
+            guide=self._guide(target, begin),
+            spec=grid.spec,
+            body=self.body.points,
+            margin_m=grid.margin_m,
+            comfort_m=grid.margin_m + max(params.comfort_m, 0.05),
+            outside_m=grid.outside_m,
+        )
+        goal = lattice.LatticeGoal(
+            target.x, target.y, target.tolerance_m, yaw=target.yaw, pull=_GOAL_PULL
+        )
+        return lattice.search(
+            world, begin, goal, self.motions, max_expansions=params.max_expansions
+        )
+
+    def _guide(self, target: Target, begin: Pose2) -> Field:
+        cells, away = cells_within(self.grid, (target.x, target.y), target.tolerance_m)
+        off = np.maximum(away - GOOD_ENOUGH_M, 0.0)
+        # The search multiplies the guide; what the goal asks must not grow with it.
+        units = off * (_GOAL_PULL / GREED * STRAIGHT / self.grid.spec.resolution)
+        seeds = [
+            ((int(row), int(column)), int(unit))
+            for (row, column), unit in zip(cells, units, strict=True)
+        ]
+        return cost_to_go(self.grid.cost, seeds, table=self.grid.table)
+
+    def _with_route_after(self, poses: Poses, target: Target) -> Poses:
+        """The cheapest of: these poses, or some of them and then the grid's route."""
+        best, best_cost = poses, self.cost(poses)
+        along = np.concatenate([[0.0], np.cumsum(path_shape.lengths(poses))])
+        apart = max(self.body.circumscribed_m / 2, along[-1] / _TAILS_TRIED / 2)
+        tried, at = 0, -math.inf
+        for i in np.flatnonzero(self._has_room(poses)):
+            if along[i] - at < apart or tried >= _TAILS_TRIED:
+                continue
+            tried, at = tried + 1, along[i]
+            whole = self._route_from(poses, int(i), target)
+            if whole is not None and self.cost(whole) < best_cost:
+                best, best_cost = whole, self.cost(whole)
+        return best
+
+    def _route_from(self, poses: Poses, i: int, target: Target) -> Poses | None:
+        here = Pose2(*map(float, poses[i]))
+        end = poses[-1]
+        route = self.router.route(
+            self.grid, self.body, here, (end[0], end[1]), target.yaw
+        )
+        if route is None or not check_path(route, self.grid, self.body).fits:
+            return None
+        return joined(poses[: i + 1], route)

@@ -1,0 +1,58 @@
+"""Whether the body fits along a path."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.grids import body_clearance
+from navette.navigation.planning.path_shape import Poses
+from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
+
+# A body at rest must not count as closer than itself.
+_SLACK_M = 1e-3
+
+
+@dataclass(frozen=True)
+class FootprintCheck:
+    """Clearance (N,) in metres at each pose; ``first_bad`` None when all will do."""
+
+    clearance_m: NDArray[np.float64]
+    first_bad: int | None
+
+    @property
+    def fits(self) -> bool:
+        return self.first_bad is None
+
+
+def check_path(
+    poses: Poses, grid: PlanningGrid, body: BodyShape, margin_m: float | None = None
+) -> FootprintCheck:
+    """Check every pose (N, 3) of a path against the margin.
+
+    A start that has less clearance than the margin may be left along poses with no
+    less clearance than it; from the first pose that has the margin on, it holds.
+    """
+    margin = grid.margin_m if margin_m is None else margin_m
+    clearance = clearances(poses, grid, body, enough_m=margin)
+    needed = np.full(len(poses), margin)
+    if clearance[0] < margin:
+        enough = clearance >= margin
+        escape = int(np.argmax(enough)) if enough.any() else len(poses)
+        needed[:escape] = clearance[0] - _SLACK_M
+    bad = np.flatnonzero(clearance < needed)
+    return FootprintCheck(clearance, int(bad[0]) if len(bad) else None)
+
+
+def clearances(
+    poses: Poses, grid: PlanningGrid, body: BodyShape, *, enough_m: float = np.inf
+) -> NDArray[np.float64]:
+    """(N,) metres between body and obstacles; see :func:`body_clearance`."""
+    return body_clearance(
+        grid.distance_m,
+        grid.spec,
+        body.points,
+        np.ascontiguousarray(poses),
+        outside_m=grid.outside_m,
+        enough_m=enough_m,
+    )

@@ -1,0 +1,65 @@
+"""Which cell to plan to when the goal's own cell will not do."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.navigation.planning.dijkstra import UNREACHED, cost_to_go
+from navette.navigation.planning.outcome import Outcome
+from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
+from navette.navigation.planning.traversal import LETHAL, Cell
+
+
+def nearest_reachable(
+    grid: PlanningGrid,
+    start: Cell,
+    goal_xy: tuple[float, float],
+    tolerance_m: float,
+    body: BodyShape,
+) -> tuple[Cell | None, Outcome]:
+    """The reachable cell nearest to the goal, or None and the reason.
+
+    What is reachable is found by a flood from the start.
+    """
+    reached = cost_to_go(grid.cost, [(start, 0)], table=grid.table) < UNREACHED
+    cells, away = cells_within(grid, goal_xy, tolerance_m)
+    rows, columns = cells[:, 0], cells[:, 1]
+    there = reached[rows, columns]
+    if there.any():
+        best = int(np.argmin(np.where(there, away, np.inf)))
+        return (int(rows[best]), int(columns[best])), Outcome.GOAL_SNAPPED
+    if _shut_in(reached, grid, start, body):
+        return None, Outcome.START_BLOCKED
+    if (grid.cost[rows, columns] == LETHAL).all():
+        return None, Outcome.GOAL_BLOCKED
+    return None, Outcome.NO_PATH
+
+
+def cells_within(
+    grid: PlanningGrid, xy: tuple[float, float], radius_m: float
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Cells (N, 2) whose centres lie within the radius, and how far (N,), metres.
+
+    The point's own cell is always among them.
+    """
+    row, column = grid.spec.cell_of(*xy)
+    reach = math.ceil(radius_m / grid.spec.resolution)
+    rows = np.arange(max(0, row - reach), min(grid.spec.height, row + reach + 1))
+    columns = np.arange(
+        max(0, column - reach), min(grid.spec.width, column + reach + 1)
+    )
+    cells = np.stack(np.meshgrid(rows, columns, indexing="ij"), -1).reshape(-1, 2)
+    gaps = grid.spec.centers_of(cells) - xy
+    away = np.hypot(gaps[:, 0], gaps[:, 1])
+    near = (away <= radius_m) | ((cells == (row, column)).all(axis=1))
+    return cells[near], away[near]
+
+
+def _shut_in(
+    reached: NDArray[np.bool_], grid: PlanningGrid, start: Cell, body: BodyShape
+) -> bool:
+    """Whether the flood stayed within the body's own reach."""
+    cells = np.argwhere(reached)
+    away = np.hypot(*(cells - start).T) * grid.spec.resolution
+    return bool((away <= body.circumscribed_m).all())

@@ -1,0 +1,194 @@
+"""Search over position and heading: A* on a lattice of short feasible moves.
+
+State-lattice planning (Pivtoraiko and Kelly 2005) in the manner of hybrid A*
+(Dolgov et al. 2008): poses keep their exact position, and one pose is kept per bin
+of position and heading. The body is checked against the distance field at every
+sample of every move. The cost to go of the grid (obstacles and costs, but no
+heading) guides it.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+from navette.grids import GridSpec, grid_frame
+from navette.navigation.planning.bucket_queue import new_pool, new_state
+from navette.navigation.planning.dijkstra import Field
+from navette.navigation.planning.lattice_motions import MOVES, Motions
+from navette.navigation.planning.lattice_search import (
+    BUCKETS,
+    HEADING,
+    MOVE,
+    PARENT,
+    MoveTable,
+    Scene,
+    Tree,
+    grow,
+)
+from navette.navigation.planning.traversal import STRAIGHT
+
+_DIRECTIONS = np.array([direction for direction, _ in MOVES], np.int8)
+_TURNS = np.array([turn for _, turn in MOVES], np.int64)
+
+
+@dataclass(frozen=True)
+class LatticeWorld:
+    """What the search drives through.
+
+    Attributes:
+        distance_m: (H, W) float32 metres to the nearest obstacle.
+        factor: (H, W) float32, what a metre costs in each cell (1 = free).
+        guide: (H, W) cost to go to the goal, units; see :mod:`.dijkstra`.
+        spec: where these grids lie.
+        body: (K, 3) points and disc radii of the body, base frame.
+        margin_m: clearance that the body keeps.
+        comfort_m: clearance from which more is worth nothing; above the margin.
+        outside_m: distance to obstacles that holds outside the grid.
+    """
+
+    distance_m: NDArray[np.float32]
+    factor: NDArray[np.float32]
+    guide: Field
+    spec: GridSpec
+    body: NDArray[np.float64]
+    margin_m: float
+    comfort_m: float
+    outside_m: float
+
+
+@dataclass(frozen=True)
+class LatticeGoal:
+    """Any pose about (x, y) within the tolerance; nearer is better.
+
+    ``yaw`` None: any heading. ``pull`` is what a metre from the exact goal costs, in
+    metres driven.
+    """
+
+    x: float
+    y: float
+    tolerance_m: float
+    yaw: float | None = None
+    yaw_tolerance: float = 0.2
+    pull: float = 3.0
+
+
+@dataclass(frozen=True)
+class LatticeResult:
+    """Poses (N, 3) from the start on; ``expansions`` = poses looked at.
+
+    ``poses`` is empty when no way was found; ``exhausted`` then says whether the
+    search ran out of its budget (True) or of poses to try (False).
+    """
+
+    poses: NDArray[np.float64]
+    expansions: int
+    exhausted: bool
+
+
+def search(
+    world: LatticeWorld,
+    start: Pose2,
+    goal: LatticeGoal,
+    motions: Motions,
+    *,
+    max_expansions: int = 40_000,
+) -> LatticeResult:
+    """Drivable poses from ``start`` to the goal, found within the budget.
+
+    A start with less clearance than the margin may be left along poses with no less
+    clearance than it; once the margin is reached it holds.
+
+    Raises:
+        InvalidValueError: the start lies outside the grid.
+    """
+    if not world.spec.contains(*world.spec.cell_of(start.x, start.y)):
+        raise InvalidValueError(f"start {start}: outside the grid {world.spec}")
+    tree = _new_tree(world.spec, motions, max_expansions)
+    per_metre = STRAIGHT / world.spec.resolution
+    node, expanded = grow(
+        _scene(world),
+        _move_table(motions, per_metre),
+        tree,
+        (float(start.x), float(start.y), float(start.yaw)),
+        _goal_array(goal, per_metre),
+        new_pool(),
+        max_expansions,
+    )
+    if node < 0:
+        return LatticeResult(np.empty((0, 3)), expanded, expanded >= max_expansions)
+    return LatticeResult(_retrace(tree, node, start.yaw, motions), expanded, False)
+
+
+def _scene(world: LatticeWorld) -> Scene:
+    return Scene(
+        world.distance_m,
+        grid_frame(world.spec),
+        world.factor,
+        np.ascontiguousarray(world.guide),
+        world.body,
+        float(np.hypot(world.body[:, 0], world.body[:, 1]).max()),
+        float(world.margin_m),
+        float(world.comfort_m),
+        float(world.outside_m),
+    )
+
+
+def _move_table(motions: Motions, per_metre: float) -> MoveTable:
+    return MoveTable(
+        motions.offsets,
+        motions.sample_counts,
+        motions.costs_m * per_metre,
+        motions.cusp_cost_m * per_metre,
+        _DIRECTIONS,
+        _TURNS,
+        motions.headings,
+    )
+
+
+def _new_tree(spec: GridSpec, motions: Motions, max_expansions: int) -> Tree:
+    # Half a step: a move always leaves its bin.
+    bin_cells = max(1.0, motions.step_m / 2 / spec.resolution)
+    bins_wide = int(spec.width / bin_cells) + 1
+    bins_high = int(spec.height / bin_cells) + 1
+    room = 8 * max_expansions + 1
+    return Tree(
+        np.empty((room, 2), np.float64),
+        np.empty((room, 5), np.int32),
+        np.zeros(bins_high * bins_wide * motions.headings, np.int32),
+        bin_cells,
+        bins_wide,
+        np.zeros(BUCKETS, np.int32),
+        new_state(),
+    )
+
+
+def _goal_array(goal: LatticeGoal, per_metre: float) -> NDArray[np.float64]:
+    yaw = math.nan if goal.yaw is None else goal.yaw
+    pull = goal.pull * per_metre
+    where = goal.x, goal.y, goal.tolerance_m
+    return np.array([*where, yaw, goal.yaw_tolerance, pull, per_metre])
+
+
+def _retrace(
+    tree: Tree, last: int, start_yaw: float, motions: Motions
+) -> NDArray[np.float64]:
+    """Every sample (N, 3) of every move from the root to ``last``."""
+    chain = [last]
+    while tree.links[chain[-1], PARENT] >= 0:
+        chain.append(int(tree.links[chain[-1], PARENT]))
+    chain.reverse()
+    pieces = [np.array([[*tree.position[0], start_yaw]])]
+    for parent, child in itertools.pairwise(chain):
+        move = tree.links[child, MOVE]
+        yaw = start_yaw + tree.links[parent, HEADING] * motions.heading_step
+        base = Pose2(tree.position[parent, 0], tree.position[parent, 1], yaw)
+        steps = motions.offsets[move, : motions.sample_counts[move]]
+        pieces.append(np.column_stack([base.apply(steps[:, :2]), yaw + steps[:, 2]]))
+    poses = np.concatenate(pieces)
+    poses[:, 2] = np.remainder(poses[:, 2] + np.pi, 2 * np.pi) - np.pi
+    return poses

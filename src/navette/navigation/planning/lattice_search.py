@@ -1,0 +1,308 @@
+"""The compiled part of the lattice search."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from navette.grids import pose_clearance, pose_is_clear
+from navette.navigation.planning.bucket_queue import (
+    WAITING,
+    pop,
+    push,
+    reserve,
+)
+from navette.navigation.planning.dijkstra import UNREACHED
+
+SHIFT = 10
+BUCKETS = 1 << 13
+# Values kept per bin are ROOM − g, so that memory never written (0) is the worst.
+ROOM = 1 << 30
+NOWHERE = 1 << 60
+# The guide knows no headings and asks too little; weighted A* (Pohl 1970) gives up
+# optimality, within this factor, for not looking at every way to turn on the spot.
+GREED = 1.5
+# Ends this near the goal are equal: nobody shunts about for a few centimetres.
+GOOD_ENOUGH_M = 0.1
+# A pose at the margin costs this many times a comfortable one more.
+DISCOMFORT = 2.0
+
+# Columns of Tree.links.
+HEADING, G, PARENT, MOVE, ESCAPING = 0, 1, 2, 3, 4
+
+
+class Scene(NamedTuple):
+    """What is driven through; see :class:`.lattice.LatticeWorld`."""
+
+    distance_m: NDArray[np.float32]
+    frame: tuple[float, float, float, float, float]
+    factor: NDArray[np.float32]
+    guide: NDArray[np.int64]
+    body: NDArray[np.float64]
+    reach_m: float
+    margin_m: float
+    comfort_m: float
+    outside_m: float
+
+
+class MoveTable(NamedTuple):
+    """The moves; see :class:`.lattice_motions.Motions`. Costs in units."""
+
+    offsets: NDArray[np.float64]
+    counts: NDArray[np.int64]
+    costs: NDArray[np.float64]
+    cusp_cost: float
+    directions: NDArray[np.int8]
+    turns: NDArray[np.int64]
+    headings: int
+
+
+class Tree(NamedTuple):
+    """The search tree and the best pose per bin.
+
+    Attributes:
+        position: (M, 2) x, y.
+        links: (M, 5) int32: heading, g, parent, move, escaping.
+        kept: (rows · columns · headings,) ROOM − g of the best pose in each bin.
+        bin_cells: edge of a bin in cells.
+        bins_wide: bins in a row.
+        heads, queue: buckets and state of the open list; see :mod:`.bucket_queue`.
+    """
+
+    position: NDArray[np.float64]
+    links: NDArray[np.int32]
+    kept: NDArray[np.int32]
+    bin_cells: float
+    bins_wide: int
+    heads: NDArray[np.int32]
+    queue: NDArray[np.int64]
+
+
+@njit(cache=True)
+def grow(
+    scene: Any,
+    moves: Any,
+    tree: Any,
+    start: tuple[float, float, float],
+    goal: Any,
+    pool: Any,
+    budget: int,
+) -> tuple[int, int]:
+    """Grow the tree from ``start``; (node at the goal or −1, nodes expanded).
+
+    ``goal`` is x, y, tolerance, yaw or NaN, yaw tolerance, units per metre off, and
+    units of a metre.
+    """
+    state = tree.queue
+    clearance = _clearance(scene, start[0], start[1], start[2], scene.margin_m)
+    escape_m = clearance - 1e-3
+    bucket = _plant(scene, tree, start, clearance < scene.margin_m)
+    # int64 from the start: a literal would compile the callee a second time.
+    used: Any = np.int64(1)
+    push(pool, tree.heads, state, bucket, used - 1)
+    expanded = 0
+    best, best_node = np.int64(NOWHERE), -1
+    turn = 2 * np.pi / moves.headings
+    while state[WAITING] > 0 and expanded < budget and bucket < best >> SHIFT:
+        node = pop(pool, tree.heads, state, bucket)
+        if node < 0:
+            bucket += 1
+            continue
+        x, y = tree.position[node, 0], tree.position[node, 1]
+        heading: Any = np.int64(tree.links[node, HEADING])
+        at = _bin(tree, scene.frame, x, y, heading, moves.headings)
+        if node != 0 and tree.kept[at] != ROOM - tree.links[node, G]:
+            continue
+        expanded += 1
+        yaw = start[2] + heading * turn
+        if not tree.links[node, ESCAPING]:
+            total = tree.links[node, G] + _arrival(scene, goal, x, y, yaw)
+            if total < best:
+                best, best_node = total, node
+        pool = reserve(pool, state, 8)
+        used, bucket = _branch(
+            scene, moves, tree, node, yaw, escape_m, used, pool, bucket
+        )
+    return best_node, expanded
+
+
+@njit(cache=True)
+def _plant(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
+    """Make the root; returns its bucket."""
+    tree.position[0, 0], tree.position[0, 1] = start[0], start[1]
+    tree.links[0, HEADING], tree.links[0, G] = 0, 0
+    tree.links[0, PARENT], tree.links[0, MOVE] = -1, -1
+    tree.links[0, ESCAPING] = escaping
+    u, v = _to_cells(scene.frame, start[0], start[1])
+    ahead = scene.guide[int(v), int(u)]
+    nothing: Any = np.int64(0)  # a literal would compile the callee a second time
+    return _promise(nothing, ahead) >> SHIFT
+
+
+@njit(cache=True)
+def _branch(
+    scene: Any,
+    moves: Any,
+    tree: Any,
+    node: int,
+    yaw: float,
+    escape_m: float,
+    used: int,
+    pool: Any,
+    bucket: int,
+) -> tuple[int, int]:
+    """Try every move from ``node``; (nodes in the tree, first bucket in use).
+
+    The guide is greedy, so a move may promise less than the pose it starts from: the
+    first bucket goes down then.
+    """
+    first = bucket
+    x, y = tree.position[node, 0], tree.position[node, 1]
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    escaping = tree.links[node, ESCAPING] != 0
+    needed = escape_m if escaping else scene.margin_m
+    for m in range(8):
+        end = moves.counts[m] - 1
+        dx, dy = moves.offsets[m, end, 0], moves.offsets[m, end, 1]
+        dyaw = moves.offsets[m, end, 2]
+        x_new, y_new = x + cos * dx - sin * dy, y + sin * dx + cos * dy
+        ahead, factor = _cell_values(scene, x_new, y_new)
+        if factor < 0.0 or (ahead >= UNREACHED and not escaping):
+            continue
+        heading = np.int64(tree.links[node, HEADING] + moves.turns[m]) % moves.headings
+        at = _bin(tree, scene.frame, x_new, y_new, heading, moves.headings)
+        g = tree.links[node, G] + _step_cost(moves, tree.links[node, MOVE], m, factor)
+        if ROOM - g <= tree.kept[at] or used >= tree.links.shape[0]:
+            continue
+        if not _fits(scene, moves, m, x, y, yaw, needed):
+            continue
+        clearance = _clearance(scene, x_new, y_new, yaw + dyaw, scene.comfort_m)
+        lack = (scene.comfort_m - clearance) / (scene.comfort_m - scene.margin_m)
+        if lack > 0.0:
+            g += np.int64(moves.costs[m] * DISCOMFORT * lack)
+        if ROOM - g <= tree.kept[at]:
+            continue
+        tree.kept[at] = ROOM - g
+        tree.position[used, 0], tree.position[used, 1] = x_new, y_new
+        tree.links[used, HEADING], tree.links[used, G] = heading, g
+        tree.links[used, PARENT], tree.links[used, MOVE] = node, m
+        tree.links[used, ESCAPING] = escaping and clearance < scene.margin_m
+        slot = _promise(g, ahead) >> SHIFT
+        first = slot if slot < first else first
+        last = first + BUCKETS - 2
+        push(pool, tree.heads, tree.queue, slot if slot < last else last, used)
+        used += 1
+    return used, first
+
+
+@njit(cache=True)
+def _promise(g: int, ahead: int) -> int:
+    """f: what a path through here will cost, as far as is known."""
+    return g + (int(GREED * ahead) if ahead < UNREACHED else 0)
+
+
+@njit(cache=True)
+def _step_cost(moves: Any, before: int, m: int, factor: float) -> int:
+    cost = moves.costs[m] * factor
+    if before >= 0 and moves.directions[before] * moves.directions[m] < 0:
+        cost += moves.cusp_cost
+    return int(cost)
+
+
+@njit(cache=True)
+def _fits(
+    scene: Any, moves: Any, m: int, x: float, y: float, yaw: float, needed_m: float
+) -> bool:
+    """Whether the body has its clearance at every sample of move ``m``."""
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    for k in range(moves.counts[m]):
+        dx, dy = moves.offsets[m, k, 0], moves.offsets[m, k, 1]
+        if not pose_is_clear(
+            scene.distance_m,
+            scene.frame,
+            scene.body,
+            scene.reach_m,
+            x + cos * dx - sin * dy,
+            y + sin * dx + cos * dy,
+            yaw + moves.offsets[m, k, 2],
+            scene.outside_m,
+            needed_m,
+        ):
+            return False
+    return True
+
+
+@njit(cache=True)
+def _clearance(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> float:
+    return pose_clearance(
+        scene.distance_m,
+        scene.frame,
+        scene.body,
+        scene.reach_m,
+        x,
+        y,
+        yaw,
+        scene.outside_m,
+        enough_m,
+    )
+
+
+@njit(cache=True)
+def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
+    """(cost to go, price of a metre) at a point; the price is −1 outside.
+
+    The cost to go is interpolated between cell centres: in whole cells it would
+    jump by several moves' worth, and the search after it.
+    """
+    u, v = _to_cells(scene.frame, x, y)
+    height, width = scene.guide.shape
+    if not (0.0 <= u < width and 0.0 <= v < height):
+        return NOWHERE, -1.0
+    row, column = int(v), int(u)
+    ahead, factor = scene.guide[row, column], float(scene.factor[row, column])
+    u, v = u - 0.5, v - 0.5
+    if not (0.0 <= u < width - 1 and 0.0 <= v < height - 1):
+        return ahead, factor
+    row, column = int(v), int(u)
+    a, b = scene.guide[row, column], scene.guide[row, column + 1]
+    c, d = scene.guide[row + 1, column], scene.guide[row + 1, column + 1]
+    if a >= UNREACHED or b >= UNREACHED or c >= UNREACHED or d >= UNREACHED:
+        return ahead, factor
+    u, v = u - column, v - row
+    return int((a + (b - a) * u) * (1.0 - v) + (c + (d - c) * u) * v), factor
+
+
+@njit(cache=True)
+def _to_cells(frame: Any, x: float, y: float) -> tuple[float, float]:
+    dx, dy = x - frame[0], y - frame[1]
+    u = (frame[2] * dx + frame[3] * dy) / frame[4]
+    return u, (frame[2] * dy - frame[3] * dx) / frame[4]
+
+
+@njit(cache=True)
+def _bin(tree: Any, frame: Any, x: float, y: float, heading: int, headings: int) -> int:
+    u, v = _to_cells(frame, x, y)
+    row, column = int(v / tree.bin_cells), int(u / tree.bin_cells)
+    at: int = (row * tree.bins_wide + column) * headings + heading
+    return at
+
+
+@njit(cache=True)
+def _arrival(scene: Any, goal: Any, x: float, y: float, yaw: float) -> int:
+    """What arriving here adds in units; NOWHERE where it is not the goal.
+
+    So much for each metre off, and for a cramped end as much as a metre driven.
+    """
+    off = math.hypot(x - goal[0], y - goal[1])
+    if off > goal[2]:
+        return NOWHERE
+    if not math.isnan(goal[3]):
+        error = abs((yaw - goal[3] + math.pi) % (2 * math.pi) - math.pi)
+        if error > goal[4]:
+            return NOWHERE
+    lack = scene.comfort_m - _clearance(scene, x, y, yaw, scene.comfort_m)
+    cramped = lack / (scene.comfort_m - scene.margin_m) if lack > 0.0 else 0.0
+    off = off - GOOD_ENOUGH_M if off > GOOD_ENOUGH_M else 0.0
+    return int(goal[5] * off + goal[6] * cramped)

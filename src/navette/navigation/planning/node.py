@@ -1,0 +1,288 @@
+"""The planner node: map, odometry and goals → path.
+
+Before its first goal it publishes no path and says ``waiting_for_goal``; a goal that
+comes before map or odometry waits for them and says so. On stale odometry and on any
+failure it publishes an empty path: the robot stops.
+"""
+
+import math
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
+from navette.grids import GridSpec, grid_from_message
+from navette.msgs.geometry_msgs.msg import (
+    Point,
+    PointStamped,
+    Pose,
+    PoseStamped,
+    Quaternion,
+)
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
+from navette.msgs.std_msgs.msg import Header
+from navette.navigation.planning.navigator import Navigator
+from navette.navigation.planning.outcome import Outcome
+from navette.navigation.planning.params import PlannerParams
+from navette.navigation.planning.path_shape import Poses
+from navette.navigation.planning.planner import Goal
+from navette.navigation.planning.reports import Phase, Report, RobotState
+from navette.runtime import Input, Output, StageNode, ns_to_stamp
+from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.status import StatusReporter, status_output
+from navette.runtime.tf import TransformException
+
+# How often the age of the odometry is looked at.
+_WATCH_PERIOD_S = 0.1
+# Failures that pass by themselves; the others end the goal.
+_PASSING = (Outcome.STALE_ODOMETRY,)
+
+
+class PlannerNode(StageNode):
+    """Plans to the newest goal until the robot is there."""
+
+    PARAMS = PlannerParams
+    INPUTS: ClassVar = (
+        Input(
+            topic="/map",
+            type="nav_msgs/msg/OccupancyGrid",
+            role="what the robot remembers",
+            depth=1,
+            latched=True,
+            callback="on_map",
+        ),
+        Input(
+            topic="/odom/filtered",
+            type="nav_msgs/msg/Odometry",
+            role="where the robot is",
+            rate_hz=10.0,
+            timeout_s=0.5,
+            callback="on_odometry",
+        ),
+        Input(
+            topic="/goal_point",
+            type="geometry_msgs/msg/PointStamped",
+            role="where to go",
+            callback="on_goal_point",
+        ),
+        Input(
+            topic="/goal_pose",
+            type="geometry_msgs/msg/PoseStamped",
+            role="where to go, and which way to look there",
+            callback="on_goal_pose",
+        ),
+    )
+    OUTPUTS: ClassVar = (
+        Output(
+            topic="/path",
+            type="nav_msgs/msg/Path",
+            role="what to follow; empty = stop",
+        ),
+        status_output("/planner/status"),
+    )
+
+    params: PlannerParams
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("planner", **kwargs)
+        self._tracker = self._new_tracker()
+        self._navigator = Navigator(self.params)
+        self._navigator.planner.warm_up()
+        self._odometry_ns: int | None = None
+        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._status = StatusReporter(self, "/planner/status")
+        self._said = ""
+        self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
+        self.create_timer(_WATCH_PERIOD_S, self.on_watch)
+        self._report()
+
+    def on_map(self, msg: OccupancyGrid) -> None:
+        """Take the map; a path that it blocks is replaced at once."""
+        if msg.header.frame_id != self.params.map_frame:
+            self.get_logger().error(
+                f"map in frame {msg.header.frame_id!r}: "
+                f"wanted {self.params.map_frame!r}",
+                throttle_duration_sec=5.0,
+            )
+            return
+        try:
+            occupancy, spec = grid_from_message(msg)
+        except InvalidValueError as error:
+            self.get_logger().error(str(error), throttle_duration_sec=5.0)
+            return
+        self._map = occupancy, spec
+        self._navigator.set_map(occupancy, spec)
+        self.on_timer()
+
+    def on_odometry(self, msg: Odometry) -> None:
+        """Follow the robot; see at once when it has arrived."""
+        if not self._tracker.update(msg):
+            return
+        self._odometry_ns = self._now_ns
+        robot = self._robot()
+        if robot is not None and self._navigator.note(robot, self._now_ns):
+            self._publish_news()
+
+    def on_goal_point(self, msg: PointStamped) -> None:
+        """Go there, with any heading."""
+        self._take_goal(msg.header, Goal(msg.point.x, msg.point.y))
+
+    def on_goal_pose(self, msg: PoseStamped) -> None:
+        """Go there and look that way."""
+        position, q = msg.pose.position, msg.pose.orientation
+        yaw = yaw_of((q.x, q.y, q.z, q.w))
+        self._take_goal(msg.header, Goal(position.x, position.y, yaw))
+
+    def on_timer(self) -> None:
+        """Look after the goal."""
+        self._navigator.step(self._robot(), self._now_ns, stale=self._is_stale())
+        self._publish_news()
+
+    def on_watch(self) -> None:
+        """Stop the robot as soon as its odometry is stale."""
+        if self._navigator.has_path and self._is_stale():
+            self.on_timer()
+
+    def on_params_changed(self, old: PlannerParams) -> None:
+        """Plan anew with the new values."""
+        params = self.params
+        if (params.base_frame, params.map_frame) != (old.base_frame, old.map_frame):
+            self._tracker, self._odometry_ns = self._new_tracker(), None
+        if params.plan_period_s != old.plan_period_s:
+            self.destroy_timer(self._timer)
+            self._timer = self.create_timer(params.plan_period_s, self.on_timer)
+        self._navigator.configure(params)
+
+    def on_time_jump(self) -> None:
+        """The goal is of another time: stop the robot, and wait for the next.
+
+        The map stays until another comes: it may be one that is told only once.
+        """
+        had_path = self._navigator.has_path
+        self._tracker.reset()
+        self._odometry_ns = None
+        self._navigator = Navigator(self.params)
+        if self._map is not None:
+            self._navigator.set_map(*self._map)
+        if had_path:
+            empty = path_message(np.empty((0, 3)), self.params.map_frame, self._now_ns)
+            self.publish("/path", empty)
+        self._report()
+
+    @property
+    def _now_ns(self) -> int:
+        return self.get_clock().now_ns
+
+    def _new_tracker(self) -> PoseTracker:
+        return PoseTracker(self, self.params.base_frame, self.params.map_frame)
+
+    def _robot(self) -> RobotState | None:
+        pose = self._tracker.latest
+        return None if pose is None else RobotState(pose, *self._tracker.velocity)
+
+    def _is_stale(self) -> bool:
+        if self._odometry_ns is None:
+            return True
+        age_ns = self._now_ns - self._odometry_ns
+        # Negative: the clock was set back, what came before is of another run.
+        return not 0 <= age_ns <= self.params.odometry_timeout_s * 1e9
+
+    def _take_goal(self, header: Header, goal: Goal) -> None:
+        map_T_frame = self._frame_on_map(header.frame_id)
+        if map_T_frame is None:
+            self._navigator.refuse_goal(goal, Outcome.UNKNOWN_FRAME)
+            self.get_logger().error(f"goal in unknown frame {header.frame_id!r}")
+        else:
+            self._navigator.set_goal(_moved(goal, map_T_frame), self._now_ns)
+        self._report()
+        self.on_timer()
+
+    def _frame_on_map(self, frame_id: str) -> Pose2 | None:
+        """map_T_frame, where the frame is known now."""
+        params, tracker = self.params, self._tracker
+        if not frame_id:
+            self.get_logger().warning(
+                f"goal without a frame: taken as {params.map_frame!r}"
+            )
+            return Pose2(0.0, 0.0, 0.0)
+        if frame_id == params.map_frame:
+            return Pose2(0.0, 0.0, 0.0)
+        try:
+            return tracker.buffer.lookup(params.map_frame, frame_id, 0).to_pose2()
+        except TransformException:
+            pass  # not known from the map on: perhaps a frame of the robot
+        try:
+            base_T_frame = tracker.buffer.lookup(params.base_frame, frame_id, 0)
+        except TransformException:
+            return None
+        return tracker.latest and tracker.latest @ base_T_frame.to_pose2()
+
+    def _publish_news(self) -> None:
+        poses = self._navigator.take_path()
+        if poses is not None:
+            stamp_ns = self._now_ns
+            self.publish("/path", path_message(poses, self.params.map_frame, stamp_ns))
+        self._report()
+
+    def _report(self) -> None:
+        report = self._navigator.report
+        self._status.report(
+            report.message,
+            _level(report),
+            phase=report.state.value,
+            goal_id=report.goal_id,
+            goal_x=report.goal_x,
+            goal_y=report.goal_y,
+            distance_left_m=report.distance_left_m,
+            result=report.result,
+            plan=report.plan,
+            margin_m=report.margin_m,
+            replans=report.replans,
+        )
+        said = f"{report.message} {report.plan}"
+        if said != self._said:
+            self._said = said
+            self._log(report)
+
+    def _log(self, report: Report) -> None:
+        logger = self.get_logger()
+        goal = f"goal {report.goal_id} ({report.goal_x:.6g}, {report.goal_y:.6g})"
+        if report.failed:
+            logger.warning(f"{goal}: {report.message}")
+        elif report.message == Phase.FOLLOWING:
+            near = "" if report.plan == Outcome.OK else f" ({report.plan})"
+            logger.info(f"{goal}: {report.distance_left_m:.1f} m to go{near}")
+        else:
+            logger.info(
+                f"{goal}: {report.message}" if report.goal_id else "no goal yet"
+            )
+
+
+def path_message(poses: Poses, frame_id: str, stamp_ns: int) -> Path:
+    """Poses (N, 3) x, y, yaw as a message, z 0."""
+    header = Header(stamp=ns_to_stamp(stamp_ns), frame_id=frame_id)
+    stamped = []
+    for x, y, yaw in poses.tolist():
+        qx, qy, qz, qw = quaternion_from_yaw(yaw)
+        pose = Pose(
+            position=Point(x=x, y=y), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw)
+        )
+        stamped.append(PoseStamped(header=header, pose=pose))
+    return Path(header=header, poses=stamped)
+
+
+def _moved(goal: Goal, map_T_frame: Pose2) -> Goal:
+    """The goal given in a frame, on the map."""
+    if not (math.isfinite(goal.x) and math.isfinite(goal.y)):
+        return goal
+    moved = map_T_frame @ Pose2(goal.x, goal.y, goal.yaw or 0.0)
+    return Goal(moved.x, moved.y, None if goal.yaw is None else moved.yaw)
+
+
+def _level(report: Report) -> bytes:
+    if not report.failed:
+        return StatusReporter.OK
+    passing = report.message in _PASSING
+    return StatusReporter.WARN if passing else StatusReporter.ERROR

@@ -1,0 +1,136 @@
+"""The shape of a path: points to poses with headings, and what a path costs.
+
+A path is an array (N, 3) of x, y, yaw in metres and radians in the map frame. A pose
+whose heading opposes the travel towards it is driven backwards; poses at one place
+with different headings are a turn in place.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from navette.grids import distance_at, grid_frame
+from navette.navigation.planning.planning_grid import PlanningGrid
+
+Poses = NDArray[np.float64]
+Points = NDArray[np.float64]
+
+TURN_STEP = 0.2
+"""Largest change of heading between poses of a turn in place, radians."""
+_SAME_PLACE = 1e-6
+
+
+def resample(points: Points, spacing: float) -> Points:
+    """The polyline (N, 2) as points evenly spread, at most ``spacing`` apart."""
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    count = max(1, math.ceil(along[-1] / spacing - 1e-9))
+    at = np.linspace(0.0, along[-1], count + 1)
+    return np.column_stack(
+        [np.interp(at, along, points[:, 0]), np.interp(at, along, points[:, 1])]
+    )
+
+
+def smooth(points: Points, grid: PlanningGrid, keep_m: float) -> Points:
+    """Round the corners of evenly spaced points (N, 2); the ends stay.
+
+    Each point is drawn to the middle of its neighbours, again and again (the heat
+    equation), unless that would bring it closer than ``keep_m`` to an obstacle and
+    closer than it was.
+    """
+    rounded = points.copy()
+    _smooth(
+        rounded,
+        grid.distance_m,
+        grid_frame(grid.spec),
+        keep_m,
+        60,
+        np.empty(len(points)),
+    )
+    return rounded
+
+
+def headed(points: Points) -> Poses:
+    """Points (N, 2) → poses (N, 3), each looking towards the next one."""
+    steps = np.diff(points, axis=0)
+    yaw = np.arctan2(steps[:, 1], steps[:, 0])
+    return np.column_stack([points, np.append(yaw, yaw[-1])])
+
+
+def turn_in_place(
+    x: float, y: float, yaw: float, to_yaw: float, *, long_way: bool = False
+) -> Poses:
+    """Poses (N, 3) from one heading to another, both included."""
+    turn = math.remainder(to_yaw - yaw, math.tau)
+    if long_way:
+        turn -= math.copysign(math.tau, turn)
+    count = max(1, math.ceil(abs(turn) / TURN_STEP))
+    angles = yaw + turn * np.arange(count + 1) / count
+    angles = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
+    return np.column_stack([np.full(count + 1, x), np.full(count + 1, y), angles])
+
+
+def joined(*pieces: Poses) -> Poses:
+    """Pieces one after the other, without repeating a pose at the seams."""
+    whole = np.concatenate([piece for piece in pieces if len(piece)])
+    same = np.all(np.abs(np.diff(whole, axis=0)) < _SAME_PLACE, axis=1)
+    kept: Poses = whole[np.concatenate([[True], ~same])]
+    return kept
+
+
+def lengths(poses: Poses) -> NDArray[np.float64]:
+    """(N − 1,) metres between successive poses."""
+    steps = np.diff(poses[:, :2], axis=0)
+    return np.hypot(steps[:, 0], steps[:, 1])
+
+
+def turns(poses: Poses) -> NDArray[np.float64]:
+    """(N − 1,) |change of heading| of the turns in place, 0 elsewhere."""
+    change = np.diff(poses[:, 2])
+    change = np.abs(np.remainder(change + np.pi, 2 * np.pi) - np.pi)
+    return np.where(lengths(poses) < _SAME_PLACE, change, 0.0)
+
+
+def directions(poses: Poses) -> NDArray[np.int8]:
+    """(N − 1,) 1 forwards, −1 backwards, 0 turning in place."""
+    steps = np.diff(poses[:, :2], axis=0)
+    # The heading half-way: on an arc the chord points there.
+    yaw = poses[:-1, 2] + 0.5 * (
+        np.remainder(np.diff(poses[:, 2]) + np.pi, 2 * np.pi) - np.pi
+    )
+    ahead = steps[:, 0] * np.cos(yaw) + steps[:, 1] * np.sin(yaw)
+    sign = np.where(ahead >= 0, 1, -1).astype(np.int8)
+    sign[lengths(poses) < _SAME_PLACE] = 0
+    return sign
+
+
+def path_cost(
+    poses: Poses, grid: PlanningGrid, *, turn_cost_m: float, reverse_factor: float
+) -> float:
+    """What driving the path is worth, in metres of free driving forwards."""
+    if len(poses) < 2:
+        return 0.0
+    cells = np.floor(grid.to_cells(poses[1:, :2])).astype(np.int64)
+    cells = np.clip(cells, 0, (grid.spec.width - 1, grid.spec.height - 1))
+    factor = grid.factor_at(cells[:, 1], cells[:, 0])
+    factor = np.where(directions(poses) < 0, factor * reverse_factor, factor)
+    return float((lengths(poses) * factor).sum() + turn_cost_m * turns(poses).sum())
+
+
+@njit(cache=True)
+def _smooth(
+    points: Any, distance_m: Any, frame: Any, keep_m: float, rounds: int, clear: Any
+) -> None:
+    n = points.shape[0]
+    for i in range(n):
+        clear[i] = distance_at(distance_m, frame, points[i, 0], points[i, 1], np.inf)
+    for _ in range(rounds):
+        for i in range(1, n - 1):
+            x = 0.5 * points[i, 0] + 0.25 * (points[i - 1, 0] + points[i + 1, 0])
+            y = 0.5 * points[i, 1] + 0.25 * (points[i - 1, 1] + points[i + 1, 1])
+            there = distance_at(distance_m, frame, x, y, np.inf)
+            if there >= keep_m or there >= clear[i]:
+                points[i, 0], points[i, 1], clear[i] = x, y, there

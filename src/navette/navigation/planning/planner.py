@@ -1,0 +1,260 @@
+"""From map, pose and goal to a path that the body can drive."""
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Footprint, Pose2
+from navette.grids import GridSpec
+from navette.navigation.planning.detour import DetourPlanner, Target
+from navette.navigation.planning.footprint_check import check_path, clearances
+from navette.navigation.planning.goals import nearest_reachable
+from navette.navigation.planning.outcome import Outcome
+from navette.navigation.planning.params import PlannerParams
+from navette.navigation.planning.path_shape import Poses, path_cost, turn_in_place
+from navette.navigation.planning.planning_grid import (
+    BodyShape,
+    PlanningGrid,
+    open_at,
+    planning_grid,
+    without_obstacles_in,
+)
+from navette.navigation.planning.route import GridRouter
+
+# Share of the goal tolerance by which a route may simply be cut short.
+_CUT_SHARE = 0.5
+# From this many times the straight line (and some) on, a way counts as long, and one
+# with the tight margin is taken if it costs less than this share.
+_LONG_WAY, _LONG_WAY_M, _SQUEEZE_SHARE = 1.5, 4.0, 0.6
+# Margins of clearance at the path's end: robots stop a little short or long.
+_ROOMY_END = 2.0
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Where to go, in the map frame; ``yaw`` None = any heading will do."""
+
+    x: float
+    y: float
+    yaw: float | None = None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What planning came to.
+
+    Attributes:
+        outcome: named result.
+        poses: (N, 3) x, y, yaw in the map frame; empty without a path.
+        cost: metres of free driving forwards that the path is worth.
+        margin_m: clearance that the path keeps.
+        expansions: poses that the search with headings looked at; 0 = not needed.
+    """
+
+    outcome: Outcome
+    poses: Poses = field(default_factory=lambda: np.empty((0, 3)))
+    cost: float = math.inf
+    margin_m: float = math.nan
+    expansions: int = 0
+
+
+class Planner:
+    """Plans on the newest map; keeps nothing else between plans but work arrays."""
+
+    def __init__(self, params: PlannerParams) -> None:
+        self.params = params
+        self.footprint = Footprint.from_flat(params.footprint)
+        self.router = GridRouter(params)
+        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._body: BodyShape | None = None
+        self._grids: dict[float, PlanningGrid] = {}
+
+    def with_params(self, params: PlannerParams) -> "Planner":
+        """Another planner on the same map."""
+        other = Planner(params)
+        if self._map is not None:
+            other.set_map(*self._map)
+        return other
+
+    def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
+        """Take a map (H, W): −1 unknown, 0 free … 100 occupied."""
+        if self._map is None or self._map[1].resolution != spec.resolution:
+            self._body = BodyShape.of(self.footprint, spec.resolution)
+        self._map = occupancy, spec
+        self._grids.clear()
+
+    def warm_up(self) -> None:
+        """Compile or load every kernel, so that the first goal need not wait."""
+        reach = self.footprint.circumscribed_radius
+        spec = GridSpec(reach / 4, 40, 40)
+        other = Planner(self.params)
+        other.set_map(np.zeros(spec.shape, np.int8), spec)
+        start, goal = Pose2(4 * reach, 5 * reach, 0.0), Goal(6 * reach, 5.1 * reach)
+        other.plan(start, goal)
+        DetourPlanner(other.grid(), other.body, self.params, other.router).plan(
+            start, Target(goal.x, goal.y, None, reach), None
+        )
+        nearest_reachable(other.grid(), (20, 20), (goal.x, goal.y), reach, other.body)
+
+    @property
+    def body(self) -> BodyShape:
+        """The body, sampled as finely as the map."""
+        assert self._body is not None, "set_map comes first"
+        return self._body
+
+    def grid(self, margin_m: float | None = None) -> PlanningGrid:
+        """The map prepared for a margin (the parameter's by default)."""
+        assert self._map is not None, "set_map comes first"
+        margin = self.params.clearance_margin_m if margin_m is None else margin_m
+        if margin not in self._grids:
+            params = replace(self.params, clearance_margin_m=margin)
+            self._grids[margin] = planning_grid(*self._map, self.body, params)
+        return self._grids[margin]
+
+    def plan(self, start: Pose2, goal: Goal) -> Plan:
+        """A path from ``start`` to ``goal``, or the reason why there is none.
+
+        Where the body does not fit with its margin, or only a long way round, the
+        tight margin is tried.
+        """
+        refused = self._refusal(start, goal)
+        if refused is not None:
+            return Plan(refused)
+        plan = self._plan_with(self.params.clearance_margin_m, start, goal)
+        tight = self.params.tight_margin_m
+        direct = math.dist((start.x, start.y), (goal.x, goal.y))
+        if tight >= self.params.clearance_margin_m or (
+            plan.outcome.has_path and plan.cost <= _LONG_WAY * direct + _LONG_WAY_M
+        ):
+            return plan
+        squeezed = self._plan_with(tight, start, goal)
+        worth = squeezed.cost < _SQUEEZE_SHARE * plan.cost
+        return squeezed if squeezed.outcome.has_path and worth else plan
+
+    def plan_on_grid(self, start: Pose2, goal: Goal) -> Plan | None:
+        """A path that the grid's search alone finds, with the full margin, or None.
+
+        Cheap: what to ask when there is a path and only a better one is of interest.
+        """
+        if self._refusal(start, goal) is not None:
+            return None
+        margin = self.params.clearance_margin_m
+        grid = self._opened(margin, start)
+        route = self.router.route(grid, self.body, start, (goal.x, goal.y), goal.yaw)
+        if route is None:
+            return None
+        poses = self._cut_to_fit(grid, start, goal, route)
+        return None if poses is None else self._planned(goal, poses, margin, 0)
+
+    def cost_of(self, poses: Poses) -> float:
+        """What driving these poses is worth on the newest map; see path_cost."""
+        return path_cost(
+            poses,
+            self.grid(),
+            turn_cost_m=self.params.turn_cost_m,
+            reverse_factor=self.params.reverse_factor,
+        )
+
+    def _refusal(self, start: Pose2, goal: Goal) -> Outcome | None:
+        if not all(map(math.isfinite, (goal.x, goal.y, goal.yaw or 0.0))):
+            return Outcome.GOAL_NOT_FINITE
+        if self.grid().cell_of(goal.x, goal.y) is None:
+            return Outcome.GOAL_OUTSIDE_MAP
+        if self.grid().cell_of(start.x, start.y) is None:
+            return Outcome.START_OUTSIDE_MAP
+        return None
+
+    def _plan_with(self, margin_m: float, start: Pose2, goal: Goal) -> Plan:
+        grid = self._opened(margin_m, start)
+        route = self.router.route(grid, self.body, start, (goal.x, goal.y), goal.yaw)
+        if route is None:
+            end, why_not = self._end_nearby(grid, start, goal)
+            if end is None:
+                return Plan(why_not)
+            route = self.router.route(grid, self.body, start, end, goal.yaw)
+            assert route is not None, "the end was chosen among reachable cells"
+        fitting = self._cut_to_fit(grid, start, goal, route)
+        if fitting is not None and not self._ends_cramped(grid, fitting):
+            return self._planned(goal, fitting, margin_m, 0)
+        detour = DetourPlanner(grid, self.body, self.params, self.router).plan(
+            start, Target(goal.x, goal.y, goal.yaw, self._reach_m), route
+        )
+        poses = fitting if detour.poses is None else detour.poses
+        if poses is None:
+            why = Outcome.SEARCH_LIMIT if detour.exhausted else Outcome.NO_PATH
+            return Plan(why, expansions=detour.expansions)
+        return self._planned(goal, poses, margin_m, detour.expansions)
+
+    def _ends_cramped(self, grid: PlanningGrid, route: Poses) -> bool:
+        """Whether a robot that stops a little long would be too close."""
+        last = clearances(route[-1:], grid, self.body)
+        return bool(last[0] < _ROOMY_END * grid.margin_m)
+
+    @property
+    def _reach_m(self) -> float:
+        """How far from the goal a path may end: the robot stops short of its end."""
+        params = self.params
+        return max(
+            params.goal_tolerance_m - params.path_end_tolerance_m,
+            0.5 * params.goal_tolerance_m,
+        )
+
+    def _opened(self, margin_m: float, start: Pose2) -> PlanningGrid:
+        """The grid without the robot's own shadow, open around the start."""
+        assert self._map is not None, "set_map comes first"
+        params = replace(self.params, clearance_margin_m=margin_m)
+        grid = self.grid(margin_m)
+        grid = without_obstacles_in(grid, self._map[0], start, self.body, params)
+        cell = grid.cell_of(start.x, start.y)
+        assert cell is not None, "the start lies in the map"
+        return open_at(grid, cell, self.body)
+
+    def _end_nearby(
+        self, grid: PlanningGrid, start: Pose2, goal: Goal
+    ) -> tuple[tuple[float, float] | None, Outcome]:
+        """Where the path may end instead of at the goal, or None and the reason."""
+        cell = grid.cell_of(start.x, start.y)
+        assert cell is not None, "the start lies in the map"
+        near, outcome = nearest_reachable(
+            grid, cell, (goal.x, goal.y), self._reach_m, self.body
+        )
+        return (None if near is None else grid.spec.center_of(*near)), outcome
+
+    def _cut_to_fit(
+        self, grid: PlanningGrid, start: Pose2, goal: Goal, route: Poses
+    ) -> Poses | None:
+        """The route, less a little at its end, if the body fits along it."""
+        sweep = turn_in_place(start.x, start.y, start.yaw, float(route[0, 2]))
+        check = check_path(np.concatenate([sweep, route]), grid, self.body)
+        if check.first_bad is None:
+            return self._cut_for_comfort(grid, goal, route)
+        kept = route[: max(0, check.first_bad - len(sweep))]
+        if goal.yaw is not None or len(kept) < 2:
+            return None
+        missing = math.dist(kept[-1, :2], (goal.x, goal.y))
+        if missing > _CUT_SHARE * self.params.goal_tolerance_m:
+            return None
+        return self._cut_for_comfort(grid, goal, kept)
+
+    def _cut_for_comfort(self, grid: PlanningGrid, goal: Goal, route: Poses) -> Poses:
+        """The route up to where its end has some room, if that is near enough."""
+        away = np.hypot(route[:, 0] - goal.x, route[:, 1] - goal.y)
+        near = away <= _CUT_SHARE * self.params.goal_tolerance_m
+        first = len(route) - int(np.argmin(near[::-1])) if not near.all() else 1
+        tail = route[first:]
+        if goal.yaw is not None or not len(tail):
+            return route
+        roomy = clearances(tail, grid, self.body) >= _ROOMY_END * grid.margin_m
+        if not roomy.any():
+            return route
+        return route[: first + int(np.flatnonzero(roomy)[-1]) + 1]
+
+    def _planned(
+        self, goal: Goal, poses: Poses, margin_m: float, expansions: int
+    ) -> Plan:
+        off = math.dist(poses[-1, :2], (goal.x, goal.y))
+        snapped = off > self.params.path_end_tolerance_m
+        outcome = Outcome.GOAL_SNAPPED if snapped else Outcome.OK
+        return Plan(outcome, poses, self.cost_of(poses), margin_m, expansions)

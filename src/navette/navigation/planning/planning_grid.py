@@ -1,0 +1,225 @@
+"""The map as the planner sees it: distance to obstacles, and a cost per cell.
+
+The occupancy grid's own inflation is not trusted (the robot that made it may have
+been another): obstacles are its lethal cells, distances are measured again.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Footprint, Pose2
+from navette.grids import GridSpec, body_points, distance_field
+from navette.navigation.planning.params import PlannerParams
+from navette.navigation.planning.traversal import DEAREST, LETHAL, Cell, EdgeTable
+
+# Share of the full clearance cost that sets in at once where the body could no
+# longer turn in place: a step keeps paths out of there, a slope alone would not.
+_STEP = 0.2
+# Steps of distance in which costs are tabulated.
+_LEVEL_M = 0.004
+
+
+@dataclass(frozen=True)
+class BodyShape:
+    """The robot's body in the base frame.
+
+    Attributes:
+        points: (K, 3) x, y, disc radius; see :func:`navette.grids.body_points`.
+        inscribed_m, circumscribed_m: radii of the circles about the base.
+    """
+
+    footprint: Footprint
+    points: NDArray[np.float64]
+    inscribed_m: float
+    circumscribed_m: float
+
+    @classmethod
+    def of(cls, footprint: Footprint, spacing: float) -> "BodyShape":
+        return cls(
+            footprint,
+            body_points(footprint, spacing),
+            footprint.inscribed_radius,
+            footprint.circumscribed_radius,
+        )
+
+
+@dataclass(frozen=True)
+class PlanningGrid:
+    """A map prepared for one body.
+
+    Attributes:
+        spec: where the grid lies in the map frame.
+        obstacles: (H, W) uint8, 1 = lethal.
+        distance_m: (H, W) float32, metres to the nearest lethal cell, clipped.
+        cost: (H, W) uint8 for ``table``; 255 where the base cannot be.
+        margin_m: clearance that the body keeps.
+    """
+
+    spec: GridSpec
+    obstacles: NDArray[np.uint8]
+    distance_m: NDArray[np.float32]
+    cost: NDArray[np.uint8]
+    table: EdgeTable
+    margin_m: float
+
+    @property
+    def outside_m(self) -> float:
+        """Distance that holds beyond the map's rim: nothing is known there."""
+        return float(self.distance_m.max())
+
+    def factor(self) -> NDArray[np.float32]:
+        """(H, W) what a metre in each cell costs; closed cells as the dearest."""
+        cost = np.minimum(self.cost, DEAREST).astype(np.float32)
+        return 1 + np.float32(self.table.weight / DEAREST) * cost
+
+    def factor_at(
+        self, rows: NDArray[np.int64], columns: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """(N,) what a metre costs in these cells; closed cells as the dearest."""
+        cost = np.minimum(self.cost[rows, columns], DEAREST).astype(np.float64)
+        return 1 + self.table.weight / DEAREST * cost
+
+    def cell_of(self, x: float, y: float) -> Cell | None:
+        """The cell that holds a point of the map frame; None outside."""
+        cell = self.spec.cell_of(x, y)
+        return cell if self.spec.contains(*cell) else None
+
+    def to_cells(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points (N, 2) x, y in metres → u, v in cells from the grid's corner."""
+        return self.spec.origin.inverse().apply(points) / self.spec.resolution
+
+    def to_metres(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points (N, 2) u, v in cells → x, y in metres in the map frame."""
+        return self.spec.origin.apply(points * self.spec.resolution)
+
+
+def planning_grid(
+    occupancy: NDArray[np.int8],
+    spec: GridSpec,
+    body: BodyShape,
+    params: PlannerParams,
+) -> PlanningGrid:
+    """Prepare an occupancy grid (H, W): −1 unknown, 0 free … 100 occupied."""
+    if occupancy.shape != spec.shape:
+        raise InvalidValueError(
+            f"occupancy grid of shape {occupancy.shape}: wanted {spec.shape}"
+        )
+    return _prepared(
+        occupancy,
+        (occupancy >= params.lethal_cost).astype(np.uint8),
+        spec,
+        body,
+        params,
+    )
+
+
+def without_obstacles_in(
+    grid: PlanningGrid,
+    occupancy: NDArray[np.int8],
+    start: Pose2,
+    body: BodyShape,
+    params: PlannerParams,
+) -> PlanningGrid:
+    """The grid less the lethal cells inside the body at ``start``.
+
+    The robot stands there, so what the map shows there is not there: a scan that was
+    placed wrong, or the robot's own shadow.
+    """
+    inside = _cells_inside(grid.spec, start, body)
+    rows, columns = inside[:, 0], inside[:, 1]
+    if not grid.obstacles[rows, columns].any():
+        return grid
+    obstacles = grid.obstacles.copy()
+    obstacles[rows, columns] = 0
+    return _prepared(occupancy, obstacles, grid.spec, body, params)
+
+
+def open_at(grid: PlanningGrid, start: Cell, body: BodyShape) -> PlanningGrid:
+    """The grid with a way out of the inflation around ``start``.
+
+    Cells near the start open, at the dearest price, if they are no closer to an
+    obstacle than the start is.
+    """
+    if grid.cost[start] != LETHAL:
+        return grid
+    reach = math.ceil(2 * (body.inscribed_m + grid.margin_m) / grid.spec.resolution)
+    rows = slice(max(0, start[0] - reach), start[0] + reach + 1)
+    columns = slice(max(0, start[1] - reach), start[1] + reach + 1)
+    least = grid.distance_m[start] - 0.5 * grid.spec.resolution
+    cost = grid.cost.copy()
+    window, distance = cost[rows, columns], grid.distance_m[rows, columns]
+    window[(window == LETHAL) & (distance >= least) & (distance > 0)] = DEAREST
+    cost[start] = DEAREST
+    return replace(grid, cost=cost)
+
+
+def _prepared(
+    occupancy: NDArray[np.int8],
+    obstacles: NDArray[np.uint8],
+    spec: GridSpec,
+    body: BodyShape,
+    params: PlannerParams,
+) -> PlanningGrid:
+    margin = params.clearance_margin_m
+    closed_m = body.inscribed_m + margin
+    free_m = body.circumscribed_m + margin + params.comfort_m
+    distance_m = distance_field(obstacles, spec.resolution, free_m + spec.resolution)
+    weight = max(
+        params.clearance_weight, params.unknown_cost, params.map_cost_weight, 1e-3
+    )
+    scale = DEAREST / weight
+    levels = (distance_m * np.float32(1 / _LEVEL_M)).astype(np.int32)
+    count = round((free_m + spec.resolution) / _LEVEL_M) + 2
+    full = params.clearance_weight * scale
+    cost = _clearance_table(count, closed_m, free_m, full).take(levels, mode="clip")
+    if params.map_cost_weight > 0:
+        own = np.clip(occupancy, 0, 99) * (params.map_cost_weight * scale / 99)
+        np.maximum(cost, own.astype(np.uint8), out=cost)
+    unknown = occupancy < 0
+    if params.allow_unknown:
+        floor = np.uint8(min(DEAREST, round(params.unknown_cost * scale)))
+        np.maximum(cost, floor, out=cost, where=unknown)
+    else:
+        cost[unknown] = LETHAL
+    return PlanningGrid(spec, obstacles, distance_m, cost, EdgeTable(weight), margin)
+
+
+def _clearance_table(
+    levels: int, closed_m: float, free_m: float, full: float
+) -> NDArray[np.uint8]:
+    """Cost by distance in small steps: closed, then falling, then free."""
+    distance = (np.arange(levels) + 0.5) * _LEVEL_M
+    slope = (free_m - distance) / (free_m - closed_m)
+    falling = full * (_STEP + (1 - _STEP) * slope)
+    table = np.where(distance < free_m, falling, 0.0)
+    table = np.clip(np.rint(table), 0, DEAREST).astype(np.uint8)
+    table[distance < closed_m] = LETHAL
+    return table
+
+
+def _cells_inside(spec: GridSpec, start: Pose2, body: BodyShape) -> NDArray[np.int64]:
+    """Cells (N, 2) whose centres lie inside the body at ``start``."""
+    row, column = spec.cell_of(start.x, start.y)
+    reach = math.ceil(body.circumscribed_m / spec.resolution) + 1
+    rows = np.arange(max(0, row - reach), min(spec.height, row + reach + 1))
+    columns = np.arange(max(0, column - reach), min(spec.width, column + reach + 1))
+    cells = np.stack(np.meshgrid(rows, columns, indexing="ij"), -1).reshape(-1, 2)
+    points = start.inverse().apply(spec.centers_of(cells))
+    return cells[_inside(body.footprint, points)]
+
+
+def _inside(footprint: Footprint, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points (N, 2) lie in the outline: an odd number of edges to the right."""
+    x, y = points[:, 0], points[:, 1]
+    corners = np.array(footprint.vertices)
+    inside = np.zeros(len(points), np.bool_)
+    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if ay == by:
+            continue
+        crosses = (ay > y) != (by > y)
+        inside ^= crosses & (ax + (y - ay) * (bx - ax) / (by - ay) > x)
+    return inside

@@ -1,0 +1,68 @@
+"""What goes in and out of the navigator: plain records."""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from navette.geometry import Pose2
+from navette.navigation.planning.outcome import Outcome
+
+
+class State(StrEnum):
+    """What the planner waits for."""
+
+    WAITING_FOR_GOAL = "waiting_for_goal"
+    WAITING_FOR_ROBOT = "waiting_for_robot_to_reach_goal"
+
+
+class Phase(StrEnum):
+    """What it is doing, in one word; a failure's own name stands in its place."""
+
+    WAITING_FOR_GOAL = "waiting_for_goal"
+    WAITING_FOR_MAP = "waiting_for_map"
+    WAITING_FOR_ODOMETRY = "waiting_for_odometry"
+    PLANNING = "planning"
+    FOLLOWING = "following"
+    REACHED = "reached"
+
+
+@dataclass(frozen=True)
+class RobotState:
+    """Where the robot is in the map frame, and how fast (m/s, rad/s)."""
+
+    pose: Pose2
+    speed_mps: float
+    turn_rate_radps: float
+
+    @property
+    def stands(self) -> bool:
+        return abs(self.speed_mps) < 0.02 and abs(self.turn_rate_radps) < 0.05
+
+
+@dataclass(frozen=True)
+class Report:
+    """What the navigator says of itself.
+
+    Attributes:
+        message: phase, or the named failure.
+        goal_id: number of goals received so far.
+        result: how the goal ended; empty while under way.
+        plan: outcome of the newest plan; empty before the first.
+        replans: plans made for this goal after its first.
+    """
+
+    message: str = Phase.WAITING_FOR_GOAL
+    state: State = State.WAITING_FOR_GOAL
+    goal_id: int = 0
+    goal_x: float = math.nan
+    goal_y: float = math.nan
+    distance_left_m: float = 0.0
+    result: str = ""
+    plan: str = ""
+    margin_m: float = math.nan
+    replans: int = 0
+
+    @property
+    def failed(self) -> bool:
+        """Whether the message names a failure."""
+        return self.message in set(Outcome)

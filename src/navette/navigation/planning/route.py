@@ -1,0 +1,122 @@
+"""A route on the grid: search, pull, round, head. The body is not looked at."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2, angle_difference
+from navette.navigation.planning import breadth_first, dijkstra
+from navette.navigation.planning.astar import AStar
+from navette.navigation.planning.footprint_check import clearances
+from navette.navigation.planning.params import PlannerParams
+from navette.navigation.planning.path_shape import (
+    Poses,
+    headed,
+    joined,
+    resample,
+    smooth,
+    turn_in_place,
+)
+from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
+from navette.navigation.planning.string_pulling import centers, pull
+
+# From this angle on the two ways round are nearly as long.
+_ABOUT_FACE = 2.4
+
+_Search = Callable[..., tuple[NDArray[np.int64], int] | None]
+
+
+class GridRouter:
+    """Finds the way of a point through a grid and makes it a path with headings."""
+
+    def __init__(self, params: PlannerParams) -> None:
+        self.params = params
+        searches: dict[str, _Search] = {
+            "a_star": AStar().search,
+            "dijkstra": dijkstra.search,
+            "breadth_first": breadth_first.search,
+        }
+        self._search = searches[params.method]
+
+    def route(
+        self,
+        grid: PlanningGrid,
+        body: BodyShape,
+        start: Pose2,
+        goal_xy: tuple[float, float],
+        goal_yaw: float | None = None,
+    ) -> Poses | None:
+        """Poses (N, 3) from the start pose to the goal; None when there is no way.
+
+        Start and goal lie in the grid. Begins with a turn in place where the robot
+        looks elsewhere by more than the threshold, ends with one to ``goal_yaw``.
+        """
+        cells = self._cells(grid, (start.x, start.y), goal_xy)
+        if cells is None:
+            return None
+        ends = np.array([(start.x, start.y), goal_xy])
+        line = centers(cells)
+        # The ends are where they are, not where their cells' centres are.
+        line = np.concatenate([grid.to_cells(ends[:1]), line[1:-1],
+                               grid.to_cells(ends[1:])])  # fmt: skip
+        line = grid.to_metres(pull(grid.cost, line, table=grid.table))
+        line[0], line[-1] = ends
+        return self._with_headings(line, grid, body, start, goal_yaw)
+
+    def _cells(
+        self,
+        grid: PlanningGrid,
+        start_xy: tuple[float, float],
+        goal_xy: tuple[float, float],
+    ) -> NDArray[np.int64] | None:
+        start, goal = grid.cell_of(*start_xy), grid.cell_of(*goal_xy)
+        assert start is not None, "the start lies in the grid"
+        assert goal is not None, "the goal lies in the grid"
+        found = self._search(grid.cost, start, goal, table=grid.table)
+        return None if found is None else found[0]
+
+    def _with_headings(
+        self,
+        line: NDArray[np.float64],
+        grid: PlanningGrid,
+        body: BodyShape,
+        start: Pose2,
+        goal_yaw: float | None,
+    ) -> Poses:
+        spacing = self.params.path_spacing_m
+        here = np.array([[start.x, start.y, start.yaw]])
+        if math.dist(line[0], line[-1]) < 1e-3:
+            poses = here
+        else:
+            keep_m = body.circumscribed_m + grid.margin_m
+            poses = headed(
+                resample(smooth(resample(line, spacing), grid, keep_m), spacing)
+            )
+            if self.turns_first(start, poses):
+                poses = joined(self._turn(grid, body, start, poses[0, 2]), poses)
+        if goal_yaw is None:
+            return poses
+        x, y, yaw = poses[-1].tolist()
+        return joined(poses, self._turn(grid, body, Pose2(x, y, yaw), goal_yaw))
+
+    def _turn(
+        self, grid: PlanningGrid, body: BodyShape, at: Pose2, to_yaw: float
+    ) -> Poses:
+        """A turn in place: the short way, or the long one if that has the room."""
+        short = turn_in_place(at.x, at.y, at.yaw, to_yaw)
+        if abs(angle_difference(to_yaw, at.yaw)) < _ABOUT_FACE:
+            return short
+        comfort = grid.margin_m + self.params.comfort_m
+        room = clearances(short, grid, body, enough_m=comfort).min()
+        if room >= comfort:
+            return short
+        long = turn_in_place(at.x, at.y, at.yaw, to_yaw, long_way=True)
+        round_room = clearances(long, grid, body, enough_m=comfort).min()
+        return long if round_room > room + grid.spec.resolution / 2 else short
+
+    def turns_first(self, start: Pose2, poses: Poses) -> bool:
+        """Whether the robot must turn in place before it follows the poses."""
+        error = angle_difference(float(poses[0, 2]), start.yaw)
+        return abs(error) > self.params.turn_threshold_rad

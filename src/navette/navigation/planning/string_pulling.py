@@ -1,0 +1,197 @@
+"""String pulling: a chain of cells becomes a short line of any angle.
+
+Greedy line-of-sight smoothing as in Thorpe 1984 and in Theta* (Nash et al. 2007),
+run along the chain, back, and along again, with the line cut into points about a
+cell apart in between: the corners then lie where a taut string would turn. A
+straight piece replaces a stretch only if it passes no closed cell, squeezes through
+no corner, and costs no more than the stretch did; its cost is integrated through
+the very cells that it crosses.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.navigation.planning.traversal import STRAIGHT, EdgeTable
+
+Points = NDArray[np.float64]
+
+
+def pull(
+    cost: NDArray[np.uint8],
+    points: Points,
+    *,
+    table: EdgeTable | None = None,
+    passes: int = 3,
+) -> Points:
+    """Points (M, 2) of a straighter line with the same ends.
+
+    Args:
+        cost: (H, W) cell costs; ``table`` says which are closed and what they cost.
+        points: (N, 2) u, v of a passable line, in cells from the grid's outer
+            corner: the centre of cell (row, column) is (column + 0.5, row + 0.5).
+    """
+    table = table or EdgeTable()
+    factor = table.straight / STRAIGHT
+    cost, line = _checked(cost, points)
+    for _ in range(passes):
+        # Backwards each time: the first pass leaves its slack at the far side.
+        fine = _cut(line)
+        kept = np.empty(len(fine), np.int64)
+        count = _pull_once(cost, fine, factor, np.empty(len(fine)), kept)
+        line = fine[kept[:count]][::-1]
+    return np.ascontiguousarray(line[::-1] if passes % 2 else line)
+
+
+def line_cost(
+    cost: NDArray[np.uint8], points: Points, *, table: EdgeTable | None = None
+) -> float:
+    """Cost of a polyline (N, 2) of u, v in cells; a free cell's width costs 1.
+
+    Infinite when it meets a closed cell.
+    """
+    table = table or EdgeTable()
+    cost, line = _checked(cost, points)
+    return float(_line_cost(cost, line, table.straight / STRAIGHT))
+
+
+def centers(cells: NDArray[np.int64]) -> Points:
+    """Cells (N, 2) row, column → their centres (N, 2) u, v."""
+    return np.ascontiguousarray(cells[:, ::-1] + 0.5, np.float64)
+
+
+def _checked(
+    cost: NDArray[np.uint8], points: Points
+) -> tuple[NDArray[np.uint8], Points]:
+    """Both as the kernels take them: a line between points inside stays inside."""
+    line = np.ascontiguousarray(points, np.float64)
+    height, width = cost.shape
+    inside = (line >= 0).all() and (line < (width, height)).all()
+    if cost.dtype != np.uint8 or line.ndim != 2 or len(line) < 1 or not inside:
+        raise InvalidValueError(
+            f"line of shape {line.shape} on a {cost.dtype} grid of {height} x {width} "
+            f"cells: wanted (N, 2) points u, v inside a uint8 grid"
+        )
+    return np.ascontiguousarray(cost), line
+
+
+@njit(cache=True)
+def _line_cost(cost: Any, line: Any, factor: Any) -> float:
+    total = 0.0
+    for i in range(line.shape[0] - 1):
+        total += _segment_cost(
+            cost, line[i, 0], line[i, 1], line[i + 1, 0], line[i + 1, 1], factor
+        )
+    return total
+
+
+def _cut(line: Points) -> Points:
+    """The same line with points at most a cell and a half apart."""
+    steps = np.diff(line, axis=0)
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    counts = np.maximum(1, np.ceil(lengths - 0.5)).astype(np.int64)
+    piece = np.repeat(np.arange(len(counts)), counts)
+    first = np.cumsum(counts) - counts
+    part = (np.arange(len(piece)) - first[piece]) / counts[piece]
+    fine = line[piece] + part[:, None] * steps[piece]
+    return np.concatenate([fine, line[-1:]])
+
+
+@njit(cache=True)
+def _pull_once(cost: Any, fine: Any, factor: Any, paid: Any, kept: Any) -> int:
+    """Number of points in ``kept``: as few of the points as will do.
+
+    ``paid`` (N,) becomes the cost from the first point to each.
+    """
+    n = fine.shape[0]
+    paid[0], kept[0] = 0.0, 0
+    for i in range(n - 1):
+        paid[i + 1] = paid[i] + _segment_cost(
+            cost, fine[i, 0], fine[i, 1], fine[i + 1, 0], fine[i + 1, 1], factor
+        )
+    count = 1
+    while kept[count - 1] < n - 1:
+        kept[count] = _furthest(cost, fine, paid, kept[count - 1], factor)
+        count += 1
+    return count
+
+
+@njit(cache=True)
+def _furthest(cost: Any, fine: Any, paid: Any, anchor: int, factor: Any) -> int:
+    """Furthest point that a straight piece may reach: doubling, then halving."""
+    last = fine.shape[0] - 1
+    good, step = anchor + 1, 1
+    bad = last + 1
+    while good < last:
+        tried = anchor + 2 * step
+        tried = tried if tried < last else last
+        if not _shorter(cost, fine, paid, anchor, tried, factor):
+            bad = tried
+            break
+        good, step = tried, 2 * step
+    while bad - good > 1 and good < last:
+        tried = (good + bad) // 2
+        if _shorter(cost, fine, paid, anchor, tried, factor):
+            good = tried
+        else:
+            bad = tried
+    return good
+
+
+@njit(cache=True)
+def _shorter(
+    cost: Any, fine: Any, paid: Any, anchor: int, reached: int, factor: Any
+) -> bool:
+    straight = _segment_cost(
+        cost,
+        fine[anchor, 0],
+        fine[anchor, 1],
+        fine[reached, 0],
+        fine[reached, 1],
+        factor,
+    )
+    return bool(straight <= (paid[reached] - paid[anchor]) * (1.0 + 1e-9))
+
+
+@njit(cache=True)
+def _segment_cost(
+    cost: Any, u0: float, v0: float, u1: float, v1: float, factor: Any
+) -> Any:
+    """∫ factor along a segment, cell by cell (Amanatides and Woo 1987); inf = closed.
+
+    A segment through a corner needs both cells beside the corner free.
+    """
+    du, dv = u1 - u0, v1 - v0
+    length = math.hypot(du, dv)
+    column, row = int(u0), int(v0)
+    step_u, step_v = (1 if du > 0 else -1), (1 if dv > 0 else -1)
+    per_u = abs(1.0 / du) if du != 0.0 else np.inf
+    per_v = abs(1.0 / dv) if dv != 0.0 else np.inf
+    next_u = per_u * (column + (du > 0) - u0) * step_u if du != 0.0 else np.inf
+    next_v = per_v * (row + (dv > 0) - v0) * step_v if dv != 0.0 else np.inf
+    total, t = 0.0, 0.0
+    while True:
+        each = factor[cost[row, column]]
+        if each == 0.0:
+            return np.inf
+        until = next_u if next_u < next_v else next_v
+        if until >= 1.0:
+            return total + (1.0 - t) * length * each
+        total += (until - t) * length * each
+        t = until
+        if abs(next_u - next_v) * length < 1e-9:
+            if (
+                factor[cost[row + step_v, column]] == 0.0
+                or factor[cost[row, column + step_u]] == 0.0
+            ):
+                return np.inf
+            column, row = column + step_u, row + step_v
+            next_u, next_v = next_u + per_u, next_v + per_v
+        elif next_u < next_v:
+            column, next_u = column + step_u, next_u + per_u
+        else:
+            row, next_v = row + step_v, next_v + per_v

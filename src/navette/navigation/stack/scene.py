@@ -1,0 +1,65 @@
+"""Which world, which robot, and which parameters come with the robot."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from navette.navigation.stack.options import RunOptions
+from navette.runtime.overrides import ParameterOverrides
+from navette.sim import (
+    Robot,
+    Scene,
+    derive_parameters,
+    identify_robot,
+    load_robot,
+    load_world,
+    robot_names,
+)
+
+DEFAULT_ROBOT = "jackal"
+
+
+@dataclass(frozen=True)
+class ResolvedScene:
+    """A world with its robot; its parameters derived, and from a file that wins."""
+
+    scene: Scene
+    robot_name: str
+    params_file: Path | None
+    derived: dict[str, dict[str, object]]
+
+    def override_parameters(self, overrides: ParameterOverrides) -> None:
+        """Give every node of the stack what the robot asks of it."""
+        for node, values in self.derived.items():
+            overrides.add(node, values, f"derived from robot {self.robot_name}")
+        if self.params_file is not None:
+            overrides.add_file(self.params_file)
+
+
+def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedScene:
+    """Load what the options name; a ``scene`` made in Python replaces their world.
+
+    The robot is, in this order: the one asked for, the world's own, the built-in one
+    of the same name as the built-in world, the default.
+    A world's own robot that is a copy of a built-in one gets its parameters. What no
+    file says is derived from the robot's shape and drive.
+
+    Raises:
+        UnknownNameError: no such world or robot; the text lists those there are.
+        FileFormatError: a file is broken; names file and line.
+    """
+    if scene is None:
+        scene = load_world(options.world)
+    robot = _choose_robot(options, scene)
+    if scene.robot is not robot.model:
+        scene = scene.with_robot(robot.model)
+    derived = derive_parameters(robot.model)
+    return ResolvedScene(scene, robot.name, robot.params_file, derived)
+
+
+def _choose_robot(options: RunOptions, scene: Scene) -> Robot:
+    if options.robot is not None:
+        return load_robot(options.robot)
+    if scene.robot is None:
+        namesake = options.world in robot_names()
+        return load_robot(options.world if namesake else DEFAULT_ROBOT)
+    return identify_robot(scene.robot) or Robot(scene.robot.name, scene.robot)

@@ -1,0 +1,163 @@
+"""A run of the simulated robot with its navigation, from options to summary."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+from navette.bags.node import RecorderNode
+from navette.errors import CallbackError
+from navette.navigation.stack.monitor import MonitorNode, Progress
+from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.scene import ResolvedScene, resolve_scene
+from navette.navigation.stack.stack import NavigationStack
+from navette.navigation.stack.summary import RunSummary
+from navette.runtime import (
+    Context,
+    Executor,
+    LoggingSeverity,
+    PacedClock,
+    Stopwatch,
+    TimeSource,
+    VirtualClock,
+)
+from navette.sim import Scene
+from navette.sim.node import SimNode
+from navette.viewer.node import ViewerNode
+
+HALT_NS = 1_000_000_000
+"""Simulated time that a robot is given to brake after a node raised."""
+
+
+class Simulation:
+    """One robot in one world with the whole stack, in this process.
+
+    Args:
+        options: what to run.
+        on_change: called when the planner's goal or state changes.
+        scene: a world made in Python (:class:`navette.sim.World`) instead of the
+            one that the options name.
+
+    Raises:
+        NavetteError: a name, file, parameter or option is wrong; says which.
+    """
+
+    def __init__(
+        self,
+        options: RunOptions,
+        on_change: Callable[[Progress], None] = lambda progress: None,
+        *,
+        scene: Scene | None = None,
+    ) -> None:
+        self.options = options
+        self.resolved = resolve_scene(options, scene)
+        self.context = Context(clock=_clock(options.speed))
+        self._stopwatch = Stopwatch()
+        try:
+            self.context.init(args=[], console_level=LoggingSeverity.WARN)
+            self._override_parameters(self.resolved)
+            self._create_nodes(on_change)
+        except BaseException:
+            self.close()
+            raise
+
+    def _override_parameters(self, resolved: ResolvedScene) -> None:
+        """The robot's defaults, then the options, then the user's files: last wins."""
+        overrides = self.context.overrides
+        resolved.override_parameters(overrides)
+        goals = [value for goal in self.options.goals for value in goal]
+        overrides.add("sim", {"seed": self.options.seed}, "--seed")
+        if goals:
+            overrides.add("missions", {"goals": goals}, "--goal")
+        if self.options.record is not None:
+            images = {"images": self.options.record_images}
+            overrides.add("recorder", images, "--record-images")
+        if not self.options.headless:
+            overrides.add("viewer", {"port": self.options.port}, "--port")
+        for path in self.options.params_files:
+            overrides.add_file(path)
+
+    def _create_nodes(self, on_change: Callable[[Progress], None]) -> None:
+        options, context = self.options, self.context
+        self.recorder = (
+            None
+            if options.record is None
+            else RecorderNode(options.record, context=context)
+        )
+        self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
+        # Before the missions: it has told of the last goal when they end the run.
+        self.monitor = MonitorNode(context=context, on_change=on_change)
+        self.stack = NavigationStack.create(context)
+        self.viewer = None if options.headless else ViewerNode(context=context)
+        context.check_overrides()
+        self.executor = Executor(context=context)
+        for node in context.nodes:
+            self.executor.add_node(node)
+        if options.ends_with_goals:
+            self.stack.missions.on_done = self.stop
+
+    def run(self) -> None:
+        """Run until the goals are done (headless), the time is up or :meth:`stop`.
+
+        Raises:
+            CallbackError: a node raised; names node, topic and stamp. The robot was
+                stopped first.
+        """
+        self._stopwatch = Stopwatch()
+        limit = self.options.max_time_s
+        try:
+            if limit is None:
+                self.executor.spin()
+            else:
+                self.executor.spin_until(round(limit * 1e9))
+        except CallbackError as error:
+            self._halt(error)
+            raise
+
+    def _halt(self, error: CallbackError) -> None:
+        """Bring the robot to rest: a zero command, and time for it to brake.
+
+        Only simulator and watchers go on; the others may depend on what failed.
+        """
+        self.stack.control.destroy_node()
+        watchers = (self.sim, self.recorder, self.viewer)
+        for node in self.executor.get_nodes():
+            if node not in watchers:
+                self.executor.remove_node(node)
+        if error.node != self.sim.get_fully_qualified_name():
+            self.executor.spin_for(HALT_NS)
+
+    def stop(self) -> None:
+        """End :meth:`run` after the present callback; from any thread."""
+        self.executor.stop()
+
+    def progress(self) -> Progress:
+        """How it goes now."""
+        return replace(
+            self.monitor.progress, sim_time_s=self.context.clock.now_ns / 1e9
+        )
+
+    def real_time_factor(self) -> float:
+        """Simulated seconds per second, over the run so far."""
+        wall_s = self._stopwatch.elapsed_s
+        return self.context.clock.now_ns / 1e9 / wall_s if wall_s > 0 else 0.0
+
+    def summary(self) -> RunSummary:
+        """What came of the run so far; goals not ended count as ``unfinished``."""
+        clearance = self.sim.simulator.min_clearance.distance
+        return RunSummary(
+            goals=tuple(self.stack.missions.standing),
+            contacts=self.sim.simulator.contacts.count,
+            min_clearance_m=clearance if math.isfinite(clearance) else None,
+            sim_time_s=self.context.clock.now_ns / 1e9,
+            wall_time_s=self._stopwatch.elapsed_s,
+            real_time_factor=self.real_time_factor(),
+            seed=self.options.seed,
+        )
+
+    def close(self) -> None:
+        """End all nodes, threads and files; twice is harmless."""
+        self.context.try_shutdown()
+
+
+def _clock(speed: float) -> TimeSource:
+    return VirtualClock() if math.isinf(speed) else PacedClock(speed)

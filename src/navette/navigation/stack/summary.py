@@ -1,0 +1,42 @@
+"""What came of a run, as ``--json`` prints it."""
+
+import json
+import math
+from dataclasses import asdict, dataclass
+
+from navette.navigation.missions import GoalOutcome
+
+
+@dataclass(frozen=True)
+class RunSummary:
+    """A whole run; ``min_clearance_m`` is from the body to the nearest obstacle.
+
+    Seconds are simulated unless named otherwise.
+    """
+
+    goals: tuple[GoalOutcome, ...]
+    contacts: int
+    min_clearance_m: float | None
+    sim_time_s: float
+    wall_time_s: float
+    real_time_factor: float
+    seed: int
+
+    @property
+    def succeeded(self) -> bool:
+        """All goals reached and nothing touched."""
+        return self.contacts == 0 and all(g.result == "reached" for g in self.goals)
+
+    def to_json(self) -> str:
+        """One JSON object; numbers to four places, NaN and infinity as null."""
+        return json.dumps(_plain(asdict(self)))
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float):
+        return round(value, 4) if math.isfinite(value) else None
+    return value

@@ -1,0 +1,1 @@
+"""ROS 2's Python surface: module names, packages, launch files, workspaces."""

@@ -1,0 +1,239 @@
+"""Tags of launch itself."""
+
+from typing import Any
+
+from navette.ros2.packages.launch.actions import (
+    AppendEnvironmentVariable,
+    DeclareLaunchArgument,
+    ExecuteProcess,
+    GroupAction,
+    IncludeLaunchDescription,
+    Log,
+    LogInfo,
+    ResetEnvironment,
+    ResetLaunchConfigurations,
+    SetEnvironmentVariable,
+    SetLaunchConfiguration,
+    Shutdown,
+    TimerAction,
+    UnsetEnvironmentVariable,
+    UnsetLaunchConfiguration,
+)
+from navette.ros2.packages.launch.conditions import IfCondition, UnlessCondition
+from navette.ros2.packages.launch.frontend import (
+    Element,
+    expose_action,
+    parse_elements,
+    parse_substitution,
+)
+from navette.ros2.packages.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+)
+
+
+def condition_of(element: Element) -> dict[str, Any]:
+    """``condition=`` from the attributes ``if`` and ``unless``."""
+    holds, fails = element.parts("if"), element.parts("unless")
+    if holds is not None and fails is not None:
+        raise element.error("'if' and 'unless' exclude each other")
+    if holds is not None:
+        return {"condition": IfCondition(holds)}
+    return {} if fails is None else {"condition": UnlessCondition(fails)}
+
+
+@expose_action("arg")
+def argument(element: Element) -> LaunchDescriptionEntity:
+    choices = [choice.need("value") for choice in element.elements("choice")]
+    return DeclareLaunchArgument(
+        element.need("name"),
+        default_value=element.parts("default"),
+        description=element.text("description"),
+        choices=choices or None,
+        **condition_of(element),
+    )
+
+
+@expose_action("let")
+def let(element: Element) -> LaunchDescriptionEntity:
+    return SetLaunchConfiguration(
+        element.need_parts("name"), element.need_parts("value"), **condition_of(element)
+    )
+
+
+@expose_action("unset")
+def unset(element: Element) -> LaunchDescriptionEntity:
+    return UnsetLaunchConfiguration(element.need_parts("name"), **condition_of(element))
+
+
+@expose_action("set_env")
+def set_environment(element: Element) -> LaunchDescriptionEntity:
+    return SetEnvironmentVariable(
+        element.need_parts("name"), element.need_parts("value"), **condition_of(element)
+    )
+
+
+@expose_action("append_env")
+def append_environment(element: Element) -> LaunchDescriptionEntity:
+    options: dict[str, Any] = {
+        name: parts
+        for name in ("prepend", "separator")
+        if (parts := element.parts(name)) is not None
+    }
+    return AppendEnvironmentVariable(
+        element.need_parts("name"),
+        element.need_parts("value"),
+        **options,
+        **condition_of(element),
+    )
+
+
+@expose_action("unset_env")
+def unset_environment(element: Element) -> LaunchDescriptionEntity:
+    return UnsetEnvironmentVariable(element.need_parts("name"), **condition_of(element))
+
+
+@expose_action("reset_env")
+def reset_environment(element: Element) -> LaunchDescriptionEntity:
+    return ResetEnvironment(**condition_of(element))
+
+
+@expose_action("reset")
+def reset(element: Element) -> LaunchDescriptionEntity:
+    kept = {
+        keep.need("name"): keep.need_parts("value") for keep in element.elements("keep")
+    }
+    return ResetLaunchConfigurations(kept, **condition_of(element))
+
+
+@expose_action("group")
+def group(element: Element) -> LaunchDescriptionEntity:
+    scoped, forwarding = element.flag("scoped"), element.flag("forwarding")
+    kept = {
+        keep.need("name"): keep.need_parts("value") for keep in element.elements("keep")
+    }
+    return GroupAction(
+        parse_elements(element.rest()),
+        scoped=True if scoped is None else scoped,
+        forwarding=True if forwarding is None else forwarding,
+        launch_configurations=kept,
+        **condition_of(element),
+    )
+
+
+@expose_action("include")
+def include(element: Element) -> LaunchDescriptionEntity:
+    arguments = []
+    for tag in ("arg", "let"):
+        for each in element.elements(tag):
+            arguments.append((each.need_parts("name"), each.need_parts("value")))
+            each.finish()
+    return IncludeLaunchDescription(
+        element.need_parts("file"), launch_arguments=arguments, **condition_of(element)
+    )
+
+
+@expose_action("log")
+def log(element: Element) -> LaunchDescriptionEntity:
+    level = element.parts("level")
+    if level is not None:
+        return Log(
+            msg=element.need_parts("message"), level=level, **condition_of(element)
+        )
+    return LogInfo(msg=element.need_parts("message"), **condition_of(element))
+
+
+@expose_action("shutdown")
+def shutdown(element: Element) -> LaunchDescriptionEntity:
+    reason = element.parts("reason") or parse_substitution("reason not given")
+    return Shutdown(reason=reason, **condition_of(element))
+
+
+@expose_action("timer")
+def timer(element: Element) -> LaunchDescriptionEntity:
+    return TimerAction(
+        period=element.need_parts("period"),
+        actions=parse_elements(element.rest()),
+        **condition_of(element),
+    )
+
+
+@expose_action("executable")
+def executable(element: Element) -> LaunchDescriptionEntity:
+    words = element.need("cmd")
+    arguments = element.text("args")
+    text = words if arguments is None else f"{words} {arguments}"
+    return ExecuteProcess(cmd=split_words(element, text), **execution_options(element))
+
+
+def split_words(element: Element, text: str) -> list[Any]:
+    """A command line → its words, without cutting ``$(…)`` or quotes apart."""
+    words: list[str] = [""]
+    depth, quote = 0, ""
+    for position, character in enumerate(text):
+        if quote:
+            quote = "" if character == quote else quote
+        elif character in "'\"":
+            quote = character
+        elif text.startswith("$(", position):
+            depth += 1
+        elif character == ")" and depth:
+            depth -= 1
+        elif character.isspace() and not depth:
+            words.append("")
+            continue
+        words[-1] += character
+    return [element.parse(_unquoted(word)) for word in words if word]
+
+
+def _unquoted(word: str) -> str:
+    """``'a b'`` → ``a b``; quotes inside ``$(…)`` belong to the substitution."""
+    if len(word) > 1 and word[0] == word[-1] and word[0] in "'\"":
+        return word[1:-1]
+    return word
+
+
+def execution_options(element: Element) -> dict[str, Any]:
+    """What ``executable`` and ``node`` have in common."""
+    options: dict[str, Any] = dict(condition_of(element))
+    for tag, keyword in (
+        ("cwd", "cwd"),
+        ("launch-prefix", "prefix"),
+        ("output", "output"),
+        ("sigterm_timeout", "sigterm_timeout"),
+        ("sigkill_timeout", "sigkill_timeout"),
+        ("emulate_tty", "emulate_tty"),
+        ("respawn", "respawn"),
+    ):
+        parts = element.parts(tag)
+        if parts is not None:
+            options[keyword] = parts
+    for tag in ("shell", "required"):
+        flag = element.flag(tag)
+        if flag is not None:
+            options[tag] = flag
+    _add_numbers(element, options)
+    name = element.parts("name") if element.tag == "executable" else None
+    if name is not None:
+        options["name"] = name
+    variables = {}
+    for each in element.elements("env"):
+        variables[tuple(each.need_parts("name"))] = each.need_parts("value")
+        each.finish()
+    if variables:
+        options["additional_env"] = variables
+    return options
+
+
+def _add_numbers(element: Element, options: dict[str, Any]) -> None:
+    for tag, kind in (("respawn_delay", float), ("respawn_max_retries", int)):
+        text = element.text(tag)
+        if text is not None:
+            try:
+                options[tag] = kind(text)
+            except ValueError:
+                raise element.error(f"{tag} {text!r}: wanted a number") from None
+    ending = element.text("on_exit")
+    if ending is not None:
+        if ending != "shutdown":
+            raise element.error(f"on_exit {ending!r}: wanted shutdown")
+        options["on_exit"] = Shutdown(reason=f"<{element.tag}> ended")

@@ -1,0 +1,38 @@
+"""What to do about a module that a program imports and nobody has."""
+
+from navette.msgs.registry import PATH_VARIABLE
+
+_ROS_1 = frozenset(
+    "actionlib catkin dynamic_reconfigure genpy nodelet rosbag roscpp roslaunch roslib "
+    "rosmsg rosnode rosparam rospkg rospy rosservice rostest rostopic tf".split()
+)
+_INTERFACES = ("_msgs", "_interfaces", "_msg", "_srvs", "_actions")
+#: Packages of ROS 2 that programs use and that are not here → what is.
+_ROS_2 = {
+    "ament_copyright": "leave the linters' tests out",
+    "ament_flake8": "leave the linters' tests out",
+    "ament_pep257": "leave the linters' tests out",
+    "launch_testing": "start programs with navette.ros2.packages or subprocess in a "
+    "test of pytest",
+    "nav2_simple_commander": "navette.navigation.missions drives to goals",
+    "ros2cli": "the commands are navette's: navette --help",
+    "rosbag2_py": "navette.bags reads and writes recordings",
+    "turtlesim": "examples/17_draw_a_square.py drives a robot as one drives the turtle",
+}
+
+
+def advice(module: str) -> str | None:
+    """What to say to a program that wants ``module``; None if it is not ROS's."""
+    top = module.partition(".")[0]
+    if top in _ROS_1:
+        return (
+            f"{top} is ROS 1's; docs/reference/idioms.md says what stands for it here"
+        )
+    if top in _ROS_2:
+        return f"Navette has no {top}; instead: {_ROS_2[top]}"
+    if top.endswith(_INTERFACES):
+        return (
+            f"no package {top} with msg/, srv/ or action/ is in the workspace "
+            f"(the folder navette was started in, NAVETTE_PATH) or on {PATH_VARIABLE}"
+        )
+    return None

@@ -1,0 +1,198 @@
+"""cv_bridge.core: image messages and OpenCV's images."""
+
+import sys
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.msgs.sensor_msgs.msg import CompressedImage, Image
+from navette.msgs.std_msgs.msg import Header
+from navette.ros2.packages.cv_bridge._encodings import (
+    DEPTHS,
+    CvBridgeError,
+    converted,
+    parsed,
+)
+
+__all__ = ["CvBridge", "CvBridgeError"]
+
+_COLOURS = {1: "mono", 3: "bgr", 4: "bgra"}  # as OpenCV decodes files
+
+
+class CvBridge:
+    """Converts both ways. Images are arrays (height, width) or (height, width, n)."""
+
+    def __init__(self) -> None:
+        import cv2
+
+        self.numpy_type_to_cvtype = {value: key for key, value in DEPTHS.items()}
+        self.numpy_type_to_cvtype.update(DEPTHS)
+        self.cvdepth_to_numpy_depth: dict[int, str] = {
+            getattr(cv2, f"CV_{name}"): dtype for name, dtype in DEPTHS.items()
+        }
+        # What one more channel adds to OpenCV's number of a type; 8 before its 5.0.
+        self._per_channel = int(cv2.CV_8UC2 - cv2.CV_8UC1)
+        self.cvtype_to_name: dict[int, str] = {
+            getattr(cv2, f"CV_{name}C{channels}"): f"{name}C{channels}"
+            for name in DEPTHS
+            for channels in (1, 2, 3, 4)
+        }
+
+    # -- messages → images -----------------------------------------------------
+
+    def imgmsg_to_cv2(
+        self, img_msg: Image, desired_encoding: str = "passthrough"
+    ) -> NDArray[Any]:
+        """The image of a message, an array of its own.
+
+        Raises:
+            CvBridgeError: there is no way to that encoding, or too little data.
+        """
+        image = _pixels(img_msg)
+        if desired_encoding == "passthrough":
+            return image
+        return converted(image, img_msg.encoding, desired_encoding)
+
+    def compressed_imgmsg_to_cv2(
+        self, cmprs_img_msg: CompressedImage, desired_encoding: str = "passthrough"
+    ) -> NDArray[Any]:
+        """The image of a compressed message; bgr, bgra or mono unless said otherwise.
+
+        Raises:
+            CvBridgeError: there is no way to that encoding, or no image in the data.
+        """
+        import cv2
+
+        data = np.asarray(cmprs_img_msg.data, dtype=np.uint8)
+        found = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
+        if found is None:
+            raise CvBridgeError(
+                f"compressed image of {data.size} bytes, format "
+                f"{cmprs_img_msg.format!r}: it cannot be decoded"
+            )
+        image: NDArray[Any] = found
+        if desired_encoding == "passthrough":
+            return image
+        channels = image.shape[2] if image.ndim == 3 else 1
+        encoding = f"{_COLOURS[channels]}{8 * image.dtype.itemsize}"
+        return converted(image, encoding, desired_encoding)
+
+    # -- images → messages -----------------------------------------------------
+
+    def cv2_to_imgmsg(
+        self,
+        cvim: NDArray[Any],
+        encoding: str = "passthrough",
+        header: Header | None = None,
+    ) -> Image:
+        """A message with the image; its encoding ``8UC3`` and so on unless said.
+
+        Raises:
+            CvBridgeError: the encoding is another number of channels or other numbers.
+        """
+        kind = self._kind(cvim)
+        if encoding == "passthrough":
+            encoding = kind
+        elif parsed(encoding)[:2] != parsed(kind)[:2]:
+            raise CvBridgeError(
+                f"encoding specified as {encoding}, but image has incompatible type "
+                f"{kind}"
+            )
+        height, width = cvim.shape[:2]
+        message = Image(
+            height=height,
+            width=width,
+            encoding=encoding,
+            is_bigendian=_is_bigendian(cvim.dtype),
+            step=width * parsed(kind).channels * cvim.dtype.itemsize,
+            data=cvim.tobytes(),
+        )
+        if header is not None:
+            message.header = header
+        return message
+
+    def cv2_to_compressed_imgmsg(
+        self, cvim: NDArray[Any], dst_format: str = "jpg"
+    ) -> CompressedImage:
+        """A message with the image in a file's format (jpg, png, …).
+
+        Raises:
+            CvBridgeError: OpenCV does not write such an image in that format.
+        """
+        import cv2
+
+        kind = self._kind(cvim)
+        try:
+            _, data = cv2.imencode(f".{dst_format}", cvim)
+        except cv2.error as error:
+            raise CvBridgeError(f"{kind} image as {dst_format!r}: {error}") from error
+        return CompressedImage(format=dst_format, data=data.tobytes())
+
+    # -- types -----------------------------------------------------------------
+
+    def dtype_with_channels_to_cvtype2(self, dtype: Any, n_channels: int) -> str:
+        """``8UC3`` for three channels of uint8."""
+        name = np.dtype(dtype).name
+        if name not in DEPTHS.values():
+            raise CvBridgeError(
+                f"images of {name} are unknown to OpenCV; wanted one of "
+                f"{', '.join(DEPTHS.values())}"
+            )
+        return f"{self.numpy_type_to_cvtype[name]}C{n_channels}"
+
+    def cvtype2_to_dtype_with_channels(self, cvtype: int) -> tuple[str, int]:
+        """``("uint8", 3)`` for OpenCV's number ``CV_8UC3``."""
+        more, depth = divmod(cvtype, self._per_channel)
+        return self.cvdepth_to_numpy_depth[depth], more + 1
+
+    def encoding_to_cvtype2(self, encoding: str) -> int:
+        """OpenCV's number of an encoding's type."""
+        dtype, channels = self.encoding_to_dtype_with_channels(encoding)
+        name = self.numpy_type_to_cvtype[dtype]
+        first = next(k for k, v in self.cvtype_to_name.items() if v == f"{name}C1")
+        return first + self._per_channel * (channels - 1)
+
+    def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
+        """``("uint8", 3)`` for ``bgr8``."""
+        found = parsed(encoding)
+        return found.dtype, found.channels
+
+    def _kind(self, cvim: Any) -> str:
+        if not isinstance(cvim, np.ndarray):
+            raise TypeError(
+                f"Your input type is not a numpy array, but {type(cvim).__name__}"
+            )
+        if cvim.ndim not in (2, 3):
+            raise CvBridgeError(
+                f"image of shape {cvim.shape}: wanted (height, width) or "
+                "(height, width, channels)"
+            )
+        channels = cvim.shape[2] if cvim.ndim == 3 else 1
+        return self.dtype_with_channels_to_cvtype2(cvim.dtype, channels)
+
+
+def _pixels(msg: Image) -> NDArray[Any]:
+    """The pixels without the padding of rows, in the machine's byte order."""
+    encoding = parsed(msg.encoding)
+    dtype = np.dtype(encoding.dtype)
+    pixel = encoding.channels * dtype.itemsize
+    data = np.asarray(msg.data, dtype=np.uint8)
+    if msg.step < msg.width * pixel or data.size < msg.height * msg.step:
+        raise CvBridgeError(
+            f"{msg.encoding} image of {msg.width} × {msg.height}, {msg.step} bytes a "
+            f"row, {data.size} in all: wanted at least {msg.width * pixel} a row and "
+            f"{msg.height * max(msg.step, msg.width * pixel)} in all"
+        )
+    shape, strides = (msg.height, msg.width), (msg.step, pixel)
+    if encoding.channels > 1:
+        shape += (encoding.channels,)  # type: ignore[assignment]
+        strides += (dtype.itemsize,)  # type: ignore[assignment]
+    order = dtype.newbyteorder(">" if msg.is_bigendian else "<")
+    return np.ndarray(shape, order, data.data, strides=strides).astype(dtype)
+
+
+def _is_bigendian(dtype: "np.dtype[Any]") -> bool:
+    if dtype.byteorder == "=":
+        return sys.byteorder == "big"
+    return dtype.byteorder == ">"

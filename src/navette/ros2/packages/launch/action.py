@@ -1,0 +1,35 @@
+"""Actions: what a launch does."""
+
+from typing import TYPE_CHECKING
+
+from navette.ros2.packages.launch.condition import Condition
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+    caller_location,
+)
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+
+class Action(LaunchDescriptionEntity):
+    """Executed when the launch reaches it, if its condition holds."""
+
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        if condition is not None and not isinstance(condition, Condition):
+            raise InvalidLaunchValueError(
+                f"{type(self).__name__}: condition {condition!r}: wanted a condition "
+                "such as IfCondition(…)"
+            )
+        self.condition = condition
+        self.origin = caller_location()
+
+    def visit(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+        if self.condition is None or self.condition.evaluate(context):
+            return self.execute(context)
+        return None
+
+    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+        """Do the work; returns what is to be visited next."""
+        raise NotImplementedError

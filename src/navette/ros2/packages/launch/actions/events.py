@@ -1,0 +1,83 @@
+"""Actions with events and their handlers; the end of the launch."""
+
+from typing import TYPE_CHECKING, Any
+
+from navette.ros2.packages.launch.action import Action
+from navette.ros2.packages.launch.event import Event
+from navette.ros2.packages.launch.event_handler import EventHandler
+from navette.ros2.packages.launch.events import Shutdown as ShutdownEvent
+from navette.ros2.packages.launch.events.process import ProcessExited
+from navette.ros2.packages.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+)
+from navette.ros2.packages.launch.logging import get_logger
+from navette.ros2.packages.launch.substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+_log = get_logger("launch")
+
+
+class RegisterEventHandler(Action):
+    """From here on, events go to the handler."""
+
+    def __init__(self, event_handler: EventHandler, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.event_handler = event_handler
+
+    def describe(self) -> str:
+        return f"RegisterEventHandler({self.event_handler.describe()})"
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        return list(self.event_handler.entities)
+
+    def execute(self, context: "LaunchContext") -> None:
+        context.register_event_handler(self.event_handler)
+
+
+class UnregisterEventHandler(Action):
+    """From here on, the handler gets no events."""
+
+    def __init__(self, event_handler: EventHandler, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.event_handler = event_handler
+
+    def execute(self, context: "LaunchContext") -> None:
+        context.unregister_event_handler(self.event_handler)
+
+
+class EmitEvent(Action):
+    """Hands an event to the handlers."""
+
+    def __init__(self, *, event: Event, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.event = event
+
+    def describe(self) -> str:
+        return f"EmitEvent({self.event.name})"
+
+    def execute(self, context: "LaunchContext") -> None:
+        context.emit_event(self.event)
+
+
+class Shutdown(Action):
+    """Ends the launch: everything that it started is ended."""
+
+    def __init__(
+        self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+        self.reason = normalize_to_list_of_substitutions(reason)
+
+    def execute(self, context: "LaunchContext") -> None:
+        reason = perform_substitutions(context, self.reason)
+        event = context.get_locals_as_dict().get("event")
+        if isinstance(event, ProcessExited) and not context.is_shutdown:
+            name = event.process_name
+            _log.info("process[%s] was required: shutting down launched system", name)
+        context.emit_event(ShutdownEvent(reason=reason))

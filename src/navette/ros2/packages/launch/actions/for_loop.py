@@ -1,0 +1,103 @@
+"""Actions that make entities again and again, with other values each time."""
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+from navette.errors import InvalidValueError
+from navette.ros2.packages.launch.action import Action
+from navette.ros2.packages.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+    normalize_to_list_of_entities,
+)
+from navette.ros2.packages.launch.substitution import (
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+_MOST = 10_000
+
+
+class ForEach(Action):
+    """Calls ``function`` with each set of values, and visits what it returns.
+
+    Args:
+        input_values: sets of values as text, such as
+            ``{name: 'a', id: 1};{name: 'b', id: 2}``; empty: none.
+        function: takes the values by their names, returns entities.
+    """
+
+    def __init__(
+        self, input_values: Any, *, function: Callable[..., Any], **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+        self._input_values = normalize_to_list_of_substitutions(input_values)
+        self._function = function
+
+    @property
+    def input_values(self) -> Any:
+        return self._input_values
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        return self._function
+
+    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+        text = perform_substitutions(context, self._input_values)
+        found: list[LaunchDescriptionEntity] = []
+        for values in _value_sets(text):
+            found += normalize_to_list_of_entities(self._function(**values))
+        return found
+
+
+class ForLoop(Action):
+    """Calls ``function`` with 0, 1, … up to ``length`` - 1, and visits the returned.
+
+    Args:
+        length: how often; may be substitutions.
+        function: takes ``i``, returns entities.
+    """
+
+    def __init__(
+        self, length: Any, *, function: Callable[[int], Any], **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+        text = str(length) if isinstance(length, int) else length
+        self._length = normalize_to_list_of_substitutions(text)
+        self._function = function
+
+    @property
+    def length(self) -> Any:
+        return self._length
+
+    @property
+    def function(self) -> Callable[[int], Any]:
+        return self._function
+
+    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+        text = perform_substitutions(context, self._length)
+        if not text.isdigit() or int(text) > _MOST:
+            raise InvalidValueError(f"ForLoop: length {text!r}: wanted 0 … {_MOST}")
+        found: list[LaunchDescriptionEntity] = []
+        for i in range(int(text)):
+            found += normalize_to_list_of_entities(self._function(i))
+        return found
+
+
+def _value_sets(text: str) -> Iterable[dict[str, Any]]:
+    for part in text.split(";") if text.strip() else ():
+        if not part.strip():
+            continue
+        try:
+            values = yaml.safe_load(part)
+        except yaml.YAMLError as error:
+            raise InvalidValueError(f"ForEach: {part!r}: not YAML: {error}") from None
+        if not isinstance(values, dict):
+            raise InvalidValueError(
+                f"ForEach: {part!r}: wanted names and values, as in {{name: a}}"
+            )
+        yield {str(name): value for name, value in values.items()}

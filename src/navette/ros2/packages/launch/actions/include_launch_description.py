@@ -1,0 +1,153 @@
+"""Includes: another launch description, with arguments."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navette.ros2.packages.launch.action import Action
+from navette.ros2.packages.launch.actions.arguments import SetLaunchConfiguration
+from navette.ros2.packages.launch.actions.opaque_function import OpaqueFunction
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_description import LaunchDescription
+from navette.ros2.packages.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+)
+from navette.ros2.packages.launch.launch_description_source import (
+    LaunchDescriptionSource,
+)
+from navette.ros2.packages.launch.launch_description_sources import (
+    AnyLaunchDescriptionSource,
+)
+from navette.ros2.packages.launch.logging import get_logger
+from navette.ros2.packages.launch.substitution import (
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+_LOCALS = ("current_launch_file_path", "current_launch_file_directory")
+MAX_DEPTH = 50
+
+_log = get_logger("launch")
+
+
+class IncludeLaunchDescription(Action):
+    """Visits what a source gives, after setting ``launch_arguments``.
+
+    As in ROS 2 the arguments stay set for what follows; a GroupAction around keeps
+    them apart.
+
+    Args:
+        launch_description_source: a source, or a path (any format).
+        launch_arguments: (name, value) pairs.
+    """
+
+    def __init__(
+        self,
+        launch_description_source: Any,
+        *,
+        launch_arguments: Iterable[tuple[Any, Any]] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        if isinstance(launch_description_source, LaunchDescription):
+            launch_description_source = LaunchDescriptionSource(
+                launch_description_source
+            )
+        if not isinstance(launch_description_source, LaunchDescriptionSource):
+            launch_description_source = AnyLaunchDescriptionSource(
+                launch_description_source
+            )
+        self.source: LaunchDescriptionSource = launch_description_source
+        if isinstance(launch_arguments, dict):
+            raise InvalidLaunchValueError(
+                "IncludeLaunchDescription: launch_arguments is a dict; write "
+                "launch_arguments={…}.items()"
+            )
+        self.launch_arguments = [
+            (
+                normalize_to_list_of_substitutions(name),
+                normalize_to_list_of_substitutions(value),
+            )
+            for name, value in launch_arguments or ()
+        ]
+
+    @property
+    def launch_description_source(self) -> LaunchDescriptionSource:
+        return self.source
+
+    @property
+    def included_file(self) -> Path | None:
+        """The file, once it has been read."""
+        return self.source.path
+
+    def describe(self) -> str:
+        return f"IncludeLaunchDescription({self.source.location})"
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        """The description, where it can be had without running anything."""
+        loaded = self.source.try_get_launch_description_without_context()
+        return [] if loaded is None else [loaded]
+
+    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+        description = self.source.get_launch_description(context)
+        given = [
+            (perform_substitutions(context, name), value)
+            for name, value in self.launch_arguments
+        ]
+        self._check(description, [name for name, _ in given], context)
+        depth = context.get_locals_as_dict().get("include depth", 0) + 1
+        if depth > MAX_DEPTH:
+            raise InvalidLaunchValueError(
+                f"includes nested deeper than {MAX_DEPTH}: does a file include itself?"
+            )
+        path = self.source.path
+        return [
+            OpaqueFunction(function=_enter, args=[path, depth]),
+            *(SetLaunchConfiguration(name, value) for name, value in given),
+            description,
+            OpaqueFunction(function=_leave),
+        ]
+
+    def _check(
+        self, description: LaunchDescription, given: list[str], context: "LaunchContext"
+    ) -> None:
+        """Missing arguments are an error; names that nobody declares, a warning."""
+        declared = {each.name: each for each in description.get_launch_arguments()}
+        missing = [
+            each.name
+            for each in declared.values()
+            if each.default_value is None
+            and each.condition is None
+            and each.name not in given
+            and each.name not in context.launch_configurations
+        ]
+        if missing:
+            raise InvalidLaunchValueError(
+                f"{self.source.location} needs arguments that are not given: "
+                f"{', '.join(missing)}"
+            )
+        strange = sorted({name for name in given if name not in declared})
+        if strange and declared:
+            _log.warning(
+                "%s: %s declares no argument %s; it has %s",
+                self.origin,
+                self.source.location,
+                ", ".join(map(repr, strange)),
+                ", ".join(declared),
+            )
+
+
+def _enter(context: "LaunchContext", path: Any, depth: int) -> None:
+    context.push_locals()
+    context.extend_locals({"include depth": depth})
+    if path is not None:
+        context.extend_locals(
+            dict(zip(_LOCALS, (str(path), str(path.parent)), strict=True))
+        )
+
+
+def _leave(context: "LaunchContext") -> None:
+    context.pop_locals()

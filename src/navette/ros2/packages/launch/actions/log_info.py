@@ -1,0 +1,72 @@
+"""A line in the launch's log."""
+
+import logging
+from typing import TYPE_CHECKING, Any
+
+from navette.ros2.packages.launch.action import Action
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.logging import get_logger
+from navette.ros2.packages.launch.substitution import (
+    SomeSubstitutionsType,
+    describe_parts,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+_log = get_logger("launch.user")
+_LEVELS = ("debug", "info", "warning", "error")
+
+
+class Log(Action):
+    """Logs a message with a level: debug, info, warning or error."""
+
+    def __init__(
+        self, *, msg: SomeSubstitutionsType, level: SomeSubstitutionsType, **kwargs: Any
+    ) -> None:
+        super().__init__(**kwargs)
+        self.msg = normalize_to_list_of_substitutions(msg)
+        self.level = normalize_to_list_of_substitutions(level)
+
+    def describe(self) -> str:
+        return f"{type(self).__name__}({describe_parts(self.msg)})"
+
+    def execute(self, context: "LaunchContext") -> None:
+        level = perform_substitutions(context, self.level).lower()
+        level = "warning" if level == "warn" else level
+        if level not in _LEVELS:
+            raise InvalidLaunchValueError(
+                f"log level {level!r}; wanted {', '.join(_LEVELS)}"
+            )
+        number = logging.getLevelNamesMapping()[level.upper()]
+        _log.log(number, "%s", perform_substitutions(context, self.msg))
+
+
+class LogInfo(Log):
+    """Logs a message."""
+
+    def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(msg=msg, level="info", **kwargs)
+
+
+class LogWarning(Log):
+    """Logs a warning."""
+
+    def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(msg=msg, level="warning", **kwargs)
+
+
+class LogError(Log):
+    """Logs an error; the launch goes on."""
+
+    def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(msg=msg, level="error", **kwargs)
+
+
+class LogDebug(Log):
+    """Logs a message that is printed with ``--debug`` only."""
+
+    def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(msg=msg, level="debug", **kwargs)

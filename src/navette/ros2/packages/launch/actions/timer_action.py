@@ -1,0 +1,115 @@
+"""Actions that happen after a while."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from navette.ros2.packages.launch.action import Action
+from navette.ros2.packages.launch.event_handler import AnsweringHandler
+from navette.ros2.packages.launch.events import Shutdown
+from navette.ros2.packages.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+    normalize_to_list_of_entities,
+)
+from navette.ros2.packages.launch.typed import perform_bool, perform_seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+    from navette.runtime.events import Call
+
+
+class TimerAction(Action):
+    """Executes ``actions`` once, ``period`` seconds after it is reached.
+
+    Args:
+        period: seconds, or substitutions that say them.
+        actions: what happens then; the scope is that of the timer.
+        cancel_on_shutdown: they do not happen if the launch ends before.
+    """
+
+    def __init__(
+        self,
+        *,
+        period: Any,
+        actions: Iterable[LaunchDescriptionEntity],
+        cancel_on_shutdown: Any = True,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.period = period
+        self.actions = normalize_to_list_of_entities(actions)
+        self.cancel_on_shutdown = cancel_on_shutdown
+        self._call: Call | None = None
+        self._is_waiting = False
+        self._context: LaunchContext | None = None
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        return list(self.actions)
+
+    def execute(self, context: "LaunchContext") -> None:
+        if context.is_shutdown:
+            return
+        seconds = perform_seconds(context, self.period, "period")
+        scope = dict(context.launch_configurations)
+        local = context.get_locals_as_dict()
+        self._context = context
+        self._is_waiting = True
+        context.busy.add(self)
+
+        def fire() -> None:
+            if not self._is_waiting:
+                return  # cancelled meanwhile
+            self._is_waiting = False
+            context.busy.discard(self)
+            context.visit_later([_Scoped(self.actions, scope, local)])
+
+        self.schedule(context, seconds, fire)
+        if perform_bool(context, self.cancel_on_shutdown):
+            context.register_event_handler(
+                AnsweringHandler(
+                    matcher=lambda event: isinstance(event, Shutdown),
+                    answer=lambda event, context: self.cancel(),
+                    handle_once=True,
+                )
+            )
+
+    def schedule(
+        self, context: "LaunchContext", seconds: float, fire: "Callable[[], None]"
+    ) -> None:
+        """Let ``fire`` be called on the launch's loop after so long."""
+        self._call = context.call_after(seconds, fire, f"timer of {seconds:g} s")
+
+    def cancel(self) -> None:
+        """Let it not happen; after it has happened: nothing."""
+        self._is_waiting = False
+        if self._call is not None:
+            self._call.cancel()
+        if self._context is not None:
+            self._context.busy.discard(self)
+
+
+class _Scoped(LaunchDescriptionEntity):
+    """Entities with the configurations that held where the timer was reached."""
+
+    def __init__(
+        self,
+        entities: list[LaunchDescriptionEntity],
+        configurations: dict[str, str],
+        local: dict[str, Any],
+    ) -> None:
+        self._entities = entities
+        self._configurations = configurations
+        self._local = local
+
+    def visit(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+        context.extend_locals(self._local)
+        context.push_launch_configurations()
+        context.launch_configurations.clear()
+        context.launch_configurations.update(self._configurations)
+        return [*self._entities, _EndOfScope()]
+
+
+class _EndOfScope(LaunchDescriptionEntity):
+    def visit(self, context: "LaunchContext") -> None:
+        context.pop_launch_configurations()

@@ -1,0 +1,113 @@
+"""What XML and YAML launch files have in common: elements that know their line."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from navette.errors import FileFormatError
+from navette.ros2.packages.launch.frontend.grammar import parse_substitution
+from navette.ros2.packages.launch.substitution import Parts
+from navette.ros2.packages.launch.typed import FALSE, TRUE
+
+
+@dataclass(eq=False)
+class Element:
+    """A tag with attributes and elements inside.
+
+    Reading marks what was read; :meth:`finish` refuses what was not, so that no
+    mistyped attribute goes unnoticed.
+
+    Args:
+        tag: such as ``node``.
+        path, line: where it is written.
+        attributes: text; from YAML also numbers, truths and lists of these.
+        children: elements inside, in order.
+    """
+
+    tag: str
+    path: Path
+    line: int
+    attributes: dict[str, Any] = field(default_factory=dict)
+    children: list["Element"] = field(default_factory=list)
+    _seen: set[str] = field(default_factory=set)
+    _all_seen: bool = False
+
+    @property
+    def origin(self) -> str:
+        return f"{self.path}:{self.line}"
+
+    def error(self, reason: str) -> FileFormatError:
+        """The error to raise about this element; it carries file and line."""
+        return FileFormatError(self.path, f"<{self.tag}>: {reason}", self.line)
+
+    def value(self, name: str) -> Any:
+        """An attribute as it is written, or None."""
+        self._seen.add(name)
+        return self.attributes.get(name)
+
+    def text(self, name: str) -> str | None:
+        """An attribute as text, or None."""
+        value = self.value(name)
+        if isinstance(value, bool):
+            return str(value).lower()
+        if value is None or isinstance(value, (str, int, float)):
+            return None if value is None else str(value)
+        raise self.error(f"attribute {name!r}: {value!r}; wanted text")
+
+    def need(self, name: str) -> str:
+        """An attribute that must be there."""
+        text = self.text(name)
+        if text is None:
+            raise self.error(f"attribute {name!r} is missing")
+        return text
+
+    def parts(self, name: str) -> Parts | None:
+        """An attribute with substitutions, or None."""
+        text = self.text(name)
+        return None if text is None else self.parse(text)
+
+    def need_parts(self, name: str) -> Parts:
+        """An attribute with substitutions that must be there."""
+        return self.parse(self.need(name))
+
+    def parse(self, text: str) -> Parts:
+        """Text with ``$(…)`` in it."""
+        try:
+            return parse_substitution(text)
+        except ValueError as error:
+            raise self.error(str(error)) from None
+
+    def flag(self, name: str) -> bool | None:
+        """A truth that can be read without running anything, or None."""
+        text = self.text(name)
+        if text is None:
+            return None
+        if text.lower() not in TRUE + FALSE:
+            raise self.error(f"attribute {name!r}: {text!r}; wanted true or false")
+        return text.lower() in TRUE
+
+    def elements(self, tag: str) -> list["Element"]:
+        """The elements inside that have this tag."""
+        self._seen.add(f"<{tag}>")
+        return [child for child in self.children if child.tag == tag]
+
+    def rest(self) -> list["Element"]:
+        """All elements inside that were not asked for by tag."""
+        self._all_seen = True
+        return [c for c in self.children if f"<{c.tag}>" not in self._seen]
+
+    def finish(self) -> None:
+        """Raise for attributes and elements that nobody read."""
+        unread = [name for name in self.attributes if name not in self._seen]
+        known = sorted(name for name in self._seen if name[0] != "<")
+        if unread:
+            raise self.error(
+                f"unknown attribute {unread[0]!r}; known: {', '.join(known)}"
+            )
+        for child in self.children:
+            if not self._all_seen and f"<{child.tag}>" not in self._seen:
+                inside = sorted(name for name in self._seen if name[0] == "<")
+                raise child.error(
+                    f"not allowed in <{self.tag}>; allowed: "
+                    f"{', '.join(inside) or 'nothing'}"
+                )

@@ -1,0 +1,188 @@
+"""``$(name argument …)`` in text → substitutions.
+
+An argument ends at a space unless it is quoted; it may hold ``$(…)`` itself. A
+backslash takes the meaning from the character behind it.
+"""
+
+from collections.abc import Callable
+
+from navette.errors import InvalidValueError
+from navette.ros2.packages.launch.substitution import (
+    Parts,
+    Substitution,
+    TextSubstitution,
+)
+from navette.ros2.packages.launch.substitutions import (
+    AllSubstitution,
+    AndSubstitution,
+    AnonName,
+    AnySubstitution,
+    Command,
+    EnvironmentVariable,
+    EqualsSubstitution,
+    FileContent,
+    FindExecutable,
+    IfElseSubstitution,
+    LaunchConfiguration,
+    LaunchLogDir,
+    NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
+    PythonExpression,
+    ThisLaunchFile,
+    ThisLaunchFileDir,
+)
+
+MAX_DEPTH = 32
+_SPACE = " \t\r\n"
+
+Maker = Callable[[list[Parts]], Substitution]
+
+SUBSTITUTIONS: dict[str, tuple[int, int, Maker]] = {
+    "all": (1, 99, lambda a: AllSubstitution(*a)),
+    "and": (2, 2, lambda a: AndSubstitution(a[0], a[1])),
+    "anon": (1, 1, lambda a: AnonName(a[0])),
+    "any": (1, 99, lambda a: AnySubstitution(*a)),
+    "command": (
+        1,
+        2,
+        lambda a: Command(a[0], on_stderr=a[1] if len(a) > 1 else "fail"),
+    ),
+    "dirname": (0, 0, lambda a: ThisLaunchFileDir()),
+    "env": (
+        1,
+        2,
+        lambda a: EnvironmentVariable(a[0], default_value=a[1] if a[1:] else None),
+    ),
+    "equals": (2, 2, lambda a: EqualsSubstitution(a[0], a[1])),
+    "eval": (1, 2, lambda a: PythonExpression(*a)),
+    "file-content": (1, 1, lambda a: FileContent(a[0])),
+    "filename": (0, 0, lambda a: ThisLaunchFile()),
+    "find-exec": (1, 1, lambda a: FindExecutable(name=a[0])),
+    "if": (2, 3, lambda a: IfElseSubstitution(*a)),
+    "launch_log_dir": (0, 0, lambda a: LaunchLogDir()),
+    "log_dir": (0, 0, lambda a: LaunchLogDir()),
+    "not": (1, 1, lambda a: NotSubstitution(a[0])),
+    "not-equals": (2, 2, lambda a: NotEqualsSubstitution(a[0], a[1])),
+    "or": (2, 2, lambda a: OrSubstitution(a[0], a[1])),
+    "var": (
+        1,
+        2,
+        lambda a: LaunchConfiguration(a[0], default=a[1] if len(a) > 1 else None),
+    ),
+}
+"""Name → fewest and most arguments, and what makes the substitution of them."""
+
+
+def parse_substitution(text: str) -> Parts:
+    """The parts of a text.
+
+    Raises:
+        InvalidValueError: unbalanced, an unknown name, a wrong number of arguments.
+    """
+    reader = _Reader(text)
+    parts = reader.read("")
+    assert reader.position == len(text), "without an end mark all is read"
+    return parts or [TextSubstitution(text="")]
+
+
+class _Reader:
+    """Walks through the text once."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.position = 0
+        self._depth = 0
+
+    def read(self, ends: str) -> Parts:
+        """Parts up to, not including, one of the characters that end them."""
+        parts: Parts = []
+        plain = ""
+        while self.position < len(self.text):
+            character = self.text[self.position]
+            if character in ends:
+                break
+            if self.text.startswith("$(", self.position):
+                if plain:
+                    parts.append(TextSubstitution(text=plain))
+                plain = ""
+                parts.append(self._substitution())
+                continue
+            if character == "\\" and self._peek(1) in "$'\"\\" and self._peek(1):
+                self.position += 1
+                character = self.text[self.position]
+            plain += character
+            self.position += 1
+        if plain:
+            parts.append(TextSubstitution(text=plain))
+        return parts
+
+    def _peek(self, offset: int) -> str:
+        return self.text[self.position + offset : self.position + offset + 1]
+
+    def _substitution(self) -> Substitution:
+        start = self.position
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            raise InvalidValueError(f"$(…) nested deeper than {MAX_DEPTH}")
+        self.position += 2
+        name = ""
+        while self._peek(0) and self._peek(0) not in _SPACE + ")":
+            name += self._peek(0)
+            self.position += 1
+        arguments = self._arguments(start)
+        self._depth -= 1
+        return _make(name, arguments, self.text[start : self.position])
+
+    def _arguments(self, start: int) -> list[Parts]:
+        """All arguments and the closing bracket."""
+        arguments: list[Parts] = []
+        while True:
+            while self._peek(0) and self._peek(0) in _SPACE:
+                self.position += 1
+            character = self._peek(0)
+            if character == ")":
+                self.position += 1
+                return arguments
+            if not character:
+                raise InvalidValueError(
+                    f"{self.text[start:]!r}: the closing ')' is missing"
+                )
+            arguments.append(self._argument(character))
+
+    def _argument(self, character: str) -> Parts:
+        if character not in "'\"":
+            return self.read(_SPACE + ")")
+        self.position += 1
+        parts = self.read(character)
+        if self._peek(0) != character:
+            raise InvalidValueError(
+                f"{self.text!r}: the closing {character} is missing"
+            )
+        self.position += 1
+        return parts or [TextSubstitution(text="")]
+
+
+def _make(name: str, arguments: list[Parts], text: str) -> Substitution:
+    if name not in SUBSTITUTIONS:
+        raise InvalidValueError(
+            f"unknown substitution {text!r}; known: {', '.join(sorted(SUBSTITUTIONS))}"
+        )
+    fewest, most, make = SUBSTITUTIONS[name]
+    if name == "eval" and len(arguments) > 1 and not _looks_quoted(text):
+        # `$(eval 1 + 1)`: the words of one expression
+        spaced: Parts = []
+        for argument in arguments:
+            spaced += [TextSubstitution(text=" "), *argument] if spaced else argument
+        arguments = [spaced]
+    if not fewest <= len(arguments) <= most:
+        wanted = str(fewest) if fewest == most else f"{fewest} to {most}"
+        raise InvalidValueError(
+            f"{text!r}: {len(arguments)} arguments; wanted {wanted} "
+            "(quote an argument that has spaces)"
+        )
+    return make(arguments)
+
+
+def _looks_quoted(text: str) -> bool:
+    return text.removeprefix("$(eval").lstrip()[:1] in ("'", '"')

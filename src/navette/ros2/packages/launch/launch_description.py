@@ -1,0 +1,68 @@
+"""Launch descriptions: the entities of one launch file."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navette.ros2.packages.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+    normalize_to_list_of_entities,
+)
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+
+class LaunchDescription(LaunchDescriptionEntity):
+    """Visited in order when the launch runs."""
+
+    def __init__(
+        self, initial_entities: Iterable[LaunchDescriptionEntity] | None = None
+    ) -> None:
+        self._entities = normalize_to_list_of_entities(initial_entities)
+
+    @property
+    def entities(self) -> list[LaunchDescriptionEntity]:
+        return self._entities
+
+    def add_entity(self, entity: LaunchDescriptionEntity) -> None:
+        self._entities += normalize_to_list_of_entities(entity)
+
+    def add_action(self, action: LaunchDescriptionEntity) -> None:
+        self.add_entity(action)
+
+    def visit(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+        return list(self._entities)
+
+    def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
+        return list(self._entities)
+
+    def get_launch_arguments(self) -> list[Any]:
+        """The argument declarations found without running anything.
+
+        Of several with one name, the first.
+        """
+        found: dict[str, Any] = {}
+        for entity in walk(self):
+            name = getattr(entity, "declares", None)
+            if name is not None:
+                found.setdefault(name, entity)
+        return list(found.values())
+
+
+def walk(
+    root: LaunchDescriptionEntity, files: tuple[Path, ...] = ()
+) -> Iterable[LaunchDescriptionEntity]:
+    """``root`` and everything that it is known to lead to, in order.
+
+    A file that includes itself (which a condition may end) is not entered again.
+    """
+    yield root
+    inside = root.describe_sub_entities()
+    file = getattr(root, "included_file", None)
+    if file is not None:
+        if file in files:
+            return
+        files = (*files, file)
+    for entity in inside:
+        yield from walk(entity, files)

@@ -1,0 +1,68 @@
+"""Entities: everything that a launch description can hold."""
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+_OWN_FOLDER = str(Path(__file__).parent.parent)
+
+
+class LaunchDescriptionEntity:
+    """A node of the tree that a launch walks through.
+
+    ``origin`` is where it was written, as ``file:line``.
+    """
+
+    origin: str = ""
+
+    def visit(self, context: "LaunchContext") -> "list[LaunchDescriptionEntity] | None":
+        """Do the work; returns what is to be visited next."""
+        raise NotImplementedError
+
+    def describe(self) -> str:
+        """How it reads in an error."""
+        return type(self).__name__
+
+    def describe_sub_entities(self) -> "list[LaunchDescriptionEntity]":
+        """What it is known to lead to, without running it."""
+        return []
+
+
+SomeEntitiesType: TypeAlias = (
+    LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
+)
+SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
+
+
+def normalize_to_list_of_entities(value: Any) -> list[LaunchDescriptionEntity]:
+    """One entity, several (also nested lists), or None, as a flat list.
+
+    Raises:
+        InvalidLaunchValueError: something in it is no launch entity.
+    """
+    if value is None:
+        return []
+    if isinstance(value, LaunchDescriptionEntity):
+        return [value]
+    if isinstance(value, Iterable) and not isinstance(value, (str, bytes, dict)):
+        return [
+            entity for item in value for entity in normalize_to_list_of_entities(item)
+        ]
+    raise InvalidLaunchValueError(
+        f"{value!r} ({type(value).__name__}) is no launch entity; wanted an action or "
+        "a list of actions"
+    )
+
+
+def caller_location() -> str:
+    """``file:line`` of the nearest caller outside this folder."""
+    frame = sys._getframe(1)
+    while frame.f_code.co_filename.startswith(_OWN_FOLDER) and frame.f_back is not None:
+        frame = frame.f_back
+    return f"{frame.f_code.co_filename}:{frame.f_lineno}"

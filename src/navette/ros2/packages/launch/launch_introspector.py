@@ -1,0 +1,25 @@
+"""A launch description as text."""
+
+from navette.ros2.packages.launch.launch_description import LaunchDescription
+from navette.ros2.packages.launch.launch_description_entity import (
+    LaunchDescriptionEntity,
+)
+
+
+class LaunchIntrospector:
+    """Says what is in a launch description."""
+
+    def format_launch_description(self, launch_description: LaunchDescription) -> str:
+        """A line for each entity, those inside another one below it."""
+        return "\n".join(_lines(launch_description, ""))
+
+
+def _lines(entity: LaunchDescriptionEntity, indent: str) -> list[str]:
+    inside = entity.describe_sub_entities()
+    lines = [indent + entity.describe()]
+    for position, each in enumerate(inside):
+        is_last = position == len(inside) - 1
+        first, *rest = _lines(each, "")
+        lines.append(f"{indent}{'└── ' if is_last else '├── '}{first}")
+        lines += [f"{indent}{'    ' if is_last else '│   '}{line}" for line in rest]
+    return lines

@@ -1,0 +1,108 @@
+"""What commands write: whole lines, labelled, on the terminal and in log files."""
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO
+
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.logging import launch_config
+from navette.supervisor import LineCutter
+
+STREAMS = ("stdout", "stderr")
+_COLOURS = (36, 32, 35, 33, 34, 96)  # cyan, green, magenta, yellow, blue, bright cyan
+_MODES: dict[str, dict[str, set[str]]] = {
+    "screen": {"stdout": {"screen"}, "stderr": {"screen"}},
+    "log": {"stdout": {"log"}, "stderr": {"log", "screen"}},
+    "both": {"stdout": {"log", "screen"}, "stderr": {"log", "screen"}},
+    "own_log": {"stdout": {"log"}, "stderr": {"log"}},
+    "full": {"stdout": {"log", "screen"}, "stderr": {"log", "screen"}},
+}
+
+
+def output_places(value: object) -> dict[str, set[str]]:
+    """stdout and stderr → ``screen``, ``log``, both, from what ``output=`` says.
+
+    Raises:
+        InvalidLaunchValueError: another word; lists those known.
+    """
+    if isinstance(value, dict):
+        places: dict[str, set[str]] = {stream: set() for stream in STREAMS}
+        for stream, word in value.items():
+            wanted = STREAMS if stream == "both" else (stream,)
+            for each in wanted:
+                if each not in STREAMS:
+                    raise InvalidLaunchValueError(
+                        f"output: stream {each!r}; wanted stdout, stderr or both"
+                    )
+                places[each] |= output_places(word)[each]
+        return places
+    if value not in _MODES:
+        raise InvalidLaunchValueError(
+            f"output {value!r}; wanted {', '.join(_MODES)}, or a dict of streams"
+        )
+    return _MODES[str(value)]
+
+
+def _shown(label: str) -> str:
+    """``[talker-1]``; on a terminal in a colour of its own."""
+    if not sys.stdout.isatty() or "NO_COLOR" in os.environ:
+        return f"[{label}]"
+    number = label.rpartition("-")[2]
+    colour = _COLOURS[int(number) % len(_COLOURS) if number.isdigit() else 0]
+    return f"\x1b[{colour}m[{label}]\x1b[0m"
+
+
+class LabelledOutput:
+    """Cuts what a command writes into lines and puts its label before each.
+
+    Args:
+        label: such as ``talker-1``.
+        places: what :func:`output_places` returned.
+        line_format: makes the printed line of a line.
+    """
+
+    def __init__(
+        self,
+        label: str,
+        places: dict[str, set[str]],
+        line_format: Callable[[str], str] | None = None,
+    ) -> None:
+        self._label = label
+        self._places = places
+        self._format = line_format or (lambda line: f"{_shown(label)} {line}")
+        self._cutters = {stream: LineCutter() for stream in STREAMS}
+        self._log: IO[str] | None = None
+
+    def write(self, stream: str, data: bytes) -> None:
+        """Print the whole lines of what came, keep the rest for later."""
+        self._print(stream, self._cutters[stream].feed(data))
+
+    def close(self) -> None:
+        """Print what has no end of line yet."""
+        for stream in STREAMS:
+            self._print(stream, self._cutters[stream].finish())
+        if self._log is not None:
+            self._log.close()
+            self._log = None
+
+    def _print(self, stream: str, texts: list[str]) -> None:
+        if not texts:
+            return
+        places = self._places[stream]
+        if "screen" in places:
+            terminal = sys.stdout if stream == "stdout" else sys.stderr
+            terminal.write("".join(self._format(text) + "\n" for text in texts))
+            terminal.flush()
+        if "log" in places:
+            log = self._open_log()
+            log.write("".join(text + "\n" for text in texts))
+            log.flush()
+
+    def _open_log(self) -> IO[str]:
+        if self._log is None:
+            folder = Path(launch_config.log_dir)
+            folder.mkdir(parents=True, exist_ok=True)
+            self._log = (folder / f"{self._label}.log").open("a", encoding="utf-8")
+        return self._log

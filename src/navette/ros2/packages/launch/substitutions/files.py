@@ -1,0 +1,132 @@
+"""Substitutions by what the machine has: paths, files, executables, commands."""
+
+import os
+import shlex
+import shutil
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navette.ros2.packages.launch.errors import (
+    InvalidLaunchValueError,
+    SubstitutionFailure,
+)
+from navette.ros2.packages.launch.logging import get_logger
+from navette.ros2.packages.launch.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe_parts,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+_MAX_BYTES = 16 * 1024 * 1024
+_ON_STDERR = ("fail", "ignore", "warn", "capture")
+
+
+class PathJoinSubstitution(Substitution):
+    """Parts of a path, joined; a part may be a list of substitutions."""
+
+    def __init__(self, substitutions: Iterable[Any]) -> None:
+        if isinstance(substitutions, (str, Path, Substitution)):
+            substitutions = [substitutions]
+        self.parts = [normalize_to_list_of_substitutions(p) for p in substitutions]
+
+    def perform(self, context: "LaunchContext") -> str:
+        parts = [perform_substitutions(context, part) for part in self.parts]
+        return str(Path(*parts)) if parts else ""
+
+    def __truediv__(self, part: Any) -> "PathJoinSubstitution":
+        return PathJoinSubstitution([*self.parts, part])
+
+    def describe(self) -> str:
+        return f"PathJoin({' / '.join(map(describe_parts, self.parts))})"
+
+
+PathSubstitution = PathJoinSubstitution
+
+
+class FileContent(Substitution):
+    """What is written in a file (``$(file-content path)``)."""
+
+    def __init__(self, path: SomeSubstitutionsType) -> None:
+        self.path = normalize_to_list_of_substitutions(path)
+
+    def perform(self, context: "LaunchContext") -> str:
+        path = Path(perform_substitutions(context, self.path))
+        try:
+            if path.stat().st_size > _MAX_BYTES:
+                raise SubstitutionFailure(f"{path}: more than {_MAX_BYTES} bytes")
+            return path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise SubstitutionFailure(f"{path}: cannot be read: {error}") from error
+
+
+class FindExecutable(Substitution):
+    """Path of a program on ``PATH`` (``$(find-exec name)``)."""
+
+    def __init__(self, *, name: SomeSubstitutionsType) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+
+    def perform(self, context: "LaunchContext") -> str:
+        name = perform_substitutions(context, self.name)
+        found = shutil.which(name)
+        if found is None:
+            raise SubstitutionFailure(
+                f"executable {name!r} is not on PATH ({os.environ.get('PATH', '')})"
+            )
+        return found
+
+    def describe(self) -> str:
+        return f"FindExecutable({describe_parts(self.name)})"
+
+
+class Command(Substitution):
+    """What a command prints (``$(command 'xacro robot.xacro')``).
+
+    Args:
+        command: split as a shell would; no shell is involved.
+        on_stderr: what to do if it writes errors: fail, ignore, warn or capture.
+    """
+
+    def __init__(
+        self,
+        command: SomeSubstitutionsType,
+        *,
+        on_stderr: SomeSubstitutionsType = "fail",
+    ) -> None:
+        self.command = normalize_to_list_of_substitutions(command)
+        self.on_stderr = normalize_to_list_of_substitutions(on_stderr)
+
+    def perform(self, context: "LaunchContext") -> str:
+        text = perform_substitutions(context, self.command)
+        mode = perform_substitutions(context, self.on_stderr)
+        if mode not in _ON_STDERR:
+            raise InvalidLaunchValueError(
+                f"Command: on_stderr {mode!r}; wanted {', '.join(_ON_STDERR)}"
+            )
+        try:
+            done = subprocess.run(
+                shlex.split(text), capture_output=True, text=True, check=False
+            )
+        except (OSError, ValueError) as error:
+            raise SubstitutionFailure(f"command {text!r}: {error}") from error
+        if done.returncode != 0:
+            raise SubstitutionFailure(
+                f"command {text!r} failed with code {done.returncode}: "
+                f"{done.stderr.strip()}"
+            )
+        if done.stderr and mode == "fail":
+            raise SubstitutionFailure(
+                f"command {text!r} wrote to standard error: {done.stderr.strip()}"
+            )
+        if done.stderr and mode == "warn":
+            get_logger("launch").warning("command %r: %s", text, done.stderr.strip())
+        return done.stdout + (done.stderr if mode == "capture" else "")
+
+    def describe(self) -> str:
+        return f"Command({describe_parts(self.command)})"

@@ -1,0 +1,58 @@
+"""The value of a Python expression."""
+
+from typing import TYPE_CHECKING
+
+from navette.ros2.packages.launch.errors import SubstitutionFailure
+from navette.ros2.packages.launch.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    describe_parts,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from navette.msgs.expressions import ExpressionError, evaluate
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch.launch_context import LaunchContext
+
+_MODULES = ("math",)
+_HINT = "for more than an expression, use OpaqueFunction in a Python launch file"
+
+
+class PythonExpression(Substitution):
+    """The text of a Python expression's value (``$(eval '1 + 1')``).
+
+    Expressions are bounded: see :mod:`navette.msgs.expressions`.
+
+    Args:
+        expression: joined to one expression.
+        python_modules: modules it uses; ``math`` is the one there is.
+    """
+
+    def __init__(
+        self,
+        expression: SomeSubstitutionsType,
+        python_modules: SomeSubstitutionsType = ("math",),
+    ) -> None:
+        self.expression = normalize_to_list_of_substitutions(expression)
+        modules = (
+            [python_modules] if isinstance(python_modules, str) else python_modules
+        )
+        self.python_modules = normalize_to_list_of_substitutions(modules)
+
+    def perform(self, context: "LaunchContext") -> str:
+        for part in self.python_modules:
+            module = part.perform(context)
+            if module not in _MODULES:
+                raise SubstitutionFailure(
+                    f"PythonExpression: module {module!r} is not available in "
+                    f"expressions; available: {', '.join(_MODULES)}"
+                )
+        try:
+            text = perform_substitutions(context, self.expression)
+            return str(evaluate(text, _HINT))
+        except ExpressionError as error:
+            raise SubstitutionFailure(str(error)) from None
+
+    def describe(self) -> str:
+        return f"PythonExpression({describe_parts(self.expression)})"

@@ -1,0 +1,10 @@
+"""ROS 2's ``launch_ros``: launching nodes."""
+
+from navette.ros2.packages.launch_ros import (
+    actions,
+    descriptions,
+    parameter_descriptions,
+    substitutions,
+)
+
+__all__ = ["actions", "descriptions", "parameter_descriptions", "substitutions"]

@@ -1,0 +1,117 @@
+"""Containers, and nodes that are loaded into them."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from navette.ros2.packages.launch import Action, LaunchDescriptionEntity
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.running import PythonProgram
+from navette.ros2.packages.launch.substitution import (
+    describe_parts,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from navette.ros2.packages.launch_ros.actions.node import Node
+from navette.ros2.packages.launch_ros.descriptions import ComposableNode
+from navette.ros2.packages.launch_ros.scope import joined_namespace, pushed_namespace
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch import LaunchContext
+
+_NOTE = "containers"
+CONTAINER = PythonProgram(module="navette.ros2.launch.container", function="main")
+"""The program that loads node classes and runs them on one loop."""
+
+
+class ComposableNodeContainer(Node):
+    """Starts a container and loads nodes into it.
+
+    ``package`` and ``executable`` may name any container of ROS 2; Navette's own is
+    what runs.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: Any,
+        namespace: Any,
+        composable_node_descriptions: Iterable[ComposableNode] | None = None,
+        package: Any = "rclcpp_components",
+        executable: Any = "component_container",
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(
+            name=name,
+            namespace=namespace,
+            package=package,
+            executable=executable,
+            **kwargs,
+        )
+        self._nodes = list(composable_node_descriptions or ())
+
+    def _find(self, context: "LaunchContext") -> PythonProgram:
+        return CONTAINER
+
+    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+        if context.is_shutdown:
+            return None
+        super().execute(context)
+        containers: dict[str, ComposableNodeContainer]
+        containers = context.notes.setdefault(_NOTE, {})
+        containers[self.node_name] = self
+        if not self._nodes:
+            return None
+        return [
+            LoadComposableNodes(
+                composable_node_descriptions=self._nodes, target_container=self
+            )
+        ]
+
+
+class LoadComposableNodes(Action):
+    """Loads nodes into a container, given as action or by its name."""
+
+    def __init__(
+        self,
+        *,
+        composable_node_descriptions: Iterable[ComposableNode],
+        target_container: Any,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self._nodes = list(composable_node_descriptions)
+        for node in self._nodes:
+            if not isinstance(node, ComposableNode):
+                raise InvalidLaunchValueError(
+                    f"composable_node_descriptions: {node!r}: wanted ComposableNode"
+                )
+        self._target = (
+            target_container
+            if isinstance(target_container, ComposableNodeContainer)
+            else normalize_to_list_of_substitutions(target_container)
+        )
+
+    def describe(self) -> str:
+        nodes = ", ".join(describe_parts(node.node_plugin) for node in self._nodes)
+        return f"LoadComposableNodes({nodes})"
+
+    def execute(self, context: "LaunchContext") -> None:
+        container = self._container(context)
+        for node in self._nodes:
+            if node.condition is None or node.condition.evaluate(context):
+                container.write(node.load_request(context))
+
+    def _container(self, context: "LaunchContext") -> ComposableNodeContainer:
+        if isinstance(self._target, ComposableNodeContainer):
+            if self._target.process_details is None:
+                raise InvalidLaunchValueError("the container has not been started yet")
+            return self._target
+        name = perform_substitutions(context, self._target)
+        full_name = joined_namespace(pushed_namespace(context) or "/", name)
+        known: dict[str, ComposableNodeContainer] = context.notes.get(_NOTE, {})
+        if full_name not in known:
+            raise InvalidLaunchValueError(
+                f"target_container {full_name!r}: no such container has been started; "
+                f"there are: {', '.join(sorted(known)) or 'none'}"
+            )
+        return known[full_name]

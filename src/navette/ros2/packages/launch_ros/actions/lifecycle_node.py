@@ -1,0 +1,101 @@
+"""Managed nodes: started like any other, and taken from state to state by events."""
+
+from typing import TYPE_CHECKING, Any
+
+from navette.msgs.lifecycle_msgs.msg import Transition, TransitionEvent
+from navette.msgs.lifecycle_msgs.srv import ChangeState as ChangeStateService
+from navette.ros2.packages.launch import LaunchDescriptionEntity
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.event_handler import AnsweringHandler
+from navette.ros2.packages.launch.logging import get_logger
+from navette.ros2.packages.launch.typed import perform_bool
+from navette.ros2.packages.launch_ros.actions.node import Node
+from navette.ros2.packages.launch_ros.events.lifecycle import (
+    ChangeState,
+    StateTransition,
+)
+from navette.ros2.packages.launch_ros.events.lifecycle.change_state import TRANSITIONS
+from navette.ros2.packages.launch_ros.ros_node import launch_node
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch import Event, LaunchContext
+
+_log = get_logger("launch")
+
+
+class LifecycleNode(Node):
+    """A node with a managed lifecycle; its name must be known.
+
+    It obeys :class:`ChangeState` events that are for it, and each change of its state
+    is told by a :class:`StateTransition`.
+
+    Args:
+        autostart: configure and activate it as soon as it is there.
+    """
+
+    def __init__(
+        self, *, name: Any, namespace: Any, autostart: Any = False, **kwargs: Any
+    ) -> None:
+        if name is None:
+            raise InvalidLaunchValueError("LifecycleNode: name: wanted one")
+        super().__init__(name=name, namespace=namespace, **kwargs)
+        self._autostart = autostart
+        self._launch: LaunchContext | None = None
+
+    @property
+    def launch(self) -> "LaunchContext":
+        """The launch that started it."""
+        assert self._launch is not None, "it was started"
+        return self._launch
+
+    @property
+    def is_autostart(self) -> bool:
+        return bool(self._autostart)
+
+    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+        if context.is_shutdown:
+            return None
+        self._launch = context
+        super().execute(context)
+        launch_node(context).listen(
+            TransitionEvent,
+            f"{self.node_name}/transition_event",
+            lambda msg: context.emit_event(StateTransition(action=self, msg=msg)),
+        )
+        context.register_event_handler(
+            AnsweringHandler(matcher=self._is_asked, answer=self._change)
+        )
+        if not perform_bool(context, self._autostart):
+            return None
+        from navette.ros2.packages.launch_ros.actions.lifecycle_transition import (
+            LifecycleTransition,
+        )
+
+        return [
+            LifecycleTransition(
+                lifecycle_node_names=[self.node_name],
+                transition_ids=[
+                    Transition.TRANSITION_CONFIGURE,
+                    Transition.TRANSITION_ACTIVATE,
+                ],
+            )
+        ]
+
+    def _is_asked(self, event: "Event") -> bool:
+        return isinstance(event, ChangeState) and event.lifecycle_node_matcher(self)
+
+    def _change(self, event: Any, context: "LaunchContext") -> None:
+        request = ChangeStateService.Request()
+        request.transition.id = event.transition_id
+
+        def answered(response: Any) -> None:
+            if not response.success:
+                _log.error(
+                    "failed to make transition '%s' for LifecycleNode '%s'",
+                    TRANSITIONS[event.transition_id],
+                    self.node_name,
+                )
+
+        launch_node(context).call(
+            ChangeStateService, f"{self.node_name}/change_state", request, answered
+        )

@@ -1,0 +1,75 @@
+"""The handler for what becomes of managed nodes."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from navette.ros2.packages.launch import Event
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.event_handler import AnsweringHandler
+from navette.ros2.packages.launch.launch_description_entity import caller_location
+from navette.ros2.packages.launch.substitution import (
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from navette.ros2.packages.launch_ros.actions.lifecycle_node import LifecycleNode
+from navette.ros2.packages.launch_ros.events.lifecycle.state_transition import (
+    StateTransition,
+)
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch import LaunchContext
+
+
+class OnStateTransition(AnsweringHandler):
+    """When a managed node came into another state.
+
+    Args:
+        entities: what to visit then, or ``function(event, context)`` that gives some.
+        target_lifecycle_node: of this node only.
+        transition: only by this transition (``configure``, …).
+        start_state: only from there (``configuring``, …).
+        goal_state: only to there (``inactive``, …).
+        matcher: instead of all these: whether an event is meant.
+    """
+
+    def __init__(
+        self,
+        *,
+        entities: Any,
+        target_lifecycle_node: LifecycleNode | None = None,
+        transition: Any = None,
+        start_state: Any = None,
+        goal_state: Any = None,
+        matcher: Callable[[Event], bool] | None = None,
+        handle_once: bool = False,
+    ) -> None:
+        self.origin = caller_location()
+        target = target_lifecycle_node
+        if target is not None and not isinstance(target, LifecycleNode):
+            raise InvalidLaunchValueError(
+                f"OnStateTransition: target_lifecycle_node {target!r}: wanted a "
+                "LifecycleNode"
+            )
+        self._target = target
+        self._labels = {
+            "transition": transition,
+            "start_state": start_state,
+            "goal_state": goal_state,
+        }
+        super().__init__(
+            matcher=matcher or self._is_meant, answer=entities, handle_once=handle_once
+        )
+
+    def _is_meant(self, event: Event) -> bool:
+        if not isinstance(event, StateTransition):
+            return False
+        if self._target is not None and event.action is not self._target:
+            return False
+        return all(
+            wanted is None or _text(event.action.launch, wanted) == getattr(event, name)
+            for name, wanted in self._labels.items()
+        )
+
+
+def _text(context: "LaunchContext", value: Any) -> str:
+    return perform_substitutions(context, normalize_to_list_of_substitutions(value))

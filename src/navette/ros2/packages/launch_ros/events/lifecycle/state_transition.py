@@ -1,0 +1,31 @@
+"""The event that tells that a managed node came into another state."""
+
+from typing import Any
+
+from navette.ros2.packages.launch import Event
+
+
+class StateTransition(Event):
+    """``action``: the LifecycleNode; ``msg``: its TransitionEvent."""
+
+    name = "launch_ros.events.lifecycle.StateTransition"
+
+    def __init__(self, *, action: Any, msg: Any) -> None:
+        self.action = action
+        self.msg = msg
+
+    @property
+    def timestamp(self) -> int:
+        return int(self.msg.timestamp)
+
+    @property
+    def transition(self) -> str:
+        return str(self.msg.transition.label)
+
+    @property
+    def start_state(self) -> str:
+        return str(self.msg.start_state.label)
+
+    @property
+    def goal_state(self) -> str:
+        return str(self.msg.goal_state.label)

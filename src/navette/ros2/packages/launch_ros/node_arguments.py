@@ -1,0 +1,108 @@
+"""From what a launch file says of a node to the ROS arguments of its program."""
+
+import json
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navette.errors import ParameterError
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.substitution import (
+    Substitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from navette.ros2.packages.launch_ros.parameter_descriptions import (
+    Parameter,
+    ParameterFile,
+    evaluate_dict,
+)
+from navette.ros2.packages.launch_ros.scope import global_parameters, global_remaps
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch import LaunchContext
+
+Evaluated = list[Path | tuple[str, Any]]
+"""Parameter files and (name, value) in their order: the last wins."""
+
+
+def evaluate_parameters(context: "LaunchContext", given: Iterable[Any]) -> Evaluated:
+    """The scope's parameters, then those of the node itself.
+
+    Raises:
+        InvalidLaunchValueError: an item is none of a path, a dict and a Parameter.
+    """
+    found: Evaluated = list(global_parameters(context))
+    for item in given:
+        if isinstance(item, dict):
+            found += evaluate_dict(context, item)
+        elif isinstance(item, (Parameter, ParameterFile)):
+            found.append(item.evaluate(context))
+        elif isinstance(item, (str, Path, Substitution, list, tuple)):
+            found.append(ParameterFile(item).evaluate(context))
+        else:
+            raise InvalidLaunchValueError(
+                f"parameters: {item!r} ({type(item).__name__}): wanted a dict, the "
+                "path of a file, or a Parameter"
+            )
+    return found
+
+
+def evaluate_remaps(
+    context: "LaunchContext", given: Iterable[Any]
+) -> list[tuple[str, str]]:
+    """The scope's remappings, then those of the node itself."""
+    found = global_remaps(context)
+    for rule in given:
+        if isinstance(rule, str) or len(tuple(rule)) != 2:
+            raise InvalidLaunchValueError(
+                f"remappings: {rule!r}: wanted a pair, as in ('from', 'to')"
+            )
+        source, target = rule
+        found.append((_text(context, source), _text(context, target)))
+    return found
+
+
+def ros_arguments(
+    name: str | None,
+    namespace: str,
+    parameters: Evaluated,
+    remaps: Iterable[tuple[str, str]],
+) -> list[str]:
+    """What stands behind ``--ros-args``."""
+    words: list[str] = []
+    if name is not None:
+        words += ["-r", f"__node:={name}"]
+    if namespace:
+        words += ["-r", f"__ns:={namespace}"]
+    for item in parameters:
+        if isinstance(item, Path):
+            words += ["--params-file", str(item)]
+        else:
+            words += ["-p", f"{item[0]}:={parameter_text(*item)}"]
+    for source, target in remaps:
+        words += ["-r", f"{source}:={target}"]
+    return words
+
+
+def parameter_text(name: str, value: Any) -> str:
+    """A value as ``-p`` takes it, read back as the same value of the same type."""
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(parameter_text(name, each) for each in value)}]"
+    if isinstance(value, bool) or not isinstance(value, float):
+        if not isinstance(value, (bool, int, str)):
+            raise ParameterError(
+                f"parameter {name!r}: {value!r} ({type(value).__name__}) is no "
+                "parameter value; wanted a bool, int, float, string or a list of one"
+            )
+        return json.dumps(value, ensure_ascii=False)
+    if math.isnan(value):
+        return ".nan"
+    if math.isinf(value):
+        return ".inf" if value > 0 else "-.inf"
+    return repr(value)
+
+
+def _text(context: "LaunchContext", value: Any) -> str:
+    return perform_substitutions(context, normalize_to_list_of_substitutions(value))

@@ -1,0 +1,44 @@
+"""Parameter files that reach no node are an error once all nodes are known."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navette.errors import ParameterError
+from navette.ros2.packages.launch.errors import LaunchError
+from navette.runtime.overrides import OverrideSet
+from navette.runtime.parameter_files import read_parameter_file
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch import LaunchContext
+
+_NOTE = "parameter files"
+
+
+def check_later(context: "LaunchContext", node: Any, parameters: Any) -> None:
+    """Remember who got which file; look at it once the description was visited."""
+    if _NOTE not in context.notes:
+        context.notes[_NOTE] = []
+        context.loop.call_soon(lambda: _check(context), "parameter files")
+    entries: list[tuple[Any, Path]] = context.notes[_NOTE]
+    entries += [(node, item) for item in parameters if isinstance(item, Path)]
+
+
+def _check(context: "LaunchContext") -> None:
+    entries: list[tuple[Any, Path]] = context.notes.pop(_NOTE)
+    for path in dict.fromkeys(path for _, path in entries):
+        nodes = [node for node, each in entries if each == path]
+        patterns = [pattern for pattern, _ in read_parameter_file(path)]
+        # A node that was given no name names itself, which is not known here.
+        if any(node.expanded_node_name[0] == "<" for node in nodes):
+            continue
+        names = [node.node_name for node in nodes]
+        if not any(_matches(pattern, name) for pattern in patterns for name in names):
+            error = ParameterError(
+                f"{path}: has nothing for {', '.join(names)}; it is for "
+                f"{', '.join(patterns) or 'no node'}"
+            )
+            raise LaunchError.at(nodes[0].origin, nodes[0].describe(), error)
+
+
+def _matches(pattern: str, name: str) -> bool:
+    return OverrideSet("/" + pattern.strip("/"), {}, "").matches(name)

@@ -1,0 +1,118 @@
+"""The launch's own node: asks managed nodes for transitions, hears what they do."""
+
+import os
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from navette.errors import CallbackError
+from navette.runtime import Context, Executor, Node, SystemClock
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch import LaunchContext
+
+_NOTE = "ros node"
+_RETRY_S = 0.05
+_END_S = 5.0
+
+
+class LaunchNode:
+    """A node of the launch, where the nodes it starts are; with a thread of its own.
+
+    Args:
+        launch: told, on its loop, of what comes.
+    """
+
+    def __init__(self, launch: "LaunchContext") -> None:
+        self._launch = launch
+        self._context = Context(clock=SystemClock(), graph=launch.runner.graph)
+        self._context.init(args=[], initialize_logging=False)
+        self._node = Node(f"launch_ros_{os.getpid()}", context=self._context)
+        self._executor = Executor(context=self._context)
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def listen(
+        self, message_type: Any, topic: str, heard: Callable[[Any], None]
+    ) -> None:
+        """Call ``heard`` on the launch's loop with every message."""
+
+        def receive(message: Any) -> None:
+            self._tell(lambda: heard(message))
+
+        self._soon(
+            lambda: self._node.create_subscription(message_type, topic, receive, 10)
+        )
+
+    def call(
+        self,
+        service_type: Any,
+        name: str,
+        request: Any,
+        answered: Callable[[Any], None],
+    ) -> None:
+        """Call a service once it is there; waits for it until the launch ends.
+
+        ``answered`` runs on the launch's loop, with the response.
+        """
+
+        def begin() -> None:
+            client = self._node.create_client(service_type, name)
+
+            def attempt() -> None:
+                if not client.service_is_ready():
+                    return
+                timer.cancel()
+                future = client.call_async(request)
+                future.add_done_callback(
+                    lambda done: self._tell(lambda: answered(done.result()))
+                )
+
+            timer = self._node.create_timer(_RETRY_S, attempt)
+
+        self._soon(begin)
+
+    def after(self, seconds: float, function: Callable[[], None]) -> None:
+        """Call ``function`` on the launch's loop after so long in ROS time."""
+
+        def begin() -> None:
+            def fire() -> None:
+                timer.cancel()
+                self._tell(function)
+
+            timer = self._node.create_timer(seconds, fire)
+
+        self._soon(begin)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._context.try_shutdown()
+        self._thread.join(_END_S)
+
+    def _spin(self) -> None:
+        try:
+            self._executor.spin()
+        except CallbackError as error:
+            # Raised where the launch sees it: nothing dies unseen in a thread.
+            failure = error
+            self._tell(lambda: _raise(failure))
+
+    def _soon(self, function: Callable[[], Any]) -> None:
+        self._executor.call_soon_threadsafe(function)
+
+    def _tell(self, function: Callable[[], None]) -> None:
+        self._launch.loop.call_soon_threadsafe(function, "ros node")
+
+
+def _raise(error: Exception) -> None:
+    raise error
+
+
+def launch_node(context: "LaunchContext") -> LaunchNode:
+    """The node of this launch; made on first use, closed with the launch."""
+    node: LaunchNode | None = context.notes.get(_NOTE)
+    if node is None:
+        node = context.notes[_NOTE] = LaunchNode(context)
+        context.on_close(node.close)
+    return node

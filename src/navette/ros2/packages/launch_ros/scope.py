@@ -1,0 +1,73 @@
+"""What a scope gives the nodes started in it: namespace, parameters, remappings.
+
+Kept in the launch configurations, so that groups end it as they end arguments.
+"""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from navette.runtime.names import normalize_namespace, validate_namespace
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch import LaunchContext
+
+_NAMESPACE = "ros_namespace"
+_PARAMETERS = "navette global parameters"
+_REMAPS = "navette global remaps"
+
+GlobalParameter = tuple[str, Any] | Path
+"""(name, value), or a parameter file."""
+
+
+def pushed_namespace(context: "LaunchContext") -> str:
+    """The namespace of this scope; empty if there is none."""
+    return context.launch_configurations.get(_NAMESPACE, "")
+
+
+def push_namespace(context: "LaunchContext", namespace: str) -> None:
+    """Go one namespace deeper; one that starts with ``/`` starts anew."""
+    context.launch_configurations[_NAMESPACE] = joined_namespace(
+        pushed_namespace(context), namespace
+    )
+
+
+def joined_namespace(outer: str, inner: str) -> str:
+    """``inner`` within ``outer``; ``/…`` stands for itself. Empty: none at all."""
+    inner = inner.strip()
+    if not inner.startswith("/"):
+        inner = f"{outer.rstrip('/')}/{inner}" if outer else inner
+    if not inner:
+        return ""
+    namespace = normalize_namespace(inner)
+    validate_namespace(namespace)
+    return namespace
+
+
+def global_parameters(context: "LaunchContext") -> list[GlobalParameter]:
+    """Parameters and parameter files set for all nodes of this scope."""
+    found = json.loads(context.launch_configurations.get(_PARAMETERS, "[]"))
+    return [
+        Path(item) if isinstance(item, str) else (item[0], item[1]) for item in found
+    ]
+
+
+def add_global_parameter(context: "LaunchContext", given: GlobalParameter) -> None:
+    """Set one more for all nodes of this scope."""
+    found = [*global_parameters(context), given]
+    context.launch_configurations[_PARAMETERS] = json.dumps(
+        [str(item) if isinstance(item, Path) else item for item in found]
+    )
+
+
+def global_remaps(context: "LaunchContext") -> list[tuple[str, str]]:
+    """Remappings set for all nodes of this scope."""
+    found = json.loads(context.launch_configurations.get(_REMAPS, "[]"))
+    return [(source, target) for source, target in found]
+
+
+def add_global_remap(context: "LaunchContext", source: str, target: str) -> None:
+    """Set one more for all nodes of this scope."""
+    context.launch_configurations[_REMAPS] = json.dumps(
+        [*global_remaps(context), (source, target)]
+    )

@@ -1,0 +1,67 @@
+"""Substitutions by packages: their folders and executables."""
+
+from typing import TYPE_CHECKING
+
+from navette.ros2.packages.launch import SomeSubstitutionsType, Substitution
+from navette.ros2.packages.launch.errors import SubstitutionFailure
+from navette.ros2.packages.launch.substitution import (
+    describe_parts,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from navette.ros2.packages.launch.substitutions import PathJoinSubstitution
+from navette.ros2.workspace import find_package
+
+if TYPE_CHECKING:
+    from navette.ros2.packages.launch import LaunchContext
+
+
+class FindPackagePrefix(Substitution):
+    """Where a package is installed (``$(find-pkg-prefix name)``)."""
+
+    def __init__(self, package: SomeSubstitutionsType) -> None:
+        self.package = normalize_to_list_of_substitutions(package)
+
+    def find(self, package_name: str) -> str:
+        """The folder of a package."""
+        return str(find_package(package_name).prefix)
+
+    def perform(self, context: "LaunchContext") -> str:
+        return self.find(perform_substitutions(context, self.package))
+
+    def describe(self) -> str:
+        return f"{type(self).__name__}({describe_parts(self.package)})"
+
+    def __truediv__(self, part: object) -> PathJoinSubstitution:
+        return PathJoinSubstitution([self, part])
+
+
+FindPackage = FindPackagePrefix
+
+
+class FindPackageShare(FindPackagePrefix):
+    """The folder with a package's files (``$(find-pkg-share name)``)."""
+
+    def find(self, package_name: str) -> str:
+        return str(find_package(package_name).share)
+
+
+class ExecutableInPackage(Substitution):
+    """Path of an executable (``$(exec-in-pkg executable package)``)."""
+
+    def __init__(
+        self, executable: SomeSubstitutionsType, package: SomeSubstitutionsType
+    ) -> None:
+        self.executable = normalize_to_list_of_substitutions(executable)
+        self.package = normalize_to_list_of_substitutions(package)
+
+    def perform(self, context: "LaunchContext") -> str:
+        package = perform_substitutions(context, self.package)
+        name = perform_substitutions(context, self.executable)
+        path = find_package(package).executable(name).path
+        if path is None:
+            raise SubstitutionFailure(
+                f"executable {name!r} of package {package!r} is a Python function, "
+                "not a file"
+            )
+        return str(path)

@@ -1,0 +1,16 @@
+"""message_filters: caches and synchronizers of messages, chained by callbacks."""
+
+from navette.ros2.packages.message_filters.cache import Cache
+from navette.ros2.packages.message_filters.simple_filter import SimpleFilter, Subscriber
+from navette.ros2.packages.message_filters.synchronizers import (
+    ApproximateTimeSynchronizer,
+    TimeSynchronizer,
+)
+
+__all__ = [
+    "ApproximateTimeSynchronizer",
+    "Cache",
+    "SimpleFilter",
+    "Subscriber",
+    "TimeSynchronizer",
+]

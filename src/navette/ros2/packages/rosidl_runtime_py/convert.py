@@ -1,0 +1,201 @@
+"""rosidl_runtime_py.convert: messages as text, in the form ``ros2 topic echo`` prints.
+
+``truncate_length`` shortens arrays and texts to so many items and ends them in
+``...``; ``no_arr`` and ``no_str`` put the type and length in their place.
+"""
+
+from array import array
+from collections import OrderedDict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from navette.msgs import Message
+from navette.msgs.interface import FieldType
+from navette.ros2.packages.rosidl_runtime_py.number_text import (
+    CUT,
+    Layout,
+    Numbers,
+    python_words,
+)
+from navette.ros2.packages.rosidl_runtime_py.yaml_text import yaml_text
+
+_IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8"}
+_IDL_NAMES |= {"float32": "float", "float64": "double"}
+
+
+@dataclass(frozen=True, slots=True)
+class _Shortening:
+    """What is left out of a text."""
+
+    length: int | None
+    no_arr: bool
+    no_str: bool
+
+
+def message_to_yaml(
+    msg: Message,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+    flow_style: bool = False,
+) -> str:
+    """The message as YAML; ``flow_style`` puts it on one line."""
+    fields = _fields(msg, _Shortening(truncate_length, no_arr, no_str))
+    return "".join(yaml_text(fields, Layout(flow_style)))
+
+
+def message_to_csv(
+    msg: Message,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+) -> str:
+    """The message's values, in the order of the definition, with commas between."""
+    shortening = _Shortening(truncate_length, no_arr, no_str)
+    return ",".join(
+        _csv(getattr(msg, name), shortening, field_type)
+        for name, field_type in get_message_slot_types(msg).items()
+    )
+
+
+def yaml_pieces(
+    value: Any,
+    field_type: FieldType | None,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+    flow_style: bool = False,
+    width: int | None = None,
+) -> Iterator[str]:
+    """A message or a sequence of one as YAML, as it would stand in the message's.
+
+    Args:
+        width: numbers of arrays beside each other, in lines of so many characters.
+
+    Returns:
+        Pieces: in turn what stands around the arrays of numbers, and such an array.
+    """
+    shortening = _Shortening(truncate_length, no_arr, no_str)
+    return yaml_text(_plain(value, shortening, field_type), Layout(flow_style, width))
+
+
+def value_to_csv(
+    value: Any,
+    field_type: FieldType,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+) -> str:
+    """A field's value as it would stand in :func:`message_to_csv`."""
+    return _csv(value, _Shortening(truncate_length, no_arr, no_str), field_type)
+
+
+def message_to_ordereddict(
+    msg: Message,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+) -> "OrderedDict[str, Any]":
+    """The message's fields by name, all the way down; arrays as lists."""
+    shortening = _Shortening(truncate_length, no_arr, no_str)
+    ordered: OrderedDict[str, Any] = _ordered(_fields(msg, shortening))
+    return ordered
+
+
+def get_message_slot_types(msg: Message) -> "OrderedDict[str, FieldType]":
+    """The fields' types by name."""
+    return OrderedDict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
+
+
+def _ordered(value: Any) -> Any:
+    if isinstance(value, dict):
+        return OrderedDict((name, _ordered(each)) for name, each in value.items())
+    if isinstance(value, Numbers):
+        return value.plain()
+    if isinstance(value, list):
+        return [_ordered(each) for each in value]
+    return value
+
+
+def _fields(msg: Message, shortening: _Shortening) -> dict[str, Any]:
+    types = zip(msg._field_types_, msg.SLOT_TYPES, strict=True)
+    return {name: _plain(getattr(msg, name), shortening, t) for name, t in types}
+
+
+def _plain(
+    value: Any, shortening: _Shortening, field_type: FieldType | None = None
+) -> Any:
+    if isinstance(value, Message):
+        return _fields(value, shortening)
+    if isinstance(value, bytes):
+        return _short(value.decode("latin-1"), shortening.length, CUT)
+    if isinstance(value, str):
+        if shortening.no_str:
+            return _hidden_text(value)
+        return _short(value, shortening.length, CUT)
+    if isinstance(value, (list, array, np.ndarray)):
+        if shortening.no_arr and field_type is not None:
+            return _hidden_array(field_type, len(value))
+        items = _short(value, shortening.length, None)
+        if not isinstance(items, list) or _is_of_bools(field_type):
+            return Numbers(items, is_cut=items is not value)
+        plain = [_plain(item, shortening) for item in items]
+        return plain if items is value else [*plain, CUT]
+    return value
+
+
+def _is_of_bools(field_type: FieldType | None) -> bool:
+    return field_type is not None and field_type.base == "bool"
+
+
+def _csv(
+    value: Any, shortening: _Shortening, field_type: FieldType | None = None
+) -> str:
+    if isinstance(value, Message):
+        types = get_message_slot_types(value)
+        return ",".join(
+            _csv(getattr(value, name), shortening, t) for name, t in types.items()
+        )
+    if isinstance(value, (list, array, np.ndarray)):
+        if shortening.no_arr and field_type is not None:
+            return _hidden_array(field_type, len(value))
+        items = _short(value, shortening.length, None)
+        if isinstance(items, list):
+            text = ",".join(_csv(item, shortening) for item in items)
+        else:
+            text = python_words(np.asarray(items), ",")
+        end = () if items is value else (CUT,)
+        return ",".join((text, *end) if len(items) else end)
+    if isinstance(value, str):
+        if shortening.no_str:
+            return _hidden_text(value)
+        return str(_short(value, shortening.length, CUT))
+    return str(value)
+
+
+def _short(value: Any, length: int | None, end: str | None) -> Any:
+    """``value`` itself if it is short enough, else its start (and ``end``)."""
+    if length is None or len(value) <= length:
+        return value
+    start = value[:length]
+    return start if end is None else start + end
+
+
+def _hidden_text(value: str) -> str:
+    return f"<string length: <{len(value)}>>"
+
+
+def _hidden_array(field_type: FieldType, length: int) -> str:
+    base = _IDL_NAMES.get(field_type.base, field_type.base)
+    if field_type.container == "array":
+        return f"<array type: {base}[{field_type.size}]>"
+    bound = "" if field_type.size is None else f"[{field_type.size}]"
+    return f"<sequence type: {base}{bound}, length: {length}>"

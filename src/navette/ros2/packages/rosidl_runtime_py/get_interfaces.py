@@ -1,0 +1,93 @@
+"""rosidl_runtime_py.get_interfaces: which interfaces there are, and their files."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from navette import msgs
+from navette.errors import InvalidNameError, UnknownNameError
+from navette.ros2.workspace import find_package, find_packages
+from navette.ros2.workspace.package import INTERFACE_KINDS
+
+
+def get_interface_packages() -> dict[str, str]:
+    """Packages that define interfaces → their prefixes."""
+    packages = find_packages().values()
+    return {p.name: str(p.prefix) for p in packages if p.has_interfaces}
+
+
+def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
+    """Packages → their interfaces (``msg/String``); all packages if none is named.
+
+    Packages without interfaces are left out.
+
+    Raises:
+        LookupError: a package is not found.
+    """
+    return _interfaces(package_names, INTERFACE_KINDS)
+
+
+def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
+    """As :func:`get_interfaces`, messages only."""
+    return _interfaces(package_names, ("msg",))
+
+
+def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
+    """As :func:`get_interfaces`, services only."""
+    return _interfaces(package_names, ("srv",))
+
+
+def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
+    """As :func:`get_interfaces`, actions only."""
+    return _interfaces(package_names, ("action",))
+
+
+def get_interface_path(interface_name: str) -> str:
+    """The file that defines ``pkg/msg/Name`` (with or without ``.msg``).
+
+    Raises:
+        ValueError: the name has the wrong form.
+        LookupError: no such package or interface; lists those known.
+    """
+    parts = interface_name.split("/")
+    if len(parts) < 2 or not all(parts) or ".." in parts:
+        raise InvalidNameError(
+            f"interface name {interface_name!r}: wanted 'package/msg/Name'"
+        )
+    share = find_package(parts[0]).share
+    path = Path(share, *parts[1:])
+    if not path.suffix:
+        path = path.with_name(f"{path.name}.{parts[-2]}")
+    if not path.is_file():
+        known = get_interfaces([parts[0]]).get(parts[0], [])
+        raise UnknownNameError.of(f"interface of {parts[0]}", interface_name, known)
+    return str(path)
+
+
+def _interfaces(names: Iterable[str], kinds: Iterable[str]) -> dict[str, list[str]]:
+    kinds = tuple(kinds)
+    loaded = set(msgs.packages())
+    wanted = list(names) or sorted({*get_interface_packages(), *loaded})
+    found: dict[str, list[str]] = {}
+    for name in wanted:
+        # Interfaces that a program loaded itself need not lie in any package.
+        listed = _loaded(name, kinds) if name in loaded else _in_files(name, kinds)
+        if listed:
+            found[name] = listed
+    return found
+
+
+def _loaded(package: str, kinds: tuple[str, ...]) -> list[str]:
+    return [
+        f"{kind}/{name}"
+        for kind in kinds
+        for name in msgs.interface_names(package, kind)
+    ]
+
+
+def _in_files(package: str, kinds: tuple[str, ...]) -> list[str]:
+    share = find_package(package).share
+    return [
+        f"{kind}/{file.stem}"
+        for kind in kinds
+        for file in sorted((share / kind).glob(f"*.{kind}"))
+    ]

@@ -1,0 +1,5 @@
+"""sensor_msgs_py: point clouds as numpy arrays."""
+
+from navette.ros2.packages.sensor_msgs_py import point_cloud2
+
+__all__ = ["point_cloud2"]

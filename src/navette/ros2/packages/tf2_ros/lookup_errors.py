@@ -1,0 +1,32 @@
+"""tf2's exceptions as numbers of tf2_msgs/msg/TF2Error, and back."""
+
+from navette.msgs.tf2_msgs.msg import TF2Error
+from navette.ros2.packages.tf2_py import (
+    ConnectivityException,
+    ExtrapolationException,
+    InvalidArgumentException,
+    LookupException,
+    TimeoutException,
+    TransformException,
+)
+
+_KINDS: dict[int, type[TransformException]] = {
+    TF2Error.LOOKUP_ERROR: LookupException,
+    TF2Error.CONNECTIVITY_ERROR: ConnectivityException,
+    TF2Error.EXTRAPOLATION_ERROR: ExtrapolationException,
+    TF2Error.INVALID_ARGUMENT_ERROR: InvalidArgumentException,
+    TF2Error.TIMEOUT_ERROR: TimeoutException,
+}
+
+
+def exception_of(error: TF2Error) -> TransformException:
+    """The exception that a server's answer means."""
+    return _KINDS.get(error.error, TransformException)(error.error_string)
+
+
+def error_of(exception: TransformException) -> TF2Error:
+    """The answer that an exception means."""
+    for number, kind in _KINDS.items():
+        if isinstance(exception, kind):
+            return TF2Error(error=number, error_string=str(exception))
+    return TF2Error(error=TF2Error.TRANSFORM_ERROR, error_string=str(exception))

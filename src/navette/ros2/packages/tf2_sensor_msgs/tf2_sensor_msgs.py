@@ -1,0 +1,92 @@
+"""tf2_sensor_msgs.tf2_sensor_msgs: point clouds in another frame.
+
+Importing it lets ``buffer.transform`` move PointCloud2 messages.
+"""
+
+import sys
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry.se3 import Quaternion, Vector3, rotate
+from navette.msgs import copy_message
+from navette.msgs.geometry_msgs.msg import Transform, TransformStamped
+from navette.msgs.sensor_msgs.msg import PointCloud2
+from navette.msgs.std_msgs.msg import Header
+from navette.ros2.packages.sensor_msgs_py.point_cloud2 import (
+    PointCloudError,
+    dtype_from_fields,
+    read_points,
+)
+from navette.runtime.tf import (
+    ConvertRegistration,
+    TransformRegistration,
+    from_msg_msg,
+    to_msg_msg,
+)
+
+__all__ = ["do_transform_cloud", "from_msg_msg", "to_msg_msg", "transform_points"]
+
+_AXES: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def transform_points(
+    point_cloud: NDArray[Any], transform: Transform
+) -> NDArray[np.float64]:
+    """p_a = R·p_b + t for all points.
+
+    Args:
+        point_cloud: (N, 3) points (m) in b.
+        transform: a_T_b.
+
+    Returns:
+        (N, 3) points (m) in a.
+    """
+    t, q = transform.translation, transform.rotation
+    rotation: Quaternion = (q.x, q.y, q.z, q.w)
+    R_transposed = np.array([rotate(rotation, axis) for axis in _AXES])
+    moved: NDArray[np.float64] = point_cloud @ R_transposed + (t.x, t.y, t.z)
+    return moved
+
+
+def do_transform_cloud(
+    cloud: PointCloud2, transform: Transform | TransformStamped
+) -> PointCloud2:
+    """The cloud with x, y and z in the transform's frame, all else as it was.
+
+    Its stamp stays; the frame is the transform's, if that says one.
+
+    Raises:
+        PointCloudError: x, y or z is missing.
+    """
+    header = Header(stamp=cloud.header.stamp, frame_id=cloud.header.frame_id)
+    if isinstance(transform, TransformStamped):
+        header.frame_id = transform.header.frame_id
+        transform = transform.transform
+    names = dtype_from_fields(cloud.fields, cloud.point_step).names or ()
+    if not {"x", "y", "z"} <= set(names):
+        raise PointCloudError(
+            "the cloud needs the fields x, y and z for the transformation; "
+            f"it has {', '.join(names)}"
+        )
+    points = read_points(cloud).copy()  # native byte order, no padding of rows
+    xyz = np.stack([points[axis] for axis in "xyz"], axis=-1)
+    for axis, column in zip("xyz", transform_points(xyz, transform).T, strict=True):
+        points[axis] = column
+    return PointCloud2(
+        header=header,
+        height=cloud.height,
+        width=cloud.width,
+        fields=[copy_message(field) for field in cloud.fields],
+        is_bigendian=sys.byteorder != "little",
+        point_step=cloud.point_step,
+        row_step=cloud.point_step * cloud.width,
+        data=points.tobytes(),
+        is_dense=cloud.is_dense,
+    )
+
+
+TransformRegistration().add(PointCloud2, do_transform_cloud)
+ConvertRegistration().add_to_msg(PointCloud2, to_msg_msg)
+ConvertRegistration().add_from_msg(PointCloud2, from_msg_msg)

@@ -1,0 +1,62 @@
+"""Homogeneous matrices, 4 × 4: rotation in the upper left, translation on the right."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from navette.geometry.se3 import Vector3, rotate
+from navette.ros2.packages.tf_transformations.quaternions import Array, unit
+
+_AXES: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def identity_matrix() -> Array:
+    return np.eye(4)
+
+
+def translation_matrix(direction: Sequence[float]) -> Array:
+    """Moves by (x, y, z)."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = direction[:3]
+    return matrix
+
+
+def translation_from_matrix(matrix: ArrayLike) -> Array:
+    """How far it moves: (x, y, z)."""
+    return np.array(matrix, dtype=np.float64)[:3, 3].copy()
+
+
+def quaternion_matrix(quaternion: ArrayLike) -> Array:
+    """Turns as the quaternion does."""
+    rotation = unit(quaternion)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array([rotate(rotation, axis) for axis in _AXES]).T
+    return matrix
+
+
+def quaternion_from_matrix(matrix: ArrayLike) -> Array:
+    """The quaternion (w ≥ 0) of a rotation matrix, 3 × 3 or 4 × 4.
+
+    The eigenvector of the largest eigenvalue of Bar-Itzhack's K, which also serves a
+    matrix that is a rotation but for rounding (Bar-Itzhack 2000, eq. 10).
+    """
+    R = np.asarray(matrix, dtype=np.float64)[:3, :3]
+    K = np.zeros((4, 4))
+    K[:3, :3] = R + R.T - np.trace(R) * np.eye(3)
+    K[3, :3] = K[:3, 3] = (R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1])
+    K[3, 3] = np.trace(R)
+    quaternion: Array = np.linalg.eigh(K)[1][:, -1]
+    return -quaternion if quaternion[3] < 0 else quaternion
+
+
+def concatenate_matrices(*matrices: ArrayLike) -> Array:
+    """Their product: the last one acts first."""
+    product = np.eye(4)
+    for matrix in matrices:
+        product = product @ np.asarray(matrix, dtype=np.float64)
+    return product
+
+
+def inverse_matrix(matrix: ArrayLike) -> Array:
+    return np.linalg.inv(np.asarray(matrix, dtype=np.float64))

@@ -1,0 +1,27 @@
+"""Packages of a workspace, found by folder without a build step, and made new."""
+
+from navette.ros2.workspace.create import create_package
+from navette.ros2.workspace.executables import Executable
+from navette.ros2.workspace.finding import (
+    PackageNotFoundError,
+    activate,
+    find_package,
+    find_packages,
+    search_roots,
+)
+from navette.ros2.workspace.manifest import Manifest, read_manifest
+from navette.ros2.workspace.package import Origin, Package
+
+__all__ = [
+    "Executable",
+    "Manifest",
+    "Origin",
+    "Package",
+    "PackageNotFoundError",
+    "activate",
+    "create_package",
+    "find_package",
+    "find_packages",
+    "read_manifest",
+    "search_roots",
+]

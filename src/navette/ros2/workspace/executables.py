@@ -1,0 +1,147 @@
+"""The programs of a package, as its build files name them.
+
+Nothing is run to find them (see ``setup_py``).
+"""
+
+import ast
+import configparser
+import os
+import re
+import tomllib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from navette.errors import FileFormatError, UnknownNameError
+from navette.ros2.workspace.setup_py import read_setup_py
+
+BUILT_IN = "navette"
+_STAGES = {
+    name: ("navette.navigation.stack.stages", name)
+    for name in (
+        "sim",
+        "odom_integrator",
+        "ekf",
+        "costmap",
+        "map_memory",
+        "planner",
+        "control",
+        "missions",
+        "viewer",
+        "recorder",
+    )
+}
+
+_PROGRAMS = {
+    **_STAGES,
+    "component_container": ("navette.ros2.launch.container", "main"),
+}
+
+_ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
+_CMAKE_PROGRAMS = re.compile(
+    r"\binstall\s*\(\s*PROGRAMS\s+(.*?)\s+DESTINATION", re.DOTALL | re.IGNORECASE
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Executable:
+    """A function of a module (``module`` and ``attribute``), or a file (``path``)."""
+
+    package: str
+    name: str
+    module: str = ""
+    attribute: str = ""
+    path: Path | None = None
+
+    @staticmethod
+    def named(name: str, package: str, among: Iterable["Executable"]) -> "Executable":
+        """The one of that name.
+
+        Raises:
+            UnknownNameError: none; lists those known.
+        """
+        known = {each.name: each for each in among}
+        if name not in known:
+            raise UnknownNameError.of(f"executable of {package}", name, list(known))
+        return known[name]
+
+
+def built_in_executables(package: str) -> tuple[Executable, ...]:
+    """Navette's own: each stage as a program, and the container of nodes."""
+    if package != BUILT_IN:
+        return ()
+    return tuple(
+        Executable(package, name, module, attribute)
+        for name, (module, attribute) in sorted(_PROGRAMS.items())
+    )
+
+
+def source_executables(package: str, folder: Path) -> tuple[Executable, ...]:
+    """Those of a package's folder: entry points, and programs that CMake installs."""
+    texts = [
+        *_from_setup_py(folder / "setup.py"),
+        *_from_setup_cfg(folder / "setup.cfg"),
+        *_from_pyproject(folder / "pyproject.toml"),
+    ]
+    found = {}
+    for text in texts:
+        match = _ENTRY_POINT.fullmatch(text)
+        if match:
+            name, module, attribute = match.groups()
+            found[name] = Executable(package, name, module, attribute)
+    for path in _from_cmake(folder / "CMakeLists.txt"):
+        found[path.name] = Executable(package, path.name, path=path)
+    return tuple(found[name] for name in sorted(found))
+
+
+def installed_executables(package: str, folder: Path) -> tuple[Executable, ...]:
+    """The files of ``lib/<package>`` below a prefix that may be executed."""
+    if not folder.is_dir():
+        return ()
+    return tuple(
+        Executable(package, path.name, path=path)
+        for path in sorted(folder.iterdir())
+        if path.is_file() and os.access(path, os.X_OK)
+    )
+
+
+def _from_pyproject(path: Path) -> Iterator[str]:
+    if not path.is_file():
+        return
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise FileFormatError(path, str(error)) from None
+    for name, target in content.get("project", {}).get("scripts", {}).items():
+        yield f"{name} = {target}"
+
+
+def _from_setup_cfg(path: Path) -> Iterator[str]:
+    if not path.is_file():
+        return
+    parser = configparser.ConfigParser(interpolation=None)
+    try:
+        parser.read_string(path.read_text(encoding="utf-8"))
+    except configparser.Error as error:
+        raise FileFormatError(path, str(error)) from None
+    lines = parser.get("options.entry_points", "console_scripts", fallback="")
+    yield from lines.splitlines()
+
+
+def _from_cmake(path: Path) -> Iterator[Path]:
+    if not path.is_file():
+        return
+    text = re.sub(r"#.*", "", path.read_text(encoding="utf-8"))
+    for listed in _CMAKE_PROGRAMS.findall(text):
+        files = (path.parent / name.strip('"') for name in listed.split())
+        yield from (file for file in files if file.is_file())
+
+
+def _from_setup_py(path: Path) -> Iterator[str]:
+    setup = read_setup_py(path)
+    entry_points = setup and setup.argument("entry_points")
+    if not setup or not isinstance(entry_points, ast.Dict):
+        return
+    for key, value in zip(entry_points.keys, entry_points.values, strict=True):
+        if key is not None and setup.text(key) == "console_scripts":
+            yield from setup.texts(value)

@@ -1,0 +1,216 @@
+"""Where packages are: the workspace one works in, NAVETTE_PATH, installed prefixes.
+
+A source folder is enough: files are read from where they are written, so that nothing
+has to be built or installed after a change. Of one name the first found counts, in this
+order: the current workspace, NAVETTE_PATH, AMENT_PREFIX_PATH and Python's own prefix,
+Navette itself.
+"""
+
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from navette import msgs
+from navette.errors import FileFormatError, InvalidNameError, UnknownNameError
+from navette.msgs.registry import DEFINITIONS
+from navette.ros2.workspace.manifest import FILE_NAME, is_package_name, read_manifest
+from navette.ros2.workspace.package import Origin, Package
+
+#: Folders to look for packages in, as PATH holds folders of programs.
+PATH_VARIABLE = "NAVETTE_PATH"
+AMENT_VARIABLE = "AMENT_PREFIX_PATH"
+
+_IGNORE_FILES = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "NAVETTE_IGNORE")
+_OUTPUT_FOLDERS = ("build", "install", "log", "node_modules", "__pycache__")
+_DEPTH = 4  # workspace/src/repository/group/package
+_DEPTH_BESIDE = 1  # packages side by side in a folder that may be anything, as a home
+_SRC_ABOVE = 3  # how many folders a package may lie below the workspace's src
+
+
+class PackageNotFoundError(UnknownNameError, KeyError):
+    """Nobody has a package of that name.
+
+    Also a ``KeyError``, as ament_index_python's exception of that name is.
+    """
+
+    __str__ = Exception.__str__  # a KeyError's would put the text in quotes
+
+
+def find_packages(start: Path | None = None) -> dict[str, Package]:
+    """All packages by name, sorted.
+
+    Args:
+        start: where one stands; the working directory if not given.
+
+    Raises:
+        FileFormatError: a broken package.xml, or a folder of NAVETTE_PATH that is
+            not there.
+        InvalidNameError: two packages of one name below one folder.
+    """
+    return {each.name: each for each in _first_of_each(_all(start))}
+
+
+def find_package(name: str, start: Path | None = None) -> Package:
+    """The package of that name.
+
+    Raises:
+        InvalidNameError: no package can have that name.
+        PackageNotFoundError: nobody has it; says where it was looked for.
+    """
+    if not is_package_name(name):
+        raise InvalidNameError(f"{name!r} is not a valid package name")
+    for package in _all(start):
+        if package.name == name:
+            return package
+    places = ", ".join(
+        str(root) for root in (*search_roots(start), *installed_prefixes())
+    )
+    raise PackageNotFoundError(
+        f"package {name!r} not found, searching: {places} "
+        f"({PATH_VARIABLE} names further folders)"
+    )
+
+
+def search_roots(start: Path | None = None) -> tuple[Path, ...]:
+    """The folders below which source packages are looked for.
+
+    Raises:
+        FileFormatError: a folder of NAVETTE_PATH is not there.
+    """
+    here = _workspace_root((start or Path.cwd()).resolve())[0]
+    return tuple(dict.fromkeys((here, *_named_roots())))
+
+
+def _named_roots() -> list[Path]:
+    """The folders of NAVETTE_PATH."""
+    named = [Path(each).expanduser() for each in _variable(PATH_VARIABLE)]
+    for root in named:
+        if not root.is_dir():
+            raise FileFormatError(root, f"no such folder; {PATH_VARIABLE} names it")
+    return [root.resolve() for root in named]
+
+
+def activate(start: Path | None = None) -> tuple[Path, ...]:
+    """Make the workspace's own modules and interfaces importable in this process.
+
+    Returns the folders that were put on Python's path (behind what is there).
+    """
+    added = []
+    for package in _first_of_each(_beside_built_in(start)):
+        if package.has_interfaces and package.name not in msgs.packages():
+            _add_interfaces(package)
+        folder = package.python_path
+        if folder is not None and str(folder) not in sys.path:
+            sys.path.append(str(folder))
+            added.append(folder)
+    return tuple(added)
+
+
+def _add_interfaces(package: Package) -> None:
+    if package.folder.name == package.name:
+        # Read when asked for: its types may use those of packages still to come.
+        msgs.add_interface_path(package.folder.parent)
+    else:
+        msgs.load_interfaces(package.name, package.folder)
+
+
+def _first_of_each(packages: Iterable[Package]) -> list[Package]:
+    """The first of each name, sorted by name."""
+    found: dict[str, Package] = {}
+    for package in packages:
+        found.setdefault(package.name, package)
+    return [found[name] for name in sorted(found)]
+
+
+def _all(start: Path | None) -> Iterator[Package]:
+    """Those of the nearest place first; a name may come several times."""
+    yield from _beside_built_in(start)
+    yield from _built_in()
+
+
+def _beside_built_in(start: Path | None) -> Iterator[Package]:
+    here, depth = _workspace_root((start or Path.cwd()).resolve())
+    if here in _named_roots():  # then it is a workspace, whatever else it holds
+        depth = _DEPTH
+    for root in search_roots(start):
+        yield from _crawl(root, depth if root == here else _DEPTH)
+    for prefix in installed_prefixes():
+        yield from _installed(prefix)
+
+
+def _workspace_root(start: Path) -> tuple[Path, int]:
+    """The folder to look below from where one stands, and how deep."""
+    for folder in (start, *start.parents):
+        if (folder / FILE_NAME).is_file():
+            above = folder.parents[:_SRC_ABOVE]
+            source = next((each for each in above if each.name == "src"), None)
+            return (source, _DEPTH) if source else (folder.parent, _DEPTH_BESIDE)
+    for folder in (start, *start.parents):
+        if folder.name == "src":
+            return folder, _DEPTH
+    if (start / "src").is_dir():
+        return start / "src", _DEPTH
+    return start, _DEPTH_BESIDE
+
+
+def _crawl(root: Path, depth: int) -> Iterator[Package]:
+    seen: dict[str, Path] = {}
+    for folder in _package_folders(root, depth):
+        name = read_manifest(folder / FILE_NAME).name
+        if name in seen:
+            raise InvalidNameError(
+                f"two packages are named {name!r}: {seen[name]} and {folder}; "
+                f"a file {_IGNORE_FILES[0]} in one of them hides it"
+            )
+        seen[name] = folder
+        yield Package(name, folder, Origin.SOURCE)
+
+
+def _package_folders(folder: Path, depth: int) -> Iterator[Path]:
+    """Folders with a package.xml, sorted; packages do not lie in one another."""
+    # One look at each: all below is gone through whenever a program starts.
+    try:
+        with os.scandir(folder) as listed:
+            entries = {entry.name: entry for entry in listed}
+    except PermissionError:
+        return  # not ours to read: no package of this user's
+    if not entries.keys().isdisjoint(_IGNORE_FILES):
+        return
+    if FILE_NAME in entries and entries[FILE_NAME].is_file():
+        yield folder
+    elif depth > 0:
+        for name in sorted(filter(_may_hold_packages, entries)):
+            if entries[name].is_dir():
+                yield from _package_folders(folder / name, depth - 1)
+
+
+def _may_hold_packages(name: str) -> bool:
+    return not name.startswith(".") and name not in _OUTPUT_FOLDERS
+
+
+def installed_prefixes() -> tuple[Path, ...]:
+    """The prefixes that packages may be installed in, the first ones first."""
+    named = [Path(each) for each in _variable(AMENT_VARIABLE)]
+    return tuple(prefix for prefix in (*named, Path(sys.prefix)) if prefix.is_dir())
+
+
+def _installed(prefix: Path) -> Iterator[Package]:
+    index = prefix / "share" / "ament_index" / "resource_index" / "packages"
+    if index.is_dir():
+        for marker in sorted(index.iterdir()):
+            if marker.is_file() and is_package_name(marker.name):
+                share = prefix / "share" / marker.name
+                yield Package(marker.name, share, Origin.INSTALLED)
+
+
+def _built_in() -> Iterator[Package]:
+    """Navette's share is its own package, an interface package's its definitions."""
+    yield Package("navette", Path(__file__).parents[2], Origin.BUILT_IN)
+    for folder in sorted(DEFINITIONS.iterdir()):
+        if folder.is_dir():
+            yield Package(folder.name, folder, Origin.BUILT_IN)
+
+
+def _variable(name: str) -> list[str]:
+    return [each for each in os.environ.get(name, "").split(os.pathsep) if each]

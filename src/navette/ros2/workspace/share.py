@@ -1,0 +1,99 @@
+"""A source package's share directory: its folder, as an installation would lay it out.
+
+Most packages install their files where they lie, ``launch/x`` to ``share/name/launch``:
+then the folder itself is the share directory. Where ``data_files`` of setup.py says
+otherwise, a folder of links stands in for it: all that the package has, and what is
+installed elsewhere also there.
+"""
+
+import hashlib
+import os
+import shutil
+import tempfile
+from pathlib import Path, PurePosixPath
+
+from navette.ros2.workspace.setup_py import SetupPy, read_setup_py
+
+_CACHE_VARIABLE = "XDG_CACHE_HOME"
+
+
+def share_directory(name: str, folder: Path) -> Path:
+    """Where the files of the source package in ``folder`` are found.
+
+    Raises:
+        FileFormatError: its setup.py is no Python.
+    """
+    setup = read_setup_py(folder / "setup.py")
+    moved = {} if setup is None else _moved(setup, name)
+    return _linked(name, folder, moved) if moved else folder
+
+
+def _moved(setup: SetupPy, name: str) -> dict[PurePosixPath, Path]:
+    """Place below the share directory → file, for files that lie elsewhere."""
+    found: dict[PurePosixPath, Path] = {}
+    data_files = setup.argument("data_files")
+    for entry in getattr(data_files, "elts", ()):
+        if len(getattr(entry, "elts", ())) != 2:
+            continue
+        target = PurePosixPath(setup.text(entry.elts[0]) or "")
+        if target.parts[:2] != ("share", name):
+            continue
+        for text in setup.texts(entry.elts[1]):
+            file = setup.folder / text
+            place = PurePosixPath(*target.parts[2:], file.name)
+            if file.is_file() and not (setup.folder / place).exists():
+                found[place] = file
+    return found
+
+
+def _linked(name: str, folder: Path, moved: dict[PurePosixPath, Path]) -> Path:
+    """A folder of links; the same content gives the same folder, made once."""
+    children = sorted(c for c in folder.iterdir() if not c.name.startswith("."))
+    plan = repr((str(folder), [c.name for c in children], sorted(moved.items())))
+    digest = hashlib.sha256(plan.encode()).hexdigest()[:20]
+    view = _cache() / digest / name
+    if view.is_dir():
+        return view
+    view.parent.parent.mkdir(parents=True, exist_ok=True)
+    # Made aside, then moved: another process sees all of it or nothing.
+    making = Path(tempfile.mkdtemp(dir=view.parent.parent))
+    (making / name).mkdir()
+    for child in children:
+        _link(child, making / name / child.name)
+    for place, file in moved.items():
+        _place(making / name, place, file)
+    try:
+        making.rename(view.parent)
+    except OSError:  # another process was first
+        shutil.rmtree(making)
+    return view
+
+
+def _place(view: Path, place: PurePosixPath, file: Path) -> None:
+    """Link a file in a folder that may be a link itself: then open that up."""
+    folder = view
+    for part in place.parts[:-1]:
+        folder = folder / part
+        if folder.is_symlink():
+            real = folder.resolve()
+            folder.unlink()
+            folder.mkdir()
+            for child in real.iterdir():
+                _link(child, folder / child.name)
+        folder.mkdir(exist_ok=True)
+    _link(file, folder / place.name)
+
+
+def _link(target: Path, place: Path) -> None:
+    try:
+        place.symlink_to(target.resolve(), target_is_directory=target.is_dir())
+    except OSError:  # Windows allows links to few; a copy is as good until it changes
+        if target.is_dir():
+            shutil.copytree(target, place)
+        else:
+            shutil.copy2(target, place)
+
+
+def _cache() -> Path:
+    home = os.environ.get(_CACHE_VARIABLE) or os.environ.get("LOCALAPPDATA")
+    return (Path(home) if home else Path.home() / ".cache") / "navette" / "share"

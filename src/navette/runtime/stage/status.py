@@ -1,0 +1,63 @@
+"""The state of a stage on the wire: a named result, at once and then regularly."""
+
+from functools import partial
+from typing import Any
+
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from navette.runtime.stage.stage_node import Output, StageNode
+
+_PERIOD_S = 0.5
+
+
+def status_output(topic: str) -> Output:
+    """The output that a stage declares for its :class:`StatusReporter`."""
+    return Output(
+        topic=topic,
+        type="diagnostic_msgs/msg/DiagnosticStatus",
+        role="what the stage is doing, or why not: a named state with figures",
+        rate_hz=1 / _PERIOD_S,
+        depth=1,
+        latched=True,
+    )
+
+
+class StatusReporter:
+    """Publishes ``diagnostic_msgs/msg/DiagnosticStatus``, latched.
+
+    On a change of state at once; the newest details every half second.
+
+    Args:
+        node: publishes and gives its name.
+        topic: one of the node's outputs, made by :func:`status_output`.
+    """
+
+    OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
+
+    def __init__(self, node: StageNode, topic: str) -> None:
+        self._status = DiagnosticStatus(name=node.get_name())
+        self._publish = partial(node.publish, topic)
+        self._timer = node.create_timer(_PERIOD_S, self._repeat)
+
+    @property
+    def state(self) -> str:
+        """The last state reported; empty before the first."""
+        return self._status.message
+
+    def report(self, state: str, level: bytes = OK, **details: Any) -> None:
+        """Say what the stage is doing; ``details`` become key/value pairs."""
+        status = self._status
+        is_new = state != status.message or level != status.level
+        status.message, status.level = state, level
+        status.values = [
+            KeyValue(key=key, value=_text(value)) for key, value in details.items()
+        ]
+        if is_new:
+            self._publish(status)
+
+    def _repeat(self) -> None:
+        if self._status.message:
+            self._publish(self._status)
+
+
+def _text(value: Any) -> str:
+    return f"{value:.3f}" if isinstance(value, float) else str(value)

@@ -1,0 +1,152 @@
+"""Predicted motion against obstacles, and the last gate."""
+
+import math
+
+import numpy as np
+import pytest
+
+from navette.geometry import Footprint, Pose2
+from navette.grids import GridSpec
+from navette.navigation.control import (
+    Command,
+    CommandGate,
+    ControlState,
+    InputAges,
+    MotionLimits,
+    obstacle_points,
+)
+from navette.navigation.control.collision_check import CollisionCheck, signed_distance
+
+BODY = Footprint(((1.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (1.5, -0.5)))
+ORIGIN = Pose2(0.0, 0.0, 0.0)
+
+
+def checker(*points: tuple[float, float]) -> CollisionCheck:
+    check = CollisionCheck(
+        BODY,
+        margin=0.1,
+        horizon=0.5,
+        reaction=0.2,
+        deceleration=1.0,
+        turn_deceleration=2.0,
+    )
+    check.set_obstacles(np.array(points, np.float64).reshape(-1, 2), 0.05)
+    return check
+
+
+def test_the_distance_to_the_outline_is_signed() -> None:
+    outline = np.array(BODY.vertices)
+    assert signed_distance(outline, 2.0, 0.0) == pytest.approx(0.5)
+    assert signed_distance(outline, 0.0, 0.1) == pytest.approx(-0.4)
+    assert signed_distance(outline, 1.8, 0.9) == pytest.approx(0.5)
+
+
+def test_clearance_is_from_the_body_to_the_edge_of_the_cell() -> None:
+    assert checker((1.85, 0.0)).clearance(ORIGIN) == pytest.approx(0.3)
+    assert checker((9.0, 0.0)).clearance(ORIGIN) == pytest.approx(0.5)
+    assert checker().clearance(ORIGIN) == pytest.approx(0.5)
+
+
+def test_a_free_motion_is_not_touched() -> None:
+    assert checker((0.0, 5.0)).check(ORIGIN, Command(1.0, 0.2)).scale == 1.0
+    assert checker().check(ORIGIN, Command(1.0, 0.2)).scale == 1.0
+
+
+@pytest.mark.parametrize("gap", [0.4, 0.6, 1.0])
+def test_the_scaled_speed_can_still_stop_at_the_margin(gap: float) -> None:
+    scale, _ = checker((1.55 + gap, 0.0)).check(ORIGIN, Command(2.0, 0.0))
+    v = 2.0 * scale
+    stop = 0.2 * v + v * v / 2
+    assert gap - 0.1 - 0.12 <= stop <= gap - 0.1 + 1e-6
+
+
+def test_a_turn_is_checked_over_its_whole_sweep() -> None:
+    check = checker((1.2, 1.0))
+    assert not check.turn_is_free(ORIGIN, math.pi / 2)
+    assert check.turn_is_free(ORIGIN, -math.pi / 2)
+    assert check.turn_is_free(ORIGIN, 0.05)
+
+
+def test_moving_away_is_never_forbidden() -> None:
+    close = checker((1.57, 0.0))
+    assert close.check(ORIGIN, Command(0.5, 0.0)).scale == 0.0
+    assert close.check(ORIGIN, Command(-0.5, 0.0)).scale == 1.0
+    inside = checker((1.3, 0.0))
+    assert inside.check(ORIGIN, Command(-0.5, 0.0)).scale == 1.0
+    assert inside.check(ORIGIN, Command(0.5, 0.0)).scale == 0.0
+
+
+def test_passing_along_a_wall_closer_than_the_margin_is_allowed() -> None:
+    wall = [(0.1 * i, 0.62) for i in range(-20, 60)]
+    check = checker(*wall)
+    assert check.clearance(ORIGIN) == pytest.approx(0.07)
+    assert check.check(ORIGIN, Command(0.5, 0.0)).scale == 1.0
+    assert check.check(ORIGIN, Command(0.5, 0.5)).scale < 0.5
+
+
+def test_the_reach_covers_braking_from_the_speed() -> None:
+    radius = BODY.circumscribed_radius
+    assert checker().reach(1.0) > radius + 0.2 + 0.5 + 0.5
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.7, -2.5])
+def test_obstacle_points_are_lethal_cells_placed_in_the_map(yaw: float) -> None:
+    spec = GridSpec(0.1, 100, 100, Pose2(-5.0, -5.0, 0.0))
+    cost = np.full(spec.shape, -1, np.int8)
+    cost[60, 70] = 100
+    cost[60, 71] = 99
+    cost[0, 0] = 100
+    map_T_grid = Pose2(20.0, 10.0, yaw)
+    points = obstacle_points(
+        cost, spec, map_T_grid, lethal=100, around=map_T_grid, reach=3.0
+    )
+    expected = map_T_grid @ Pose2(2.05, 1.05, 0.0)
+    assert points == pytest.approx(np.array([[expected.x, expected.y]]))
+
+
+def test_a_robot_off_the_grid_sees_no_obstacles() -> None:
+    spec = GridSpec(0.1, 10, 10)
+    cost = np.full(spec.shape, 100, np.int8)
+    far = Pose2(-50.0, 80.0, 0.0)
+    points = obstacle_points(cost, spec, ORIGIN, lethal=100, around=far, reach=3.0)
+    assert points.shape == (0, 2)
+
+
+LIMITS = MotionLimits(1.0, 2.0, 1.0, 1.0, 1.0)
+GATE = CommandGate(
+    LIMITS, odometry_timeout=0.3, costmap_timeout=0.3, planner_timeout=2.0
+)
+
+
+@pytest.mark.parametrize(
+    ("command", "reason"),
+    [
+        (Command(1.0, 2.0), None),
+        (Command(-1.0, -2.0), None),
+        (Command(1.01, 0.0), ControlState.COMMAND_OVER_LIMIT),
+        (Command(0.0, -2.01), ControlState.COMMAND_OVER_LIMIT),
+        (Command(math.nan, 0.0), ControlState.COMMAND_NOT_FINITE),
+        (Command(0.0, math.inf), ControlState.COMMAND_NOT_FINITE),
+    ],
+)
+def test_the_gate_refuses_what_it_must(
+    command: Command, reason: ControlState | None
+) -> None:
+    assert GATE.refusal(command) is reason
+
+
+@pytest.mark.parametrize(
+    ("ages", "reason"),
+    [
+        (InputAges(odometry_s=0.31), ControlState.STALE_ODOMETRY),
+        (InputAges(costmap_s=0.31), ControlState.STALE_COSTMAP),
+        (InputAges(planner_s=2.1), ControlState.STALE_PATH),
+        (InputAges(odometry_s=math.inf), ControlState.STALE_ODOMETRY),
+        (InputAges(odometry_s=math.nan), ControlState.STALE_ODOMETRY),
+        (InputAges(0.3, 0.3, 2.0), None),
+    ],
+)
+def test_the_gate_stops_on_stale_inputs(
+    ages: InputAges, reason: ControlState | None
+) -> None:
+    assert GATE.stale(ages) is reason

@@ -1,0 +1,302 @@
+"""The control node in a graph, with a simulated robot around it."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from control_plant import Plant, tangent_path
+
+from navette.geometry import Pose2, quaternion_from_yaw
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.msgs.geometry_msgs.msg import PoseStamped, Quaternion, Twist
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
+from navette.navigation.control.node import ControlNode
+from navette.runtime import Parameter
+from navette.runtime.time import ns_to_stamp
+from navette.testing import GraphHarness
+
+STRAIGHT = tangent_path(np.array([[0, 0], [3, 0.0]]))
+
+
+class World:
+    """A robot in a graph: /cmd_vel in, odometry and costmap out, planner alive."""
+
+    def __init__(self, graph: GraphHarness, **params: object) -> None:
+        self.graph = graph
+        self.plant = Plant(Pose2(0.0, 0.0, 0.0))
+        self.odometry = self.lidar = self.planner = True
+        self.planner_says = "following"
+        self.wall_x: float | None = None  # across the x axis of the map
+        self.resolution = 0.1  # of the costmap, as it is told
+        self.node = graph.add(
+            ControlNode(
+                context=graph.context,
+                parameter_overrides=[
+                    Parameter(name, value=value) for name, value in params.items()
+                ],
+            )
+        )
+        self.commands = graph.collect("/cmd_vel", "geometry_msgs/msg/Twist")
+        self.status = graph.collect(
+            "/control/status", "diagnostic_msgs/msg/DiagnosticStatus", latched=True
+        )
+        self._command = Twist()
+        timers = ((0.05, self._move), (0.1, self._scan), (0.5, self._plan))
+        for period, callback in timers:
+            graph.node.create_timer(period, callback)
+        graph.node.create_subscription(Twist, "/cmd_vel", self._obey, 10)
+
+    def send_path(self, poses: np.ndarray, frame: str = "map") -> None:
+        msg = Path()
+        msg.header.frame_id = frame
+        for x, y, yaw in poses:
+            stamped = PoseStamped()
+            stamped.pose.position.x, stamped.pose.position.y = x, y
+            qx, qy, qz, qw = quaternion_from_yaw(yaw)
+            stamped.pose.orientation = Quaternion(x=qx, y=qy, z=qz, w=qw)
+            msg.poses.append(stamped)
+        self.graph.publish("/path", msg)
+
+    @property
+    def state(self) -> str:
+        return str(self.status.last.message)
+
+    @property
+    def states(self) -> list[str]:
+        names = [m.message for m in self.status.messages]
+        return [b for a, b in zip(["", *names], names, strict=False) if a != b]
+
+    def _obey(self, msg: Twist) -> None:
+        self._command = msg
+
+    def _move(self) -> None:
+        self.plant.drive(self._command.linear.x, self._command.angular.z, 0.05)
+        if not self.odometry:
+            return
+        msg = Odometry(child_frame_id="base_link")
+        msg.header.frame_id = "map"
+        msg.header.stamp = ns_to_stamp(self.graph.now_ns)
+        pose = self.plant.pose
+        msg.pose.pose.position.x, msg.pose.pose.position.y = pose.x, pose.y
+        x, y, z, w = quaternion_from_yaw(pose.yaw)
+        msg.pose.pose.orientation = Quaternion(x=x, y=y, z=z, w=w)
+        msg.twist.twist.linear.x = self.plant.speed
+        msg.twist.twist.angular.z = self.plant.turn_rate
+        self.graph.publish("/odom/filtered", msg)
+
+    def _scan(self) -> None:
+        """A costmap in the robot's frame, 8 m wide, origin a corner."""
+        if not self.lidar:
+            return
+        cost = np.zeros((80, 80), np.int8)
+        if self.wall_x is not None:
+            column = math.floor((self.wall_x - self.plant.pose.x + 4.0) / 0.1)
+            if 0 <= column < 80:
+                cost[:, column] = 100
+        msg = OccupancyGrid()
+        msg.header.frame_id = "base_link"
+        msg.header.stamp = ns_to_stamp(self.graph.now_ns)
+        msg.info.resolution = self.resolution
+        msg.info.width = msg.info.height = 80
+        msg.info.origin.position.x = msg.info.origin.position.y = -4.0
+        msg.data = cost.ravel()
+        self.graph.publish("/costmap", msg)
+
+    def _plan(self) -> None:
+        if self.planner:
+            status = DiagnosticStatus(message=self.planner_says)
+            self.graph.publish("/planner/status", status, latched=True)
+
+
+@pytest.fixture
+def graph() -> Iterator[GraphHarness]:
+    with GraphHarness() as harness:
+        yield harness
+
+
+@pytest.fixture
+def world(graph: GraphHarness) -> World:
+    made = World(graph)
+    graph.run_for(1.0)
+    return made
+
+
+def test_before_a_path_there_is_silence_and_a_state(world: World) -> None:
+    assert world.commands.count == 0
+    assert world.state == "idle"
+
+
+def test_a_path_is_driven_to_its_end_then_zeros_then_silence(world: World) -> None:
+    world.send_path(STRAIGHT)
+    assert world.graph.run_until(lambda: world.state == "reached", 15.0)
+    assert math.dist((world.plant.pose.x, world.plant.pose.y), (3.0, 0.0)) < 0.1
+    assert world.states == ["idle", "following", "reached"]
+    world.graph.run_for(1.0)
+    last = [(m.linear.x, m.angular.z) for m in world.commands.messages[-5:]]
+    assert last == [(0.0, 0.0)] * 5
+    count = world.commands.count
+    world.graph.run_for(2.0)
+    assert world.commands.count == count
+
+
+def test_commands_come_at_the_rate(world: World) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(2.0)
+    assert np.diff(world.commands.stamps_ns).tolist() == [50_000_000] * 39
+
+
+def test_the_state_is_repeated_with_figures(world: World) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(3.0)
+    details = {pair.key: float(pair.value) for pair in world.status.last.values}
+    assert 0.2 < details["speed_mps"] <= 0.5
+    assert 1.0 < details["distance_left_m"] < 2.5
+    assert len(world.status.messages) >= 6
+
+
+@pytest.mark.parametrize(
+    ("lost", "state"), [("lidar", "stale_costmap"), ("odometry", "stale_odometry")]
+)
+def test_the_robot_stops_within_half_a_second_of_a_lost_input(
+    world: World, lost: str, state: str
+) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(3.0)
+    assert world.plant.speed > 0.4
+    setattr(world, lost, False)
+    world.graph.run_for(0.36)
+    assert (world.commands.last.linear.x, world.state) == (0.0, state)
+    world.graph.run_for(0.6)
+    assert world.plant.speed < 0.01
+    setattr(world, lost, True)
+    assert world.graph.run_until(lambda: world.state == "reached", 15.0)
+
+
+def test_a_dead_planner_stops_the_robot(world: World) -> None:
+    world.send_path(tangent_path(np.array([[0, 0], [9, 0.0]])))
+    world.planner = False
+    world.graph.run_for(1.9)
+    assert world.state == "following"
+    world.graph.run_for(0.7)
+    assert world.state == "stale_path"
+    assert world.commands.last == Twist()
+
+
+def test_a_planner_that_begins_anew_knows_nothing_of_the_path(world: World) -> None:
+    world.send_path(tangent_path(np.array([[0, 0], [9, 0.0]])))
+    world.graph.run_for(2.0)
+    world.planner = False
+    world.graph.run_for(3.0)
+    assert world.state == "stale_path"
+    world.planner, world.planner_says = True, "waiting_for_goal"
+    world.graph.run_for(2.0)
+    assert (world.state, world.plant.speed) == ("idle", pytest.approx(0.0, abs=0.01))
+
+
+def test_a_path_of_somebody_else_is_followed_beside_an_idle_planner(
+    graph: GraphHarness,
+) -> None:
+    world = World(graph)
+    world.planner_says = "waiting_for_goal"
+    graph.run_for(1.0)
+    world.send_path(STRAIGHT)
+    assert graph.run_until(lambda: world.state == "reached", 15.0)
+
+
+def test_a_path_from_a_user_without_planner_can_be_followed(
+    graph: GraphHarness,
+) -> None:
+    world = World(graph, planner_timeout_s=0.0)
+    world.planner = False
+    graph.run_for(1.0)
+    world.send_path(STRAIGHT)
+    assert graph.run_until(lambda: world.state == "reached", 15.0)
+
+
+def test_a_costmap_in_the_robots_frame_blocks_where_it_belongs(world: World) -> None:
+    world.wall_x = 2.5
+    world.send_path(STRAIGHT)
+    assert world.graph.run_until(lambda: world.state == "blocked", 15.0)
+    world.graph.run_for(1.0)
+    # The body ends 0.25 m ahead of the axle; the wall's cells are 0.1 m.
+    assert 2.0 < world.plant.pose.x < 2.22
+    assert world.status.last.level == b"\x01"
+    world.wall_x = None
+    assert world.graph.run_until(lambda: world.state == "reached", 15.0)
+
+
+@pytest.mark.parametrize("resolution", [0.0, math.nan, -0.1, 1e30])
+def test_costmaps_that_are_no_grids_stop_the_robot_like_none(
+    world: World, resolution: float
+) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(3.0)
+    world.resolution = resolution
+    world.graph.run_for(0.36)
+    assert (world.commands.last.linear.x, world.state) == (0.0, "stale_costmap")
+    world.resolution = 0.1
+    assert world.graph.run_until(lambda: world.state == "reached", 15.0)
+
+
+def test_an_empty_path_stops(world: World) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(2.0)
+    world.send_path(np.empty((0, 3)))
+    world.graph.run_for(0.1)
+    assert world.commands.last == Twist()
+    assert world.state == "idle"
+
+
+@pytest.mark.parametrize(
+    ("poses", "frame", "state"),
+    [
+        (STRAIGHT, "odom", "unknown_frame"),
+        (np.array([[0, 0, 0], [math.nan, 0, 0]]), "map", "invalid_path"),
+    ],
+)
+def test_a_path_that_cannot_be_followed_stops_with_a_reason(
+    world: World, poses: np.ndarray, frame: str, state: str
+) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(2.0)
+    world.send_path(poses, frame)
+    world.graph.run_for(0.2)
+    assert (world.commands.last, world.state) == (Twist(), state)
+    world.send_path(STRAIGHT)
+    assert world.graph.run_until(lambda: world.state == "reached", 15.0)
+
+
+def test_a_node_that_ends_stops_the_robot(world: World) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(2.0)
+    assert world.commands.last.linear.x > 0.4
+    world.node.destroy_node()
+    world.graph.run_for(0.1)
+    assert world.commands.last == Twist()
+
+
+def test_parameters_can_change_on_the_way(world: World) -> None:
+    world.send_path(STRAIGHT)
+    world.graph.run_for(2.0)
+    [result] = world.node.set_parameters([Parameter("cruise_speed_mps", value=0.2)])
+    assert result.successful
+    world.graph.run_for(1.5)
+    assert world.plant.speed == pytest.approx(0.2, abs=0.01)
+    [result] = world.node.set_parameters([Parameter("footprint", value=[1.0, 2.0])])
+    assert not result.successful
+    world.node.set_parameters([Parameter("method", value="cross_track_pid")])
+    world.node.set_parameters([Parameter("rate_hz", value=10.0)])
+    assert world.graph.run_until(lambda: world.state == "reached", 20.0)
+
+
+def test_the_same_run_twice_gives_the_same_commands() -> None:
+    runs = []
+    for _ in range(2):
+        with GraphHarness() as graph:
+            world = World(graph)
+            world.send_path(tangent_path(np.array([[0, 0], [1, 0], [2, 0.5]])))
+            graph.run_for(6.0)
+            runs.append([(m.linear.x, m.angular.z) for m in world.commands.messages])
+    assert runs[0] == runs[1]
+    assert runs[0]

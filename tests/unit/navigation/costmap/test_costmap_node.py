@@ -1,0 +1,88 @@
+import math
+
+import numpy as np
+import pytest
+
+from navette.errors import ParameterError
+from navette.grids import grid_from_message
+from navette.msgs.builtin_interfaces.msg import Time
+from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.std_msgs.msg import Header
+from navette.navigation.costmap.node import CostmapNode
+from navette.runtime import Parameter
+from navette.testing import GraphHarness, Probe
+
+
+def scan(ranges, stamp_ns: int = 0, **values) -> LaserScan:
+    stamp = Time(sec=stamp_ns // 10**9, nanosec=stamp_ns % 10**9)
+    fields = {
+        "angle_min": -0.1,
+        "angle_increment": 0.01,
+        "range_min": 0.1,
+        "range_max": 20.0,
+    }
+    return LaserScan(
+        header=Header(stamp=stamp, frame_id="lidar"),
+        ranges=np.asarray(ranges, np.float32),
+        **(fields | values),
+    )
+
+
+def started(graph: GraphHarness, **values) -> tuple[CostmapNode, Probe]:
+    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    node = CostmapNode(context=graph.context, parameter_overrides=overrides)
+    return graph.add(node), graph.collect("/costmap", "nav_msgs/msg/OccupancyGrid")
+
+
+def test_one_costmap_for_each_scan_in_its_frame_and_with_its_stamp() -> None:
+    with GraphHarness() as graph:
+        _, costmaps = started(graph)
+        graph.run_for(0.1)
+        assert costmaps.count == 0
+        for stamp_ns in (50_000_000, 1_250_000_000):
+            graph.publish("/lidar", scan([3.0] * 21, stamp_ns))
+        graph.run_for(0.1)
+        assert costmaps.count == 2
+        msg = costmaps.last
+        assert msg.header.frame_id == "lidar"
+        assert (msg.header.stamp.sec, msg.header.stamp.nanosec) == (1, 250_000_000)
+        cells, spec = grid_from_message(msg)
+        assert (spec.width, spec.resolution) == (301, 0.1)
+        assert cells[150, 150] == 0
+        assert cells[spec.cell_of(3.0, 0.0)] == 100
+        assert cells[spec.cell_of(3.5, 0.0)] == -1
+
+
+def test_parameters_apply_to_the_next_scan() -> None:
+    with GraphHarness() as graph:
+        node, costmaps = started(graph, resolution=0.05, size=10.0)
+        graph.publish("/lidar", scan([3.0] * 21))
+        graph.run_for(0.1)
+        assert costmaps.last.info.width == 201
+        node.set_parameters([Parameter("size", value=4.0)])
+        graph.publish("/lidar", scan([3.0] * 21))
+        graph.run_for(0.1)
+        assert costmaps.last.info.width == 81
+
+
+def test_wrong_parameters_are_refused() -> None:
+    with GraphHarness() as graph:
+        with pytest.raises(ParameterError, match="inflation_method"):
+            started(graph, inflation_method="cubic")
+        node, _ = started(graph)
+        results = node.set_parameters([Parameter("size", value=1000.0)])
+        assert not results[0].successful
+        assert node.params.size == 30.0
+
+
+def test_a_scan_without_sense_gives_no_costmap_and_the_next_one_works() -> None:
+    with GraphHarness() as graph:
+        _, costmaps = started(graph)
+        graph.publish("/lidar", LaserScan())
+        graph.publish("/lidar", scan([1.0], range_max=math.nan))
+        graph.run_for(0.1)
+        assert costmaps.count == 0
+        graph.publish("/lidar", scan([]))
+        graph.publish("/lidar", scan([math.nan, math.inf, -1.0, 3.0]))
+        graph.run_for(0.1)
+        assert costmaps.count == 2

@@ -1,0 +1,106 @@
+import numpy as np
+import pytest
+
+from navette.geometry import Pose2
+from navette.grids import GridSpec, placed
+from navette.navigation.mapping import (
+    FusionGate,
+    MapMemory,
+    MapMemoryParams,
+    Motion,
+    PlacedCostmap,
+)
+
+SPEC = GridSpec(0.1, 41, 41, Pose2(-2.05, -2.05, 0.0))
+SECOND = 1_000_000_000
+
+
+def costmap(x=0.0, yaw=0.0, *, obstacle=False, **motion) -> PlacedCostmap:
+    cells = np.zeros(SPEC.shape, np.int8)
+    if obstacle:
+        cells[15:25, 35] = 100
+    pose = Pose2(x, 0.0, yaw)
+    return PlacedCostmap(cells, placed(SPEC, pose), (x, 0.0), pose, 0, Motion(**motion))
+
+
+def gate_and_memory(**values) -> tuple[FusionGate, MapMemory]:
+    params = MapMemoryParams(**values)
+    return FusionGate(params), MapMemory(params)
+
+
+def fused_once(first: PlacedCostmap, **values) -> tuple[FusionGate, MapMemory]:
+    gate, memory = gate_and_memory(**values)
+    memory.fuse(first)
+    gate.fused(first, 0)
+    return gate, memory
+
+
+def test_the_first_costmap_joins_at_once() -> None:
+    gate, memory = gate_and_memory()
+    assert gate.on_arrival(costmap(), memory, 0)
+    assert gate.on_timer(costmap())
+
+
+@pytest.mark.parametrize(
+    ("x", "yaw", "expected"),
+    [(0.5, 0.0, False), (1.6, 0.0, True), (0.0, 0.4, False), (0.0, -0.6, True)],
+)
+def test_timer_waits_for_way_or_turn(x, yaw, expected) -> None:
+    """The fault to avoid: gating by distance alone never fuses in a turn."""
+    gate, _ = fused_once(costmap())
+    assert gate.on_timer(costmap(x, yaw)) is expected
+
+
+def test_the_same_costmap_is_not_fused_twice() -> None:
+    first = costmap()
+    gate, _ = fused_once(first, update_distance=0.0)
+    assert not gate.on_timer(first)
+    assert gate.on_timer(costmap())
+
+
+def test_nothing_is_fused_while_spinning() -> None:
+    gate, memory = gate_and_memory()
+    assert not gate.on_arrival(costmap(yaw_rate=-2.0), memory, 0)
+    gate, memory = fused_once(costmap())
+    spinning = costmap(3.0, 1.0, yaw_rate=2.0, obstacle=True)
+    assert not gate.on_timer(spinning)
+    assert not gate.on_arrival(spinning, memory, SECOND)
+
+
+@pytest.mark.parametrize(
+    "motion", [{"vertical_speed": -1.0}, {"vertical_speed": 1.0}, {"tilt": 0.3}]
+)
+def test_nothing_is_fused_while_falling_or_tilted(motion) -> None:
+    gate, memory = gate_and_memory()
+    assert not gate.on_arrival(costmap(**motion), memory, 0)
+    assert not gate.on_timer(costmap(**motion))
+    assert gate.on_arrival(costmap(vertical_speed=-0.1, tilt=0.05), memory, 0)
+
+
+def test_a_robot_that_stands_still_sees_what_changed() -> None:
+    gate, memory = fused_once(costmap())
+    assert not gate.on_arrival(costmap(), memory, SECOND)
+    assert gate.on_arrival(costmap(obstacle=True), memory, SECOND)
+    gate, memory = fused_once(costmap(obstacle=True))
+    assert not gate.on_arrival(costmap(obstacle=True), memory, SECOND)
+    assert gate.on_arrival(costmap(), memory, SECOND)
+
+
+def test_changes_are_rate_limited_and_can_be_switched_off() -> None:
+    gate, memory = fused_once(costmap(), change_period=0.3)
+    changed = costmap(obstacle=True)
+    assert not gate.on_arrival(changed, memory, 299_999_999)
+    assert gate.on_arrival(changed, memory, 300_000_000)
+    gate, memory = fused_once(costmap(), fuse_on_change=False)
+    assert not gate.on_arrival(changed, memory, SECOND)
+
+
+def test_few_changed_cells_are_noise() -> None:
+    gate, memory = fused_once(costmap(), change_cells=11)
+    assert not gate.on_arrival(costmap(obstacle=True), memory, SECOND)
+
+
+def test_reset_makes_the_next_one_the_first() -> None:
+    gate, memory = fused_once(costmap())
+    gate.reset()
+    assert gate.on_arrival(costmap(), memory, 0)

@@ -1,0 +1,210 @@
+import math
+
+import numpy as np
+import pytest
+
+from navette.errors import ParameterError
+from navette.geometry import Pose2
+from navette.grids import GridSpec, placed
+from navette.navigation.mapping import MapMemory, MapMemoryParams, PlacedCostmap
+
+SMALL = {"size": 10.0, "growth": 2.0, "max_size": 20.0}
+SPEC = GridSpec(0.1, 41, 41, Pose2(-2.02, -2.02, 0.0))
+ORIGIN = Pose2(0.0, 0.0, 0.0)
+
+
+def memory(**values) -> MapMemory:
+    return MapMemory(MapMemoryParams(**(SMALL | values)))
+
+
+def costmap(cells: np.ndarray, pose: Pose2 = ORIGIN) -> PlacedCostmap:
+    return PlacedCostmap(cells, placed(SPEC, pose), (pose.x, pose.y), pose, 0)
+
+
+def unknown() -> np.ndarray:
+    return np.full(SPEC.shape, -1, np.int8)
+
+
+def free() -> np.ndarray:
+    return np.zeros(SPEC.shape, np.int8)
+
+
+def at(mem: MapMemory, x: float, y: float) -> int:
+    return int(mem.occupancy()[mem.spec.cell_of(x, y)])
+
+
+def test_starts_unknown_and_centred_as_told() -> None:
+    mem = memory(center_x=3.0, center_y=-1.0)
+    assert (mem.occupancy() == -1).all()
+    assert mem.spec.shape == (100, 100)
+    assert mem.spec.origin == Pose2(-2.0, -6.0, 0.0)
+
+
+def test_known_cells_overwrite_and_unknown_cells_keep() -> None:
+    mem = memory()
+    first, second = free(), unknown()
+    first[10:30, 25] = 100
+    mem.fuse(costmap(first))
+    second[15, 25] = 0
+    mem.fuse(costmap(second))
+    row, column = mem.spec.cell_of(*SPEC.center_of(15, 25))
+    cells = mem.occupancy()
+    assert cells[row, column] == 0
+    assert cells[row - 1, column] == cells[row + 1, column] == 100
+
+
+def test_an_empty_costmap_is_not_fused() -> None:
+    mem = memory()
+    assert not mem.fuse(costmap(unknown(), Pose2(50.0, 0.0, 0.0)))
+    assert mem.spec.shape == (100, 100)
+    assert mem.fuse(costmap(free()))
+
+
+def test_max_never_lowers() -> None:
+    mem, first = memory(fusion="max"), free()
+    first[20, 30] = 100
+    mem.fuse(costmap(first))
+    mem.fuse(costmap(free()))
+    assert at(mem, *SPEC.center_of(20, 30)) == 100
+
+
+def test_log_odds_need_evidence_to_change_their_mind() -> None:
+    mem, hit = memory(fusion="log_odds", erase_range=0.0), free()
+    hit[20, 30] = 100
+    post = SPEC.center_of(20, 30)
+    for _ in range(3):
+        mem.fuse(costmap(hit))
+    assert at(mem, *post) == 100
+    assert at(mem, *SPEC.center_of(5, 5)) == 0
+    mem.fuse(costmap(free()))
+    assert at(mem, *post) == 100
+    for _ in range(6):
+        mem.fuse(costmap(free()))
+    assert at(mem, *post) == 0
+
+
+def test_log_odds_in_between_are_percent_below_lethal() -> None:
+    mem = memory(fusion="log_odds", hit_probability=0.6, miss_probability=0.4)
+    hit = unknown()
+    hit[20, 30] = 100
+    mem.fuse(costmap(hit))
+    assert at(mem, *SPEC.center_of(20, 30)) == 60
+    assert (mem.occupancy() >= 0).sum() == 1
+
+
+def test_thin_posts_survive_every_heading() -> None:
+    """A post of one cell neither vanishes nor spreads when pulled across a turn."""
+    rng = np.random.default_rng(8)
+    post = (1.23, -0.41)
+    mem = memory()
+    for pose in (
+        Pose2(*p) for p in rng.uniform((-0.4, -0.4, -3), (0.4, 0.4, 3), (60, 3))
+    ):
+        cells = free()
+        ahead = pose.inverse().apply(np.array([post]))[0]
+        cells[SPEC.cell_of(*ahead)] = 100
+        mem.fuse(costmap(cells, pose))
+        lethal = np.argwhere(mem.occupancy() == 100)
+        assert len(lethal) == 1
+        assert math.dist(mem.spec.center_of(*lethal[0]), post) < 0.15
+
+
+def test_far_beams_do_not_erase_what_near_ones_saw() -> None:
+    post, mem = (1.0, 0.0), memory(erase_range=1.5)
+    near = free()
+    near[SPEC.cell_of(*post)] = 100
+    mem.fuse(costmap(near))
+    mem.fuse(costmap(free(), Pose2(-0.9, 0.0, 0.0)))
+    assert at(mem, *post) == 100
+    mem.fuse(costmap(free(), Pose2(-0.4, 0.0, 0.0)))
+    assert at(mem, *post) == 0
+
+
+def test_grows_to_hold_what_is_known_and_keeps_its_cells_in_place() -> None:
+    mem, first = memory(), free()
+    first[20, 30] = 100
+    mem.fuse(costmap(first))
+    second = free()
+    second[:, :10] = -1
+    mem.fuse(costmap(second, Pose2(-4.1, 4.0, math.pi)))
+    assert mem.spec.shape == (120, 120)
+    assert mem.spec.origin == Pose2(-7.0, -5.0, 0.0)
+    assert at(mem, *SPEC.center_of(20, 30)) == 100
+    mem.fuse(costmap(second, Pose2(-4.1, 4.0, math.pi)))
+    assert mem.spec.shape == (120, 120)
+
+
+def test_unknown_cells_do_not_make_the_map_grow() -> None:
+    mem, cells = memory(), unknown()
+    cells[20, 20] = 0
+    mem.fuse(costmap(cells, Pose2(4.8, 4.8, 0.3)))
+    assert mem.spec.shape == (100, 100)
+
+
+@pytest.mark.parametrize("fusion", ["overwrite", "max", "log_odds"])
+def test_growth_is_bounded(fusion) -> None:
+    mem = memory(fusion=fusion)
+    for x in np.arange(0.0, 40.0, 1.5):
+        mem.fuse(costmap(free(), Pose2(float(x), -float(x), 0.2)))
+    assert mem.spec.shape == (200, 200)
+    assert mem.occupancy().shape == (200, 200)
+    assert at(mem, 9.0, -9.0) == 0
+
+
+@pytest.mark.parametrize("fusion", ["overwrite", "max", "log_odds"])
+@pytest.mark.parametrize("far", [30.0, 1e6, 9e8, -9e8])
+def test_a_robot_far_outside_the_largest_map_leaves_it_unknown(
+    fusion: str, far: float
+) -> None:
+    mem = memory(fusion=fusion, footprint=(0.5, 0.5, -0.5, 0.5, -0.5, -0.5, 0.5, -0.5))
+    assert mem.fuse(costmap(free(), Pose2(far, far, 0.3)))
+    assert mem.spec.shape == (200, 200)
+    assert (mem.occupancy() == -1).all()
+
+
+def test_cells_under_the_body_are_free() -> None:
+    body = (-0.5, -0.7, 1.5, -0.7, 1.5, 0.7, -0.5, 0.7)
+    for fusion in ("overwrite", "log_odds"):
+        mem, cells = memory(fusion=fusion, footprint=body), unknown()
+        cells[10:31, 10:31] = -1
+        cells[20, 24] = 100
+        cells[20, 40] = 100
+        mem.fuse(costmap(cells))
+        assert at(mem, *SPEC.center_of(20, 24)) == 0
+        assert at(mem, 1.35, 0.55) == 0
+        assert at(mem, -0.35, -0.55) == 0
+        assert at(mem, 1.45, 0.0) == -1
+        assert at(mem, *SPEC.center_of(20, 40)) == 100
+
+
+def test_reset_forgets() -> None:
+    mem = memory()
+    mem.fuse(costmap(free(), Pose2(8.0, 0.0, 0.0)))
+    mem.reset()
+    assert mem.spec.shape == (100, 100)
+    assert (mem.occupancy() == -1).all()
+
+
+def test_what_is_handed_out_is_a_copy() -> None:
+    mem = memory()
+    mem.occupancy()[:] = 100
+    assert (mem.occupancy() == -1).all()
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({"fusion": "mean"}, "wanted one of overwrite, max, log_odds"),
+        ({"max_size": 5.0}, "'max_size': 5.0 m; wanted at least the size, 10.0 m"),
+        ({"max_size": 1e6}, "at most 20000 cells"),
+        ({"update_period": 0.0}, "'update_period'"),
+    ],
+)
+def test_bad_parameters_are_named(values, text) -> None:
+    with pytest.raises(ParameterError, match=text):
+        memory(**values)
+
+
+def test_bad_footprint_is_named() -> None:
+    with pytest.raises(ParameterError, match="'footprint': footprint: 3 numbers"):
+        memory(footprint=(0.0, 1.0, 2.0))

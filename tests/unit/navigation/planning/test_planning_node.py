@@ -1,0 +1,277 @@
+"""The planner node in a graph: what it publishes, when."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from planning_worlds import empty_map, fill
+
+from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
+from navette.grids import grid_to_message
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.msgs.geometry_msgs.msg import (
+    Point,
+    PointStamped,
+    PoseStamped,
+    Quaternion,
+    TransformStamped,
+)
+from navette.msgs.nav_msgs.msg import Odometry
+from navette.navigation.planning.node import PlannerNode
+from navette.runtime import Parameter, StaticTransformBroadcaster
+from navette.runtime.time import ns_to_stamp
+from navette.testing import GraphHarness
+
+
+class World:
+    """A standing robot, a map, and ears on /path and /planner/status."""
+
+    def __init__(self, graph: GraphHarness, **params: object) -> None:
+        self.graph = graph
+        self.occupancy, self.spec = empty_map(10, 8)
+        self.pose, self.odometry = Pose2(1, 4, 0), True
+        overrides = [Parameter(name, value=value) for name, value in params.items()]
+        self.node = graph.add(
+            PlannerNode(context=graph.context, parameter_overrides=overrides)
+        )
+        self.paths = graph.collect("/path", "nav_msgs/msg/Path")
+        self.reports = graph.collect("/planner/status", DiagnosticStatus, latched=True)
+        graph.node.create_timer(0.1, self._move)
+
+    def send_map(self, frame: str = "map") -> None:
+        now_ns = self.graph.now_ns
+        msg = grid_to_message(self.occupancy.copy(), self.spec, frame, now_ns)
+        self.graph.publish("/map", msg, latched=True)
+
+    def send(self, x: float, y: float, frame: str = "map") -> None:
+        msg = PointStamped(point=Point(x=x, y=y))
+        msg.header.frame_id = frame
+        self.graph.publish("/goal_point", msg)
+
+    def send_pose(self, x: float, y: float, yaw: float, frame: str = "map") -> None:
+        msg = PoseStamped()
+        msg.header.frame_id = frame
+        msg.pose.position = Point(x=x, y=y)
+        qx, qy, qz, qw = quaternion_from_yaw(yaw)
+        msg.pose.orientation = Quaternion(x=qx, y=qy, z=qz, w=qw)
+        self.graph.publish("/goal_pose", msg)
+
+    def ready(self) -> "World":
+        self.send_map()
+        self.graph.run_for(0.3)
+        return self
+
+    @property
+    def message(self) -> str:
+        return str(self.reports.last.message)
+
+    @property
+    def values(self) -> dict[str, str]:
+        return {pair.key: pair.value for pair in self.reports.last.values}
+
+    def last_path(self) -> np.ndarray:
+        rows = [
+            (p.pose.position.x, p.pose.position.y, yaw_of(_xyzw(p.pose.orientation)))
+            for p in self.paths.last.poses
+        ]
+        return np.array(rows).reshape(-1, 3)
+
+    def _move(self) -> None:
+        if not self.odometry:
+            return
+        msg = Odometry(child_frame_id="base_link")
+        msg.header.frame_id = "map"
+        msg.header.stamp = ns_to_stamp(self.graph.now_ns)
+        msg.pose.pose.position = Point(x=float(self.pose.x), y=float(self.pose.y))
+        qx, qy, qz, qw = quaternion_from_yaw(self.pose.yaw)
+        msg.pose.pose.orientation = Quaternion(x=qx, y=qy, z=qz, w=qw)
+        self.graph.publish("/odom/filtered", msg)
+
+
+def _xyzw(q: Quaternion) -> tuple[float, float, float, float]:
+    return q.x, q.y, q.z, q.w
+
+
+@pytest.fixture
+def graph() -> Iterator[GraphHarness]:
+    with GraphHarness() as harness:
+        yield harness
+
+
+def test_a_goal_becomes_a_path_in_the_map_frame(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    assert world.message == "waiting_for_goal"
+    assert world.paths.count == 0
+    world.send(8.03, 4.02)
+    graph.run_for(0.01)
+    assert world.message == "following"
+    path = world.paths.last
+    assert path.header.frame_id == "map"
+    assert all(p.pose.position.z == 0 for p in path.poses)
+    poses = world.last_path()
+    np.testing.assert_allclose(poses[0, :2], (1, 4))
+    np.testing.assert_allclose(poses[-1, :2], (8.03, 4.02))
+    assert np.hypot(*np.diff(poses[:, :2], axis=0).T).max() <= 0.1 + 1e-9
+    values = world.values
+    assert (values["goal_id"], values["result"], values["plan"]) == ("1", "", "ok")
+    assert float(values["goal_x"]) == pytest.approx(8.03)
+    assert float(values["distance_left_m"]) == pytest.approx(7.03, abs=0.01)
+    assert values["phase"] == "waiting_for_robot_to_reach_goal"
+
+
+def test_an_unchanged_world_brings_no_second_path(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.send(8, 4)
+    for _ in range(4):
+        graph.run_for(1.0)
+        world.send_map()
+    assert world.paths.count == 1
+
+
+def test_arriving_is_seen_with_the_next_odometry(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.send(8, 4)
+    graph.run_for(0.5)
+    for x in np.arange(1.0, 8.0, 0.2):
+        world.pose = Pose2(float(x), 4, 0)
+        graph.run_for(0.1)
+    world.pose = Pose2(7.95, 4, 0)
+    graph.run_for(0.15)
+    assert world.message == "reached"
+    assert world.values["result"] == "reached"
+    assert not len(world.paths.last.poses)
+
+
+def test_goals_before_the_map_or_the_odometry_wait(graph: GraphHarness) -> None:
+    world = World(graph)
+    world.odometry = False
+    world.send(8, 4)
+    graph.run_for(0.1)
+    assert world.message == "waiting_for_odometry"
+    world.odometry = True
+    graph.run_for(0.6)
+    assert world.message == "waiting_for_map"
+    world.send_map()
+    graph.run_for(0.01)
+    assert world.message == "following"
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "frame", "result"),
+    [
+        (math.nan, 4.0, "map", "goal_not_finite"),
+        (8.0, math.inf, "map", "goal_not_finite"),
+        (80.0, 4.0, "map", "goal_outside_map"),
+        (8.0, 4.0, "mars", "unknown_frame"),
+        (5.0, 4.0, "map", "goal_blocked"),
+        (9.5, 7.5, "map", "no_path"),
+    ],
+)
+def test_bad_goals_have_named_results_within_a_second(
+    graph: GraphHarness, x: float, y: float, frame: str, result: str
+) -> None:
+    world = World(graph)
+    fill(world.occupancy, world.spec, (4, 6), (3, 5))
+    fill(world.occupancy, world.spec, (8.6, 8.8), (6.4, 8))
+    fill(world.occupancy, world.spec, (8.6, 10), (6.4, 6.6))
+    world.ready()
+    world.send(2.5, 4)
+    graph.run_for(0.5)
+    assert world.message == "following"
+    world.send(x, y, frame)
+    graph.run_for(1.0)
+    assert world.message == result
+    assert world.reports.last.level == b"\x02"
+    assert (world.values["result"], world.values["goal_id"]) == (result, "2")
+    assert not len(world.paths.last.poses), "the robot is stopped"
+    world.send(2.5, 4)
+    graph.run_for(0.1)
+    assert world.message == "following", "alive"
+
+
+def test_a_goal_without_a_frame_is_on_the_map(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.send(3, 4, frame="")
+    graph.run_for(0.1)
+    assert world.message == "following"
+    np.testing.assert_allclose(world.last_path()[-1, :2], (3, 4))
+
+
+def test_goals_in_frames_of_the_robot_are_placed_by_its_pose(
+    graph: GraphHarness,
+) -> None:
+    world = World(graph)
+    world.pose = Pose2(2, 2, math.pi / 2)
+    mount = TransformStamped(child_frame_id="mast")
+    mount.header.frame_id = "base_link"
+    mount.transform.translation.x = 0.5
+    StaticTransformBroadcaster(graph.node).sendTransform(mount)
+    world.ready()
+    world.send(2, 0, frame="base_link")
+    graph.run_for(0.1)
+    np.testing.assert_allclose(world.last_path()[-1, :2], (2, 4), atol=1e-9)
+    world.send(2, 1, frame="mast")
+    graph.run_for(0.1)
+    np.testing.assert_allclose(world.last_path()[-1, :2], (1, 4.5), atol=1e-9)
+
+
+def test_a_goal_pose_ends_with_its_heading(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.send_pose(6, 4, -math.pi / 2)
+    graph.run_for(0.1)
+    np.testing.assert_allclose(world.last_path()[-1], (6, 4, -math.pi / 2))
+
+
+def test_odometry_that_stops_stops_the_robot(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.send(8, 4)
+    graph.run_for(0.5)
+    world.odometry = False
+    before_ns = graph.now_ns
+    assert graph.run_until(lambda: world.message == "stale_odometry", 2.0)
+    assert (graph.now_ns - before_ns) / 1e9 <= 0.7
+    assert not len(world.paths.last.poses)
+    assert world.reports.last.level == b"\x01"
+    world.odometry = True
+    graph.run_for(1.0)
+    assert world.message == "following"
+
+
+def test_a_map_that_blocks_the_path_replaces_it_at_once(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.send(8, 4)
+    graph.run_for(0.7)
+    fill(world.occupancy, world.spec, (5, 5.2), (3, 5))
+    world.send_map()
+    graph.run_for(0.01)
+    assert world.paths.count == 2
+    assert np.abs(world.last_path()[:, 1] - 4).max() > 1
+
+
+def test_a_map_in_another_frame_is_not_taken(graph: GraphHarness) -> None:
+    world = World(graph)
+    world.send_map(frame="odom")
+    graph.run_for(0.3)
+    world.send(8, 4)
+    graph.run_for(0.1)
+    assert world.message == "waiting_for_map"
+
+
+def test_the_status_is_repeated_and_latched(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    graph.run_for(2.0)
+    late = graph.collect("/planner/status", DiagnosticStatus, latched=True)
+    graph.run_for(0.01)
+    assert late.last.message == "waiting_for_goal"
+    assert world.reports.count >= 5
+
+
+def test_parameters_change_while_it_runs(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.send(8, 4)
+    graph.run_for(0.1)
+    sparse = world.paths.last
+    world.node.set_parameters([Parameter("path_spacing_m", value=0.05)])
+    graph.run_for(0.6)
+    assert len(world.paths.last.poses) > 1.9 * len(sparse.poses)

@@ -1,0 +1,249 @@
+"""From map, pose and goal to a path, or the named reason why not."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from planning_worlds import (
+    COURSE_FOOTPRINT,
+    HARD_RUNS,
+    course_clearance,
+    course_map,
+    empty_map,
+    fill,
+)
+
+from navette.geometry import Pose2
+from navette.grids import GridSpec
+from navette.navigation.planning import (
+    Goal,
+    Outcome,
+    Plan,
+    Planner,
+    PlannerParams,
+    path_shape,
+)
+
+SMALL = PlannerParams(clearance_margin_m=0.1, comfort_m=0.1)
+COURSE = PlannerParams(footprint=COURSE_FOOTPRINT)
+
+
+def planner(
+    occupancy: np.ndarray, spec: GridSpec, params: PlannerParams = SMALL
+) -> Planner:
+    made = Planner(params)
+    made.set_map(occupancy, spec)
+    return made
+
+
+@pytest.fixture(scope="module")
+def course() -> Planner:
+    return planner(*course_map(), COURSE)
+
+
+def turn_total(plan: Plan) -> float:
+    yaw = np.unwrap(plan.poses[:, 2])
+    return float(np.abs(np.diff(yaw)).sum())
+
+
+def test_path_runs_from_the_robot_to_the_very_goal() -> None:
+    plan = planner(*empty_map(6, 6)).plan(Pose2(1.03, 1.08, 0.6), Goal(4.97, 5.01))
+    assert plan.outcome is Outcome.OK
+    np.testing.assert_allclose(plan.poses[0, :2], (1.03, 1.08))
+    # Cell corners taken for centres would end half a cell's diagonal away.
+    np.testing.assert_allclose(plan.poses[-1, :2], (4.97, 5.01))
+    assert path_shape.lengths(plan.poses).max() <= 0.1 + 1e-9
+    assert plan.cost == pytest.approx(path_shape.lengths(plan.poses).sum())
+
+
+@pytest.mark.parametrize("method", ["a_star", "dijkstra", "breadth_first"])
+def test_every_method_leads_around_a_wall(method: str) -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (4, 4.2), (0, 4.5))
+    params = PlannerParams(method=method)
+    plan = planner(occupancy, spec, params).plan(Pose2(1, 1, 0), Goal(7, 1))
+    assert plan.outcome.has_path
+    assert plan.poses[:, 1].max() > 4.7
+    assert path_shape.lengths(plan.poses).sum() < 11.5
+
+
+def test_a_path_in_the_open_does_not_zigzag() -> None:
+    plan = planner(*empty_map(12, 12)).plan(Pose2(1, 1, 0.4), Goal(11, 5.3))
+    assert turn_total(plan) < 0.01
+    occupancy, spec = empty_map(12, 12)
+    fill(occupancy, spec, (5, 7), (0, 6))
+    around = planner(occupancy, spec).plan(Pose2(1, 1, 1.0), Goal(11, 1))
+    assert turn_total(around) < 3.5, "one bend around the block"
+
+
+def test_a_robot_that_looks_away_turns_first() -> None:
+    plan = planner(*empty_map(6, 6)).plan(Pose2(3, 3, math.pi), Goal(5, 3))
+    spun = path_shape.turns(plan.poses)
+    assert spun.sum() == pytest.approx(math.pi)
+    assert (np.flatnonzero(spun) == np.arange(np.count_nonzero(spun))).all()
+
+
+def test_a_goal_heading_is_turned_to_at_the_end() -> None:
+    plan = planner(*empty_map(6, 6)).plan(Pose2(1, 3, 0), Goal(5, 3, math.pi / 2))
+    assert plan.outcome is Outcome.OK
+    np.testing.assert_allclose(plan.poses[-1], (5, 3, math.pi / 2))
+
+
+def test_goal_in_an_obstacle_is_moved_to_the_nearest_place_that_fits() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (6, 6.4), (2.8, 3.2))
+    params = PlannerParams(
+        clearance_margin_m=0.05, tight_margin_m=0.05, goal_tolerance_m=0.8
+    )
+    plan = planner(occupancy, spec, params).plan(Pose2(1, 3, 0), Goal(6.1, 3.0))
+    assert plan.outcome is Outcome.GOAL_SNAPPED
+    assert 0.3 < math.dist(plan.poses[-1, :2], (6.1, 3.0)) <= 0.8
+
+
+def test_goal_deep_in_an_obstacle_is_blocked() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (4, 8), (1, 5))
+    plan = planner(occupancy, spec).plan(Pose2(1, 3, 0), Goal(6, 3))
+    assert plan.outcome is Outcome.GOAL_BLOCKED
+    assert not len(plan.poses)
+
+
+def test_a_walled_off_goal_has_no_path() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (4, 4.2), (0, 6))
+    plan = planner(occupancy, spec).plan(Pose2(1, 3, 0), Goal(7, 3))
+    assert plan.outcome is Outcome.NO_PATH
+
+
+def test_a_walled_in_start_is_blocked() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (0.6, 1.4), (2.6, 3.4))
+    fill(occupancy, spec, (0.7, 1.3), (2.7, 3.3), 0)
+    plan = planner(occupancy, spec).plan(Pose2(1, 3, 0), Goal(7, 3))
+    assert plan.outcome is Outcome.START_BLOCKED
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "outcome"),
+    [
+        (Pose2(1, 1, 0), Goal(7, 1), Outcome.GOAL_OUTSIDE_MAP),
+        (Pose2(1, 1, 0), Goal(-0.01, 1), Outcome.GOAL_OUTSIDE_MAP),
+        (Pose2(9, 1, 0), Goal(1, 1), Outcome.START_OUTSIDE_MAP),
+        (Pose2(1, 1, 0), Goal(math.nan, 1), Outcome.GOAL_NOT_FINITE),
+        (Pose2(1, 1, 0), Goal(1, math.inf), Outcome.GOAL_NOT_FINITE),
+        (Pose2(1, 1, 0), Goal(1, 1, math.nan), Outcome.GOAL_NOT_FINITE),
+    ],
+)
+def test_what_cannot_be_planned_is_refused_by_name(
+    start: Pose2, goal: Goal, outcome: Outcome
+) -> None:
+    assert planner(*empty_map(6, 6)).plan(start, goal).outcome is outcome
+
+
+def test_start_in_inflation_and_on_a_phantom_still_has_a_path() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (0, 0.7), (0, 6))
+    plan = planner(occupancy, spec).plan(Pose2(1.0, 3, 0), Goal(6, 3))
+    assert plan.outcome is Outcome.OK
+    fill(occupancy, spec, (3.0, 3.2), (3, 3.2))
+    plan = planner(occupancy, spec).plan(Pose2(3.1, 3, 0), Goal(6, 3))
+    assert plan.outcome is Outcome.OK
+
+
+def test_goals_in_unknown_space_are_allowed_unless_switched_off() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (4, 8), (0, 6), -1)
+    assert planner(occupancy, spec).plan(Pose2(1, 3, 0), Goal(7, 3)).outcome.has_path
+    shy = planner(occupancy, spec, PlannerParams(allow_unknown=False))
+    assert shy.plan(Pose2(1, 3, 0), Goal(7, 3)).outcome is Outcome.GOAL_BLOCKED
+
+
+def test_a_gap_too_tight_for_the_margin_is_taken_with_the_tight_one() -> None:
+    occupancy, spec = empty_map(8, 6)
+    fill(occupancy, spec, (4, 4.2), (0, 2.7))
+    fill(occupancy, spec, (4, 4.2), (3.4, 6))  # 0.7 m for a body of 0.4 m
+    wide = PlannerParams(clearance_margin_m=0.25, tight_margin_m=0.05)
+    plan = planner(occupancy, spec, wide).plan(Pose2(1, 3, 0), Goal(7, 3))
+    assert plan.outcome.has_path
+    assert plan.margin_m == 0.05
+    strict = PlannerParams(clearance_margin_m=0.25, tight_margin_m=0.25)
+    plan = planner(occupancy, spec, strict).plan(Pose2(1, 3, 0), Goal(7, 3))
+    assert plan.outcome is Outcome.NO_PATH
+
+
+def test_a_squeeze_is_weighed_against_a_long_way_round() -> None:
+    occupancy, spec = empty_map(30, 8)
+    fill(occupancy, spec, (0, 26), (4, 4.2))
+    fill(occupancy, spec, (3, 3.7), (4, 4.2), 0)
+    params = PlannerParams(clearance_margin_m=0.25, tight_margin_m=0.05)
+    made = planner(occupancy, spec, params)
+    across = made.plan(Pose2(3.3, 2, math.pi / 2), Goal(3.3, 6))
+    assert across.margin_m == 0.05
+    assert across.poses[:, 0].max() < 5
+    far = made.plan(Pose2(24, 2, math.pi / 2), Goal(24, 6))
+    assert far.margin_m == 0.25
+
+
+def test_the_course_robot_keeps_room_to_turn_where_there_is_room(
+    course: Planner,
+) -> None:
+    plan = course.plan(Pose2(-6, 0, 0), Goal(6, -12))
+    row, column = course.grid().to_cells(plan.poses[:, :2]).astype(int).T[::-1]
+    needed = course.body.circumscribed_m + COURSE.clearance_margin_m
+    assert (course.grid().distance_m[row, column] >= needed).all()
+
+
+@pytest.mark.parametrize(("start", "goal"), HARD_RUNS)
+def test_hard_runs_of_the_course_have_drivable_paths(
+    course: Planner, start: tuple[float, ...], goal: tuple[float, float]
+) -> None:
+    x, y, degrees = start
+    plan = course.plan(Pose2(x, y, math.radians(degrees)), Goal(*goal))
+    assert plan.outcome.has_path
+    assert plan.margin_m == COURSE.clearance_margin_m
+    assert math.dist(plan.poses[-1, :2], goal) <= 0.4
+    clearance = course_clearance(plan.poses)
+    assert clearance.min() >= min(0.2, clearance[0] - 0.01)
+
+
+def test_random_starts_and_goals_in_the_course_have_drivable_paths(
+    course: Planner,
+) -> None:
+    rng = np.random.default_rng(11)
+    drawn = 0
+    while drawn < 25:
+        x, y, yaw = rng.uniform((-14.5, -14.5, -3.1), (14.5, 14.5, 3.1))
+        goal = tuple(rng.uniform(-14, 14, 2).tolist())
+        headings = np.array([[*goal, a] for a in np.arange(0, 6.2, 0.4)])
+        start = Pose2(float(x), float(y), float(yaw))
+        room = course_clearance(np.array([start]))[0]
+        if room < 0.1 or course_clearance(headings).max() < 0.2:
+            continue
+        drawn += 1
+        plan = course.plan(start, Goal(*goal))
+        assert plan.outcome.has_path, (start, goal)
+        assert math.dist(plan.poses[-1, :2], goal) <= 0.41
+        clearance = course_clearance(plan.poses).min()
+        assert clearance >= min(0.15, room - 0.03), (start, goal)
+
+
+def test_the_same_question_has_the_same_answer() -> None:
+    def asked() -> Callable[[], np.ndarray]:
+        made = planner(*course_map(), COURSE)
+        made.plan(Pose2(6, -12.8, 1.57), Goal(2.8, -6.5))
+        return made.plan(Pose2(-3, 6, 3.1), Goal(-5.3, 6)).poses
+
+    np.testing.assert_array_equal(asked(), asked())
+
+
+def test_an_about_turn_goes_the_roomier_way_round() -> None:
+    outline = (0.9, 0.2, -0.2, 0.2, -0.2, -0.2, 0.9, -0.2)
+    occupancy, spec = empty_map(10, 8)
+    fill(occupancy, spec, (4.5, 5.5), (5.05, 5.25))  # a shelf on the left
+    params = PlannerParams(footprint=outline, clearance_margin_m=0.05)
+    made = planner(occupancy, spec, params)
+    for goal_y in (3.9, 4.1):
+        plan = made.plan(Pose2(5, 4, 0), Goal(1, goal_y))
+        swept = plan.poses[np.hypot(*(plan.poses[:, :2] - (5, 4)).T) < 0.01, 2]
+        assert np.sin(swept[1:-1]).max() < 0.1, "past the right, away from the shelf"

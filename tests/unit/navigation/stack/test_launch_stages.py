@@ -1,0 +1,197 @@
+"""Each stage as a program: its robot's parameters, then its own; what is refused."""
+
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from navette.msgs.geometry_msgs.msg import PointStamped
+from navette.navigation.stack import RunOptions, stages
+from navette.navigation.stack.scene import resolve_scene
+from navette.ros2.names.process import RunningProgram, program_threads
+from navette.ros2.names.targets import read_programs
+from navette.ros2.workspace import find_package
+from navette.runtime import (
+    Context,
+    DurabilityPolicy,
+    Future,
+    Node,
+    QoSProfile,
+    spin_until_future_complete,
+)
+from navette.runtime.context import new_graph
+from navette.runtime.graph import Graph
+from navette.runtime.overrides import ParameterOverrides
+from navette.runtime.parameter import parameter_value_to_python
+from navette.runtime.parameter_client import AsyncParameterClient
+
+WAIT_S = 20.0
+
+
+@contextmanager
+def running(graph: Graph, *words: str) -> Iterator[None]:
+    """A program in a thread, until the block ends."""
+    seen = threading.Event()
+    forget = graph.on_change(lambda: seen.set() if graph.nodes() else None)
+    (program,) = read_programs(words)
+    with program_threads():
+        thread = RunningProgram(program, graph)
+        thread.start()
+        try:
+            assert seen.wait(WAIT_S), f"{words}: no node came"
+            yield
+        finally:
+            forget()
+            thread.shut_down()
+            assert thread.join(WAIT_S)
+
+
+def parameters(graph: Graph, node: str, *names: str) -> list[object]:
+    context = Context(graph=graph)
+    with context:
+        asking = Node("asking", context=context)
+        client = AsyncParameterClient(asking, node)
+        assert client.wait_for_services(WAIT_S)
+        future = client.get_parameters(list(names))
+        spin_until_future_complete(asking, future, timeout_sec=WAIT_S)
+        return [parameter_value_to_python(v) for v in future.result().values]
+
+
+@pytest.mark.slow
+def test_a_stage_has_its_robots_parameters_and_then_its_own() -> None:
+    graph = new_graph()
+    words = "control --robot husky --ros-args -r __node:=steer -p cruise_speed_mps:=0.3"
+    with running(graph, *words.split()):
+        cruise, fastest = parameters(
+            graph, "/steer", "cruise_speed_mps", "max_speed_mps"
+        )
+    assert (cruise, fastest) == (0.3, 1.0)
+    graph.close()
+
+
+@pytest.mark.slow
+def test_the_odom_integrator_finds_its_configuration_under_any_name() -> None:
+    graph = new_graph()
+    words = "odom_integrator --ros-args -r __node:=trip -p odom_type:=vel"
+    with running(graph, *words.split()):
+        values = parameters(graph, "/trip", "odom_type", "topic")
+    assert values == ["vel", "/gnss_driver/odometry"]
+    graph.close()
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("planner --robot husk", "unknown robot .* 'husk'; known: course, husky"),
+        ("planner --ros-args -p clearence:=1", "unknown parameter 'clearence'"),
+        ("costmap --ros-args -p use_sim_time:=3", "is INTEGER, wanted BOOL"),
+        ("sim --speed 0", "real-time factor 0.0"),
+        ("odom_integrator --ros-args -p odom_type:=speed", "one of pos, gps, vel"),
+        ("ekf", "wanted the topic of at least one of odom0"),
+        ("missions --goal 1 nan", "'goals': nan is not allowed"),
+    ],
+)
+def test_what_is_wrong_is_told_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, words: str, reason: str
+) -> None:
+    name, *arguments = words.split()
+    monkeypatch.setattr(sys, "argv", [name, *arguments])
+    with pytest.raises(SystemExit, match=f"navette: .*{reason}"):
+        getattr(stages, name)()
+
+
+def test_a_file_of_the_whole_stack_is_no_error_but_one_for_others_is(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    file = tmp_path / "stack.yaml"
+    file.write_text("planer:\n  ros__parameters:\n    method: dijkstra\n")
+    argv = ["planner", "--ros-args", "--params-file", str(file)]
+    monkeypatch.setattr(sys, "argv", argv)
+    with pytest.raises(SystemExit, match="no node matches '/planer'; nodes: /planner"):
+        stages.planner()
+    made = []
+    monkeypatch.setattr(
+        stages.runtime, "spin", lambda node: made.append(node.params.method)
+    )
+    file.write_text(
+        file.read_text() + "planner:\n  ros__parameters:\n    method: dijkstra\n"
+    )
+    stages.planner()
+    assert made == ["dijkstra"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("results", "code"), [("reached", 0), ("no_path", 1)])
+def test_a_mission_ends_with_its_goals(results: str, code: int) -> None:
+    """A planner that says at once how each goal ended."""
+    graph = new_graph()
+    words = "missions --goal 1 2 --goal 3 4 --ros-args -p wait_for_map:=false"
+    (program,) = read_programs(words.split())
+    goals = []
+    with Context(graph=graph) as context, program_threads():
+        planner = Node("planner", context=context)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        status = planner.create_publisher(DiagnosticStatus, "/planner/status", latched)
+
+        def answer(goal: PointStamped) -> None:
+            goals.append((goal.point.x, goal.point.y))
+            number = KeyValue(key="goal_id", value=str(len(goals)))
+            status.publish(DiagnosticStatus(message=results, values=[number]))
+
+        planner.create_subscription(PointStamped, "/goal_point", answer, 10)
+        status.publish(DiagnosticStatus(message="idle"))
+        over = Future[None]()
+        mission = RunningProgram(
+            program,
+            graph,
+            lambda _: context.loop.call_soon_threadsafe(
+                lambda: over.set_result(None), "test"
+            ),
+        )
+        mission.start()
+        spin_until_future_complete(planner, over, timeout_sec=WAIT_S)
+        assert mission.join(WAIT_S)
+    assert mission.exit_code == code
+    assert goals == [(1.0, 2.0), (3.0, 4.0)]
+    graph.close()
+
+
+def test_every_stage_is_an_executable() -> None:
+    names = [each.name for each in find_package("navette").executables()]
+    assert {"sim", "costmap", "map_memory", "planner", "control"} <= set(names)
+    for name in names:
+        assert read_programs([name])[0].name == name
+        assert read_programs(["navette", name, "--x"])[0].arguments == ("--x",)
+
+
+def test_the_live_view_knows_the_robots_frames(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seen = []
+
+    def run(make: object, profile: ParameterOverrides) -> None:
+        values = profile.for_node("/viewer")
+        seen.append({name: override.value for name, override in values.items()})
+
+    monkeypatch.setattr(stages, "_run", run)
+    for words in ("", "--robot course", "--robot husky"):
+        monkeypatch.setattr(sys, "argv", ["viewer", *words.split()])
+        stages.viewer()
+    assert seen == [{}, {"map_frame": "sim_world", "base_frame": "robot"}, {}]
+
+
+@pytest.mark.parametrize("robot", ["course", "husky", "jackal", "turtlebot3_burger"])
+def test_a_stage_gets_what_it_gets_in_one_process(robot: str) -> None:
+    resolved = resolve_scene(RunOptions(robot=robot))
+    together = ParameterOverrides()
+    resolved.override_parameters(together)
+    for name in ("sim", "costmap", "map_memory", "planner", "control", "missions"):
+        alone = stages._profile(resolved, name).for_node("/any/name")
+        expected = together.for_node(f"/{name}")
+        assert {k: v.value for k, v in alone.items()} == {
+            k: v.value for k, v in expected.items()
+        }

@@ -1,0 +1,37 @@
+import json
+import math
+
+from navette.navigation.missions import GoalOutcome
+from navette.navigation.stack.summary import RunSummary
+
+
+def summary(*results: str, contacts: int = 0) -> RunSummary:
+    goals = tuple(GoalOutcome((1.0, 2.0), r, 3.0, 4.0, 0.05) for r in results)
+    return RunSummary(goals, contacts, math.inf, 3.0, 0.1, 30.0, 7)
+
+
+def test_success_means_all_reached_and_nothing_touched() -> None:
+    assert summary("reached", "reached").succeeded
+    assert not summary("reached", "no_path").succeeded
+    assert not summary("reached", contacts=1).succeeded
+
+
+def test_json_has_the_promised_keys_and_only_finite_numbers() -> None:
+    read = json.loads(summary("reached").to_json())
+    assert set(read) == {
+        "goals",
+        "contacts",
+        "min_clearance_m",
+        "sim_time_s",
+        "wall_time_s",
+        "real_time_factor",
+        "seed",
+    }
+    assert read["min_clearance_m"] is None
+    assert read["goals"][0] == {
+        "goal": [1.0, 2.0],
+        "result": "reached",
+        "time_s": 3.0,
+        "path_length_m": 4.0,
+        "distance_left_m": 0.05,
+    }

@@ -1,0 +1,108 @@
+"""A launch on a virtual clock, whose commands are pretended."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import pytest
+
+from navette.ros2.packages.launch import LaunchDescription, LaunchService
+from navette.ros2.packages.launch.logging import get_logger
+from navette.ros2.packages.launch.running import INTERRUPT, Command, Listener
+from navette.runtime import VirtualClock
+from navette.runtime.loop import EventLoop
+
+
+@dataclass
+class FakeProcess:
+    """A command that ends when it is interrupted, unless it is stubborn."""
+
+    command: Command
+    listener: Listener
+    pid: int
+    at_s: float
+    stubborn: bool = False
+    signals: list[tuple[float, int]] = field(default_factory=list)
+    written: bytes = b""
+    now_s: Callable[[], float] = lambda: 0.0
+
+    def signal(self, number: int) -> None:
+        self.signals.append((self.now_s(), number))
+        if not self.stubborn or number == 9:
+            self.listener.exited(-number if number != INTERRUPT else 0)
+
+    def write(self, data: bytes) -> None:
+        self.written += data
+
+
+class FakeRunner:
+    """Keeps what it was asked to start.
+
+    ``behaviour(process)`` is called after each start.
+    """
+
+    graph = None
+
+    def __init__(self, loop: EventLoop) -> None:
+        self.loop = loop
+        self.started: list[FakeProcess] = []
+        self.behaviour: Callable[[FakeProcess], None] = lambda process: None
+        self.closed = False
+
+    def now_s(self) -> float:
+        return self.loop.clock.now_ns / 1e9
+
+    def start(self, command: Command, listener: Listener) -> FakeProcess:
+        pid = 100 + len(self.started)
+        process = FakeProcess(command, listener, pid, self.now_s(), now_s=self.now_s)
+        self.started.append(process)
+        self.behaviour(process)
+        return process
+
+    def exit_after(self, process: FakeProcess, seconds: float, code: int) -> None:
+        at_ns = self.loop.clock.now_ns + round(seconds * 1e9)
+        self.loop.call_at(at_ns, lambda: process.listener.exited(code))
+
+    def close(self) -> None:
+        self.closed = True
+
+
+class Launch:
+    """What a test has in hand."""
+
+    def __init__(self) -> None:
+        loop = EventLoop(VirtualClock())
+        self.runner = FakeRunner(loop)
+        self.service = LaunchService(loop=loop, runner=self.runner)
+        self.context = self.service.context
+        self.context.launch_configurations["sigterm_timeout"] = "5"
+
+    def run(self, *entities: object, **arguments: str) -> int:
+        self.context.launch_configurations.update(arguments)
+        self.service.include_launch_description(LaunchDescription(list(entities)))  # type: ignore[arg-type]
+        return self.service.run()
+
+    @property
+    def errors(self) -> str:
+        return "\n".join(map(str, self.service.errors))
+
+    @property
+    def argv(self) -> list[list[str]]:
+        return [process.command.words for process in self.runner.started]
+
+    @property
+    def labels(self) -> list[str]:
+        return [process.command.label for process in self.runner.started]
+
+
+@pytest.fixture
+def launch() -> Launch:
+    return Launch()
+
+
+@pytest.fixture(autouse=True)
+def logged(caplog: pytest.LogCaptureFixture) -> Iterator[pytest.LogCaptureFixture]:
+    logger = get_logger()
+    before = logger.level
+    logger.setLevel("INFO")
+    yield caplog
+    logger.setLevel(before)

@@ -1,0 +1,272 @@
+"""The same launch in XML and in YAML becomes the same actions."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from navette.ros2.packages.launch import LaunchContext
+from navette.ros2.packages.launch.actions import IncludeLaunchDescription
+from navette.ros2.packages.launch.errors import InvalidLaunchFileError
+from navette.ros2.packages.launch.frontend import (
+    parse_launch_file,
+    parse_launch_text,
+    parse_substitution,
+    yaml_files,
+)
+from navette.ros2.packages.launch.substitution import describe_parts
+
+XML = """<launch version="0.1.1">
+  <arg name="robot" default="burger" description="which">
+    <choice value="burger"/>
+    <choice value="waffle"/>
+  </arg>
+  <arg name="count" default="$(eval '1 + 2')"/>
+  <let name="both" value="$(var robot)$(var count)"/>
+  <set_env name="NAVETTE_X" value="x"/>
+  <log message="robot is $(var both)"/>
+  <group>
+    <push_ros_namespace namespace="$(var robot)"/>
+    <set_parameter name="shared" value="1.5"/>
+    <set_remap from="a" to="b"/>
+    <node pkg="demo" exec="talker" name="t" namespace="in" output="screen"
+          args="-x 'a b' $(var count)" ros_args="--log-level debug"
+          respawn="true" respawn_delay="2.0" respawn_max_retries="1"
+          if="$(equals $(var robot) burger)">
+      <param name="word" value="hello"/>
+      <param name="number" value="$(var count)"/>
+      <param name="text" value="3" type="str"/>
+      <param name="list" value="1,2" value-sep=","/>
+      <param name="deep"><param name="inner" value="true"/></param>
+      <remap from="chatter" to="/talk"/>
+      <env name="Y" value="y"/>
+    </node>
+  </group>
+  <executable cmd="tool --flag $(var robot)" cwd="." name="named" shell="false"/>
+  <timer period="1.5"><log message="late"/></timer>
+</launch>"""
+
+YAML = """launch:
+- arg:
+    name: robot
+    default: burger
+    description: which
+    choice:
+    - value: burger
+    - value: waffle
+- arg: {name: count, default: "$(eval '1 + 2')"}
+- let: {name: both, value: $(var robot)$(var count)}
+- set_env: {name: NAVETTE_X, value: x}
+- log: {message: robot is $(var both)}
+- group:
+  - push_ros_namespace: {namespace: $(var robot)}
+  - set_parameter: {name: shared, value: 1.5}
+  - set_remap: {from: a, to: b}
+  - node:
+      pkg: demo
+      exec: talker
+      name: t
+      namespace: in
+      output: screen
+      args: -x 'a b' $(var count)
+      ros_args: --log-level debug
+      respawn: true
+      respawn_delay: 2.0
+      respawn_max_retries: 1
+      if: $(equals $(var robot) burger)
+      param:
+      - {name: word, value: hello}
+      - {name: number, value: $(var count)}
+      - {name: text, value: "3"}
+      - {name: list, value: [1, 2]}
+      - name: deep
+        param:
+        - {name: inner, value: true}
+      remap:
+      - {from: chatter, to: /talk}
+      env:
+      - {name: Y, value: y}
+- executable: {cmd: tool --flag $(var robot), cwd: ., name: named, shell: false}
+- timer:
+    period: 1.5
+    children:
+    - log: {message: late}
+"""
+
+
+@pytest.fixture
+def demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A workspace with a package ``demo``, where one stands."""
+    folder = tmp_path / "demo"
+    (folder / "launch").mkdir(parents=True)
+    (folder / "package.xml").write_text(
+        "<package format='3'><name>demo</name><version>1.0.0</version>"
+        "<description>d</description><maintainer email='a@b.org'>a</maintainer>"
+        "<license>MIT</license></package>"
+    )
+    (folder / "setup.py").write_text(
+        "from setuptools import setup\nsetup(name='demo', entry_points={"
+        "'console_scripts': ['talker = demo.talker:main']})\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    return folder
+
+
+@pytest.mark.parametrize(("ending", "text"), [("xml", XML), ("yaml", YAML)])
+def test_everything_in_one_file(
+    launch: Any, caplog: Any, demo: Path, ending: str, text: str
+) -> None:
+    file = demo / "launch" / f"all.launch.{ending}"
+    file.write_text(text)
+    launch.runner.behaviour = lambda p: p.listener.exited(0)
+    code = launch.run(IncludeLaunchDescription(str(file)), robot="burger")
+    assert code == 0, launch.errors
+    node, tool = launch.runner.started[0], launch.runner.started[1]
+    assert node.command.label == "talker-1"
+    assert node.command.words == [
+        "talker", "-x", "a b", "3",
+        "--ros-args", "--log-level", "debug",
+        "-r", "__node:=t", "-r", "__ns:=/burger/in",
+        "-p", "shared:=1.5",
+        "-p", 'word:="hello"', "-p", "number:=3", "-p", 'text:="3"',
+        "-p", "list:=[1, 2]", "-p", "deep.inner:=true",
+        "-r", "a:=b", "-r", "chatter:=/talk",
+    ]  # fmt: skip
+    assert node.command.env["Y"] == "y"
+    assert node.command.env["NAVETTE_X"] == "x"
+    assert tool.command.words == ["tool", "--flag", "burger"]
+    assert tool.command.label == "named-2"
+    assert "robot is burger3" in caplog.text
+    assert "late" in caplog.text
+    assert launch.labels == ["talker-1", "named-2", "talker-3"]
+    assert launch.runner.started[2].at_s == 2.0
+    described = parse_launch_file(file).get_launch_arguments()
+    assert [a.name for a in described] == ["robot", "count"]
+    assert described[0].choices == ["burger", "waffle"]
+
+
+@pytest.mark.parametrize(
+    ("xml", "line", "reason"),
+    [
+        ("<launch>\n<nod pkg='a'/>\n</launch>", 2, "<nod>: unknown tag; .*node"),
+        ("<launch>\n\n<node pkg='a'/></launch>", 3, "<node>: attribute 'exec' is mis"),
+        ("<launch><node pkg='a' exec='b' ouput='s'/></launch>", 1, "'ouput'; kn.*out"),
+        ("<launch><log message='$(vra x)'/></launch>", 1, r"unknown subst.*'\$\(vra"),
+        ("<launch><log message='$(var x'/></launch>", 1, r"closing '\)' is missing"),
+        ("<launch><log message='$(var)'/></launch>", 1, "0 arguments; wanted 1 to 2"),
+        ("<launch><log message='a' if='1' unless='1'/></launch>", 1, "exclude"),
+        ("<launch><node pkg='a' exec='b'>\n<remp from='a' to='b'/></node></launch>", 2,
+         "<remp>: not allowed in <node>; allowed: .*<remap>"),
+        ("<launch>text</launch>", 1, "'text' between the tags"),
+        ("<run/>", 1, "wanted <launch>"),
+        ("<launch>", 1, "not XML"),
+        ("<!DOCTYPE x [<!ENTITY a 'b'>]><launch/>", None, "refused: DTDForbidden"),
+        ("<launch><executable cmd='a' respawn_delay='x'/></launch>", 1, "a number"),
+        ("<launch><executable cmd='a' on_exit='x'/></launch>", 1, "wanted shutdown"),
+        ("<launch><group scoped='x'/></launch>", 1, "wanted true or false"),
+        ("<launch><set_parameter name='x' value='1' type='i'/></launch>", 1, "of bool"),
+        ("<launch><node pkg='a' exec='b'><param name='x'/></node></launch>", 1, "valu"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_named_with_file_and_line(
+    tmp_path: Path, xml: str, line: int | None, reason: str
+) -> None:
+    file = tmp_path / "a.launch.xml"
+    file.write_text(xml)
+    where = f"a.launch.xml{'' if line is None else f':{line}'}: "
+    with pytest.raises(InvalidLaunchFileError, match=f"{where}.*{reason}"):
+        parse_launch_file(file)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "reason"),
+    [
+        ("launch:\n- node:\n    pkg: a\n", 2, "<node>: attribute 'exec' is missing"),
+        ("launch:\n- log: {message: a, lvel: b}\n", 2, "'lvel'"),
+        ("launch:\n- {a: {}, b: {}}\n", 2, "one tag each"),
+        ("launch: [\n", 2, "not YAML"),
+        ("- a\n", None, "'launch:'"),
+        ("launch:\n- log: text\n", 2, "wanted attributes"),
+        ("launch:\n- log: {message: a, message: b}\n", 2, "given twice"),
+        ("launch:\n- log: {message: !!python/object:os.system a}\n", None, "not YAML"),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_yaml(
+    tmp_path: Path, text: str, line: int | None, reason: str
+) -> None:
+    file = tmp_path / "a.launch.yaml"
+    file.write_text(text)
+    where = "a.launch.yaml" if line is None else f"a.launch.yaml:{line}: "
+    with pytest.raises(InvalidLaunchFileError, match=f"{where}.*({reason})"):
+        parse_launch_file(file)
+
+
+def test_a_condition_that_fails_names_its_tag(launch: Any, tmp_path: Path) -> None:
+    file = tmp_path / "a.launch.xml"
+    file.write_text("<launch>\n<log message='a' if='$(var missing)'/>\n</launch>")
+    launch.run(IncludeLaunchDescription(str(file)))
+    assert f"{file}:2: LogInfo('a'): launch configuration 'missing'" in launch.errors
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("plain", "'plain'"),
+        ("", "''"),
+        ("a$(var b)c", "'a' + LaunchConfiguration('b') + 'c'"),
+        ("$(var $(env N a))", "LaunchConfiguration(EnvironmentVariable('N'))"),
+        (r"\$(var b)", "'$(var b)'"),
+        ("cost: 5$", "'cost: 5$'"),
+        ("$(eval '\"$(var a)\"<1')",
+         "PythonExpression('\"' + LaunchConfiguration('a') + '\"<1')"),
+        ("$(eval 1 + $(var b))",
+         "PythonExpression('1' + ' ' + '+' + ' ' + LaunchConfiguration('b'))"),
+        ("$(find-exec \"a b\")", "FindExecutable('a b')"),
+        ("$(not true)", "NotSubstitution('true')"),
+    ],
+)  # fmt: skip
+def test_the_grammar(text: str, parts: str) -> None:
+    assert describe_parts(parse_substitution(text)) == parts
+
+
+def test_nesting_is_bounded() -> None:
+    with pytest.raises(ValueError, match="nested deeper"):
+        parse_substitution("$(var " * 100 + "a" + ")" * 100)
+    deep = b"launch: " + b"[" * 3000 + b"]" * 3000
+    with pytest.raises(ValueError, match="nested deeper"):
+        parse_launch_text(deep, Path("a.yaml"), ".yaml")
+
+
+def test_includes_of_other_formats(
+    launch: Any, caplog: Any, tmp_path: Path, context: LaunchContext
+) -> None:
+    (tmp_path / "b.launch.yaml").write_text(
+        "launch:\n- arg: {name: x}\n- log: {message: $(var x) $(dirname)}\n"
+    )
+    (tmp_path / "a.launch.xml").write_text(
+        "<launch><include file='$(dirname)/b.launch.yaml'>"
+        "<arg name='x' value='given'/></include></launch>"
+    )
+    code = launch.run(IncludeLaunchDescription(str(tmp_path / "a.launch.xml")))
+    assert code == 0, launch.errors
+    assert f"given {tmp_path}" in caplog.text
+
+
+@pytest.fixture
+def context(launch: Any) -> LaunchContext:
+    found: LaunchContext = launch.context
+    return found
+
+
+def test_aliases_cannot_make_a_small_file_large(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(yaml_files, "MAX_ELEMENTS", 5000)  # sooner there
+    lines = ["launch:", "- group: &a0 [{log: {message: x}}]"]
+    for i in range(1, 12):
+        inside = ", ".join([f"{{group: *a{i - 1}}}"] * 9)
+        lines.append(f"- group: &a{i} [{inside}]")
+    file = tmp_path / "a.launch.yaml"
+    file.write_text("\n".join(lines))
+    with pytest.raises(InvalidLaunchFileError, match="more than 5000 elements"):
+        parse_launch_file(file)

@@ -1,0 +1,155 @@
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from navette.ros2.packages.launch import LaunchContext
+from navette.ros2.packages.launch.conditions import (
+    IfCondition,
+    InvalidConditionExpressionError,
+    LaunchConfigurationEquals,
+    LaunchConfigurationNotEquals,
+    UnlessCondition,
+)
+from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.substitutions import (
+    AllSubstitution,
+    AndSubstitution,
+    AnonName,
+    AnySubstitution,
+    Command,
+    EnvironmentVariable,
+    EqualsSubstitution,
+    FileContent,
+    FindExecutable,
+    IfElseSubstitution,
+    LaunchConfiguration,
+    LocalSubstitution,
+    NotEqualsSubstitution,
+    NotSubstitution,
+    OrSubstitution,
+    PathJoinSubstitution,
+    PythonExpression,
+    SubstitutionFailure,
+    TextSubstitution,
+    ThisLaunchFileDir,
+)
+
+
+@pytest.fixture
+def context(launch: Any) -> LaunchContext:
+    found: LaunchContext = launch.context
+    found.launch_configurations.update(name="burger", sim="true", count="3")
+    return found
+
+
+@pytest.mark.parametrize(
+    ("substitution", "text"),
+    [
+        (TextSubstitution(text="x"), "x"),
+        (LaunchConfiguration("name"), "burger"),
+        (LaunchConfiguration(["na", TextSubstitution(text="me")]), "burger"),
+        (LaunchConfiguration("missing", default="else"), "else"),
+        (LaunchConfiguration("missing", default=4), "4"),
+        (EnvironmentVariable("NOT_SET_HERE", default_value="d"), "d"),
+        (PathJoinSubstitution(["a", LaunchConfiguration("name"), "c"]), "a/burger/c"),
+        (PathJoinSubstitution(["a"]) / [LaunchConfiguration("name"), ".x"],
+         "a/burger.x"),
+        (NotSubstitution("true"), "false"),
+        (AndSubstitution("true", LaunchConfiguration("sim")), "true"),
+        (OrSubstitution("false", "0"), "false"),
+        (AnySubstitution("false", "1"), "true"),
+        (AllSubstitution("true", "1", "false"), "false"),
+        (EqualsSubstitution(LaunchConfiguration("name"), "burger"), "true"),
+        (EqualsSubstitution("1.0", 1), "true"),
+        (EqualsSubstitution(True, "1"), "true"),
+        (NotEqualsSubstitution("a", None), "true"),
+        (IfElseSubstitution(LaunchConfiguration("sim"), "yes", "no"), "yes"),
+        (IfElseSubstitution("0", else_value="no"), "no"),
+        (PythonExpression(["'", LaunchConfiguration("name"), "' == 'burger'"]), "True"),
+        (PythonExpression(["not ", LaunchConfiguration("sim")]), "False"),
+        (PythonExpression("math.floor(2.7) + sqrt(16)"), "6.0"),
+        (FindExecutable(name="sh"), "/bin/sh"),
+        (Command([sys.executable, " -c 'print(1+1)'"]), "2\n"),
+    ],
+    ids=lambda value: value.describe() if hasattr(value, "describe") else None,
+)  # fmt: skip
+def test_the_text_of_a_substitution(
+    context: LaunchContext, substitution: Any, text: str
+) -> None:
+    found = substitution.perform(context)
+    if text == "/bin/sh":
+        assert found.endswith("/sh")
+    else:
+        assert found == text
+
+
+@pytest.mark.parametrize(
+    ("substitution", "reason"),
+    [
+        (LaunchConfiguration("nam"), "'nam' does not exist; there are: .*name"),
+        (EnvironmentVariable("NOT_SET_HERE"), "'NOT_SET_HERE' is not set"),
+        (NotSubstitution("perhaps"), "'perhaps' is neither true nor false"),
+        (FindExecutable(name="no-such-thing"), "'no-such-thing' is not on PATH"),
+        (FileContent("/no/such/file"), "/no/such/file: cannot be read"),
+        (Command("no-such-thing"), "no-such-thing"),
+        (Command([sys.executable, " -c 'exit(3)'"]), "failed with code 3"),
+        (LocalSubstitution("event.pid"), "no local 'event.pid'"),
+        (ThisLaunchFileDir(), "no launch file is being run"),
+        (PythonExpression("burger == 1"), "unknown name 'burger'"),
+        (PythonExpression("1", ["os"]), "module 'os' is not available"),
+    ],
+)
+def test_a_substitution_that_fails_says_what_there_is(
+    context: LaunchContext, substitution: Any, reason: str
+) -> None:
+    with pytest.raises(SubstitutionFailure, match=reason):
+        substitution.perform(context)
+
+
+def test_standard_error_of_a_command_is_handled_as_asked(
+    context: LaunchContext, caplog: pytest.LogCaptureFixture
+) -> None:
+    words = [sys.executable, " -c 'import sys; print(1); sys.stderr.write(\"oh\")'"]
+    with pytest.raises(SubstitutionFailure, match="oh"):
+        Command(words).perform(context)
+    assert Command(words, on_stderr="ignore").perform(context) == "1\n"
+    assert Command(words, on_stderr="capture").perform(context) == "1\noh"
+    Command(words, on_stderr="warn").perform(context)
+    assert "oh" in caplog.text
+    with pytest.raises(InvalidLaunchValueError, match="fail, ignore, warn, capture"):
+        Command(words, on_stderr="shout").perform(context)
+
+
+def test_environment_and_files(
+    context: LaunchContext, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("NAVETTE_TEST", "from outside")
+    assert EnvironmentVariable("NAVETTE_TEST").perform(context) == "from outside"
+    (tmp_path / "a.txt").write_text("inside")
+    assert FileContent([str(tmp_path), "/a.txt"]).perform(context) == "inside"
+
+
+def test_an_anonymous_name_is_the_same_each_time(context: LaunchContext) -> None:
+    first = AnonName("rviz").perform(context)
+    assert first == AnonName("rviz").perform(context)
+    assert first.startswith(f"rviz_{os.getpid()}")
+    assert AnonName("other").perform(context) != first
+
+
+@pytest.mark.parametrize("value", [3, 2.5, None, ["a", 3], {"a": 1}])
+def test_what_is_no_substitution_is_refused_at_once(value: object) -> None:
+    with pytest.raises(InvalidLaunchValueError, match="wanted text"):
+        LaunchConfiguration(value)  # type: ignore[arg-type]
+
+
+def test_conditions(context: LaunchContext) -> None:
+    assert IfCondition(LaunchConfiguration("sim")).evaluate(context)
+    assert not UnlessCondition(LaunchConfiguration("sim")).evaluate(context)
+    assert LaunchConfigurationEquals("name", "burger").evaluate(context)
+    assert LaunchConfigurationNotEquals("name", "waffle").evaluate(context)
+    assert LaunchConfigurationEquals("missing", None).evaluate(context)
+    with pytest.raises(InvalidConditionExpressionError, match="'burger' is neither"):
+        IfCondition(LaunchConfiguration("name")).evaluate(context)

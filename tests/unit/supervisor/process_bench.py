@@ -1,0 +1,52 @@
+"""Real processes, and what is heard of them."""
+
+import sys
+import threading
+
+from navette.supervisor import ChildProcess, Keeper, StartOptions
+
+WAIT_S = 60.0
+
+
+class Heard:
+    """Collects what a process does."""
+
+    def __init__(self) -> None:
+        self.text = {"stdout": b"", "stderr": b""}
+        self.code: int | None = None
+        self.ready = threading.Event()
+        self.over = threading.Event()
+
+    def output(self, stream: str, data: bytes) -> None:
+        self.text[stream] += data
+        if b"ready\n" in self.text["stdout"]:
+            self.ready.set()
+
+    def exited(self, code: int) -> None:
+        self.code = code
+        self.over.set()
+
+    def wait_ready(self) -> list[str]:
+        """The words of its first line, which ends with ``ready``."""
+        assert self.ready.wait(WAIT_S), self.text
+        return self.text["stdout"].decode().split("\n")[0].split()
+
+    def wait_over(self) -> int:
+        assert self.over.wait(WAIT_S), self.text
+        assert self.code is not None
+        return self.code
+
+
+class Bench:
+    """A keeper, and Python programs for it."""
+
+    def __init__(self) -> None:
+        self.keeper = Keeper(grace_s=0.1)
+
+    def start(
+        self, code: str, *args: str, **options: object
+    ) -> tuple[ChildProcess, Heard]:
+        heard = Heard()
+        words = [sys.executable, "-u", "-c", code, *args]
+        made = StartOptions(**options)  # type: ignore[arg-type]
+        return self.keeper.start(words, heard, made), heard
