@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from navette.msgs.expressions import ExpressionError, evaluate
 from navette.ros2.packages.launch.errors import SubstitutionFailure
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
@@ -10,7 +11,6 @@ from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-from navette.msgs.expressions import ExpressionError, evaluate
 
 if TYPE_CHECKING:
     from navette.ros2.packages.launch.launch_context import LaunchContext
