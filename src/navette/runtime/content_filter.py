@@ -1,12 +1,13 @@
-"""Content filters of subscriptions, under rclpy's name."""
+"""Content filter options of a subscription, under rclpy's name."""
 
 from typing import NamedTuple
 
 
 class ContentFilterOptions(NamedTuple):
-    """Which samples a subscription wants (see ``filter_expression``).
+    """Filter expression of a subscription and its parameters.
 
-    ``expression_parameters`` are what ``%0``, ``%1``, … stand for, as text.
+    See :func:`navette.runtime.filter_expression.compile_filter`.
+    ``expression_parameters`` are the values of ``%0``, ``%1``, … as text.
     """
 
     filter_expression: str

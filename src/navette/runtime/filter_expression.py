@@ -1,16 +1,16 @@
-"""Filter expressions of DDS: ``temperature < %0 OR NOT (name LIKE 'a%')``.
+"""DDS content filter expressions: ``temperature < %0 OR NOT (name LIKE 'a%')``.
 
-Grammar: OMG DDS 1.4, annex B, the part that chooses samples, with ``!=`` beside ``<>``,
-and with MATCH (a regular expression for the whole text) as the vendors have it. Fields
-are named as in the message, ``header.stamp.sec``, ``ranges[0]``; NOT binds before AND,
-AND before OR; keywords in any case.
+Grammar: OMG DDS 1.4, annex B, FilterExpression, with two extensions that DDS vendors
+have: ``!=`` beside ``<>``, and MATCH (a regular expression for the whole string).
 """
 
 import operator
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
+
+from lark import Lark, Token, Transformer, UnexpectedInput, UnexpectedToken, v_args
+from lark.exceptions import VisitError
 
 from navette.errors import InvalidValueError
 from navette.msgs import get_interface
@@ -19,13 +19,43 @@ from navette.runtime.exceptions import RCLError
 
 Condition = Callable[[Any], bool]
 
-_TOKEN = re.compile(
-    r"\s*(?:(?P<number>[-+]?(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?))"
-    r"|(?P<text>['`][^']*')"
-    r"|(?P<parameter>%\d{1,2})"
-    r"|(?P<operator><=|>=|<>|!=|[=<>()])"
-    r"|(?P<word>[A-Za-z_]\w*(?:\[\d+\])?(?:\.[A-Za-z_]\w*(?:\[\d+\])?)*))"
-)
+MAX_LENGTH = 4096  # characters
+MAX_NESTING = 100  # NOTs and opening parentheses
+
+_GRAMMAR = r"""
+?disjunction: conjunction (_OR conjunction)*
+?conjunction: negation (_AND negation)*
+?negation: _NOT negation                      -> negation
+    | "(" disjunction ")"
+    | term COMPARISON term                    -> comparison
+    | term _BETWEEN term _AND term            -> between
+    | term _NOT _BETWEEN term _AND term       -> not_between
+    | term _LIKE term                         -> like
+    | term _MATCH term                        -> match
+?term: FIELD                                  -> field
+    | PARAMETER                               -> parameter
+    | literal
+?literal: NUMBER                              -> number
+    | STRING                                  -> string
+    | (TRUE | FALSE)                          -> boolean
+
+COMPARISON: "<=" | ">=" | "<>" | "!=" | "=" | "<" | ">"
+PARAMETER: /%\d{1,2}/
+NUMBER: /[-+]?(0[xX][0-9a-fA-F]+|(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)/
+STRING: /['`][^']*'/
+FIELD: /[A-Za-z_]\w*(\[\d+\])?(\.[A-Za-z_]\w*(\[\d+\])?)*/
+_OR.2: /OR\b/i
+_AND.2: /AND\b/i
+_NOT.2: /NOT\b/i
+_BETWEEN.2: /BETWEEN\b/i
+_LIKE.2: /LIKE\b/i
+_MATCH.2: /MATCH\b/i
+TRUE.2: /TRUE\b/i
+FALSE.2: /FALSE\b/i
+%ignore /\s+/
+"""
+_PARSER = Lark(_GRAMMAR, parser="lalr", start=["disjunction", "literal"])
+
 _COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
     "=": operator.eq,
     "<>": operator.ne,
@@ -35,254 +65,207 @@ _COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
-_KEYWORDS = frozenset("AND OR NOT BETWEEN LIKE MATCH TRUE FALSE".split())
-_LONGEST = 4096  # characters; also bounds how deep parentheses nest
-_DEEPEST = 50
+_TERMINALS = {
+    "COMPARISON": " ".join(_COMPARISONS),
+    "PARAMETER": "a parameter (%0)",
+    "NUMBER": "a number",
+    "STRING": "a string in single quotes",
+    "FIELD": "a field",
+    "LPAR": "(",
+    "RPAR": ")",
+    "$END": "the end",
+}
 
 
 class ContentFilterError(RCLError, InvalidValueError):
-    """A filter expression or its parameters cannot be used; says where and why."""
+    """A filter expression or its parameters cannot be used."""
 
 
 def compile_filter(
     expression: str, parameters: Sequence[str], message_class: type
 ) -> Condition:
-    """What tells whether a message passes.
+    """Return the predicate on messages that the expression describes.
 
     Args:
-        parameters: what ``%0``, ``%1``, … stand for: numbers, TRUE, FALSE or text in
-            quotes.
+        expression: fields are named as in the message, ``header.stamp.sec``,
+            ``ranges[0]``; keywords in any case; NOT binds before AND, AND before OR.
+        parameters: values of ``%0``, ``%1``, …: numbers, TRUE, FALSE or quoted strings.
+        message_class: type of the messages.
+
+    A message whose sequence is shorter than an index of the expression does not pass.
 
     Raises:
-        ContentFilterError: names the expression and what is wrong with it.
+        ContentFilterError: a syntax error, an unknown field, operands of different
+            kinds, a malformed or missing parameter.
     """
-    if len(expression) > _LONGEST:
-        raise ContentFilterError(f"filter of {len(expression)} characters: too long")
-    parser = _Parser(expression, parameters, message_class)
-    condition = parser.either()
-    parser.expect_end()
+    if len(expression) > MAX_LENGTH:
+        raise ContentFilterError(
+            f"filter of {len(expression)} characters; at most {MAX_LENGTH} allowed"
+        )
+    if len(re.findall(r"\(|\bNOT\b", expression, re.IGNORECASE)) > MAX_NESTING:
+        raise ContentFilterError(
+            f"filter has more than {MAX_NESTING} parentheses and NOTs"
+        )
+    try:
+        tree = _PARSER.parse(expression, start="disjunction")
+        condition = _Compiler(parameters, message_class).transform(tree)
+    except UnexpectedInput as error:
+        raise ContentFilterError(f"filter {expression!r}: {_explain(error)}") from None
+    except VisitError as error:
+        raise ContentFilterError(f"filter {expression!r}: {error.orig_exc}") from None
 
     def passes(message: Any) -> bool:
         try:
-            return condition(message)
-        except IndexError:  # a sequence without the element that is asked for
+            return bool(condition(message))
+        except IndexError:  # a sequence is shorter than the index
             return False
 
     return passes
 
 
-@dataclass(frozen=True)
-class _Term:
-    """A field or a value: ``kind`` is number, text or bool."""
+def _explain(error: UnexpectedInput) -> str:
+    found, allowed = "character", getattr(error, "allowed", None) or set()
+    if isinstance(error, UnexpectedToken):
+        found, allowed = f"{error.token.value!r}", error.accepts or error.expected
+        if error.token.type == "$END":
+            found = "end"
+    names = sorted(_TERMINALS.get(each, each.strip("_")) for each in allowed)
+    return f"unexpected {found} at column {error.column}; expected {', '.join(names)}"
+
+
+class _Term(NamedTuple):
+    """A field or a constant; ``kind`` is number, string or bool."""
 
     kind: str
     get: Callable[[Any], Any]
-    shown: str
+    text: str
     value: Any = None
 
 
-class _Parser:
-    """Recursive descent over the tokens (group name, text)."""
+@v_args(inline=True)
+class _Compiler(Transformer[Token, Any]):
+    """Turns the syntax tree into nested functions of the message."""
 
-    def __init__(
-        self, expression: str, parameters: Sequence[str], message_class: type
-    ) -> None:
-        self._expression = expression
+    def __init__(self, parameters: Sequence[str], message_class: type) -> None:
+        super().__init__()
         self._parameters = parameters
         self._class = message_class
-        self._tokens = self._split(expression)
-        self._next = 0
-        self._depth = 0
 
-    # -- conditions ------------------------------------------------------------
+    def disjunction(self, *conditions: Condition) -> Condition:
+        return lambda m: any(holds(m) for holds in conditions)
 
-    def either(self) -> Condition:
-        found = [self._both()]
-        while self._skip("OR"):
-            found.append(self._both())
-        return found[0] if len(found) == 1 else lambda m: any(c(m) for c in found)
+    def conjunction(self, *conditions: Condition) -> Condition:
+        return lambda m: all(holds(m) for holds in conditions)
 
-    def _both(self) -> Condition:
-        found = [self._single()]
-        while self._skip("AND"):
-            found.append(self._single())
-        return found[0] if len(found) == 1 else lambda m: all(c(m) for c in found)
+    def negation(self, condition: Condition) -> Condition:
+        return lambda m: not condition(m)
 
-    def _single(self) -> Condition:
-        self._depth += 1
-        if self._depth > _DEEPEST:
-            raise self._error("nested too deeply")
-        try:
-            if self._skip("NOT"):
-                negated = self._single()
-                return lambda m: not negated(m)
-            if self._skip("("):
-                inner = self.either()
-                self._expect(")")
-                return inner
-            return self._predicate()
-        finally:
-            self._depth -= 1
-
-    def _predicate(self) -> Condition:
-        left = self._term()
-        is_negated = self._skip("NOT")
-        if self._skip("BETWEEN"):
-            return self._between(left, is_negated=is_negated)
-        if is_negated:
-            raise self._error("wanted BETWEEN behind NOT")
-        for word, pattern_of in (("LIKE", _like_pattern), ("MATCH", str)):
-            if self._skip(word):
-                return self._pattern(left, pattern_of)
-        sign = self._take()[1]
-        if sign not in _COMPARISONS:
-            raise self._error(f"wanted one of {' '.join(_COMPARISONS)}, got {sign!r}")
-        right = self._term()
-        self._check_kinds(left, right)
+    def comparison(self, left: _Term, sign: Token, right: _Term) -> Condition:
+        _check_kinds(left, right)
         compare, get_left, get_right = _COMPARISONS[sign], left.get, right.get
         return lambda m: compare(get_left(m), get_right(m))
 
-    def _between(self, term: _Term, *, is_negated: bool) -> Condition:
-        low = self._term()
-        self._expect("AND")
-        high = self._term()
-        self._check_kinds(term, low)
-        self._check_kinds(term, high)
-        return lambda m: (low.get(m) <= term.get(m) <= high.get(m)) != is_negated
+    def between(self, term: _Term, low: _Term, high: _Term) -> Condition:
+        _check_kinds(term, low)
+        _check_kinds(term, high)
+        return lambda m: low.get(m) <= term.get(m) <= high.get(m)
 
-    def _pattern(self, term: _Term, pattern_of: Callable[[str], str]) -> Condition:
-        wanted = self._term()
-        self._check_kinds(term, wanted)
-        if term.kind != "text" or wanted.value is None:
-            raise self._error("LIKE and MATCH compare a text field with a text")
+    def not_between(self, term: _Term, low: _Term, high: _Term) -> Condition:
+        return self.negation(self.between(term, low, high))
+
+    def like(self, term: _Term, pattern: _Term) -> Condition:
+        return _pattern(term, pattern, _like_pattern)
+
+    def match(self, term: _Term, pattern: _Term) -> Condition:
+        return _pattern(term, pattern, str)
+
+    def parameter(self, name: Token) -> _Term:
+        number = int(name[1:])
+        if number >= len(self._parameters):
+            raise ValueError(f"{name}: only {len(self._parameters)} parameters given")
+        text = self._parameters[number]
         try:
-            matches = re.compile(pattern_of(wanted.value), re.DOTALL).fullmatch
-        except re.error as error:
-            raise self._error(f"pattern {wanted.shown}: {error}") from None
-        return lambda m: matches(term.get(m)) is not None
+            tree = _PARSER.parse(text, start="literal")
+        except UnexpectedInput:
+            raise ValueError(
+                f"{name} is {text!r}; allowed: a number, TRUE, FALSE, or a string in "
+                "single quotes"
+            ) from None
+        term: _Term = self.transform(tree)
+        return term
 
-    def _check_kinds(self, left: _Term, right: _Term) -> None:
-        if left.kind != right.kind:
-            raise self._error(
-                f"{left.shown} is a {left.kind}, {right.shown} a {right.kind}"
-            )
+    def number(self, text: Token) -> _Term:
+        is_integer = re.fullmatch(r"[-+]?(\d+|0[xX][0-9a-fA-F]+)", text)
+        base = 16 if "x" in text.lower() else 10
+        return _constant("number", text, int(text, base) if is_integer else float(text))
 
-    # -- terms -----------------------------------------------------------------
+    def string(self, text: Token) -> _Term:
+        return _constant("string", text, text[1:-1])
 
-    def _term(self) -> _Term:
-        kind, token = self._take()
-        if kind == "parameter":
-            number = int(token[1:])
-            if number >= len(self._parameters):
-                count = len(self._parameters)
-                raise self._error(f"{token}: only {count} parameters are given")
-            return self._parameter(token, self._parameters[number])
-        if kind == "word" and token.upper() not in _KEYWORDS:
-            return self._field(token)
-        value = _literal(kind, token)
-        if value is None:
-            raise self._error(f"wanted a field or a value, got {token!r}")
-        return value
+    def boolean(self, text: Token) -> _Term:
+        return _constant("bool", text, text.upper() == "TRUE")
 
-    def _parameter(self, name: str, text: str) -> _Term:
-        match = _TOKEN.fullmatch(text.strip())
-        value = None
-        if match is not None and match.lastgroup is not None:
-            value = _literal(match.lastgroup, match[match.lastgroup])
-        if value is None:
-            raise self._error(
-                f"{name} is {text!r}: wanted a number, TRUE, FALSE, or text in single "
-                "quotes"
-            )
-        return value
-
-    def _field(self, path: str) -> _Term:
+    def field(self, path: Token) -> _Term:
         spec: MessageSpec = self._class._spec_  # type: ignore[attr-defined]
         getters: list[Callable[[Any], Any]] = []
         type_ = FieldType(spec.name)
         for part in path.split("."):
             name, _, index = part.rstrip("]").partition("[")
-            if not type_.is_message or not type_.is_scalar:
-                raise self._error(f"{path}: {type_} has no field {name!r}")
-            spec = get_interface(type_.base)._spec_  # type: ignore[attr-defined]
-            types = {field.name: field.type for field in spec.fields}
-            if name not in types:
-                known = ", ".join(types) or "none"
-                raise self._error(f"{spec.name} has no field {name!r}; known: {known}")
-            type_ = types[name]
+            type_ = _field_type(type_, name, path)
             getters.append(operator.attrgetter(name))
             if index:
                 if type_.is_scalar:
-                    raise self._error(f"{path}: {name} is no array")
+                    raise ValueError(f"{path}: {name} is not an array")
                 getters.append(operator.itemgetter(int(index)))
                 type_ = FieldType(type_.base, string_bound=type_.string_bound)
         if not type_.is_scalar or type_.is_message:
-            raise self._error(f"{path} is a {type_}: wanted one number, text or bool")
+            raise ValueError(f"{path} is a {type_}, not a number, string or bool")
         if type_.base == "byte":
             getters.append(operator.itemgetter(0))
-        kind = "text" if type_.is_string else "bool" if type_.base == "bool" else ""
-        return _Term(kind or "number", _chained(getters), path)
+        kind = {"string": "string", "wstring": "string", "bool": "bool"}
+        return _Term(kind.get(type_.base, "number"), _chain(getters), path)
 
-    # -- tokens ----------------------------------------------------------------
 
-    def _split(self, expression: str) -> list[tuple[str, str]]:
-        tokens, position, text = [], 0, expression.rstrip()
-        while position < len(text):
-            match = _TOKEN.match(text, position)
-            if match is None or match.lastgroup is None:
-                raise self._error(f"cannot be read from {text[position:][:20]!r} on")
-            tokens.append((match.lastgroup, match[match.lastgroup]))
-            position = match.end()
-        return tokens
+def _constant(kind: str, text: str, value: Any) -> _Term:
+    return _Term(kind, lambda _: value, text, value)
 
-    def _take(self) -> tuple[str, str]:
-        if self._next >= len(self._tokens):
-            raise self._error("ends too early")
-        self._next += 1
-        return self._tokens[self._next - 1]
 
-    def _skip(self, wanted: str) -> bool:
-        is_there = (
-            self._next < len(self._tokens)
-            and self._tokens[self._next][1].upper() == wanted
+def _check_kinds(left: _Term, right: _Term) -> None:
+    if left.kind != right.kind:
+        raise ValueError(
+            f"{left.text} is a {left.kind}, {right.text} is a {right.kind}"
         )
-        self._next += is_there
-        return is_there
-
-    def _expect(self, wanted: str) -> None:
-        if not self._skip(wanted):
-            raise self._error(f"wanted {wanted}")
-
-    def expect_end(self) -> None:
-        if self._next < len(self._tokens):
-            raise self._error(f"unexpected {self._tokens[self._next][1]!r}")
-
-    def _error(self, reason: str) -> ContentFilterError:
-        return ContentFilterError(f"filter {self._expression!r}: {reason}")
 
 
-def _literal(kind: str, token: str) -> _Term | None:
-    value: Any
-    if kind == "number":
-        is_integer = re.fullmatch(r"[-+]?(\d+|0[xX][0-9a-fA-F]+)", token)
-        base = 16 if "x" in token.lower() else 10
-        value = int(token, base) if is_integer else float(token)
-    elif kind == "text":
-        value = token[1:-1]
-    elif kind == "word" and token.upper() in ("TRUE", "FALSE"):
-        kind, value = "bool", token.upper() == "TRUE"
-    else:
-        return None
-    return _Term(kind, lambda _: value, token, value)
+def _pattern(term: _Term, pattern: _Term, regex: Callable[[str], str]) -> Condition:
+    _check_kinds(term, pattern)
+    if term.kind != "string" or pattern.value is None:
+        raise ValueError("LIKE and MATCH compare a string field with a quoted string")
+    try:
+        matches = re.compile(regex(pattern.value), re.DOTALL).fullmatch
+    except re.error as error:
+        raise ValueError(f"pattern {pattern.text}: {error}") from None
+    return lambda m: matches(term.get(m)) is not None
 
 
 def _like_pattern(text: str) -> str:
-    """SQL's: ``%`` any characters, ``_`` one."""
+    """Translate SQL's LIKE: ``%`` matches any characters, ``_`` one."""
     signs = {"%": ".*", "_": "."}
     return "".join(signs.get(c) or re.escape(c) for c in text)
 
 
-def _chained(getters: list[Callable[[Any], Any]]) -> Callable[[Any], Any]:
+def _field_type(owner: FieldType, name: str, path: str) -> FieldType:
+    if not owner.is_message or not owner.is_scalar:
+        raise ValueError(f"{path}: {owner} has no field {name!r}")
+    spec: MessageSpec = get_interface(owner.base)._spec_  # type: ignore[attr-defined]
+    types = {field.name: field.type for field in spec.fields}
+    if name not in types:
+        known = ", ".join(types) or "none"
+        raise ValueError(f"{spec.name} has no field {name!r}; known: {known}")
+    return types[name]
+
+
+def _chain(getters: list[Callable[[Any], Any]]) -> Callable[[Any], Any]:
     if len(getters) == 1:
         return getters[0]
 
