@@ -64,7 +64,7 @@ def test_every_folder_is_a_package_that_imports_no_node() -> None:
         init = folder / "__init__.py"
         assert init.is_file(), f"{folder} has no __init__.py"
         for module in imported_modules(init):
-            stage_node = re.fullmatch(r"navette\.(?!runtime)[\w.]+\.node", module)
+            stage_node = re.fullmatch(r"navette\.(?!runtime|ros2)[\w.]+\.node", module)
             assert not stage_node, f"{init} imports {module}"
 
 

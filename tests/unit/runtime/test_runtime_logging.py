@@ -214,7 +214,8 @@ def test_what_an_algorithm_logs_outside_callbacks_reaches_the_console(
 ) -> None:
     algorithm_logger.warning("alone")
     assert re.search(
-        r"\[WARN\] .*\[navette\.planning\.astar\]: alone", capsys.readouterr().err
+        r"\[WARN\] .*\[navette\.navigation\.planning\.astar\]: alone",
+        capsys.readouterr().err,
     )
 
 

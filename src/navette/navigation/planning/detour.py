@@ -106,8 +106,7 @@ class DetourPlanner:
 
     def _has_room(self, poses: Poses) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
         """Where the body can turn in place."""
-        cells = np.floor(self.grid.to_cells(poses[:, :2])).astype(np.int64)
-        distance = self.grid.distance_m[cells[:, 1], cells[:, 0]]
+        distance = self.grid.distance_at(poses[:, :2])
         needed = self.body.circumscribed_m + self.grid.margin_m
         return np.asarray(distance >= needed + self.grid.spec.resolution)
 

@@ -88,6 +88,18 @@ class PlanningGrid:
         cell = self.spec.cell_of(x, y)
         return cell if self.spec.contains(*cell) else None
 
+    def distance_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(N,) metres to the nearest obstacle from the cells of points (N, 2).
+
+        ``outside_m`` for points outside the map: a search over poses may leave it.
+        """
+        column, row = np.floor(self.to_cells(points)).astype(np.int64).T
+        height, width = self.distance_m.shape
+        inside = (row >= 0) & (row < height) & (column >= 0) & (column < width)
+        distance = np.full(len(points), self.outside_m)
+        distance[inside] = self.distance_m[row[inside], column[inside]]
+        return distance
+
     def to_cells(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points (N, 2) x, y in metres → u, v in cells from the grid's corner."""
         return self.spec.origin.inverse().apply(points) / self.spec.resolution
