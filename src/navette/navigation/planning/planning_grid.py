@@ -91,12 +91,13 @@ class PlanningGrid:
     def distance_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """(N,) metres to the nearest obstacle from the cells of points (N, 2).
 
-        ``outside_m`` for points outside the map: a search over poses may leave it.
+        0 for points outside the map, which a search over poses may leave: no route of
+        the grid can begin or end there.
         """
         column, row = np.floor(self.to_cells(points)).astype(np.int64).T
         height, width = self.distance_m.shape
         inside = (row >= 0) & (row < height) & (column >= 0) & (column < width)
-        distance = np.full(len(points), self.outside_m)
+        distance = np.zeros(len(points))
         distance[inside] = self.distance_m[row[inside], column[inside]]
         return distance
 
