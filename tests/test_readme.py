@@ -1,4 +1,4 @@
-"""What the README shows is what happens."""
+"""The program in the README runs."""
 
 import re
 import signal
@@ -19,7 +19,7 @@ def test_the_program_runs_and_ends_on_ctrl_c() -> None:
     )
     assert process.stdout is not None
     with process.stdout:
-        assert process.stdout.readline() == "heard: Hello, ROS 2!\n"
-        assert process.stdout.readline() == "heard: Hello, ROS 2!\n"
+        assert process.stdout.readline() == "received: Hello, ROS 2!\n"
+        assert process.stdout.readline() == "received: Hello, ROS 2!\n"
         process.send_signal(signal.SIGINT)
         assert process.wait(timeout=60) == 0
