@@ -1,6 +1,7 @@
-"""The tutorials run as they are printed; the reference matches the code."""
+"""The tutorials run as printed; the reference pages match the code."""
 
 import contextlib
+import dataclasses
 import io
 import re
 import runpy
@@ -13,6 +14,17 @@ import typer
 
 import navette
 from navette.cli.app import app
+from navette.navigation.control.states import ControlState
+from navette.navigation.missions.sequence import (
+    FAILURES,
+    REACHED,
+    SKIPPED,
+    TIMED_OUT,
+    UNFINISHED,
+)
+from navette.navigation.planning.outcome import Outcome
+from navette.navigation.planning.reports import Phase, State
+from navette.navigation.stack.stack import NODE_CLASSES
 
 DOCS = Path(__file__).parent.parent / "docs"
 BLOCK = re.compile(r"```(python|text)\n(.*?)```", re.DOTALL)
@@ -22,7 +34,7 @@ BLOCK = re.compile(r"```(python|text)\n(.*?)```", re.DOTALL)
 @pytest.mark.parametrize(
     "page", sorted(DOCS.glob("tutorials/*.md")), ids=lambda page: page.stem
 )
-def test_a_tutorial_prints_what_it_says(page: Path) -> None:
+def test_tutorial_output_matches_the_page(page: Path) -> None:
     names: dict[str, object] = {"__name__": "__tutorial__"}
     printed = ""
     for language, block in BLOCK.findall(page.read_text(encoding="utf-8")):
@@ -41,7 +53,28 @@ def test_the_node_reference_is_up_to_date() -> None:
     assert page == generator["nodes_page"](), "run: python docs/generate.py"
 
 
-def test_the_idioms_name_what_there_is() -> None:
+def test_every_status_has_a_section() -> None:
+    page = (DOCS / "reference" / "troubleshooting.md").read_text(encoding="utf-8")
+    sections = re.findall(r"^### `(\w+)`$", page, re.MULTILINE)
+    statuses = {*Outcome, *Phase, *State, *ControlState, *FAILURES}
+    statuses |= {REACHED, TIMED_OUT, SKIPPED, UNFINISHED}
+    assert sorted(sections) == sorted(statuses)
+    listed = set(re.findall(r"\(#(\w+)\)", page))
+    assert listed <= set(sections)
+
+
+def test_parameters_in_the_troubleshooting_page_exist() -> None:
+    page = (DOCS / "reference" / "troubleshooting.md").read_text(encoding="utf-8")
+    known = {
+        field.name
+        for _, cls in NODE_CLASSES
+        for field in dataclasses.fields(cls.PARAMS)
+    }
+    named = set(re.findall(r"`([a-z_]+_(?:m|s|mps|rad|margin|check|frame))\b", page))
+    assert named - {"unknown_frame"} <= known
+
+
+def test_names_in_the_idioms_page_exist() -> None:
     page = (DOCS / "reference" / "idioms.md").read_text(encoding="utf-8")
     names = set(re.findall(r"navette\.([A-Za-z_]+)", page)) - {"msgs"}
     assert len(names) > 15
@@ -52,12 +85,12 @@ def test_the_idioms_name_what_there_is() -> None:
 
 
 def _is_there(name: str) -> bool:
-    """Whether Navette has that name, also as a module that nobody has imported yet."""
+    """Whether Navette has that name or a module of that name."""
     return hasattr(navette, name) or find_spec(f"navette.{name}") is not None
 
 
 def _is_command(root: Any, verb: tuple[str, ...]) -> bool:
-    """Whether the words lead to a command; what follows it is its arguments."""
+    """Whether the words lead to a command; further words are its arguments."""
     command = root
     for word in verb:
         if not hasattr(command, "commands"):
