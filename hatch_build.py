@@ -1,4 +1,4 @@
-"""Build hook: generate the type stubs of the messages before a wheel is built."""
+"""Build hook: generate the type stubs of messages and rclpy before a wheel is built."""
 
 import os
 import subprocess
@@ -17,7 +17,10 @@ class StubHook(BuildHookInterface):  # type: ignore[type-arg]
     """
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Run the generator; it needs only the standard library."""
+        """Run the generators; they need only the standard library."""
         environment = {**os.environ, "PYTHONPATH": str(Path(self.root, "src"))}
-        command = [sys.executable, "-B", "-m", "navette.msgs.generate"]
-        subprocess.run(command, env=environment, check=True, stdout=subprocess.DEVNULL)
+        for generator in ("navette.msgs.generate", "navette.ros2.names.stubs"):
+            command = [sys.executable, "-B", "-m", generator]
+            subprocess.run(
+                command, env=environment, check=True, stdout=subprocess.DEVNULL
+            )

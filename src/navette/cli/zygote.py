@@ -3,21 +3,17 @@
 Started by ``navette.supervisor``; whatever else a program needs, it imports itself.
 """
 
-from pathlib import Path
-
 import navette.cli.run
 import navette.msgs.geometry_msgs.msg
 import navette.msgs.rcl_interfaces.srv
 import navette.msgs.std_msgs.msg
 import navette.ros2.names.process
-import navette.ros2.names.rclpy.node
 import navette.ros2.names.targets
 import navette.ros2.workspace
 import navette.runtime
-import navette.transports.zenoh.transport
+import navette.transports.zenoh.transport  # noqa: F401 - imported for the forks
 from navette.cli.app import build
 from navette.msgs import type_hash
-from navette.ros2.names.hook import modules_in
 from navette.supervisor.zygote import main
 
 # Their definitions are read, and their hashes computed, once for all.
@@ -36,6 +32,5 @@ _OF_EVERY_NODE = (
 if __name__ == "__main__":
     for name in _OF_EVERY_NODE:
         type_hash(name)
-    modules_in(Path(navette.ros2.names.rclpy.__file__).parent)
     build("run")
     main()

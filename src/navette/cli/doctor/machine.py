@@ -35,6 +35,7 @@ def check_machine() -> Iterator[Finding]:
     """Everything that does not need the network."""
     yield _versions()
     yield from _optional_parts()
+    yield check_packages()
     yield _live_view()
     yield from left_running(processes(), os.getpid())
 
@@ -87,6 +88,24 @@ def _optional_parts() -> Iterator[Finding]:
         yield Finding(
             level, MACHINE, what, text, data={"found": str(found) if found else None}
         )
+
+
+def check_packages() -> Finding:
+    """Report the packages of ROS 2 that programs use instead of Navette's."""
+    from navette.ros2.names import replaced_packages
+
+    replaced = {name: str(file.parent) for name, file in replaced_packages().items()}
+    text = "packages that come with rclpy are Navette's"
+    if replaced:
+        used = ", ".join(f"{name} in {folder}" for name, folder in replaced.items())
+        text = f"installed and used instead of Navette's: {used}"
+    return Finding(
+        Level.NOTE if replaced else Level.GOOD,
+        MACHINE,
+        "packages",
+        text,
+        data={"replaced": replaced},
+    )
 
 
 def _loads(library: str) -> bool:

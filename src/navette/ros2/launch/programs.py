@@ -10,9 +10,9 @@ from queue import SimpleQueue
 from threading import Lock
 
 from navette.ros2.launch.streams import program_output, program_streams
+from navette.ros2.names.blocking_calls import sleeping_lets_others_run
 from navette.ros2.names.process import RunningProgram, program_threads
 from navette.ros2.names.program import Program, entry_point, script
-from navette.ros2.names.sleeping import sleeping_lets_others_run
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.running import (
     INTERRUPT,

@@ -4,7 +4,14 @@ from navette.ros2.names.hook import (
     install,
     installed_rclpy,
     is_installed,
+    replaced_packages,
     uninstall,
 )
 
-__all__ = ["install", "installed_rclpy", "is_installed", "uninstall"]
+__all__ = [
+    "install",
+    "installed_rclpy",
+    "is_installed",
+    "replaced_packages",
+    "uninstall",
+]

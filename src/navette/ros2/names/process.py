@@ -14,6 +14,7 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any, overload
 
+from navette.ros2.names.blocking_calls import sleeping_lets_others_run
 from navette.ros2.names.interrupts import ThreadInterrupt
 from navette.ros2.names.program import (
     FAILED,
@@ -22,8 +23,7 @@ from navette.ros2.names.program import (
     Program,
     run,
 )
-from navette.ros2.names.readiness import Readiness, watch_start
-from navette.ros2.names.sleeping import sleeping_lets_others_run
+from navette.ros2.names.startup_barrier import Readiness, watch_start
 from navette.runtime.clock import Stopwatch
 from navette.runtime.context import Scope, current_scope, new_graph
 from navette.runtime.graph import Graph

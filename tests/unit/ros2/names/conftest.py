@@ -1,14 +1,14 @@
-"""The import hook is installed for each test here, and gone after it."""
+"""Fixture of these tests: the import hook is installed during each of them."""
 
 from collections.abc import Iterator
 
 import pytest
 
-from navette.ros2 import names as interop
+from navette.ros2 import names
 
 
 @pytest.fixture(autouse=True)
 def hook() -> Iterator[None]:
-    interop.install()
+    names.install()
     yield
-    interop.uninstall()
+    names.uninstall()

@@ -8,7 +8,7 @@ import pytest
 
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.std_srvs.srv import Trigger
-from navette.ros2.names.leftovers import warn_of_leftovers
+from navette.ros2.names.unused_arguments import warn_of_leftovers
 from navette.runtime import Context, Node, VirtualClock
 
 FILE = """

@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable
 from functools import partial
 
-from navette.ros2.names.leftovers import warn_of_leftovers
+from navette.ros2.names.unused_arguments import warn_of_leftovers
 from navette.runtime.context import Context, Scope
 
 VARIABLE = "NAVETTE_READY_FD"

@@ -1,1 +1,0 @@
-"""The parts of rclpy's inside that programs use."""

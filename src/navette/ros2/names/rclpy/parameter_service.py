@@ -1,5 +1,0 @@
-"""Parameters by service."""
-
-from navette.runtime.parameter_service import ParameterService
-
-__all__ = ["ParameterService"]

@@ -1,7 +1,0 @@
-"""Which samples a subscription wants."""
-
-from navette.runtime.content_filter import ContentFilterOptions
-
-__all__ = [
-    "ContentFilterOptions",
-]

@@ -1,5 +1,0 @@
-"""Hashes of types."""
-
-from navette.runtime.type_hash import TypeHash
-
-__all__ = ["TypeHash"]
