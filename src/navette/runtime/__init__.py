@@ -25,10 +25,10 @@ from navette.runtime.callback_groups import (
 )
 from navette.runtime.client import Client
 from navette.runtime.clock import (
+    ContextClock,
     PacedClock,
     Stopwatch,
     SystemClock,
-    TimeSource,
     VirtualClock,
 )
 from navette.runtime.context import Context, get_default_context
@@ -167,7 +167,7 @@ __all__ = [
     "SystemClock",
     "Time",
     "TimeJump",
-    "TimeSource",
+    "ContextClock",
     "Timer",
     "VirtualClock",
     "ns_to_stamp",
@@ -202,7 +202,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Load what is not needed by most."""
-    from navette.runtime.later import find
+    from navette.runtime.lazy_exports import find
 
     value = globals()[name] = find(name)
     return value

@@ -6,7 +6,7 @@ from types import TracebackType
 from typing import Any
 
 from navette.runtime.arguments import remove_ros_args as _remove_ros_args
-from navette.runtime.clock import TimeSource
+from navette.runtime.clock import ContextClock
 from navette.runtime.context import (
     Context,
     get_default_context,
@@ -47,7 +47,7 @@ def init(
     context: Context | None = None,
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
-    clock: TimeSource | None = None,
+    clock: ContextClock | None = None,
 ) -> InitContextManager:
     """Make the context valid; read ``args`` (``sys.argv`` if None).
 

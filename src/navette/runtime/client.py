@@ -19,7 +19,7 @@ from navette.runtime.exceptions import (
 )
 from navette.runtime.future import Answer, Future
 from navette.runtime.qos import QoSProfile
-from navette.runtime.service_end import ServiceEnd
+from navette.runtime.service_endpoint import ServiceEndpoint
 from navette.runtime.service_introspection import ServiceEvents
 from navette.runtime.time import seconds_to_ns
 from navette.transports import ClientPort, Endpoint, Reply, RequestId, Transport
@@ -48,7 +48,7 @@ class _Replies(Entity):
         return endpoint.node_full_name, f"reply of service {endpoint.topic}"
 
 
-class Client(ServiceEnd):
+class Client(ServiceEndpoint):
     """Calls a service. Made by :meth:`Node.create_client`."""
 
     def __init__(

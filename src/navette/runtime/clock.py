@@ -47,7 +47,7 @@ class Wakeup:
                 return False
 
 
-class TimeSource(ABC):
+class ContextClock(ABC):
     """The time of a context, in integer nanoseconds."""
 
     #: Whether time stands still between events (nothing happens by waiting).
@@ -66,7 +66,7 @@ class TimeSource(ABC):
         """Wait until ``target_ns`` (None = for ever); False if woken before."""
 
 
-class SystemClock(TimeSource):
+class SystemClock(ContextClock):
     """The machine's clock: nanoseconds since 1970."""
 
     @property
@@ -80,7 +80,7 @@ class SystemClock(TimeSource):
         return left_ns <= 0 or not wakeup.wait(left_ns / 1e9)
 
 
-class VirtualClock(TimeSource):
+class VirtualClock(ContextClock):
     """Time that jumps to the next event: as fast as the machine can."""
 
     is_virtual = True

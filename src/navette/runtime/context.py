@@ -12,7 +12,7 @@ from weakref import WeakSet
 
 from navette.errors import InvalidValueError
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
-from navette.runtime.clock import TimeSource
+from navette.runtime.clock import ContextClock
 from navette.runtime.exceptions import RCLError
 from navette.runtime.graph import Graph
 from navette.runtime.handles import Handle
@@ -57,7 +57,7 @@ class Context:
     def __init__(
         self,
         *,
-        clock: TimeSource | None = None,
+        clock: ContextClock | None = None,
         graph: Graph | None = None,
         transport: str | None = None,
     ) -> None:
@@ -87,11 +87,11 @@ class Context:
         self._handler = StdlibHandler(self.log, lambda: self.loop.running_node)
 
     @property
-    def clock(self) -> TimeSource:
+    def clock(self) -> ContextClock:
         """How time passes here."""
         return self.loop.clock
 
-    def use_clock(self, clock: TimeSource) -> None:
+    def use_clock(self, clock: ContextClock) -> None:
         """Let time pass as ``clock`` says; only while the context has no nodes."""
         if clock is self.loop.clock:
             return

@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from navette.errors import InvalidValueError
-from navette.runtime.clock import TimeSource
+from navette.runtime.clock import ContextClock
 from navette.runtime.context import Context, get_default_context
 from navette.runtime.events import Call, Entity
 from navette.runtime.exceptions import (
@@ -47,7 +47,7 @@ class Executor:
     """
 
     def __init__(
-        self, *, context: Context | None = None, clock: TimeSource | None = None
+        self, *, context: Context | None = None, clock: ContextClock | None = None
     ) -> None:
         if context is None and clock is not None:
             context = Context(clock=clock)
@@ -72,7 +72,7 @@ class Executor:
         return self._context.loop
 
     @property
-    def clock(self) -> TimeSource:
+    def clock(self) -> ContextClock:
         return self._context.clock
 
     @property
@@ -274,7 +274,7 @@ class MultiThreadedExecutor(Executor):
         num_threads: int | None = None,
         *,
         context: Context | None = None,
-        clock: TimeSource | None = None,
+        clock: ContextClock | None = None,
     ) -> None:
         super().__init__(context=context, clock=clock)
 

@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 from navette.errors import CallbackError
 from navette.runtime.callback_groups import CallbackGroup, ReentrantCallbackGroup
-from navette.runtime.clock import TimeSource, Wakeup
+from navette.runtime.clock import ContextClock, Wakeup
 from navette.runtime.events import Call, Entity
 from navette.runtime.future import Task
 
@@ -22,9 +22,9 @@ _TURN_S = 0.005
 
 
 class EventLoop:
-    """Runs events in order of (time, sequence) under one :class:`TimeSource`."""
+    """Runs events in order of (time, sequence) under one :class:`ContextClock`."""
 
-    def __init__(self, clock: TimeSource) -> None:
+    def __init__(self, clock: ContextClock) -> None:
         self.clock = clock
         self.ready: deque[Entity] = deque()
         #: True while the driving thread waits: whoever adds an event must wake it.
@@ -44,7 +44,9 @@ class EventLoop:
         self._lock = threading.Lock()
         self._turn = threading.Condition()
         self._others = 0  # threads that wait while another one drives
-        self._claims = 0  # threads that are to run an event before the next is taken
+        self._pending_execute = (
+            0  # threads that are to run an event before the next is taken
+        )
 
     # -- adding events ---------------------------------------------------------
 
@@ -205,8 +207,8 @@ class EventLoop:
         None if there is none until ``until_ns``, or ``stop`` asks for the end.
         """
         while not self._closed and not stop():
-            if self._claims or not self._take_turn():
-                self._let_claims_go_first()
+            if self._pending_execute or not self._take_turn():
+                self._yield_to_execute()
                 if until_ns is not None and self.clock.now_ns >= until_ns:
                     return None
                 continue
@@ -239,19 +241,19 @@ class EventLoop:
     def _claim_turn(self) -> bool:
         """Become the driver before any :meth:`take`; False once closed."""
         with self._turn:
-            self._claims += 1
+            self._pending_execute += 1
         self.wake()
         with self._turn:
             while self._driver is not None and not self._closed:
                 self._turn.wait(_TURN_S)
-            self._claims -= 1
+            self._pending_execute -= 1
             if not self._closed:
                 self._driver = threading.get_ident()
             return not self._closed
 
-    def _let_claims_go_first(self) -> None:
+    def _yield_to_execute(self) -> None:
         with self._turn:
-            if self._claims:
+            if self._pending_execute:
                 self._turn.wait(_TURN_S)
 
     def _next_ready(self) -> Entity | None:
@@ -359,23 +361,23 @@ class EventLoop:
             # an event of the program's.
             self.ready.appendleft(self._inbox.popleft())
             # Even if somebody calls for attention: else the next would overtake it.
-            self._run_ready(None, 1, heeds=False)
+            self._run_ready(None, 1, interruptible=False)
 
     def _run_ready(
         self,
         done: Callable[[], bool] | None,
         limit: int | None,
         *,
-        heeds: bool = True,
+        interruptible: bool = True,
     ) -> int:
         """Run one batch: what is ready at the start, at most ``limit`` events.
 
-        Ends early when it is called for attention, if it ``heeds`` that.
+        Ends early when it is called for attention, if it ``interruptible`` that.
         """
         ready = self.ready
         count = 0
         for _ in range(len(ready)):
-            if (heeds and self._attention) or not ready or count == limit:
+            if (interruptible and self._attention) or not ready or count == limit:
                 break
             if done is not None and done():
                 break

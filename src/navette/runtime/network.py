@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 
 from navette.errors import InvalidValueError
-from navette.runtime.clock import PacedClock, TimeSource, VirtualClock
+from navette.runtime.clock import ContextClock, PacedClock, VirtualClock
 from navette.runtime.graph import Graph
 from navette.runtime.lockstep import LockStepClock
 
@@ -25,7 +25,7 @@ def checked_transport(name: str, source: str) -> str:
     return name
 
 
-def chosen_transport(asked: str | None, clock: TimeSource) -> str:
+def chosen_transport(asked: str | None, clock: ContextClock) -> str:
     """What is asked for, else ``NAVETTE_TRANSPORT``, else what suits the run.
 
     A lock-step run in virtual time stays alone, so that it is the same every time;

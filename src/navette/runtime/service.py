@@ -11,12 +11,12 @@ from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.events import Entity
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
-from navette.runtime.service_end import ServiceEnd
+from navette.runtime.service_endpoint import ServiceEndpoint
 from navette.runtime.service_introspection import ServiceEvents
 from navette.transports import Endpoint, Request, RequestId, ServicePort
 
 
-class Service(ServiceEnd, Entity):
+class Service(ServiceEndpoint, Entity):
     """Answers requests. Made by :meth:`Node.create_service`.
 
     Args:

@@ -18,6 +18,7 @@ from navette.errors import InvalidValueError
 from navette.msgs import get_interface
 from navette.runtime import (
     Context,
+    ContextClock,
     DurabilityPolicy,
     Executor,
     Node,
@@ -25,7 +26,6 @@ from navette.runtime import (
     Publisher,
     QoSProfile,
     ReliabilityPolicy,
-    TimeSource,
     VirtualClock,
 )
 
@@ -70,7 +70,7 @@ class GraphHarness:
     """
 
     def __init__(
-        self, *, args: Sequence[str] = (), clock: TimeSource | None = None
+        self, *, args: Sequence[str] = (), clock: ContextClock | None = None
     ) -> None:
         self.context = Context(clock=clock or VirtualClock())
         self.context.init(list(args))

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from typer.testing import CliRunner, Result
 
 from navette.cli.app import app
-from navette.runtime import Context, Executor, Node, TimeSource
+from navette.runtime import Context, ContextClock, Executor, Node
 from navette.runtime.context import Scope, current_scope, new_graph
 
 
@@ -23,7 +23,7 @@ def shared_graph() -> Iterator[None]:
 
 
 @contextmanager
-def program(name: str, *, clock: TimeSource | None = None) -> Iterator[Node]:
+def program(name: str, *, clock: ContextClock | None = None) -> Iterator[Node]:
     """A node in a context of its own; its callbacks run when that context spins."""
     with Context(clock=clock) as context:
         node = Node(name, context=context, start_parameter_services=False)

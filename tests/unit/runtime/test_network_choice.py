@@ -4,7 +4,7 @@ import pytest
 
 from navette.errors import InvalidValueError
 from navette.runtime import Context, PacedClock, SystemClock, VirtualClock
-from navette.runtime.clock import TimeSource
+from navette.runtime.clock import ContextClock
 from navette.runtime.network import chosen_transport
 
 
@@ -17,7 +17,7 @@ from navette.runtime.network import chosen_transport
     ],
 )
 def test_by_the_clock_where_nothing_is_said(
-    clock: TimeSource, expected: str, monkeypatch: pytest.MonkeyPatch
+    clock: ContextClock, expected: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("NAVETTE_TRANSPORT")
     monkeypatch.delenv("PYTEST_CURRENT_TEST")

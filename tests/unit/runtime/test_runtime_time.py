@@ -8,6 +8,7 @@ from navette.runtime import (
     Clock,
     ClockType,
     Context,
+    ContextClock,
     Duration,
     Executor,
     JumpThreshold,
@@ -16,7 +17,6 @@ from navette.runtime import (
     ROSClock,
     Time,
     TimeJump,
-    TimeSource,
     VirtualClock,
     ns_to_stamp,
     stamp_to_ns,
@@ -114,7 +114,7 @@ def test_clock_sleeps(graph: GraphHarness) -> None:
 # -- simulated time from outside -----------------------------------------------
 
 
-class ByHand(TimeSource):
+class ByHand(ContextClock):
     """A clock of the "real" kind that the test moves: it never waits."""
 
     def __init__(self) -> None:

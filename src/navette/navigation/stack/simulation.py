@@ -13,11 +13,11 @@ from navette.navigation.stack.stack import NavigationStack
 from navette.navigation.stack.summary import RunSummary
 from navette.runtime import (
     Context,
+    ContextClock,
     Executor,
     LoggingSeverity,
     PacedClock,
     Stopwatch,
-    TimeSource,
     VirtualClock,
 )
 from navette.sim import Scene
@@ -159,5 +159,5 @@ class Simulation:
         self.context.try_shutdown()
 
 
-def _clock(speed: float) -> TimeSource:
+def _clock(speed: float) -> ContextClock:
     return VirtualClock() if math.isinf(speed) else PacedClock(speed)

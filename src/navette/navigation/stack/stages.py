@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from navette import runtime
 from navette.errors import CallbackError, NavetteError
-from navette.runtime import Context, Node, PacedClock, TimeSource
+from navette.runtime import Context, ContextClock, Node, PacedClock
 from navette.runtime.lockstep import Conductor
 from navette.runtime.override_check import check_reached
 from navette.runtime.overrides import ParameterOverrides
@@ -248,7 +248,7 @@ def _add_conducting(parser: argparse.ArgumentParser) -> None:
         )
 
 
-def _clock_of_sim(given: Any) -> TimeSource:
+def _clock_of_sim(given: Any) -> ContextClock:
     if given.lockstep is None:
         return PacedClock(1.0 if given.speed is None else given.speed)
     return Conductor(
@@ -292,7 +292,7 @@ def _under_any_name(of_all: ParameterOverrides, name: str) -> ParameterOverrides
 def _run(
     make: Callable[[Context], Node],
     profile: ParameterOverrides,
-    clock: TimeSource | None = None,
+    clock: ContextClock | None = None,
 ) -> None:
     """Make the node and spin it until Ctrl-C or a shutdown."""
     context = Context(clock=clock)

@@ -3,7 +3,7 @@
 from typing import Any
 
 from navette.runtime.client import Client
-from navette.runtime.clock import TimeSource
+from navette.runtime.clock import ContextClock
 from navette.runtime.exceptions import ServiceTimeoutError
 from navette.runtime.future import Answer, Future
 
@@ -22,7 +22,7 @@ class ResultRequest:
         future: gets the response, or why there is none; to cancel it is to ask no more.
     """
 
-    def __init__(self, client: Client, request: Any, clock: TimeSource) -> None:
+    def __init__(self, client: Client, request: Any, clock: ContextClock) -> None:
         self.future: Future[Any] = Answer()
         self._client = client
         self._request = request

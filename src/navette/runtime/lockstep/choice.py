@@ -3,13 +3,13 @@
 import os
 
 from navette.errors import InvalidValueError
-from navette.runtime.clock import SystemClock, TimeSource
+from navette.runtime.clock import ContextClock, SystemClock
 
 VARIABLE = "NAVETTE_LOCKSTEP"
 FOLLOW = "follow"
 
 
-def clock_of_environment() -> TimeSource:
+def clock_of_environment() -> ContextClock:
     """The system's clock; a follower where ``NAVETTE_LOCKSTEP`` is ``follow``.
 
     Raises:

@@ -11,7 +11,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 
 from navette.errors import LockStepError
-from navette.runtime.clock import Stopwatch, TimeSource, Wakeup
+from navette.runtime.clock import ContextClock, Stopwatch, Wakeup
 from navette.transports.lockstep import Census, Grant, Report, StepTraffic, StepWire
 
 LIMIT_S = 30.0
@@ -26,7 +26,7 @@ SAY_AFTER_S = 5.0
 _log = logging.getLogger(__name__)
 
 
-class LockStepClock(TimeSource):
+class LockStepClock(ContextClock):
     """Goes as far as was granted, then says so and waits for more.
 
     Args:

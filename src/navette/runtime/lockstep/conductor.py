@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from navette.errors import InvalidValueError, LockStepError
 from navette.runtime.clock import (
+    ContextClock,
     PacedClock,
     Stopwatch,
-    TimeSource,
     VirtualClock,
     Wakeup,
 )
@@ -59,7 +59,7 @@ class Conductor(LockStepClock):
         self._end_ns = None
         if until_s is not None:
             self._end_ns = _nanoseconds(until_s, "lock-step: end")
-        self._pace: TimeSource = VirtualClock()
+        self._pace: ContextClock = VirtualClock()
         if speed != math.inf:
             self._pace = PacedClock(speed)
         self._reports: dict[str, Report] = {}

@@ -14,7 +14,7 @@ from navette.runtime.service_introspection import (
 from navette.transports import Endpoint
 
 
-class ServiceEnd(Destroyable):
+class ServiceEndpoint(Destroyable):
     """One end of a service: its names and its introspection."""
 
     __slots__ = ()
