@@ -12,7 +12,7 @@ from scipy.ndimage import distance_transform_edt
 from navette.grids import LETHAL, cost_table, inflate
 
 CELLS = 20
-TABLE = cost_table("linear", inflation_radius=1.0, resolution=1.0 / CELLS)
+TABLE = cost_table("linear", inflation_radius_m=1.0, resolution=1.0 / CELLS)
 
 
 def some_map(size: int, seed: int = 0) -> np.ndarray:

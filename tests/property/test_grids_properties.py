@@ -72,7 +72,7 @@ def test_field_is_the_root_and_never_steeper_than_the_way(
 
 @given(cost_grids, st.floats(0.0, 2.0), st.sampled_from(["linear", "exponential"]))
 def test_inflation_only_raises_and_twice_is_once(cost, radius, method) -> None:
-    table = cost_table(method, inflation_radius=radius, resolution=0.1)
+    table = cost_table(method, inflation_radius_m=radius, resolution=0.1)
     once = inflate(cost, table)
     assert (once >= cost).all()
     np.testing.assert_array_equal(once == LETHAL, cost == LETHAL)
@@ -144,6 +144,6 @@ def test_what_was_just_merged_contradicts_nothing(source, pose) -> None:
     target = np.full(target_spec.shape, -1, np.int8)
     merge(target, target_spec, source, spec)
     found = compare(
-        target, target_spec, source, spec, center=(pose.x, pose.y), radius=20.0
+        target, target_spec, source, spec, center=(pose.x, pose.y), radius_m=20.0
     )
     assert found == (0, 0)

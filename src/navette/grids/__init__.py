@@ -1,12 +1,13 @@
 """Grid arrays: cells, rays, distance, inflation, resampling."""
 
 from navette.grids.alignment import placed
-from navette.grids.cells import FREE, LETHAL, UNKNOWN
 from navette.grids.clearance import (
+    Body,
+    DistanceGrid,
     body_clearance,
     body_points,
     distance_at,
-    grid_frame,
+    make_body,
     pose_clearance,
     pose_is_clear,
 )
@@ -17,7 +18,7 @@ from navette.grids.inflation import cost_table, inflate
 from navette.grids.merge import merge
 from navette.grids.messages import grid_from_message, grid_to_message
 from navette.grids.rays import beam_directions, trace_beams
-from navette.grids.spec import GridSpec
+from navette.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
 
 __all__ = [
     "GridSpec",
@@ -27,6 +28,9 @@ __all__ = [
     "LETHAL",
     "distance_squared",
     "distance_field",
+    "DistanceGrid",
+    "Body",
+    "make_body",
     "body_points",
     "body_clearance",
     "distance_at",

@@ -1,50 +1,65 @@
-"""How two grids lie to each other, and values pulled from one into the other.
+"""Transform between the cells of two grids, and resampling of one into the other.
 
-Each target cell asks which source cell holds its centre (inverse mapping), so a
-coarse source leaves no holes. Sampling by centres may miss a source cell that is as
-small as a target cell, though, and a thin post is one cell: lethal cells are
-therefore pushed, each to the one target cell that holds its centre. None is lost
-and none is doubled. (A source coarser than the target pulls them like the rest.)
+Each target cell takes the value of the source cell that contains its centre (inverse
+mapping), so a coarse source leaves no holes. This may skip a source cell that is as
+small as a target cell, and a thin post is one cell. Lethal cells are therefore also
+pushed: each sets the one target cell that contains its centre, so that none is lost and
+none is doubled. (A source coarser than the target needs no push.)
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
 
 from navette.geometry import Pose2
-from navette.grids.cells import LETHAL, UNKNOWN
-from navette.grids.spec import GridSpec
+from navette.grids.spec import LETHAL, UNKNOWN, Cells, GridSpec
 
 # Source coordinates along a row advance in fixed point: exact and fast.
 FRACTION_BITS = 32
 ONE = 1 << FRACTION_BITS
 
-# Cells; breaks ties one way for all. Robots start at round poses, where each cell's
-# centre lies on a border of the other grid and rounding would pick either side.
+# Cells. Robots start at round poses, where the centres of one grid's cells lie on the
+# borders of the other's; the shift rounds all of them to the same side.
 TIE = 1e-6
 
 Affine = tuple[float, float, float, float]
 
 
+class Alignment(NamedTuple):
+    """How a source grid lies relative to a target grid.
+
+    Attributes:
+        source_T_target: (a, b, u0, v0), from target cells to source cells:
+            u' = a · u − b · v + u0 and v' = b · u + a · v + v0, with u along columns
+            and v along rows, counted from the grids' corners.
+        target_T_source: the inverse.
+        pushes_lethal: whether lethal source cells are pushed.
+    """
+
+    source_T_target: Affine
+    target_T_source: Affine
+    pushes_lethal: bool
+
+
+def align(target: GridSpec, source: GridSpec) -> Alignment:
+    """Return the alignment of two grids whose origins are given in the same frame."""
+    return Alignment(
+        _cell_transform(source, target),
+        _cell_transform(target, source),
+        source.resolution <= target.resolution * (1.0 + 1e-6),
+    )
+
+
 def placed(spec: GridSpec, frame_T_grid: Pose2) -> GridSpec:
-    """The same grid seen from another frame: its origin moved by the pose."""
+    """Return the spec of the same grid in an outer frame."""
     return GridSpec(
         spec.resolution, spec.width, spec.height, frame_T_grid @ spec.origin
     )
 
 
-def pushes_lethal(target: GridSpec, source: GridSpec) -> bool:
-    return source.resolution <= target.resolution * (1.0 + 1e-6)
-
-
-def grid_relation(outer: GridSpec, inner: GridSpec) -> Affine:
-    """(a, b, u, v) that take inner cells to outer cells.
-
-    u' = a · u − b · v + u0 and v' = b · u + a · v + v0, with u along columns and v
-    along rows, counted from the grids' corners.
-    """
+def _cell_transform(outer: GridSpec, inner: GridSpec) -> Affine:
     outer_T_inner = outer.origin.inverse() @ inner.origin
     scale = inner.resolution / outer.resolution
     return (
@@ -56,10 +71,10 @@ def grid_relation(outer: GridSpec, inner: GridSpec) -> Affine:
 
 
 @njit(cache=True)
-def row_range(inverse: Any, width: int, height: int, rows: int) -> tuple[int, int]:
-    """Rows of the target that a source of (width, height) cells can touch."""
-    _, b, _, v0 = inverse
-    a = inverse[0]
+def row_range(source: Cells, alignment: Alignment, rows: int) -> tuple[int, int]:
+    """First and last row (exclusive) of the target that the source can overlap."""
+    height, width = source.shape
+    a, b, _, v0 = alignment.target_T_source
     low, high = v0, v0
     for u, v in ((width, 0), (0, height), (width, height)):
         corner = b * u + a * v + v0
@@ -79,10 +94,15 @@ def _limits(start: float, step: float, size: int, low: float, high: float) -> An
 
 
 @njit(cache=True)
-def pull_row(source: Any, relation: Any, row: int, lethal_as: Any, pulled: Any) -> Any:
-    """Pull one target row into ``pulled`` (W,); (first, last) column written, last
-    exclusive. A lethal cell is pulled as ``lethal_as``."""
-    a, b, u0, v0 = relation
+def pull_row(
+    source: Cells, alignment: Alignment, row: int, lethal_as: np.int8, pulled: Cells
+) -> tuple[int, int]:
+    """Sample the source at the cells of one target row.
+
+    Writes into ``pulled`` (W,), lethal cells as ``lethal_as``. Returns the first and
+    last column (exclusive) that was written.
+    """
+    a, b, u0, v0 = alignment.source_T_target
     height, width = source.shape
     flat = source.reshape(height * width)
     # Centre of the target cell (row, 0), in source cells.
@@ -92,7 +112,7 @@ def pull_row(source: Any, relation: Any, row: int, lethal_as: Any, pulled: Any) 
     low, high = _limits(v, b, height, low, high)
     if low > high:
         return 0, 0
-    # One further at either end, then checked in the fixed point that the loop uses.
+    # One cell more at either end, then checked in the fixed point of the loop below.
     first = max(0, int(low) - 1)
     last = min(pulled.size, int(high) + 3)
     du, dv = round(a * ONE), round(b * ONE)
@@ -104,18 +124,18 @@ def pull_row(source: Any, relation: Any, row: int, lethal_as: Any, pulled: Any) 
     ):
         last -= 1
     for c in range(first, last):
-        # Unsigned: spares the check for a negative index.
+        # An unsigned index avoids the check for negative ones.
         value = flat[np.uint64((fv >> FRACTION_BITS) * width + (fu >> FRACTION_BITS))]
         pulled[c] = value
         fu += du
         fv += dv
-    # Apart from the loop above: this one runs on whole registers.
+    # Apart from the loop above so that the compiler vectorises it.
     _replace_lethal(pulled[first:last], lethal_as)
     return first, last
 
 
 @njit(cache=True)
-def _replace_lethal(row: Any, lethal_as: Any) -> None:
+def _replace_lethal(row: Cells, lethal_as: np.int8) -> None:
     lethal = np.int8(LETHAL)
     for c in range(row.size):
         row[c] = lethal_as if row[c] >= lethal else row[c]
@@ -127,17 +147,17 @@ def _is_in(fu: int, fv: int, width: int, height: int) -> bool:
 
 
 @njit(cache=True)
-def has_lethal(row: Any) -> bool:
-    dearest = np.int8(UNKNOWN)
+def has_lethal(row: Cells) -> bool:
+    highest = np.int8(UNKNOWN)
     for c in range(row.size):
-        dearest = max(dearest, row[c])
-    return bool(dearest >= LETHAL)
+        highest = max(highest, row[c])
+    return bool(highest >= LETHAL)
 
 
 @njit(cache=True)
-def related_cell(inverse: Any, r: int, c: int) -> tuple[int, int]:
-    """(row, column) of the target cell that holds the centre of source cell (r, c)."""
-    a, b, u0, v0 = inverse
-    u = a * (c + 0.5) - b * (r + 0.5) + u0
-    v = b * (c + 0.5) + a * (r + 0.5) + v0
+def cell_at(transform: Affine, row: int, column: int) -> tuple[int, int]:
+    """(row, column) of the outer cell that contains the centre of an inner cell."""
+    a, b, u0, v0 = transform
+    u = a * (column + 0.5) - b * (row + 0.5) + u0
+    v = b * (column + 0.5) + a * (row + 0.5) + v0
     return math.floor(v), math.floor(u)

@@ -1,7 +1,7 @@
-"""Arrays that enter a kernel: the right type and shape, or a clear error.
+"""Checks of arrays that enter a kernel: type, shape, memory layout.
 
-Kernels are compiled for writable, aligned C-ordered arrays of one dtype. Anything else
-would be compiled again (a second of waiting), so it is copied here instead.
+Kernels are compiled for writable, aligned C-ordered arrays of one dtype. Other arrays
+are copied or refused here, because Numba would compile the kernel again (a second).
 """
 
 from typing import Any, TypeVar
@@ -23,21 +23,21 @@ def kernel_array(
     *,
     allow_empty: bool = False,
 ) -> NDArray[Scalar]:
-    """``array`` as a kernel takes it, copied only where it must be.
+    """Return ``array`` in the layout of kernels, copied only if necessary.
 
     Raises:
-        InvalidValueError: not an array, of another dtype, or of other dimensions.
+        InvalidValueError: not an array, or another dtype or number of dimensions.
     """
     if not isinstance(array, np.ndarray):
         raise InvalidValueError(
-            f"{name}: {type(array).__name__}, wanted a {np.dtype(dtype)} array"
+            f"{name}: {type(array).__name__}, expected a {np.dtype(dtype)} array"
         )
     if array.dtype != dtype:
         raise InvalidValueError(
-            f"{name}: dtype {array.dtype}, wanted {np.dtype(dtype)}"
+            f"{name}: dtype {array.dtype}, expected {np.dtype(dtype)}"
         )
     if array.ndim != ndim:
-        raise InvalidValueError(f"{name}: {array.ndim}-D, wanted {ndim}-D")
+        raise InvalidValueError(f"{name}: {array.ndim}-D, expected {ndim}-D")
     if array.size == 0 and not allow_empty:
         raise InvalidValueError(f"{name}: shape {array.shape} is empty")
     if array.flags.carray:  # C order, aligned, writable
@@ -46,33 +46,39 @@ def kernel_array(
 
 
 def output_array(
-    name: str, array: NDArray[Any] | None, dtype: DTypeLike, shape: tuple[int, ...]
+    name: str, array: NDArray[Any], dtype: DTypeLike, shape: tuple[int, ...]
 ) -> NDArray[Any]:
-    """``array`` if a kernel can write into it, a new one for ``None``."""
-    if array is None:
-        return np.empty(shape, dtype)
+    """Return ``array`` if a kernel can write into it.
+
+    Raises:
+        InvalidValueError: another dtype or shape, read-only, or not C-ordered.
+    """
     if array.dtype != dtype or array.shape != shape:
         raise InvalidValueError(
-            f"{name}: {array.dtype} {array.shape}, wanted {np.dtype(dtype)} {shape}"
+            f"{name}: {array.dtype} {array.shape}, expected {np.dtype(dtype)} {shape}"
         )
     if not array.flags.carray:
-        raise InvalidValueError(f"{name}: wanted a writable C-ordered array")
+        raise InvalidValueError(f"{name}: not a writable C-ordered array")
     return array
 
 
 def grid_array(
     name: str, array: NDArray[Any], dtype: type[Scalar], spec: GridSpec
 ) -> NDArray[Scalar]:
-    """As :func:`kernel_array`, and of the size that ``spec`` tells."""
+    """Return the array as :func:`kernel_array` does, if it has the shape of ``spec``.
+
+    Raises:
+        InvalidValueError: another dtype or shape.
+    """
     checked = kernel_array(name, array, dtype)
     if checked.shape != spec.shape:
         raise InvalidValueError(
-            f"{name}: shape {checked.shape}, wanted {spec.shape} (height, width)"
+            f"{name}: shape {checked.shape}, expected {spec.shape} (height, width)"
         )
     return checked
 
 
 def at_least(name: str, value: float, minimum: float) -> None:
-    """Raise unless ``value`` is finite and not below ``minimum``."""
+    """Raise InvalidValueError unless ``value`` is finite and >= ``minimum``."""
     if not (np.isfinite(value) and value >= minimum):
-        raise InvalidValueError(f"{name}: {value!r}, wanted a value >= {minimum:g}")
+        raise InvalidValueError(f"{name}: {value!r}, must be >= {minimum:g}")

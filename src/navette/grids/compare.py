@@ -1,69 +1,85 @@
-"""Where a new grid contradicts what a map remembers."""
+"""Comparison of a new grid with a map: obstacles that appeared or vanished."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from navette.grids.alignment import grid_relation, related_cell
-from navette.grids.cells import FREE, LETHAL
+from navette.grids.alignment import Affine, align, cell_at
 from navette.grids.checks import at_least, grid_array
-from navette.grids.spec import GridSpec
+from navette.grids.spec import FREE, LETHAL, Cells, GridSpec
+
+_ANY = -128  # least int8: every cell counts, unknown ones too
 
 
 class Changes(NamedTuple):
-    """Cells in which a new grid and a map disagree about obstacles."""
+    """Numbers of cells in which a new grid and a map disagree about obstacles."""
 
     appeared: int
     vanished: int
 
 
+class _Window(NamedTuple):
+    """Rows and columns of a part of a grid; the last ones are exclusive."""
+
+    first_row: int
+    last_row: int
+    first_column: int
+    last_column: int
+
+
 def compare(
-    remembered: NDArray[np.int8],
+    remembered: Cells,
     spec: GridSpec,
-    seen: NDArray[np.int8],
+    seen: Cells,
     seen_spec: GridSpec,
     *,
     center: tuple[float, float],
-    radius: float,
+    radius_m: float,
 ) -> Changes:
     """Count contradictions within a square around ``center``.
 
-    ``appeared``: lethal cells of ``seen`` with no lethal cell of the map on their
-    place or beside it. ``vanished``: lethal cells of the map whose place was seen
-    free, with no lethal cell seen beside it. One cell of tolerance, because the same
-    wall falls into neighbouring cells from another angle.
+    ``appeared``: lethal cells of ``seen`` without a lethal map cell at their place or
+    beside it. ``vanished``: lethal cells of the map whose place was seen free, without
+    a lethal cell seen beside it. The tolerance is one cell, because from another angle
+    the same wall falls into neighbouring cells.
 
     Args:
         remembered: (H, W) int8, the map.
-        spec: where it lies.
+        spec: its geometry.
         seen: (h, w) int8, the new grid.
-        seen_spec: where it lies, in the map's frame.
+        seen_spec: its geometry in the map's frame.
         center: (x, y) in the map's frame, m.
-        radius: half the edge of the square, m.
+        radius_m: half the edge of the square, m.
+
+    Raises:
+        InvalidValueError: a negative radius, or arrays that do not match their specs.
     """
     cells = grid_array("remembered", remembered, np.int8, spec)
     new = grid_array("seen", seen, np.int8, seen_spec)
-    at_least("radius", radius, 0.0)
-    map_window = _window(spec, center, radius)
-    seen_window = _window(seen_spec, center, radius)
+    at_least("radius_m", radius_m, 0.0)
+    alignment = align(spec, seen_spec)
     appeared = _unmatched(
-        new, cells, seen_window, grid_relation(spec, seen_spec), np.int8(-128)
+        new,
+        _window(seen_spec, center, radius_m),
+        cells,
+        alignment.target_T_source,
+        np.int8(_ANY),
     )
     vanished = _unmatched(
-        cells, new, map_window, grid_relation(seen_spec, spec), np.int8(FREE)
+        cells,
+        _window(spec, center, radius_m),
+        new,
+        alignment.source_T_target,
+        np.int8(FREE),
     )
     return Changes(appeared, vanished)
 
 
-def _window(
-    spec: GridSpec, center: tuple[float, float], radius: float
-) -> tuple[int, int, int, int]:
-    """(first row, last row, first column, last column), the last ones exclusive."""
+def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> _Window:
     row, column = spec.cell_of(*center)
-    reach = int(radius / spec.resolution)
-    return (
+    reach = int(radius_m / spec.resolution)
+    return _Window(
         min(max(row - reach, 0), spec.height),
         min(max(row + reach + 1, 0), spec.height),
         min(max(column - reach, 0), spec.width),
@@ -72,19 +88,20 @@ def _window(
 
 
 @njit(cache=True)
-def _unmatched(grid: Any, other: Any, window: Any, relation: Any, least: Any) -> int:
-    """Lethal cells of ``grid`` with none of ``other``'s beside their place.
+def _unmatched(
+    grid: Cells, window: _Window, other: Cells, other_T_grid: Affine, least: np.int8
+) -> int:
+    """Count lethal cells of ``grid`` without a lethal cell of ``other`` near them.
 
-    Counted only where ``other`` is at least ``least`` there.
+    Counts only places where ``other`` is at least ``least``.
     """
-    first_row, last_row, first_column, last_column = window
     height, width = other.shape
     count = 0
-    for r in range(first_row, last_row):
-        for c in range(first_column, last_column):
+    for r in range(window.first_row, window.last_row):
+        for c in range(window.first_column, window.last_column):
             if grid[r, c] < LETHAL:
                 continue
-            row, column = related_cell(relation, r, c)
+            row, column = cell_at(other_T_grid, r, c)
             if not (0 <= row < height and 0 <= column < width):
                 continue
             if other[row, column] >= least and not _lethal_near(other, row, column):
@@ -93,7 +110,7 @@ def _unmatched(grid: Any, other: Any, window: Any, relation: Any, least: Any) ->
 
 
 @njit(cache=True)
-def _lethal_near(grid: Any, row: int, column: int) -> bool:
+def _lethal_near(grid: Cells, row: int, column: int) -> bool:
     """Whether a lethal cell is among the nine around (row, column)."""
     height, width = grid.shape
     for r in range(max(row - 1, 0), min(row + 2, height)):

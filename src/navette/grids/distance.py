@@ -1,14 +1,13 @@
 """Distance to the nearest obstacle: exact, within a window.
 
-Method: a vertical pass gives each cell the distance g to the nearest obstacle in
-its own column; then along each row d² = min over k of g(c + k)² + k² (Meijster,
-Roerdink and Hesselink 2000, phases 1 and 2). Only |k| <= radius can matter, so the
-minimum is taken plainly over the window instead of by lower envelopes: it runs on
-whole SIMD registers of small integers.
+Method: a vertical pass gives each cell the distance g to the nearest obstacle in its
+own column; then along each row d² = min over k of g(c + k)² + k² (Meijster, Roerdink
+and Hesselink 2000, phases 1 and 2). Only |k| <= radius matters, so the minimum is taken
+over the window instead of by lower envelopes; the compiler vectorises that loop.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -17,31 +16,34 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.grids.checks import at_least, kernel_array
 
-# Columns worked on at a time: a few registers that stay in the first-level cache.
+# Columns per block: a few registers that stay in the first-level cache.
 BLOCK = 64
 # Largest radius whose sums of squares, up to 2 · (radius + 1)², fit 16 bits.
 RADIUS_16_BIT = 179
 # Largest radius whose square fits the int32 of the result.
 MAX_RADIUS = 46_339
 
+Occupied = NDArray[np.uint8]
 
-def distance_squared(
-    occupied: NDArray[np.uint8], radius_cells: int
-) -> NDArray[np.int32]:
+
+def distance_squared(occupied: Occupied, radius_cells: int) -> NDArray[np.int32]:
     """Squared distance to the nearest obstacle, in cells².
 
     Args:
         occupied: (H, W), non-zero = obstacle.
-        radius_cells: how far to look; the time grows with it.
+        radius_cells: search radius; the running time grows with it.
 
     Returns:
-        (H, W) int32, from cell centre to cell centre; exact up to ``radius_cells``,
-        ``(radius_cells + 1)²`` for everything further away.
+        (H, W) int32, between cell centres; exact up to ``radius_cells``,
+        ``(radius_cells + 1)²`` beyond.
+
+    Raises:
+        InvalidValueError: a radius below 0 or over 46339, or a wrong array.
     """
     occupied = kernel_array("occupied", occupied, np.uint8)
-    scratch = Scratch(occupied.shape, radius_cells)
+    scratch = make_scratch(occupied.shape, radius_cells)
     squared = np.empty(occupied.shape, np.int32)
-    _squared_kernel(occupied, scratch.columns, scratch.padded, scratch.row, squared)
+    _squared_kernel(occupied, scratch, squared)
     if scratch.radius < radius_cells:
         nothing = (scratch.radius + 1) ** 2
         squared[squared == nothing] = (radius_cells + 1) ** 2
@@ -49,53 +51,66 @@ def distance_squared(
 
 
 def distance_field(
-    occupied: NDArray[np.uint8], resolution: float, max_distance_m: float
+    occupied: Occupied, resolution: float, max_distance_m: float
 ) -> NDArray[np.float32]:
     """Distance to the nearest obstacle in metres, between cell centres.
 
     Args:
         occupied: (H, W), non-zero = obstacle.
         resolution: edge of a cell, m.
-        max_distance_m: how far to look; the time grows with it.
+        max_distance_m: search radius; the running time grows with it.
 
     Returns:
         (H, W) float32, exact below ``max_distance_m`` and clipped to it.
+
+    Raises:
+        InvalidValueError: a resolution or distance out of range, or a wrong array.
     """
     occupied = kernel_array("occupied", occupied, np.uint8)
     at_least("resolution", resolution, 1e-9)
     at_least("max_distance_m", max_distance_m, 0.0)
-    scratch = Scratch(occupied.shape, math.ceil(max_distance_m / resolution))
+    scratch = make_scratch(occupied.shape, math.ceil(max_distance_m / resolution))
     metres = resolution * np.sqrt(np.arange((scratch.radius + 1) ** 2 + 1))
     table = np.minimum(metres, max_distance_m).astype(np.float32)
-    table[-1] = max_distance_m  # nothing found
+    table[-1] = max_distance_m  # no obstacle found
     field = np.empty(occupied.shape, np.float32)
-    _field_kernel(occupied, scratch.columns, scratch.padded, scratch.row, table, field)
+    _field_kernel(occupied, scratch, table, field)
     return field
 
 
-class Scratch:
-    """The work arrays of the distance kernels, in the smallest integers that do.
+class Scratch(NamedTuple):
+    """Work arrays of the distance kernels, in the smallest sufficient integers.
 
     Attributes:
-        radius: cells to search, at most the grid's diagonal: beyond is nothing.
+        radius: search radius in cells, at most the grid's diagonal.
         columns: (H, W) distance along the column, cells.
-        padded: (W + 2 · radius,) squares of one row of it, with its margins.
+        padded: (W + 2 · radius,) squares of one row of ``columns``, with margins.
         row: (W,) squared distances of that row, cells².
     """
 
-    def __init__(self, shape: tuple[int, ...], radius_cells: int) -> None:
-        at_least("radius_cells", radius_cells, 0)
-        if radius_cells > MAX_RADIUS:
-            raise InvalidValueError(
-                f"radius_cells: {radius_cells}, wanted at most {MAX_RADIUS}"
-            )
-        height, width = shape
-        self.radius = min(int(radius_cells), math.ceil(math.hypot(height, width)))
-        small = self.radius <= RADIUS_16_BIT
-        self.columns = np.empty((height, width), np.uint8 if small else np.int32)
-        squares = np.uint16 if small else np.int32
-        self.padded = np.empty(width + 2 * self.radius, squares)
-        self.row = np.empty(width, squares)
+    radius: int
+    columns: NDArray[Any]
+    padded: NDArray[Any]
+    row: NDArray[Any]
+
+
+def make_scratch(shape: tuple[int, ...], radius_cells: int) -> Scratch:
+    """Allocate work arrays for a grid of ``shape`` (H, W)."""
+    at_least("radius_cells", radius_cells, 0)
+    if radius_cells > MAX_RADIUS:
+        raise InvalidValueError(
+            f"radius_cells: {radius_cells}, must be at most {MAX_RADIUS}"
+        )
+    height, width = shape
+    radius = min(int(radius_cells), math.ceil(math.hypot(height, width)))
+    small = radius <= RADIUS_16_BIT
+    squares = np.uint16 if small else np.int32
+    return Scratch(
+        radius,
+        np.empty((height, width), np.uint8 if small else np.int32),
+        np.empty(width + 2 * radius, squares),
+        np.empty(width, squares),
+    )
 
 
 @njit(cache=True)
@@ -122,12 +137,15 @@ def _step_up(below: Any, row: Any, one: Any) -> None:
 
 
 @njit(cache=True)
-def column_distances(occupied: Any, radius: int, columns: Any) -> None:
+def column_distances(occupied: Occupied, scratch: Scratch) -> None:
     """Phase 1: distance to the nearest obstacle in the same column, cells.
 
     One function per row: only then does the compiler see that rows do not overlap
-    (ten times faster than the same loops written in place).
+    (ten times faster than the same loops written in place). Also fills the margins
+    of ``scratch.padded`` for phase 2.
     """
+    radius, columns, padded = scratch.radius, scratch.columns, scratch.padded
+    padded[:] = padded.dtype.type((radius + 1) * (radius + 1))
     T = columns.dtype.type
     far, zero, one = T(radius + 1), T(0), T(1)
     height = columns.shape[0]
@@ -140,7 +158,7 @@ def column_distances(occupied: Any, radius: int, columns: Any) -> None:
 
 @njit(cache=True)
 def _block_minimum(padded: Any, radius: int, limit: Any, block: Any) -> None:
-    """Phase 2 for the cells of ``block``; ``padded`` reaches ``radius`` further."""
+    """Phase 2 for ``block``; ``padded`` has ``radius`` more cells on each side."""
     T = padded.dtype.type
     n = block.size
     nearest = limit
@@ -170,11 +188,10 @@ def _block_minimum(padded: Any, radius: int, limit: Any, block: Any) -> None:
 
 
 @njit(cache=True)
-def row_squares(columns: Any, radius: int, padded: Any, row: Any) -> None:
-    """Phase 2: squared distances (W,) of one row from its column distances (W,).
-
-    ``padded`` must hold ``(radius + 1)²`` in its margins.
-    """
+def row_squares(scratch: Scratch, r: int) -> NDArray[Any]:
+    """Phase 2: squared distances (W,) of row ``r``, in ``scratch.row``."""
+    radius, padded, row = scratch.radius, scratch.padded, scratch.row
+    columns = scratch.columns[r]
     T = padded.dtype.type
     width = row.size
     limit = T((radius + 1) * (radius + 1))
@@ -185,31 +202,29 @@ def row_squares(columns: Any, radius: int, padded: Any, row: Any) -> None:
         stop = min(start + BLOCK, width)
         window = padded[start : stop + 2 * radius]
         _block_minimum(window, radius, limit, row[start:stop])
+    return row
 
 
 @njit(cache=True)
 def _squared_kernel(
-    occupied: Any, columns: Any, padded: Any, row: Any, squared: Any
+    occupied: Occupied, scratch: Scratch, squared: NDArray[np.int32]
 ) -> None:
-    radius = (padded.size - row.size) // 2
-    padded[:] = padded.dtype.type((radius + 1) * (radius + 1))
-    column_distances(occupied, radius, columns)
-    for r in range(columns.shape[0]):
-        row_squares(columns[r], radius, padded, row)
-        out = squared[r]
+    column_distances(occupied, scratch)
+    for r in range(squared.shape[0]):
+        row, out = row_squares(scratch, r), squared[r]
         for c in range(row.size):
             out[c] = row[c]
 
 
 @njit(cache=True)
 def _field_kernel(
-    occupied: Any, columns: Any, padded: Any, row: Any, table: Any, field: Any
+    occupied: Occupied,
+    scratch: Scratch,
+    table: NDArray[np.float32],
+    field: NDArray[np.float32],
 ) -> None:
-    radius = (padded.size - row.size) // 2
-    padded[:] = padded.dtype.type((radius + 1) * (radius + 1))
-    column_distances(occupied, radius, columns)
-    for r in range(columns.shape[0]):
-        row_squares(columns[r], radius, padded, row)
-        out = field[r]
+    column_distances(occupied, scratch)
+    for r in range(field.shape[0]):
+        row, out = row_squares(scratch, r), field[r]
         for c in range(row.size):
             out[c] = table[row[c]]

@@ -1,7 +1,7 @@
-"""Evidence that adds up: log odds of a cell being occupied."""
+"""Accumulation of occupancy evidence as log odds."""
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -9,115 +9,103 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.grids.alignment import (
-    grid_relation,
+    Alignment,
+    align,
+    cell_at,
     has_lethal,
     pull_row,
-    pushes_lethal,
-    related_cell,
     row_range,
 )
-from navette.grids.cells import FREE, LETHAL, UNKNOWN
 from navette.grids.checks import grid_array, output_array
-from navette.grids.spec import GridSpec
+from navette.grids.spec import FREE, LETHAL, UNKNOWN, Cells, GridSpec
+
+LogOdds = NDArray[np.float32]
+
+
+class _Weights(NamedTuple):
+    hit: np.float32
+    miss: np.float32
+    limit: np.float32
 
 
 def accumulate(
-    log_odds: NDArray[np.float32],
+    log_odds: LogOdds,
     target_spec: GridSpec,
-    source: NDArray[np.int8],
+    source: Cells,
     source_spec: GridSpec,
     *,
     hit: float,
     miss: float,
     limit: float,
 ) -> None:
-    """Add one grid's evidence to a field of log odds of being occupied.
+    """Add the evidence of one grid to a field of log odds of occupancy.
 
-    A lethal source cell adds ``hit``, any other known one ``miss`` (Moravec and
-    Elfes 1985, in the log form of Thrun, Burgard and Fox 2005, table 9.1).
+    A lethal source cell adds ``hit``, another known cell ``miss`` (Moravec and Elfes
+    1985, in the log form of Thrun, Burgard and Fox 2005, table 9.1).
 
     Args:
         log_odds: (H, W) float32, NaN = never observed; changed in place.
-        target_spec: where it lies.
+        target_spec: its geometry.
         source: (h, w) -1 unknown, 0 free … 100 lethal.
-        source_spec: where it lies, in the target's frame.
+        source_spec: its geometry in the target's frame.
         hit: log odds added, > 0.
         miss: log odds added, < 0.
-        limit: the field stays within ±limit, so that it can change its mind.
+        limit: the field is clipped to ±limit, so that it can follow changes.
+
+    Raises:
+        InvalidValueError: weights of the wrong sign, or arrays that do not match
+            their specs.
     """
     if not (hit > 0.0 > miss and limit > 0.0):
         raise InvalidValueError(
-            f"hit {hit}, miss {miss}, limit {limit}: wanted hit > 0 > miss, limit > 0"
+            f"hit {hit}, miss {miss}, limit {limit}: must be hit > 0 > miss, limit > 0"
         )
     field = output_array("log_odds", log_odds, np.float32, target_spec.shape)
     cells = grid_array("source", source, np.int8, source_spec)
-    push = pushes_lethal(target_spec, source_spec)
-    _accumulate_kernel(
-        field,
-        cells,
-        grid_relation(source_spec, target_spec),
-        grid_relation(target_spec, source_spec),
-        np.int8(UNKNOWN if push else LETHAL),
-        np.float32(hit),
-        np.float32(miss),
-        np.float32(limit),
-    )
+    weights = _Weights(np.float32(hit), np.float32(miss), np.float32(limit))
+    _accumulate_kernel(field, cells, align(target_spec, source_spec), weights)
 
 
 @njit(cache=True)
 def _accumulate_kernel(
-    field: Any,
-    source: Any,
-    relation: Any,
-    inverse: Any,
-    lethal_as: Any,
-    hit: Any,
-    miss: Any,
-    limit: Any,
+    field: LogOdds, source: Cells, alignment: Alignment, weights: _Weights
 ) -> None:
-    height, width = source.shape
+    lethal_as = np.int8(UNKNOWN) if alignment.pushes_lethal else np.int8(LETHAL)
     pulled = np.empty(field.shape[1], np.int8)
-    first_row, last_row = row_range(inverse, width, height, field.shape[0])
+    first_row, last_row = row_range(source, alignment, field.shape[0])
     for r in range(first_row, last_row):
-        first, last = pull_row(source, relation, r, lethal_as, pulled)
+        first, last = pull_row(source, alignment, r, lethal_as, pulled)
         for c in range(first, last):
             if pulled[c] >= 0:
-                step = hit if pulled[c] >= LETHAL else miss
-                field[r, c] = _added(field[r, c], step, limit)
-    if lethal_as < LETHAL:
-        for r in range(height):
+                step = weights.hit if pulled[c] >= LETHAL else weights.miss
+                field[r, c] = _added(field[r, c], step, weights.limit)
+    if alignment.pushes_lethal:
+        for r in range(source.shape[0]):
             if has_lethal(source[r]):
-                _push_hits(field, source, relation, inverse, r, hit, miss, limit)
+                _push_hits(field, source, alignment, weights, r)
 
 
 @njit(cache=True)
 def _push_hits(
-    field: Any,
-    source: Any,
-    relation: Any,
-    inverse: Any,
-    r: int,
-    hit: Any,
-    miss: Any,
-    limit: Any,
+    field: LogOdds, source: Cells, alignment: Alignment, weights: _Weights, r: int
 ) -> None:
-    """Add a hit to the target cells that hold the centres of row ``r``'s lethal cells.
+    """Add a hit to the target cells that contain row ``r``'s lethal cell centres.
 
-    Where the target cell's own centre fell into a free neighbour, its miss is taken
-    back: within one grid a hit wins.
+    Where the target cell's own centre lies in a free neighbour, its miss is taken
+    back: within one grid a hit outweighs a miss.
     """
     for c in range(source.shape[1]):
         if source[r, c] >= LETHAL:
-            row, column = related_cell(inverse, r, c)
+            row, column = cell_at(alignment.target_T_source, r, c)
             if 0 <= row < field.shape[0] and 0 <= column < field.shape[1]:
-                at_row, at_column = related_cell(relation, row, column)
+                at_row, at_column = cell_at(alignment.source_T_target, row, column)
                 missed = _is_free(source, at_row, at_column)
-                step = hit - miss if missed else hit
-                field[row, column] = _added(field[row, column], step, limit)
+                step = weights.hit - weights.miss if missed else weights.hit
+                field[row, column] = _added(field[row, column], step, weights.limit)
 
 
 @njit(cache=True)
-def _is_free(source: Any, row: int, column: int) -> bool:
+def _is_free(source: Cells, row: int, column: int) -> bool:
     height, width = source.shape
     if not (0 <= row < height and 0 <= column < width):
         return False
@@ -125,6 +113,6 @@ def _is_free(source: Any, row: int, column: int) -> bool:
 
 
 @njit(cache=True)
-def _added(now: Any, step: Any, limit: Any) -> Any:
-    total = step if math.isnan(now) else now + step
+def _added(current: Any, step: Any, limit: Any) -> Any:
+    total = step if math.isnan(current) else current + step
     return min(max(total, -limit), limit)

@@ -1,12 +1,11 @@
-"""Grids as nav_msgs/OccupancyGrid messages."""
+"""Conversion of grids from and to nav_msgs/OccupancyGrid."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
 from navette.grids.checks import grid_array
-from navette.grids.spec import GridSpec
+from navette.grids.spec import Cells, GridSpec
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.geometry_msgs.msg import Point, Pose, Quaternion
 from navette.msgs.nav_msgs.msg import MapMetaData, OccupancyGrid
@@ -14,9 +13,13 @@ from navette.msgs.std_msgs.msg import Header
 
 
 def grid_to_message(
-    cells: NDArray[np.int8], spec: GridSpec, frame_id: str, stamp_ns: int
+    cells: Cells, spec: GridSpec, frame_id: str, stamp_ns: int
 ) -> OccupancyGrid:
-    """A message of ``cells`` (H, W), copied; -1 unknown, 0 free … 100 lethal."""
+    """Return a message with a copy of ``cells`` (H, W).
+
+    Raises:
+        InvalidValueError: ``cells`` does not have the spec's shape.
+    """
     data = grid_array("cells", cells, np.int8, spec).reshape(-1)
     stamp = Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)
     x, y, z, w = quaternion_from_yaw(spec.origin.yaw)
@@ -35,15 +38,16 @@ def grid_to_message(
     return OccupancyGrid(header=header, info=info, data=data)
 
 
-def grid_from_message(msg: OccupancyGrid) -> tuple[NDArray[np.int8], GridSpec]:
-    """Cells (H, W), a view of the message's data, and where they lie.
+def grid_from_message(msg: OccupancyGrid) -> tuple[Cells, GridSpec]:
+    """Return the cells (H, W), a view of the message's data, and their geometry.
 
     Raises:
-        InvalidValueError: size, resolution or origin make no grid.
+        InvalidValueError: the size does not match the data, or the resolution or
+            origin is out of range.
     """
     info, position, q = msg.info, msg.info.origin.position, msg.info.origin.orientation
-    # On the wire the resolution is a float32: the shortest decimal that reads as the
-    # same gives 0.1 back for it, with or without a wire between.
+    # A serialised resolution is a float32. The shortest decimal with the same float32
+    # value restores 0.1, whether the message was serialised or not.
     spec = GridSpec(
         float(str(np.float32(info.resolution))),
         info.width,
@@ -53,7 +57,7 @@ def grid_from_message(msg: OccupancyGrid) -> tuple[NDArray[np.int8], GridSpec]:
     cells = np.asarray(msg.data)
     if cells.size != spec.width * spec.height:
         raise InvalidValueError(
-            f"occupancy grid: {cells.size} cells, wanted {spec.width} x "
+            f"occupancy grid: {cells.size} cells, expected {spec.width} x "
             f"{spec.height} = {spec.width * spec.height}"
         )
     return cells.reshape(spec.shape), spec

@@ -1,7 +1,7 @@
 """Beams of a range sensor traced through a grid."""
 
 import math
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -9,8 +9,25 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.grids.checks import grid_array, kernel_array
-from navette.grids.clearance import grid_frame
-from navette.grids.spec import GridSpec
+from navette.grids.spec import (
+    FREE,
+    LETHAL,
+    Cells,
+    GridFrame,
+    GridSpec,
+    grid_frame,
+)
+
+
+class _Beams(NamedTuple):
+    """One scan for the kernel: (x, y) of the sensor, arrays per beam, limits."""
+
+    sensor: tuple[float, float]
+    directions: NDArray[np.float64]
+    ranges: NDArray[np.float32]
+    margins: NDArray[np.float32]
+    range_min: float
+    range_max: float
 
 
 def beam_directions(
@@ -22,7 +39,7 @@ def beam_directions(
 
 
 def trace_beams(
-    cost: NDArray[np.int8],
+    cost: Cells,
     spec: GridSpec,
     sensor: tuple[float, float],
     directions: NDArray[np.float64],
@@ -32,31 +49,36 @@ def trace_beams(
     range_max: float,
     margins: NDArray[np.float32] | None = None,
 ) -> int:
-    """Write one scan into ``cost``: free up to each hit, lethal at it.
+    """Write one scan into ``cost``: free up to each hit, lethal at the hit.
 
-    Cells on the line from the sensor's cell to the end's cell (Bresenham 1965)
-    become free, cells that hold a hit lethal; nothing is written beyond a hit. A
-    hit is never freed by another beam of the same scan. Readings:
+    Cells on the line from the sensor's cell to the last cell (Bresenham 1965) become
+    free, cells that contain a hit lethal; nothing is written beyond a hit, and a hit is
+    never freed by another beam of the same scan. Readings:
 
     - range_min < r < range_max: a hit at r;
-    - r >= range_max, infinite too: nothing there, free up to range_max;
-    - r <= range_min, negative or not a number: no information, nothing written.
+    - r >= range_max, also infinite: no hit, free up to range_max;
+    - r <= range_min, negative or not a number: no information, nothing is written.
 
     Args:
         cost: (H, W) int8, changed in place; -1 unknown, 0 free … 100 lethal.
-        spec: where the grid lies.
+        spec: geometry of the grid.
         sensor: (x, y) in the grid's frame, m; inside the grid.
         directions: (N, 2) unit vectors of the beams in the grid's frame.
         ranges: (N,) float32, m.
         range_min: least valid range, m.
         range_max: largest valid range, m.
-        margins: (N,) float32, how far before its hit each beam stops freeing, m.
+        margins: (N,) float32, m: each beam stops freeing cells this far before its
+            hit.
 
     Returns:
-        The number of beams that hit something inside the grid.
+        The number of beams with a hit inside the grid.
+
+    Raises:
+        InvalidValueError: arrays that do not match, a sensor outside the grid, or an
+            empty interval of ranges.
     """
     if isinstance(cost, np.ndarray) and not cost.flags.carray:
-        raise InvalidValueError("cost: wanted a writable C-ordered array")
+        raise InvalidValueError("cost: not a writable C-ordered array")
     grid = grid_array("cost", cost, np.int8, spec)
     rays = kernel_array("directions", directions, np.float64, allow_empty=True)
     metres = kernel_array("ranges", ranges, np.float32, 1, allow_empty=True)
@@ -66,60 +88,44 @@ def trace_beams(
     if rays.shape != (metres.size, 2) or before.shape != metres.shape:
         raise InvalidValueError(
             f"{metres.size} ranges, directions {rays.shape}, margins {before.shape}: "
-            f"wanted (N,), (N, 2), (N,)"
+            f"expected (N,), (N, 2), (N,)"
         )
     if not spec.contains(*spec.cell_of(*sensor)):
         raise InvalidValueError(f"sensor at {sensor}: outside the grid {spec}")
     if not (0.0 <= range_min < range_max < math.inf):
         raise InvalidValueError(
-            f"range_min {range_min}, range_max {range_max}: wanted 0 <= min < max"
+            f"range_min {range_min}, range_max {range_max}: must be 0 <= min < max"
         )
+    position = float(sensor[0]), float(sensor[1])
+    beams = _Beams(position, rays, metres, before, float(range_min), float(range_max))
     ends = np.empty(metres.size, np.int64)
-    hits: int = _trace_kernel(
-        grid,
-        grid_frame(spec),
-        float(sensor[0]),
-        float(sensor[1]),
-        rays,
-        metres,
-        before,
-        float(range_min),
-        float(range_max),
-        ends,
-    )
+    hits: int = _trace_kernel(grid, grid_frame(spec), beams, ends)
     return hits
 
 
 @njit(cache=True)
 def _trace_kernel(
-    cost: Any,
-    frame: Any,
-    x: float,
-    y: float,
-    directions: Any,
-    ranges: Any,
-    margins: Any,
-    range_min: float,
-    range_max: float,
-    ends: Any,
+    cost: Cells, frame: GridFrame, beams: _Beams, ends: NDArray[np.int64]
 ) -> int:
     height, width = cost.shape
     flat = cost.reshape(height * width)
-    per_metre = 1.0 / frame[4]
-    dx, dy = (x - frame[0]) * per_metre, (y - frame[1]) * per_metre
-    u, v = frame[2] * dx + frame[3] * dy, frame[2] * dy - frame[3] * dx
+    per_metre = 1.0 / frame.resolution
+    dx = (beams.sensor[0] - frame.x) * per_metre
+    dy = (beams.sensor[1] - frame.y) * per_metre
+    u, v = frame.cos * dx + frame.sin * dy, frame.cos * dy - frame.sin * dx
+    directions, ranges, margins = beams.directions, beams.ranges, beams.margins
     for i in range(ranges.size):
         ends[i] = -1
         reading = ranges[i]
-        if not reading > range_min:  # also not a number
+        if not reading > beams.range_min:  # also not a number
             continue
-        reach = min(reading, range_max)
+        reach = min(reading, beams.range_max)
         bx, by = directions[i, 0] * per_metre, directions[i, 1] * per_metre
-        du, dv = frame[2] * bx + frame[3] * by, frame[2] * by - frame[3] * bx
+        du, dv = frame.cos * bx + frame.sin * by, frame.cos * by - frame.sin * bx
         inside = min(reach, _exit(u, du, width), _exit(v, dv, height))
         column = min(max(int(u + inside * du), 0), width - 1)
         row = min(max(int(v + inside * dv), 0), height - 1)
-        hit = reading < range_max and inside == reach
+        hit = reading < beams.range_max and inside == reach
         if hit:
             ends[i] = row * width + column
         share = 1.0 - margins[i] / reach if hit else 1.0
@@ -127,14 +133,14 @@ def _trace_kernel(
     hits = 0
     for i in range(ranges.size):
         if ends[i] >= 0:
-            flat[ends[i]] = 100
+            flat[ends[i]] = LETHAL
             hits += 1
     return hits
 
 
 @njit(cache=True)
 def _exit(start: float, speed: float, size: int) -> float:
-    """When a point at ``start`` that moves at ``speed`` leaves [0, size)."""
+    """Time at which a point that moves from ``start`` at ``speed`` leaves [0, size)."""
     if speed > 0.0:
         return (size - start) / speed
     if speed < 0.0:
@@ -144,7 +150,7 @@ def _exit(start: float, speed: float, size: int) -> float:
 
 @njit(cache=True)
 def _free_line(
-    flat: Any, width: int, r0: int, c0: int, r1: int, c1: int, share: float
+    flat: Cells, width: int, r0: int, c0: int, r1: int, c1: int, share: float
 ) -> None:
     """Free the first ``share`` of the cells from (r0, c0) to (r1, c1)."""
     across, along = abs(r1 - r0), abs(c1 - c0)
@@ -156,12 +162,12 @@ def _free_line(
     at = r0 * width + c0
     error = along // 2
     for _ in range(int(share * along + 0.5)):
-        flat[at] = 0
+        flat[at] = FREE
         at += major
         error += across
         if error >= along:
             at += minor
             error -= along
-    # The end's own cell: freed when nothing was hit there, or overwritten as lethal.
+    # The last cell: free without a hit; with one, overwritten as lethal afterwards.
     if share >= 1.0:
-        flat[at] = 0
+        flat[at] = FREE

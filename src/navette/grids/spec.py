@@ -1,7 +1,8 @@
-"""Where a grid lies: resolution, size and origin."""
+"""Cell values of an occupancy grid, and where a grid lies."""
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +10,17 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 
+# Cell values of nav_msgs/OccupancyGrid; values between FREE and LETHAL are costs.
+UNKNOWN = -1
+FREE = 0
+LETHAL = 100
+
+Cells = NDArray[np.int8]
+
 _ORIGIN = Pose2(0.0, 0.0, 0.0)
 
-# Kernels count cells in fixed point, and what overflows there reads foreign memory:
-# grids outside these bounds (metres) are refused before any kernel sees them.
+# Kernels compute cell indices in fixed point without bounds checks; an overflow would
+# access foreign memory. Grids outside these limits (metres) never reach a kernel.
 _RESOLUTIONS = (1e-3, 100.0)
 _FARTHEST = 1e9
 
@@ -21,8 +29,16 @@ _FARTHEST = 1e9
 class GridSpec:
     """Geometry of a grid stored as ``data[row, column]`` = ``data[y, x]``.
 
-    ``origin`` is the pose of the outer corner of cell (0, 0) in the grid's frame,
-    as in nav_msgs/MapMetaData; a cell's centre lies half a cell further in.
+    Attributes:
+        resolution: edge of a cell, m.
+        width: columns.
+        height: rows.
+        origin: pose of the outer corner of cell (0, 0) in the grid's frame, as in
+            nav_msgs/MapMetaData; a cell's centre lies half a cell further in.
+
+    Raises:
+        InvalidValueError: no cells, a resolution outside 1 mm to 100 m, or an origin
+            that is not finite or farther than 1e9 m.
     """
 
     resolution: float
@@ -34,18 +50,18 @@ class GridSpec:
         finest, coarsest = _RESOLUTIONS
         if not finest <= self.resolution <= coarsest:
             raise InvalidValueError(
-                f"grid resolution {self.resolution!r}: wanted {finest:g} to "
+                f"grid resolution {self.resolution!r}: allowed are {finest:g} to "
                 f"{coarsest:g} m"
             )
         if self.width < 1 or self.height < 1:
             raise InvalidValueError(
-                f"grid of {self.width} x {self.height} cells: wanted at least 1 x 1"
+                f"grid of {self.width} x {self.height} cells: at least 1 x 1 required"
             )
         if not all(map(math.isfinite, self.origin)):
-            raise InvalidValueError(f"grid origin {self.origin}: wanted finite values")
+            raise InvalidValueError(f"grid origin {self.origin} is not finite")
         if max(abs(self.origin.x), abs(self.origin.y)) > _FARTHEST:
             raise InvalidValueError(
-                f"grid origin {self.origin}: wanted x and y within {_FARTHEST:g} m"
+                f"grid origin {self.origin}: x and y must be within {_FARTHEST:g} m"
             )
 
     @property
@@ -54,9 +70,9 @@ class GridSpec:
         return (self.height, self.width)
 
     def cell_of(self, x: float, y: float) -> tuple[int, int]:
-        """(row, column) of the cell that holds the point (m, grid's frame).
+        """(row, column) of the cell that contains the point (m, grid's frame).
 
-        Points outside give indices outside; ask :meth:`contains`.
+        Points outside the grid give indices outside it; check with :meth:`contains`.
         """
         dx, dy = x - self.origin.x, y - self.origin.y
         c, s = math.cos(self.origin.yaw), math.sin(self.origin.yaw)
@@ -79,3 +95,25 @@ class GridSpec:
     def contains(self, row: int, column: int) -> bool:
         """Whether the cell lies in the grid."""
         return 0 <= row < self.height and 0 <= column < self.width
+
+
+class GridFrame(NamedTuple):
+    """Origin and resolution of a grid, as kernels take them."""
+
+    x: float
+    y: float
+    cos: float
+    sin: float
+    resolution: float
+
+
+def grid_frame(spec: GridSpec) -> GridFrame:
+    """Return the :class:`GridFrame` of a spec."""
+    yaw = spec.origin.yaw
+    return GridFrame(
+        float(spec.origin.x),
+        float(spec.origin.y),
+        math.cos(yaw),
+        math.sin(yaw),
+        float(spec.resolution),
+    )

@@ -14,13 +14,13 @@ def test_radii_of_a_box_about_an_axle_at_its_rear() -> None:
     assert BOX.circumscribed_radius == pytest.approx(math.hypot(1.5, 0.7))
 
 
-def test_a_polygon_for_a_round_robot_contains_the_circle() -> None:
-    round_robot = Footprint.from_radius(0.105)
-    assert round_robot.inscribed_radius == pytest.approx(0.105)
-    assert round_robot.circumscribed_radius < 0.105 * 1.01
+def test_contains_points_inside_the_outline_only() -> None:
+    assert BOX.contains(1.4, -0.6)
+    assert not BOX.contains(1.6, 0.0)
+    assert not BOX.contains(0.0, 0.8)
 
 
-def test_samples_lie_on_the_outline_no_further_apart_than_asked() -> None:
+def test_samples_lie_on_the_outline_at_most_the_spacing_apart() -> None:
     points = BOX.samples(0.1)
     on_side = np.isclose(np.abs(points[:, 1]), 0.7)
     on_end = np.isclose(points[:, 0], -0.5) | np.isclose(points[:, 0], 1.5)
@@ -29,7 +29,7 @@ def test_samples_lie_on_the_outline_no_further_apart_than_asked() -> None:
     assert gaps.max() <= 0.1 + 1e-12
 
 
-def test_flat_numbers_of_a_parameter_file() -> None:
+def test_from_flat_reads_coordinate_pairs() -> None:
     assert Footprint.from_flat((1.0, 0.0, -1.0, 1.0, -1.0, -1.0)).vertices == (
         (1.0, 0.0),
         (-1.0, 1.0),
@@ -47,8 +47,6 @@ def test_flat_numbers_of_a_parameter_file() -> None:
         ((1.0, 1.0, 2.0, 1.0, 2.0, 2.0), "origin"),
     ],
 )
-def test_a_broken_outline_says_what_is_wrong(
-    values: tuple[float, ...], reason: str
-) -> None:
+def test_errors_name_the_problem(values: tuple[float, ...], reason: str) -> None:
     with pytest.raises(InvalidValueError, match=reason):
         Footprint.from_flat(values)

@@ -5,8 +5,17 @@ import pytest
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
-from navette.grids import GridSpec, body_clearance, body_points, distance_field
-from navette.grids.clearance import grid_frame, pose_clearance, pose_is_clear
+from navette.grids import (
+    DistanceGrid,
+    GridSpec,
+    body_clearance,
+    body_points,
+    distance_field,
+    grid_frame,
+    make_body,
+    pose_clearance,
+    pose_is_clear,
+)
 
 BODY = Footprint(((-0.5, -0.7), (1.5, -0.7), (1.5, 0.7), (-0.5, 0.7)))
 SPEC = GridSpec(0.1, 120, 90, Pose2(-4.0, 2.0, 0.7))
@@ -85,13 +94,13 @@ def test_quick_accept_gives_a_lower_bound() -> None:
 def test_pose_is_clear_agrees_with_the_clearance() -> None:
     rng = np.random.default_rng(2)
     field = field_with((40, 60), (20, 90), (70, 30))
-    body, frame = body_points(BODY, 0.1), grid_frame(SPEC)
-    reach = BODY.circumscribed_radius
+    body = make_body(body_points(BODY, 0.1))
+    grid = DistanceGrid(field, grid_frame(SPEC), 0.0)
     for _ in range(300):
         x, y = SPEC.center_of(*rng.integers((20, 20), (70, 100)))
         yaw, needed = rng.uniform(-3, 3), rng.uniform(0, 1)
-        exact = pose_clearance(field, frame, body, reach, x, y, yaw, 0.0, math.inf)
-        clear = pose_is_clear(field, frame, body, reach, x, y, yaw, 0.0, needed)
+        exact = pose_clearance(grid, body, x, y, yaw, math.inf)
+        clear = pose_is_clear(grid, body, x, y, yaw, needed)
         # The centre's shortcut trusts the field to be 1-Lipschitz between cells.
         assert clear == (exact >= needed) or abs(exact - needed) < 0.01
 

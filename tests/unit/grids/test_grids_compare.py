@@ -16,7 +16,9 @@ def free(spec: GridSpec) -> np.ndarray:
 
 def changes(remembered, seen, pose=ORIGIN, radius=1.5) -> Changes:
     spec = placed(SEEN, pose)
-    return compare(remembered, MAP, seen, spec, center=(pose.x, pose.y), radius=radius)
+    return compare(
+        remembered, MAP, seen, spec, center=(pose.x, pose.y), radius_m=radius
+    )
 
 
 def test_equal_grids_do_not_contradict() -> None:
@@ -63,7 +65,7 @@ def test_rotated_and_partly_outside() -> None:
 
 
 def test_bad_input_is_named() -> None:
-    with pytest.raises(InvalidValueError, match="radius: -1"):
+    with pytest.raises(InvalidValueError, match="radius_m: -1"):
         changes(free(MAP), free(SEEN), radius=-1.0)
     with pytest.raises(InvalidValueError, match="seen: shape"):
         changes(free(MAP), free(MAP))

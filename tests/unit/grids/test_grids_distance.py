@@ -77,12 +77,12 @@ def test_unaligned_arrays_are_taken() -> None:
 @pytest.mark.parametrize(
     ("occupied", "radius", "text"),
     [
-        (np.zeros((3, 3), bool), 2, "occupied: dtype bool, wanted uint8"),
-        (np.zeros(3, np.uint8), 2, "occupied: 1-D, wanted 2-D"),
+        (np.zeros((3, 3), bool), 2, "occupied: dtype bool, expected uint8"),
+        (np.zeros(3, np.uint8), 2, "occupied: 1-D, expected 2-D"),
         (np.zeros((0, 3), np.uint8), 2, r"occupied: shape \(0, 3\)"),
-        ([[0]], 2, "occupied: list, wanted a uint8 array"),
-        (np.zeros((3, 3), np.uint8), 50_000, "wanted at most 46339"),
-        (np.zeros((3, 3), np.uint8), -1, "radius_cells: -1, wanted a value >= 0"),
+        ([[0]], 2, "occupied: list, expected a uint8 array"),
+        (np.zeros((3, 3), np.uint8), 50_000, "must be at most 46339"),
+        (np.zeros((3, 3), np.uint8), -1, "radius_cells: -1, must be >= 0"),
     ],
 )
 def test_bad_input_is_named(occupied, radius, text) -> None:

@@ -15,7 +15,7 @@ def some_grid(rng: np.random.Generator, shape=(80, 130)) -> np.ndarray:
 
 
 def test_linear_table_follows_the_formula() -> None:
-    table = cost_table("linear", inflation_radius=1.0, resolution=0.1)
+    table = cost_table("linear", inflation_radius_m=1.0, resolution=0.1)
     assert table.size == 11**2 + 1
     for d2, expected in ((0, 100), (1, 90), (4, 80), (2, 86), (81, 10), (99, 1)):
         assert table[d2] == expected
@@ -24,7 +24,11 @@ def test_linear_table_follows_the_formula() -> None:
 
 def test_exponential_table_follows_the_formula() -> None:
     table = cost_table(
-        "exponential", inflation_radius=1.0, resolution=0.1, max_cost=80, decay=2.0
+        "exponential",
+        inflation_radius_m=1.0,
+        resolution=0.1,
+        max_cost=80,
+        decay_per_m=2.0,
     )
     assert table[9] == round(80 * math.exp(-2.0 * 0.3))
     assert (table[100:] == UNKNOWN).all()
@@ -32,7 +36,7 @@ def test_exponential_table_follows_the_formula() -> None:
 
 
 def test_a_cell_beside_an_obstacle_is_never_lethal() -> None:
-    table = cost_table("linear", inflation_radius=1.0, resolution=0.001)
+    table = cost_table("linear", inflation_radius_m=1.0, resolution=0.001)
     assert table[0] == LETHAL
     assert table[1:].max() == LETHAL - 1
 
@@ -41,7 +45,7 @@ def test_a_cell_beside_an_obstacle_is_never_lethal() -> None:
 @pytest.mark.parametrize("method", ["linear", "exponential"])
 def test_inflation_equals_the_formula_on_exact_distances(method, raise_unknown) -> None:
     cost = some_grid(np.random.default_rng(3))
-    table = cost_table(method, inflation_radius=0.8, resolution=0.1)
+    table = cost_table(method, inflation_radius_m=0.8, resolution=0.1)
     metres = 0.1 * distance_transform_edt(cost < LETHAL)
     fall = 1 - metres / 0.8 if method == "linear" else np.exp(-3.0 * metres)
     raised = np.rint(100 * fall)
@@ -57,42 +61,42 @@ def test_inflation_equals_the_formula_on_exact_distances(method, raise_unknown) 
 def test_inflation_only_raises_and_leaves_its_input_alone() -> None:
     cost = some_grid(np.random.default_rng(4))
     before = cost.copy()
-    found = inflate(cost, cost_table("linear", inflation_radius=1, resolution=0.1))
+    found = inflate(cost, cost_table("linear", inflation_radius_m=1, resolution=0.1))
     assert (found >= cost).all()
     np.testing.assert_array_equal(cost, before)
 
 
 def test_nothing_lethal_changes_nothing() -> None:
     cost = np.array([[-1, 0, 99]], np.int8)
-    table = cost_table("linear", inflation_radius=1.0, resolution=0.1)
+    table = cost_table("linear", inflation_radius_m=1.0, resolution=0.1)
     np.testing.assert_array_equal(inflate(cost, table), cost)
 
 
 def test_radius_zero_inflates_nothing() -> None:
     cost = np.array([[0, 100, 0]], np.int8)
-    table = cost_table("linear", inflation_radius=0.0, resolution=0.1)
+    table = cost_table("linear", inflation_radius_m=0.0, resolution=0.1)
     np.testing.assert_array_equal(inflate(cost, table), cost)
 
 
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"method": "cubic"}, "inflation method 'cubic'; wanted linear or exponential"),
-        ({"max_cost": 101}, "max_cost: 101, wanted 0 to 100"),
-        ({"inflation_radius": -1.0}, "inflation_radius: -1.0"),
+        ({"method": "cubic"}, "inflation method 'cubic'; allowed: linear, exponential"),
+        ({"max_cost": 101}, "max_cost: 101, must be 0 to 100"),
+        ({"inflation_radius_m": -1.0}, "inflation_radius_m: -1.0"),
         ({"resolution": 0.0}, "resolution: 0.0"),
-        ({"decay": float("nan")}, "decay: nan"),
+        ({"decay_per_m": float("nan")}, "decay_per_m: nan"),
     ],
 )
 def test_bad_table_values_are_named(change, text) -> None:
-    good = {"method": "linear", "inflation_radius": 1.0, "resolution": 0.1}
+    good = {"method": "linear", "inflation_radius_m": 1.0, "resolution": 0.1}
     with pytest.raises(InvalidValueError, match=text):
         cost_table(**(good | change))
 
 
 def test_bad_grids_are_named() -> None:
-    table = cost_table("linear", inflation_radius=1.0, resolution=0.1)
-    with pytest.raises(InvalidValueError, match="cost: dtype uint8, wanted int8"):
+    table = cost_table("linear", inflation_radius_m=1.0, resolution=0.1)
+    with pytest.raises(InvalidValueError, match="cost: dtype uint8, expected int8"):
         inflate(np.zeros((3, 3), np.uint8), table)
     with pytest.raises(InvalidValueError, match="table: 7 entries"):
         inflate(np.zeros((3, 3), np.int8), table[:7])

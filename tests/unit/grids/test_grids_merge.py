@@ -131,7 +131,7 @@ def test_log_odds_of_a_coarse_source() -> None:
 
 def test_bad_input_is_named() -> None:
     source, spec = np.zeros((2, 2), np.int8), GridSpec(0.1, 2, 2)
-    with pytest.raises(InvalidValueError, match="merge mode 'min'; wanted"):
+    with pytest.raises(InvalidValueError, match="merge mode 'min'; allowed"):
         merge(unknown(), MAP, source, spec, "min")
     with pytest.raises(InvalidValueError, match="target: int8"):
         merge(unknown()[:5], MAP, source, spec)
@@ -153,7 +153,7 @@ def test_far_from_the_sensor_lethal_cells_are_kept() -> None:
     source = np.zeros((100, 100), np.int8)
     spec = placed(GridSpec(0.1, 100, 100, Pose2(-5.0, -5.0, 0.0)), Pose2(1, 0, 0.7))
     target = np.full(MAP.shape, 100, np.int8)
-    merge(target, MAP, source, spec, sensor=(1.0, 0.5), erase_within=2.0)
+    merge(target, MAP, source, spec, sensor=(1.0, 0.5), erase_within_m=2.0)
     covered = pulled(target, source, spec) == 0
     row, column = np.mgrid[0 : MAP.height, 0 : MAP.width]
     x, y = (column + 0.5) * 0.1 - 7.0, (row + 0.5) * 0.1 - 6.0
@@ -166,7 +166,7 @@ def test_far_from_the_sensor_the_rest_is_overwritten_all_the_same() -> None:
     source = np.array([[0, 50], [-1, 100]], np.int8)
     spec = GridSpec(0.1, 2, 2, Pose2(3.0, 3.0, 0.0))
     target = np.full(MAP.shape, 70, np.int8)
-    merge(target, MAP, source, spec, sensor=(0.0, 0.0), erase_within=0.0)
+    merge(target, MAP, source, spec, sensor=(0.0, 0.0), erase_within_m=0.0)
     assert target[90:92, 100:102].tolist() == [[0, 50], [70, 100]]
 
 

@@ -34,7 +34,7 @@ def test_reading_a_grid_copies_nothing() -> None:
 def test_what_is_no_grid_is_named() -> None:
     msg = grid_to_message(CELLS, SPEC, "map", 0)
     msg.info.width = 5
-    with pytest.raises(InvalidValueError, match="12 cells, wanted 5 x 3 = 15"):
+    with pytest.raises(InvalidValueError, match="12 cells, expected 5 x 3 = 15"):
         grid_from_message(msg)
     with pytest.raises(InvalidValueError, match="grid resolution"):
         grid_from_message(OccupancyGrid())
@@ -46,7 +46,7 @@ def test_what_is_no_grid_is_named() -> None:
 def test_resolutions_that_kernels_cannot_count_in_are_refused(
     resolution: float,
 ) -> None:
-    with pytest.raises(InvalidValueError, match=r"wanted 0\.001 to 100 m"):
+    with pytest.raises(InvalidValueError, match=r"allowed are 0\.001 to 100 m"):
         GridSpec(resolution, 4, 3)
 
 

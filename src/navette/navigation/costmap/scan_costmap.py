@@ -64,10 +64,10 @@ class ScanCostmap:
         )
         self._table = cost_table(
             "linear" if params.inflation_method == "linear" else "exponential",
-            inflation_radius=params.inflation_radius,
+            inflation_radius_m=params.inflation_radius,
             resolution=params.resolution,
             max_cost=params.max_cost,
-            decay=params.inflation_decay,
+            decay_per_m=params.inflation_decay,
         )
         self._beams: tuple[float, float, int] | None = None
         self._directions = np.empty((0, 2))

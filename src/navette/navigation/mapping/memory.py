@@ -102,7 +102,7 @@ class MapMemory:
                 costmap.spec,
                 "max" if self.params.fusion == "max" else "overwrite",
                 sensor=costmap.sensor,
-                erase_within=self.params.erase_range,
+                erase_within_m=self.params.erase_range,
             )
         if self._footprint is not None:
             self._free_under(self._footprint, costmap.map_T_base)
@@ -122,7 +122,7 @@ class MapMemory:
             costmap.cells,
             costmap.spec,
             center=costmap.sensor,
-            radius=self.params.change_range,
+            radius_m=self.params.change_range,
         )
 
     def warm_up(self) -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids import GridSpec, grid_frame
+from navette.grids import DistanceGrid, GridSpec, grid_frame, make_body
 from navette.navigation.planning.bucket_queue import new_pool, new_state
 from navette.navigation.planning.dijkstra import Field
 from navette.navigation.planning.lattice_motions import MOVES, Motions
@@ -126,15 +126,12 @@ def search(
 
 def _scene(world: LatticeWorld) -> Scene:
     return Scene(
-        world.distance_m,
-        grid_frame(world.spec),
+        DistanceGrid(world.distance_m, grid_frame(world.spec), float(world.outside_m)),
         world.factor,
         np.ascontiguousarray(world.guide),
-        world.body,
-        float(np.hypot(world.body[:, 0], world.body[:, 1]).max()),
+        make_body(world.body),
         float(world.margin_m),
         float(world.comfort_m),
-        float(world.outside_m),
     )
 
 

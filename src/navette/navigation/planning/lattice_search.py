@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from navette.grids import pose_clearance, pose_is_clear
+from navette.grids import Body, DistanceGrid, pose_clearance, pose_is_clear
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     pop,
@@ -36,15 +36,12 @@ HEADING, G, PARENT, MOVE, ESCAPING = 0, 1, 2, 3, 4
 class Scene(NamedTuple):
     """What is driven through; see :class:`.lattice.LatticeWorld`."""
 
-    distance_m: NDArray[np.float32]
-    frame: tuple[float, float, float, float, float]
+    grid: DistanceGrid
     factor: NDArray[np.float32]
     guide: NDArray[np.int64]
-    body: NDArray[np.float64]
-    reach_m: float
+    body: Body
     margin_m: float
     comfort_m: float
-    outside_m: float
 
 
 class MoveTable(NamedTuple):
@@ -112,7 +109,7 @@ def grow(
             continue
         x, y = tree.position[node, 0], tree.position[node, 1]
         heading: Any = np.int64(tree.links[node, HEADING])
-        at = _bin(tree, scene.frame, x, y, heading, moves.headings)
+        at = _bin(tree, scene.grid.frame, x, y, heading, moves.headings)
         if node != 0 and tree.kept[at] != ROOM - tree.links[node, G]:
             continue
         expanded += 1
@@ -135,7 +132,7 @@ def _plant(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     tree.links[0, HEADING], tree.links[0, G] = 0, 0
     tree.links[0, PARENT], tree.links[0, MOVE] = -1, -1
     tree.links[0, ESCAPING] = escaping
-    u, v = _to_cells(scene.frame, start[0], start[1])
+    u, v = _to_cells(scene.grid.frame, start[0], start[1])
     ahead = scene.guide[int(v), int(u)]
     nothing: Any = np.int64(0)  # a literal would compile the callee a second time
     return _promise(nothing, ahead) >> SHIFT
@@ -172,7 +169,7 @@ def _branch(
         if factor < 0.0 or (ahead >= UNREACHED and not escaping):
             continue
         heading = np.int64(tree.links[node, HEADING] + moves.turns[m]) % moves.headings
-        at = _bin(tree, scene.frame, x_new, y_new, heading, moves.headings)
+        at = _bin(tree, scene.grid.frame, x_new, y_new, heading, moves.headings)
         g = tree.links[node, G] + _step_cost(moves, tree.links[node, MOVE], m, factor)
         if ROOM - g <= tree.kept[at] or used >= tree.links.shape[0]:
             continue
@@ -220,14 +217,11 @@ def _fits(
     for k in range(moves.counts[m]):
         dx, dy = moves.offsets[m, k, 0], moves.offsets[m, k, 1]
         if not pose_is_clear(
-            scene.distance_m,
-            scene.frame,
+            scene.grid,
             scene.body,
-            scene.reach_m,
             x + cos * dx - sin * dy,
             y + sin * dx + cos * dy,
             yaw + moves.offsets[m, k, 2],
-            scene.outside_m,
             needed_m,
         ):
             return False
@@ -236,17 +230,7 @@ def _fits(
 
 @njit(cache=True)
 def _clearance(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> float:
-    return pose_clearance(
-        scene.distance_m,
-        scene.frame,
-        scene.body,
-        scene.reach_m,
-        x,
-        y,
-        yaw,
-        scene.outside_m,
-        enough_m,
-    )
+    return pose_clearance(scene.grid, scene.body, x, y, yaw, enough_m)
 
 
 @njit(cache=True)
@@ -256,7 +240,7 @@ def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
     The cost to go is interpolated between cell centres: in whole cells it would
     jump by several moves' worth, and the search after it.
     """
-    u, v = _to_cells(scene.frame, x, y)
+    u, v = _to_cells(scene.grid.frame, x, y)
     height, width = scene.guide.shape
     if not (0.0 <= u < width and 0.0 <= v < height):
         return NOWHERE, -1.0

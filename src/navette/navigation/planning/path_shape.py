@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from navette.grids import distance_at, grid_frame
+from navette.grids import DistanceGrid, distance_at, grid_frame
 from navette.navigation.planning.planning_grid import PlanningGrid
 
 Poses = NDArray[np.float64]
@@ -42,14 +42,8 @@ def smooth(points: Points, grid: PlanningGrid, keep_m: float) -> Points:
     closer than it was.
     """
     rounded = points.copy()
-    _smooth(
-        rounded,
-        grid.distance_m,
-        grid_frame(grid.spec),
-        keep_m,
-        60,
-        np.empty(len(points)),
-    )
+    distances = DistanceGrid(grid.distance_m, grid_frame(grid.spec), np.inf)
+    _smooth(rounded, distances, keep_m, 60, np.empty(len(points)))
     return rounded
 
 
@@ -122,15 +116,15 @@ def path_cost(
 
 @njit(cache=True)
 def _smooth(
-    points: Any, distance_m: Any, frame: Any, keep_m: float, rounds: int, clear: Any
+    points: Any, grid: DistanceGrid, keep_m: float, rounds: int, clear: Any
 ) -> None:
     n = points.shape[0]
     for i in range(n):
-        clear[i] = distance_at(distance_m, frame, points[i, 0], points[i, 1], np.inf)
+        clear[i] = distance_at(grid, points[i, 0], points[i, 1])
     for _ in range(rounds):
         for i in range(1, n - 1):
             x = 0.5 * points[i, 0] + 0.25 * (points[i - 1, 0] + points[i + 1, 0])
             y = 0.5 * points[i, 1] + 0.25 * (points[i - 1, 1] + points[i + 1, 1])
-            there = distance_at(distance_m, frame, x, y, np.inf)
+            there = distance_at(grid, x, y)
             if there >= keep_m or there >= clear[i]:
                 points[i, 0], points[i, 1], clear[i] = x, y, there
