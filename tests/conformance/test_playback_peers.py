@@ -1,4 +1,4 @@
-"""Playback control: frames beside the Foxglove SDK's, and the page's own bar."""
+"""Playback control: frames compared with the Foxglove SDK, and the page's bar."""
 
 import json
 import shutil
@@ -30,7 +30,7 @@ RANGE = 100 * S + 5, 160 * S + 7
 
 
 class Answers(foxglove.websocket.ServerListener):
-    """Answers with a state that has a number in every field."""
+    """Responds with a state that has a number in every field."""
 
     def on_playback_control_request(
         self, request: foxglove.websocket.PlaybackControlRequest

@@ -1,4 +1,4 @@
-"""A point cloud on the page, whatever way its sender lays it out."""
+"""A point cloud on the page, for different field layouts."""
 
 import math
 import shutil
@@ -73,7 +73,7 @@ def cloud(points: np.ndarray) -> PointCloud2:
 
 
 class Lidar(Node):
-    """Says what it sees, ten times a second."""
+    """Publishes a cloud at 10 Hz."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("velodyne", context=context)
@@ -82,7 +82,7 @@ class Lidar(Node):
         self.create_timer(0.1, lambda: self.publisher.publish(message))
 
 
-def test_such_a_cloud_is_read_as_a_structured_array() -> None:
+def test_the_cloud_is_read_as_a_structured_array() -> None:
     points = street()
     read = read_points(cloud(points), skip_nans=True)
     assert read.dtype.names == ("x", "y", "z")

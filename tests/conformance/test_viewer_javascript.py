@@ -1,4 +1,4 @@
-"""The live view in the eyes of published JavaScript: client, codec and a browser."""
+"""The live view with published JavaScript: client, codec and a browser."""
 
 import json
 import shutil
@@ -31,7 +31,7 @@ RANGES = [1.5, float("inf"), 2.25]
 
 
 class Robot(Node):
-    """Publishes one of each that the scripts look at; notes goals."""
+    """Publishes one message of each type that the scripts read; records goals."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("robot", context=context)

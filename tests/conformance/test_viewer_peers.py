@@ -1,4 +1,4 @@
-"""The live view beside independent peers: two ROS 2 decoders and Foxglove's server."""
+"""The live view and independent peers: two ROS 2 decoders and Foxglove's server."""
 
 import sys
 from collections.abc import Iterator
@@ -39,7 +39,7 @@ SHOWN = {
 
 
 class Robot(Node):
-    """Publishes a message of every shown type, again and again."""
+    """Publishes messages of every displayed type repeatedly."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("robot", context=context)
@@ -183,7 +183,7 @@ def conversation(address: str) -> dict[str, Any]:
         }
 
 
-def test_frames_have_the_shape_of_foxgloves_own(reference: str) -> None:
+def test_frames_have_the_form_of_the_foxglove_server(reference: str) -> None:
     theirs = conversation(reference)
     theirs["serverInfo"].pop("metadata")  # theirs names their library, ours ROS 2
     with Program(SpeedyRobot) as program:
@@ -195,7 +195,7 @@ def test_frames_have_the_shape_of_foxgloves_own(reference: str) -> None:
 
 
 class SpeedyRobot(Robot):
-    """As Robot, with the reference's parameter."""
+    """Robot with the parameter of the reference server."""
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)

@@ -1,4 +1,4 @@
-"""The live view: Foxglove's socket and a web page on one port."""
+"""The live view: the Foxglove WebSocket protocol and a web page on one port."""
 
 from navette.viewer.layout import build_layout
 from navette.viewer.params import ViewerParams

@@ -1,4 +1,4 @@
-"""Files that clients may fetch: ``package://`` addresses of known folders only."""
+"""Files that clients may fetch: ``package://`` URIs of known folders only."""
 
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
@@ -10,20 +10,20 @@ _MAX_BYTES = 32_000_000
 
 
 class AssetFolders:
-    """Reads ``package://<name>/<path>`` below the folder known as ``name``.
+    """Reads ``package://<name>/<path>`` below the folder registered as ``name``.
 
-    Nothing else is served: no other scheme, no path that leaves the folder (by
-    ``..``, an absolute part or a symbolic link), nothing over 32 MB.
+    Refuses other schemes, paths that leave the folder (by ``..``, an absolute part or a
+    symbolic link) and files over 32 MB.
     """
 
     def __init__(self, folders: Mapping[str, Path]) -> None:
         self._folders = {name: folder.resolve() for name, folder in folders.items()}
 
     def read(self, uri: str) -> bytes:
-        """The file's bytes.
+        """Return the file's bytes.
 
         Raises:
-            UnknownNameError: the address is not served or not there.
+            UnknownNameError: the URI is not served or the file does not exist.
             OSError: the file cannot be read.
         """
         path = self._path(uri)

@@ -1,9 +1,9 @@
-"""Frames that clients send: text and binary to values, nothing else.
+"""Decode the frames that clients send.
 
 Source: the Foxglove WebSocket protocol v1 (foxglove/ws-protocol, docs/spec.md);
-the later subprotocol ``foxglove.sdk.v1`` has the same frames and those that control
-playback (foxglove/foxglove-sdk, rust/foxglove/src/protocol). Whatever a client
-sends either becomes one of the values below or raises :class:`DecodeError`.
+the later subprotocol ``foxglove.sdk.v1`` has the same frames and those for playback
+control (foxglove/foxglove-sdk, rust/foxglove/src/protocol). A frame either decodes to
+one of the classes below or raises :class:`DecodeError`.
 """
 
 import json
@@ -14,8 +14,8 @@ from typing import Any, NoReturn
 
 from navette.errors import DecodeError
 
-# In order of preference; the app of today asks for the first, older tools and the
-# published TypeScript client for the second.
+# In order of preference: the current app requests the first, older tools and the
+# published TypeScript client the second.
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 
 _U32 = 2**32
@@ -36,7 +36,7 @@ class Unsubscribe:
 
 @dataclass(frozen=True)
 class ClientChannel:
-    """What a client wants to publish: topic, ``cdr`` or ``json``, type name."""
+    """A channel on which a client publishes; ``encoding`` is ``cdr`` or ``json``."""
 
     id: int
     topic: str
@@ -70,7 +70,7 @@ class GetParameters:
 
 @dataclass(frozen=True)
 class WireParameter:
-    """A parameter as JSON has it; ``kind`` tells 3.0 from 3 and bytes from text.
+    """A parameter in JSON; ``kind`` distinguishes 3.0 from 3 and bytes from text.
 
     ``value`` None means unset. ``kind``: float64, float64_array, byte_array or None.
     """
@@ -110,7 +110,7 @@ class UnwatchGraph:
 
 @dataclass(frozen=True)
 class WatchNodes:
-    """How the nodes are, and what parameters mean: of Navette's own page only."""
+    """Subscribe to node states and parameter texts; used by Navette's own page only."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ class CallService:
 
 @dataclass(frozen=True)
 class ControlPlayback:
-    """Play or pause, how fast, and where first."""
+    """Play or pause at a speed, after an optional seek."""
 
     play: bool
     speed: float
@@ -144,7 +144,7 @@ class ControlPlayback:
 
 @dataclass(frozen=True)
 class StepPlayback:
-    """Pause and give the next message: of Navette's own page only."""
+    """Pause and publish the next message; used by Navette's own page only."""
 
 
 ClientFrame = (
@@ -169,10 +169,10 @@ ClientFrame = (
 
 
 def decode(frame: str | bytes) -> ClientFrame:
-    """One client frame as a value.
+    """Decode one client frame.
 
     Raises:
-        DecodeError: in words that the client's user may read.
+        DecodeError: with a message that the client's user can read.
     """
     if isinstance(frame, str):
         return _decode_text(frame)
@@ -181,7 +181,7 @@ def decode(frame: str | bytes) -> ClientFrame:
 
 def _decode_text(text: str) -> ClientFrame:
     try:
-        # Python would take NaN, which no other JSON reader does.
+        # Python's parser accepts NaN, which is not JSON.
         document = json.loads(text, parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:
         raise DecodeError(f"text frame is not JSON: {error}") from None
@@ -198,7 +198,7 @@ def _decode_binary(data: bytes) -> ClientFrame:
         raise DecodeError("binary frame is empty")
     if data[0] == 1:
         if len(data) < 5:
-            raise DecodeError("message data frame is cut short")
+            raise DecodeError("message data frame is truncated")
         (channel_id,) = struct.unpack_from("<I", data, 1)
         return Publish(channel_id, bytes(data[5:]))
     if data[0] == 2:
@@ -210,23 +210,23 @@ def _decode_binary(data: bytes) -> ClientFrame:
 
 def _decode_call(data: bytes) -> CallService:
     if len(data) < 13:
-        raise DecodeError("service call frame is cut short")
+        raise DecodeError("service call frame is truncated")
     service_id, call_id, length = struct.unpack_from("<III", data, 1)
     end = 13 + length
     if end > len(data):
-        raise DecodeError("service call frame is cut short")
+        raise DecodeError("service call frame is truncated")
     encoding = data[13:end].decode("utf-8", "replace")
     return CallService(service_id, call_id, encoding, bytes(data[end:]))
 
 
 def _decode_playback(data: bytes) -> ControlPlayback:
-    """Command (0 play, 1 pause), speed, whether and where to seek, request id."""
+    """Decode command (0 play, 1 pause), speed, optional seek and request id."""
     if len(data) < _PLAYBACK.size:
-        raise DecodeError("playback control frame is cut short")
+        raise DecodeError("playback control frame is truncated")
     _, command, speed, seeks, seek_ns, length = _PLAYBACK.unpack_from(data)
     end = _PLAYBACK.size + length
     if end > len(data):
-        raise DecodeError("playback control frame is cut short")
+        raise DecodeError("playback control frame is truncated")
     if command > 1:
         raise DecodeError(f"unknown playback command {command}; known: 0 and 1")
     request_id = data[_PLAYBACK.size : end].decode("utf-8", "replace")

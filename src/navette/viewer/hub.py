@@ -1,9 +1,9 @@
-"""The live view's state: clients, channels, who watches what. No socket, no node.
+"""State of the live view: clients, channels and subscriptions. No socket, no node.
 
-The socket thread feeds client frames in (:meth:`Hub.receive`) and takes frames out
-of each client's outbox; the program feeds topics, messages and values in. What a
-client wants of the program goes out through
-:class:`~navette.viewer.session.Robot`. All methods belong to the socket thread.
+The socket thread passes client frames in (:meth:`Hub.receive`) and takes frames out of
+each client's outbox; the program passes topics, messages and values in. Requests to the
+program go out as :class:`~navette.viewer.session.ProgramCommands`. All methods belong
+to the socket thread.
 """
 
 import itertools
@@ -13,31 +13,29 @@ from navette.errors import DecodeError
 from navette.viewer import frames, replies
 from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, WireParameter
-from navette.viewer.heartbeats import NodeReport
-from navette.viewer.memory import LastMessages
+from navette.viewer.last_value_cache import LastValueCache
+from navette.viewer.liveness import NodeReport
 from navette.viewer.outbox import Outbox
 from navette.viewer.parameters import ParameterText
 from navette.viewer.playback import PlaybackState
 from navette.viewer.replies import Channel, Graph, Level
-from navette.viewer.session import Robot, Session, Topic, Watch
+from navette.viewer.session import ProgramCommands, Session, Topic, Watch
 
 _MAX_CLIENT_CHANNELS = 256
 _TIME, _NODES = "time", "nodes"
 
 
 class Hub:
-    """State of the live view; see the module's text for who calls what."""
-
     def __init__(
         self,
-        robot: Robot,
+        program: ProgramCommands,
         *,
         name: str,
         session_id: str,
         assets: AssetFolders | None = None,
         playback_range: tuple[int, int] | None = None,
     ) -> None:
-        self._robot = robot
+        self._program = program
         self._info = replies.server_info(name, session_id, playback_range)
         self._plays = playback_range is not None
         self._playback: bytes | None = None
@@ -46,7 +44,7 @@ class Hub:
         self._channels: dict[int, Channel] = {}
         self._topics: dict[Topic, Channel] = {}
         self._watchers: dict[Watch, set[int]] = {}
-        self._last = LastMessages()
+        self._last = LastValueCache()
         self._graph = replies.EMPTY_GRAPH
         self._client_ids = itertools.count(1)
         self._channel_ids = itertools.count(1)
@@ -61,9 +59,9 @@ class Hub:
         return tuple(self._channels.values())
 
     @property
-    def is_curious(self) -> bool:
-        """Whether a client wants to know what only the nodes themselves can tell."""
-        return any(session.is_curious for session in self._sessions.values())
+    def wants_node_reports(self) -> bool:
+        """Whether a client needs data that nodes of other processes must provide."""
+        return any(each.wants_node_reports for each in self._sessions.values())
 
     # -- clients ---------------------------------------------------------------
 
@@ -83,11 +81,11 @@ class Hub:
             self._unsubscribe(session, subscription_id)
         for channel_id in list(session.client_channels):
             del session.client_channels[channel_id]
-            self._robot.close_publisher(session.id, channel_id)
+            self._program.close_publisher(session.id, channel_id)
         self._sessions.pop(session.id, None)
 
     def receive(self, session: Session, frame: str | bytes) -> None:
-        """Act on one frame; whatever is wrong with it becomes a status message."""
+        """Handle one frame; an error in it is sent back as a status message."""
         try:
             request = frames.decode(frame)
         except DecodeError as error:
@@ -96,12 +94,12 @@ class Hub:
         _HANDLERS[type(request)](self, session, request)
 
     def done(self, client: int) -> None:
-        """The program has finished one request of a client."""
+        """Count one request of a client as finished by the program."""
         session = self._sessions.get(client)
         if session is not None:
             session.pending -= 1
 
-    # -- what the program tells ------------------------------------------------
+    # -- data from the program --------------------------------------------------
 
     def set_topics(self, topics: Iterable[Topic]) -> None:
         wanted = dict.fromkeys(topics)
@@ -133,7 +131,7 @@ class Hub:
             frame = replies.message_data(subscription_id, stamp_ns, payload)
             session.outbox.put_data(subscription_id, frame)
         if channel_id in self._last:
-            self._last.take(channel_id, stamp_ns, payload)
+            self._last.store(channel_id, stamp_ns, payload)
             self._drop_unwatched(watch)
 
     def set_graph(self, graph: Graph) -> None:
@@ -148,7 +146,7 @@ class Hub:
                     session.send(update)
 
     def set_now(self, now_ns: int) -> None:
-        """Tell the clients the time; only the newest waits for a slow one."""
+        """Send the time to all clients; only the newest is queued for a slow one."""
         if now_ns == self.now_ns:
             return
         self.now_ns = now_ns
@@ -159,13 +157,13 @@ class Hub:
     def set_playback(
         self, state: PlaybackState, *, did_seek: bool, request_id: str
     ) -> None:
-        """Tell the clients where the recording is; newcomers hear of it too."""
+        """Send the state of the recording to all clients, now and when they join."""
         frame = replies.playback_state(state, did_seek=did_seek, request_id=request_id)
         self._playback = replies.playback_state(state, did_seek=False, request_id="")
         if did_seek:
-            self._last.forget()
+            self._last.clear()
         for session in self._sessions.values():
-            if did_seek:  # what still waits is from another place
+            if did_seek:  # queued messages are from before the seek
                 for subscription_id in session.channel_by_subscription:
                     session.outbox.forget(subscription_id)
             session.send(frame)
@@ -187,18 +185,18 @@ class Hub:
             if wanted:
                 session.send(replies.parameter_values(wanted, None))
 
-    def describe(
+    def set_parameter_texts(
         self, texts: Iterable[ParameterText], client: int | None = None
     ) -> None:
-        """What parameters mean: to one client, or to all that want to know."""
+        """Send parameter texts to one client, or to all that subscribed to nodes."""
         frame = replies.parameter_texts(texts)
         for session in self._sessions.values():
             if session.wants_nodes and client in (None, session.id):
                 session.send(frame)
 
-    def set_nodes(self, reports: Iterable[NodeReport], hangs_s: float) -> None:
-        """Tell how the nodes are; only the newest waits for a slow client."""
-        frame = replies.nodes(reports, hangs_s)
+    def set_nodes(self, reports: Iterable[NodeReport], blocked_s: float) -> None:
+        """Send the nodes' states; only the newest is queued for a slow client."""
+        frame = replies.nodes(reports, blocked_s)
         for session in self._sessions.values():
             if session.wants_nodes:
                 session.outbox.put_data(_NODES, frame, depth=1)
@@ -250,7 +248,7 @@ class Hub:
         watchers = self._watchers.get(watch)
         if watchers is None:
             self._watchers[watch] = {session.id}
-            self._robot.watch(watch)
+            self._program.watch(watch)
             return
         watchers.add(session.id)
         last = self._last.last(channel.id)
@@ -260,21 +258,21 @@ class Hub:
             session.outbox.put_data(subscription_id, frame)
 
     def _keep(self, channel: Channel, *, is_published: bool) -> None:
-        """Listen, though nobody watches, as long as somebody publishes."""
+        """Subscribe without a client while the topic has a publisher."""
         watch = Watch(channel, None)
-        if not is_published:  # who said it is gone
+        if not is_published:
             self._last.close(channel.id)
             if watch in self._watchers:
                 self._drop_unwatched(watch)
         elif self._last.open(channel.id) and watch not in self._watchers:
             self._watchers[watch] = set()
-            self._robot.watch(watch)
+            self._program.watch(watch)
 
     def _drop_unwatched(self, watch: Watch) -> None:
-        """No longer listen to what nobody watches, unless it is kept for newcomers."""
+        """Unsubscribe from a topic without clients, unless it is cached."""
         if not self._watchers[watch] and watch.channel.id not in self._last:
             del self._watchers[watch]
-            self._robot.unwatch(watch)
+            self._program.unwatch(watch)
 
     def _advertise(self, session: Session, request: frames.Advertise) -> None:
         for channel in request.channels:
@@ -284,7 +282,7 @@ class Hub:
                 continue
             session.client_channels[channel.id] = channel
             session.pending += 1
-            self._robot.open_publisher(session.id, channel)
+            self._program.open_publisher(session.id, channel)
 
     def _unadvertise(self, session: Session, request: frames.Unadvertise) -> None:
         for channel_id in request.channel_ids:
@@ -294,22 +292,24 @@ class Hub:
                 )
                 continue
             session.pending += 1
-            self._robot.close_publisher(session.id, channel_id)
+            self._program.close_publisher(session.id, channel_id)
 
     def _publish(self, session: Session, request: frames.Publish) -> None:
         if request.channel_id not in session.client_channels:
             session.complain(f"publish: channel {request.channel_id} is not advertised")
             return
         session.pending += 1
-        self._robot.publish(session.id, request.channel_id, request.data)
+        self._program.publish_from_client(session.id, request.channel_id, request.data)
 
     def _get_parameters(self, session: Session, request: frames.GetParameters) -> None:
         session.pending += 1
-        self._robot.get_parameters(session.id, request.names, request.request_id)
+        self._program.request_parameters(session.id, request.names, request.request_id)
 
     def _set_parameters(self, session: Session, request: frames.SetParameters) -> None:
         session.pending += 1
-        self._robot.set_parameters(session.id, request.parameters, request.request_id)
+        self._program.change_parameters(
+            session.id, request.parameters, request.request_id
+        )
 
     def _watch_parameters(
         self, session: Session, request: frames.WatchParameters
@@ -337,7 +337,7 @@ class Hub:
     def _watch_nodes(self, session: Session, _request: frames.WatchNodes) -> None:
         session.wants_nodes = True
         session.pending += 1
-        self._robot.describe_parameters(session.id)
+        self._program.request_parameter_texts(session.id)
 
     def _unwatch_nodes(self, session: Session, _request: frames.UnwatchNodes) -> None:
         session.wants_nodes = False
@@ -353,7 +353,9 @@ class Hub:
     def _call_service(self, session: Session, request: frames.CallService) -> None:
         session.send(
             replies.service_failure(
-                request.service_id, request.call_id, "this server offers no services"
+                request.service_id,
+                request.call_id,
+                "this server has no services",
             )
         )
 
@@ -361,20 +363,20 @@ class Hub:
         self, session: Session, request: frames.ControlPlayback
     ) -> None:
         if self._can_play(session):
-            self._robot.control_playback(session.id, request)
+            self._program.control_playback(session.id, request)
 
     def _step_playback(self, session: Session, _request: frames.StepPlayback) -> None:
         if self._can_play(session):
-            self._robot.step_playback(session.id)
+            self._program.step_playback(session.id)
 
     def _can_play(self, session: Session) -> bool:
         if not self._plays:
-            session.complain("playback control: no recording is played")
+            session.complain("playback control: the server does not play a recording")
             return False
         session.pending += 1
         return True
 
-    # -- inside ----------------------------------------------------------------
+    # -- internals ----------------------------------------------------------------
 
     def _remove_channel(self, channel: Channel) -> None:
         is_kept = channel.id in self._last
@@ -384,7 +386,7 @@ class Hub:
             if subscription_id is not None:
                 self._unsubscribe(session, subscription_id)
         watch = Watch(channel, None)
-        if is_kept and watch in self._watchers:  # nobody watched it
+        if is_kept and watch in self._watchers:  # subscribed for the cache only
             self._drop_unwatched(watch)
         del self._channels[channel.id]
 
@@ -419,7 +421,7 @@ def _watch_of(session: Session, channel: Channel) -> Watch:
 
 
 def _refusal(session: Session, channel: ClientChannel) -> str:
-    """Why a client's channel cannot be opened; empty where it can."""
+    """Return why a client's channel cannot be opened; empty if it can."""
     if channel.id in session.client_channels:
         return f"channel id {channel.id} is in use"
     if channel.encoding not in replies.ENCODINGS:
@@ -428,5 +430,5 @@ def _refusal(session: Session, channel: ClientChannel) -> str:
             f"known: {', '.join(replies.ENCODINGS)}"
         )
     if len(session.client_channels) >= _MAX_CLIENT_CHANNELS:
-        return f"more than {_MAX_CLIENT_CHANNELS} channels"
+        return f"a client can open {_MAX_CLIENT_CHANNELS} channels at most"
     return ""

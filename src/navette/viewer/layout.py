@@ -1,8 +1,8 @@
-"""The layout for the Foxglove app: a 3D view to drive in, teleop, camera, state.
+"""The layout for the Foxglove app: 3D view with goal tool, teleop, camera, state.
 
 Panel ids and settings follow the app's layout files (``configById`` and a tree of
-splits). Robot and world models come from latched URDF topics, so that no address on
-the network is needed and every robot fits.
+splits). Robot and world models come from latched URDF topics: they need no network
+address and work for every robot.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ _PATH = ("#ff8a3dff", "#ffc46bff")
 
 
 def build_layout(map_frame: str, base_frame: str) -> dict[str, Any]:
-    """The layout file's content; the 3D panel shows ``map_frame`` from above."""
+    """Return the layout file; the 3D panel shows ``map_frame`` from above."""
     return {
         "configById": {
             "3D!drive": _drive_view(map_frame),
@@ -77,7 +77,7 @@ def _tabs() -> dict[str, Any]:
 
 
 def _drive_view(map_frame: str) -> dict[str, Any]:
-    """From straight above; a click with the publish tool sets the goal."""
+    """View from above; a click with the publish tool sets the goal."""
     return {
         "title": "Drive: click a goal with the publish tool",
         "followMode": "follow-none",
@@ -106,7 +106,7 @@ def _drive_view(map_frame: str) -> dict[str, Any]:
 
 
 def _follow_view(map_frame: str, base_frame: str) -> dict[str, Any]:
-    """Behind the robot, looking where it goes."""
+    """View from behind the robot, in its direction of travel."""
     view = _drive_view(map_frame)
     view.update(
         title="Follow the robot",
@@ -229,7 +229,7 @@ def _camera_view() -> dict[str, Any]:
 
 
 def _teleop() -> dict[str, Any]:
-    """Ten a second: the robot stops by itself soon after the button is let go."""
+    """Publish at 10 Hz; the robot stops soon after the button is released."""
     return {
         "title": "Teleop",
         "topic": "/cmd_vel",
@@ -242,7 +242,7 @@ def _teleop() -> dict[str, Any]:
 
 
 def _state_lines() -> dict[str, Any]:
-    """What planner and controller say of themselves, as coloured bars over time."""
+    """Status of planner and controller as coloured bars over time."""
     return {
         "title": "States",
         "paths": [

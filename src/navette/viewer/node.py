@@ -1,14 +1,14 @@
-"""The node ``viewer``: shows every topic of its context to Foxglove and browsers.
+"""The node ``viewer``: every topic of its context for the Foxglove app and browsers.
 
-Two threads meet here. Node methods run on the executor's thread; the
-:class:`~navette.viewer.bridge.Bridge` turns the hub's wishes (socket thread) into
-events of the executor, and what goes to clients passes through the server's queue.
-Neither thread waits for the other.
+Two threads meet here. Node methods run on the executor's thread;
+:class:`~navette.viewer.thread_bridge.ThreadBridge` turns the hub's commands (socket
+thread) into events of the executor, and data for clients passes through the server's
+queue. Neither thread waits for the other.
 
-Before any topic exists it shows none; topics appear as the graph changes. A topic
-that no client watches is not subscribed, but for those whose last message is kept
-(:mod:`navette.viewer.memory`). Nodes of other processes are asked for their parameters
-and whether they live while a client wants to know.
+Topics appear as the graph changes. A topic without a watching client is not subscribed,
+except for those whose last message is cached (:mod:`navette.viewer.last_value_cache`).
+Parameters and liveness of nodes of other processes are requested only while a client
+displays them.
 """
 
 import importlib.resources
@@ -37,29 +37,30 @@ from navette.runtime.qos import (
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.subscription import Subscription
 from navette.viewer.assets import AssetFolders
-from navette.viewer.beats import Beats
-from navette.viewer.bridge import Bridge
+from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
-from navette.viewer.parameter_desk import ParameterDesk
+from navette.viewer.node_monitor import NodeMonitor
+from navette.viewer.parameter_requests import ParameterRequests
 from navette.viewer.params import ViewerParams
 from navette.viewer.playback import Playback
-from navette.viewer.playback_desk import PlaybackDesk
+from navette.viewer.playback_requests import PlaybackRequests
 from navette.viewer.publishing import ClientPublishers
-from navette.viewer.questions import Questions
 from navette.viewer.remote_parameters import LIST, RemoteParameters
 from navette.viewer.server import ViewerServer
+from navette.viewer.service_calls import ServiceCalls
 from navette.viewer.session import Watch
+from navette.viewer.thread_bridge import ThreadBridge
 from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
-from navette.viewer.web import Gate, Site
+from navette.viewer.web import AccessPolicy, Site
 
 
 class ViewerNode(StageNode):
-    """The live view; serves from its making until :meth:`close`.
+    """The live view; serves clients from construction until :meth:`close`.
 
     Args:
         playback: a recording that is played here: clients see its time and control it.
-        asset_folders: package name → folder, for ``package://<name>/…`` addresses.
+        asset_folders: folder of each package name in ``package://<name>/…`` URIs.
 
     Raises:
         InvalidValueError: the port is in use or the address cannot be bound.
@@ -85,19 +86,17 @@ class ViewerNode(StageNode):
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
         self._hub = Hub(
-            Bridge(self),
+            ThreadBridge(self, self.run_soon),
             name="Navette",
-            # The same for a reconnecting client, another for another run.
+            # The same when a client reconnects, different in the next run.
             session_id=f"navette-{id(self):x}",
             assets=AssetFolders(asset_folders or {}),
             playback_range=None if playback is None else _range(playback),
         )
-        self.client_publishers = ClientPublishers(
-            self._publisher, self.destroy_publisher
-        )
-        self.playback = PlaybackDesk(playback, self._hub, self._call)
+        self._publishers = ClientPublishers(self._publisher, self.destroy_publisher)
+        self._playback = PlaybackRequests(playback, self._hub, self._call)
         try:
-            self._look_after_nodes()
+            self._parameters = self._monitor_nodes()
             self._server = self._make_server()
             self._server.start()
         except BaseException:
@@ -113,16 +112,16 @@ class ViewerNode(StageNode):
         )
         self._stop_listening = self.context.graph.on_change(self._on_graph_change)
         self._refresh()
-        self.playback.begin()
+        self._playback.begin()
 
     @property
     def port(self) -> int:
-        """The TCP port that is listened on."""
+        """The TCP port on which the server listens."""
         return self._server.port
 
     @property
     def url(self) -> str:
-        """The page's address; the same with ``ws://`` is what Foxglove opens."""
+        """Address of the page; with ``ws://``, the address for the Foxglove app."""
         host = self.params.host
         if host in ("0.0.0.0", "::", ""):
             host = "127.0.0.1"
@@ -130,11 +129,11 @@ class ViewerNode(StageNode):
 
     @property
     def client_count(self) -> int:
-        """Clients that are connected."""
+        """Number of connected clients."""
         return self._hub.clients
 
     def close(self) -> None:
-        """Let the clients go, end the thread, leave the graph; twice is harmless."""
+        """Disconnect all clients and leave the graph; a second call has no effect."""
         self.destroy_node()
 
     def destroy_node(self) -> None:
@@ -143,10 +142,10 @@ class ViewerNode(StageNode):
         self._stop_listening = _nothing
         super().destroy_node()
 
-    # -- what the robot says -----------------------------------------------------
+    # -- data for the clients ----------------------------------------------------
 
     def _on_graph_change(self) -> None:
-        """Called from within a change, maybe of many: look once, and later."""
+        """Schedule one refresh for any number of changes."""
         if not self._refreshing:
             self._refreshing = True
             self.run_soon(self._refresh, "graph")
@@ -164,7 +163,7 @@ class ViewerNode(StageNode):
         self._remote.set_nodes(self._serving_elsewhere())
 
     def _frame(self, parameter: str, default: str) -> str:
-        """The viewer's own parameter, else what the first node that has it says."""
+        """Return the viewer's parameter, else that of the first node that has it."""
         for node in (self, *self.context.nodes):
             if node.has_parameter(parameter):
                 frame = str(node.get_parameter(parameter).value)
@@ -173,7 +172,7 @@ class ViewerNode(StageNode):
         return default
 
     def _topic_ends(self) -> list[TopicEnd]:
-        """Without what the viewer itself subscribes to: that keeps no topic alive."""
+        """Return all endpoints except the viewer's own subscriptions."""
         own = self.get_fully_qualified_name()
         found = (
             TopicEnd(
@@ -188,7 +187,7 @@ class ViewerNode(StageNode):
         return [end for end in found if end.publishes or end.node != own]
 
     def _definition(self, topic: str, type_name: str) -> str | None:
-        """The type's text; None, and a warning once, for types nobody knows."""
+        """Return the type's definition; None, and one warning, for an unknown type."""
         if type_name not in self._definitions:
             try:
                 self._definitions[type_name] = definition_text(type_name)
@@ -198,12 +197,12 @@ class ViewerNode(StageNode):
         return self._definitions[type_name]
 
     def _on_parameter_event(self, event: ParameterEvent) -> None:
-        self.desk.on_event(event)
+        self._parameters.on_event(event)
 
-    # -- what clients want (executor thread) ---------------------------------------
+    # -- ProgramCommands (executor thread) -----------------------------------------
 
     def watch(self, watch: Watch) -> None:
-        """Subscribe for a client, or for all of them."""
+        """Subscribe for one client, or for all."""
         channel = watch.channel
         try:
             self._watched[watch] = self.create_subscription(
@@ -211,15 +210,46 @@ class ViewerNode(StageNode):
                 channel.topic,
                 partial(self._forward, watch),
                 qos_profile_best_available,  # latched messages too
-                raw=True,  # what came as bytes goes as bytes
+                raw=True,  # forwarded without decoding
             )
-        except NavetteError as error:  # the topic has changed since it was advertised
+        except NavetteError as error:  # the topic changed after it was advertised
             self.get_logger().warning(f"cannot watch {channel.topic}: {error}")
 
     def unwatch(self, watch: Watch) -> None:
         subscription = self._watched.pop(watch, None)
         if subscription is not None:
             self.destroy_subscription(subscription)
+
+    def open_publisher(self, client: int, channel: ClientChannel) -> None:
+        self._execute(client, self._publishers.open, client, channel)
+
+    def close_publisher(self, client: int, channel_id: int) -> None:
+        self._execute(client, self._publishers.close, client, channel_id)
+
+    def publish_from_client(self, client: int, channel_id: int, data: bytes) -> None:
+        self._execute(client, self._publishers.publish, client, channel_id, data)
+
+    def request_parameters(
+        self, client: int, names: tuple[str, ...], request_id: str | None
+    ) -> None:
+        self._parameters.get(client, names, request_id)
+
+    def change_parameters(
+        self,
+        client: int,
+        parameters: tuple[WireParameter, ...],
+        request_id: str | None,
+    ) -> None:
+        self._parameters.set(client, parameters, request_id)
+
+    def request_parameter_texts(self, client: int) -> None:
+        self._parameters.describe(client)
+
+    def control_playback(self, client: int, request: ControlPlayback) -> None:
+        self._execute(client, self._playback.control, request)
+
+    def step_playback(self, client: int) -> None:
+        self._execute(client, self._playback.step)
 
     def _publisher(self, type_name: str, topic: str) -> Publisher[Any]:
         interface = get_interface(type_name)
@@ -229,8 +259,8 @@ class ViewerNode(StageNode):
         self._server.offer(watch, self._now_ns(), payload)
 
     def _now_ns(self) -> int:
-        """The time that clients are shown; from any thread."""
-        position_ns = self.playback.position_ns()
+        """Return the time that clients display; callable from any thread."""
+        position_ns = self._playback.position_ns()
         return self.get_clock().now_ns if position_ns is None else position_ns
 
     # -- between the threads -------------------------------------------------------
@@ -241,10 +271,10 @@ class ViewerNode(StageNode):
             function, f"viewer {source}", self.get_fully_qualified_name()
         )
 
-    def answer(self, client: int, work: Callable[[], None]) -> None:
-        """Do a client's request; what is wrong with it is told to that client."""
+    def _execute(self, client: int, request: Callable[..., None], *args: Any) -> None:
+        """Execute a client's request; an error is sent back to that client."""
         try:
-            work()
+            request(*args)
         except NavetteError as error:
             self._server.call(self._hub.complain, client, str(error))
         finally:
@@ -254,10 +284,10 @@ class ViewerNode(StageNode):
         """Run a method of the hub on the socket thread."""
         self._server.call(function, *args)
 
-    # -- inside --------------------------------------------------------------------
+    # -- internals -----------------------------------------------------------------
 
-    def _look_after_nodes(self) -> None:
-        """What asks the nodes of other processes, and answers for those here."""
+    def _monitor_nodes(self) -> ParameterRequests:
+        """Set up node monitoring and access to the parameters of all nodes."""
         wall = Stopwatch()
 
         def now_s() -> float:
@@ -266,41 +296,41 @@ class ViewerNode(StageNode):
         def client_of(service: str, type_name: str) -> Client:
             return self.create_client(get_interface(type_name), service)
 
-        questions = Questions(client_of, now_s)
+        service_calls = ServiceCalls(client_of, now_s)
         self._remote = RemoteParameters(
-            questions,
+            service_calls,
             lambda name, value: _parameter(name, value).to_parameter_msg(),
             now_s,
             changed=partial(self._call, self._hub.parameters_changed),
-            described=partial(self._call, self._hub.describe),
+            described=partial(self._call, self._hub.set_parameter_texts),
         )
-        self.desk = ParameterDesk(
-            self._hub, self._call, self._context_nodes, self._remote, _parameter
-        )
-        self._beats = Beats(
+        self._monitor = NodeMonitor(
             self._hub,
             self._call,
             self.run_soon,
-            self._who_is_there,
-            questions,
+            self._list_nodes,
+            service_calls,
             self._remote,
             now_s,
+        )
+        return ParameterRequests(
+            self._hub, self._call, self._context_nodes, self._remote, _parameter
         )
 
     def _context_nodes(self) -> list[Node]:
         return self.context.nodes
 
-    def _who_is_there(self) -> tuple[set[str], dict[str, bool]]:
+    def _list_nodes(self) -> tuple[set[str], dict[str, bool]]:
         here = {node.get_fully_qualified_name() for node in self.context.nodes}
         names = {info.full_name for info in self.context.graph.nodes()}
         others = {name: self._remote.serves(name) for name in names - here}
         return (
             {name for name in here if not _is_hidden(name)},
-            {name: asked for name, asked in others.items() if not _is_hidden(name)},
+            {name: serves for name, serves in others.items() if not _is_hidden(name)},
         )
 
     def _serving_elsewhere(self) -> dict[str, bytes]:
-        """Nodes of other processes that serve their parameters; an id of each."""
+        """Return the gid of each node of another process that serves parameters."""
         here = {node.get_fully_qualified_name() for node in self.context.nodes}
         return {
             end.node_full_name: end.gid
@@ -327,11 +357,11 @@ class ViewerNode(StageNode):
                 lambda: build_layout(*self._frames),
                 self._health,
             ),
-            Gate(params.host, params.allowed_origins, params.allowed_hosts),
+            AccessPolicy(params.host, params.allowed_origins, params.allowed_hosts),
             host=params.host,
             port=params.port,
             now_ns=self._now_ns,
-            on_beat=self._beats.on_beat,
+            on_period=self._monitor.on_period,
             time_rate_hz=params.time_rate_hz,
             max_clients=params.max_clients,
         )
@@ -362,14 +392,14 @@ def _range(playback: Playback) -> tuple[int, int]:
 
 
 def _nothing() -> None:
-    """Nobody is listened to."""
+    """No graph subscription to end."""
 
 
 def _refuse_changes(parameters: list[Parameter[Any]]) -> SetParametersResult:
-    """The server is made once: its parameters count at the start."""
+    """Refuse changes: the server is created once, with its initial parameters."""
     fixed = {field.name for field in fields(ViewerParams)}
     for parameter in parameters:
         if parameter.name in fixed:
-            reason = f"{parameter.name} takes effect at the start only"
+            reason = f"{parameter.name} can be set at the start only"
             return SetParametersResult(successful=False, reason=reason)
     return SetParametersResult(successful=True)

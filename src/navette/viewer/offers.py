@@ -1,4 +1,4 @@
-"""Messages on their way from the executor's thread to the socket thread."""
+"""Queue of messages from the executor's thread to the socket thread."""
 
 import asyncio
 import threading
@@ -7,14 +7,14 @@ from collections.abc import Callable
 
 from navette.viewer.session import Watch
 
-_MAX_WAITING = 64 * 2**20  # bytes
+_MAX_QUEUED = 64 * 2**20  # bytes
 
 
 class OfferQueue:
-    """Takes messages from any thread and delivers them on a loop's; never waits.
+    """Accepts messages from any thread and delivers them on the loop's; never blocks.
 
-    At most one wake-up is under way; when more than ``_MAX_WAITING`` bytes wait, the
-    oldest are dropped.
+    At most one wake-up of the loop is scheduled; when more than ``_MAX_QUEUED`` bytes
+    are queued, the oldest messages are dropped.
     """
 
     def __init__(
@@ -27,16 +27,16 @@ class OfferQueue:
         self._deliver = deliver
         self._delivered = delivered
         self._lock = threading.Lock()
-        self._waiting: deque[tuple[Watch, int, bytes]] = deque()
+        self._queued: deque[tuple[Watch, int, bytes]] = deque()
         self._size = 0
         self._scheduled = False
 
     def add(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
         with self._lock:
-            self._waiting.append((watch, stamp_ns, payload))
+            self._queued.append((watch, stamp_ns, payload))
             self._size += len(payload)
-            while self._size > _MAX_WAITING and len(self._waiting) > 1:
-                self._size -= len(self._waiting.popleft()[2])
+            while self._size > _MAX_QUEUED and len(self._queued) > 1:
+                self._size -= len(self._queued.popleft()[2])
             if self._scheduled or self._loop.is_closed():
                 return
             self._scheduled = True
@@ -44,7 +44,7 @@ class OfferQueue:
 
     def _run(self) -> None:
         with self._lock:
-            batch, self._waiting = self._waiting, deque()
+            batch, self._queued = self._queued, deque()
             self._size = 0
             self._scheduled = False
         for offer in batch:

@@ -1,4 +1,4 @@
-"""What waits to be sent to one client: bounded, newest kept."""
+"""Bounded send queue of one client; the newest frames are kept."""
 
 from collections import deque
 from collections.abc import Hashable
@@ -7,13 +7,13 @@ Frame = str | bytes
 
 
 class Outbox:
-    """Frames for one client, in order; a slow reader loses old data frames only.
+    """Frames for one client, in order; a slow client loses old data frames only.
 
-    Control frames (answers, advertisements) are never dropped: when more than
-    ``control_bytes`` of them wait, :attr:`overflowed` says that the client does not
-    read and should be let go. Data frames belong to a stream (a subscription); each
-    stream keeps its newest ``depth`` frames and at most ``stream_bytes`` (but always
-    one frame), so that a slow client sees every topic fresh, if less often.
+    Control frames (responses, advertisements) are never dropped: when more than
+    ``control_bytes`` of them are queued, :attr:`overflowed` is set and the client
+    should be disconnected. Data frames belong to a stream (a subscription); each stream
+    keeps its newest ``depth`` frames and at most ``stream_bytes`` (but always one
+    frame), so that a slow client receives current data of every topic at a lower rate.
     """
 
     def __init__(
@@ -57,17 +57,17 @@ class Outbox:
             len(waiting.frames) > limit or waiting.size > self._stream_bytes
         ):
             waiting.size -= len(waiting.frames.popleft())
-            # Its turn goes with it: each stream has as many turns as frames.
+            # A stream has as many turns as frames.
             self._turns.remove(stream)
             self.dropped += 1
 
     def forget(self, stream: Hashable) -> None:
-        """Drop what waits of a stream (its client no longer wants it)."""
+        """Drop the queued frames of a stream."""
         if self._streams.pop(stream, None) is not None:
             self._turns = deque(turn for turn in self._turns if turn != stream)
 
     def pop(self) -> Frame:
-        """The next frame to send; control frames first, then data in order."""
+        """Remove and return the next frame: control frames first, then data."""
         if self._control:
             frame = self._control.popleft()
             self._control_size -= len(frame)

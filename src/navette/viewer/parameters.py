@@ -1,4 +1,4 @@
-"""ROS 2 parameter values and their form on the Foxglove socket."""
+"""Convert ROS 2 parameter values to and from the Foxglove protocol."""
 
 import base64
 import binascii
@@ -14,7 +14,7 @@ from navette.viewer.frames import WireParameter
 
 
 def wire_name(node: str, parameter: str) -> str:
-    """``/planner`` and ``method`` → ``/planner.method``, as foxglove_bridge has it."""
+    """``/planner`` and ``method`` → ``/planner.method``, as in foxglove_bridge."""
     return f"{node}.{parameter}"
 
 
@@ -22,14 +22,16 @@ def split_name(name: str) -> tuple[str, str]:
     """``/planner.method`` (or ``planner.method``) → (``/planner``, ``method``)."""
     node, dot, parameter = name.partition(".")
     if not (node and dot and parameter):
-        raise ParameterError(f"parameter {name!r:.120}: wanted /node.parameter")
+        raise ParameterError(
+            f"parameter {name!r:.120}: the name must be /node.parameter"
+        )
     return node if node.startswith("/") else f"/{node}", parameter
 
 
 def to_wire(name: str, value: Any) -> WireParameter:
-    """A parameter's value for JSON; ``kind`` keeps doubles and bytes apart.
+    """Convert a value for JSON; ``kind`` marks doubles and bytes.
 
-    JSON knows no NaN and no infinity: such a number goes out as unset.
+    JSON has neither NaN nor infinity: such a number is sent as unset.
     """
     if isinstance(value, bytes | bytearray):
         return WireParameter(name, base64.b64encode(value).decode(), "byte_array")
@@ -52,16 +54,18 @@ def _array_to_wire(name: str, items: list[Any]) -> WireParameter:
 
 
 def from_wire(parameter: WireParameter, current: Any) -> Any:
-    """The value to set: numbers become what the parameter is now (3 → 3.0).
+    """Return the value to set; numbers take the type of ``current`` (3 → 3.0).
 
     Raises:
-        ParameterError: the value contradicts its own ``kind`` or is no ROS 2 value.
+        ParameterError: the value contradicts its ``kind`` or has no ROS 2 type.
     """
     value, kind = parameter.value, parameter.kind
     if kind == "byte_array":
         return _bytes_of(parameter)
     if isinstance(value, dict):
-        raise ParameterError(f"parameter {parameter.name!r}: objects are no ROS 2 type")
+        raise ParameterError(
+            f"parameter {parameter.name!r}: a JSON object is not a ROS 2 parameter type"
+        )
     if kind == "float64" or (_is_number(value) and isinstance(current, float)):
         return _float(parameter, value)
     if isinstance(value, list):
@@ -70,7 +74,7 @@ def from_wire(parameter: WireParameter, current: Any) -> Any:
         if floats or (mixed and all(map(_is_number, value))):
             return [_float(parameter, item) for item in value]
     if isinstance(value, float) and isinstance(current, int) and value.is_integer():
-        # JavaScript has one kind of number.
+        # JavaScript does not distinguish integers.
         return int(value)
     return value
 
@@ -89,7 +93,7 @@ def _holds_floats(value: object) -> bool:
 def _float(parameter: WireParameter, value: object) -> float:
     if not isinstance(value, int | float) or isinstance(value, bool):
         raise ParameterError(
-            f"parameter {parameter.name!r}: {value!r:.80} is no number"
+            f"parameter {parameter.name!r}: {value!r:.80} is not a number"
         )
     return float(value)
 
@@ -116,9 +120,9 @@ _FIELDS = {
 
 
 def value_of(message: Any) -> Any:
-    """The value in an rcl_interfaces/msg/ParameterValue; None: unset, or no known type.
+    """Return the value of an rcl_interfaces/msg/ParameterValue.
 
-    Fields by rcl_interfaces/msg/ParameterType.
+    None if it is unset or its rcl_interfaces/msg/ParameterType is unknown.
     """
     name = _FIELDS.get(message.type)
     value = None if name is None else getattr(message, name)
@@ -132,15 +136,14 @@ _LONGEST_TEXT = 500
 
 @dataclass(frozen=True)
 class ParameterText:
-    """What a parameter means and takes, as its node describes it.
+    """Description of a parameter, as its node declares it.
 
     Args:
-        name: as :func:`wire_name` makes it.
-        meaning: a line of text.
-        allowed: the values that it takes, in words.
-        read_only: it cannot be set.
-        low, high: ends of its range, where it has one.
-        step: of the range; 0: any value in it.
+        name: as returned by :func:`wire_name`.
+        meaning: one line of text.
+        allowed: additional constraints, as text.
+        low, high: ends of the range, None without one.
+        step: step of the range; 0 allows any value in it.
     """
 
     name: str
@@ -153,13 +156,13 @@ class ParameterText:
 
     @classmethod
     def of(cls, name: str, descriptor: Any) -> "ParameterText":
-        """Of an rcl_interfaces/msg/ParameterDescriptor; a range that is none is left
-        out."""
+        """Convert an rcl_interfaces/msg/ParameterDescriptor; invalid ranges are
+        omitted."""
         low = high = None
         step = 0.0
         for bounds in (*descriptor.floating_point_range, *descriptor.integer_range):
             ends = float(bounds.from_value), float(bounds.to_value)
-            # An infinity in JSON would be unreadable.
+            # JSON has no infinity.
             if all(map(math.isfinite, ends)) and ends[0] < ends[1]:
                 low, high = ends
                 width = float(bounds.step)

@@ -1,4 +1,4 @@
-"""A client's connection in the socket thread: what waits for it, what it waits for."""
+"""One client's connection in the socket thread."""
 
 import asyncio
 import contextlib
@@ -9,48 +9,48 @@ from websockets.exceptions import ConnectionClosed
 from navette.viewer.outbox import Outbox
 from navette.viewer.session import Session
 
-_MAX_PENDING = 64  # requests of one client that may wait for the program
+_MAX_PENDING = 64  # unfinished requests of one client
 
 
 class Peer:
-    """A client's connection and what waits for it."""
+    """A client's connection, the frames queued for it and its unfinished requests."""
 
     def __init__(
         self, connection: ServerConnection, session: Session, outbox: Outbox
     ) -> None:
         self.connection = connection
         self.session = session
-        #: Cut off: what it still has said does not count.
+        #: Aborted: frames that still arrive are ignored.
         self.gone = False
         self._outbox = outbox
         self._answered = asyncio.Event()
         self._filled = asyncio.Event()
 
     def wake(self) -> None:
-        """There may be something to send."""
+        """Check the outbox for frames to send."""
         self._filled.set()
         if self._outbox.overflowed:
-            # It does not read: a word of good-bye would not get through.
+            # The client does not read, so a closing handshake would never complete.
             self.abort()
 
     def abort(self) -> None:
-        """Cut the connection and wait for nothing."""
+        """Cut the connection without a closing handshake."""
         self.gone = True
         self.connection.transport.abort()
-        self.look_at_answers()
+        self.check_pending()
 
-    def look_at_answers(self) -> None:
-        """The program may have done some of what the client asked for."""
+    def check_pending(self) -> None:
+        """Check again how many requests are unfinished."""
         self._answered.set()
 
     async def wait_for_answers(self) -> None:
-        """Return when few enough of the client's requests are under way."""
+        """Return when fewer than the maximum of requests are unfinished."""
         while self.session.pending >= _MAX_PENDING and not self.gone:
             self._answered.clear()
             await self._answered.wait()
 
     async def send(self) -> None:
-        """Send what comes, at the pace at which the client takes it."""
+        """Send queued frames at the rate at which the client reads them."""
         with contextlib.suppress(ConnectionClosed):
             while True:
                 await self._filled.wait()

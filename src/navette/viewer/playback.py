@@ -1,4 +1,4 @@
-"""What the live view needs to know of a recording that is played, and may ask of it."""
+"""Interface of a recording that is played, as the live view needs it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import Protocol
 
 
 class PlaybackStatus(IntEnum):
-    """Values as on the socket."""
+    """Values as in the Foxglove protocol."""
 
     PLAYING = 0
     PAUSED = 1
@@ -17,7 +17,7 @@ class PlaybackStatus(IntEnum):
 
 @dataclass(frozen=True)
 class PlaybackState:
-    """Where a recording is; ``position_ns`` in its own time."""
+    """Status, position (recording time) and speed factor."""
 
     status: PlaybackStatus
     position_ns: int
@@ -25,28 +25,27 @@ class PlaybackState:
 
 
 class Playback(Protocol):
-    """A recording that is played; only :meth:`state` may be asked from any thread."""
+    """A recording that is played; only :meth:`state` is callable from any thread."""
 
     @property
     def begin_ns(self) -> int:
-        """First stamp that can be gone to."""
+        """First stamp to seek to."""
 
     @property
     def end_ns(self) -> int:
-        """Last stamp that can be gone to."""
+        """Last stamp to seek to."""
 
-    def state(self) -> PlaybackState:
-        """How it is now."""
+    def state(self) -> PlaybackState: ...
 
     def control(self, *, play: bool, speed: float, seek_ns: int | None) -> None:
-        """Go to a place, at a speed, and play or pause there.
+        """Seek, set the speed, then play or pause.
 
         Raises:
-            InvalidValueError: no speed.
+            InvalidValueError: the speed is not a positive number.
         """
 
     def step(self) -> None:
-        """Pause, and say the next message."""
+        """Pause, and publish the next message."""
 
     def on_change(self, callback: Callable[[bool], None]) -> None:
-        """Call back after every change, with whether it was a jump."""
+        """Call ``callback`` after every change; its argument is true after a seek."""

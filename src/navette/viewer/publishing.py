@@ -1,4 +1,4 @@
-"""What clients publish: bytes to messages, and by which publishers."""
+"""Messages that clients publish: decoding, and the publishers they use."""
 
 import json
 from collections.abc import Callable
@@ -10,21 +10,19 @@ from navette.viewer.frames import ClientChannel
 
 
 class OpenPublisher(Protocol):
-    """A publisher of the graph."""
-
     @property
     def msg_type(self) -> type[Message]: ...
     def publish(self, message: Any) -> None: ...
 
 
 class ClientPublishers:
-    """The publishers that clients have opened, each by the client's number for it.
+    """The publishers that clients opened, by client and the client's channel id.
 
-    All methods raise NavetteError for what cannot be published.
+    All methods raise NavetteError for types, topics and data that cannot be published.
 
     Args:
-        create: makes a publisher of a type's name and a topic.
-        destroy: lets go of one.
+        create: creates a publisher for a type name and a topic.
+        destroy: destroys a publisher.
     """
 
     def __init__(
@@ -52,14 +50,14 @@ class ClientPublishers:
 
 
 def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
-    """A client's message, ``cdr`` or ``json``.
+    """Decode a client's message, ``cdr`` or ``json``.
 
-    JSON fields that are left out keep their defaults; stamps may spell nanoseconds
+    Missing JSON fields keep their defaults; the nanoseconds of a stamp may be called
     ``nsec``, as Foxglove does, or ``nanosec``.
 
     Raises:
-        DecodeError: the bytes are no such message.
-        MessageError: a field is unknown or of the wrong type; it is named.
+        DecodeError: the bytes are not a message of this type.
+        MessageError: a field is unknown or has the wrong type; names the field.
     """
     if encoding == "cdr":
         return deserialize(data, cls)
@@ -73,7 +71,7 @@ def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
 
 
 def _with_ros_names(value: Any) -> Any:
-    """Stamps written {sec, nsec} become {sec, nanosec}, at any depth."""
+    """Rename {sec, nsec} to {sec, nanosec}, at any depth."""
     if isinstance(value, list):
         return [_with_ros_names(item) for item in value]
     if not isinstance(value, dict):

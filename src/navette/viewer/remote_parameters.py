@@ -1,7 +1,7 @@
-"""Parameters of nodes of other processes, by their ROS 2 parameter services.
+"""Parameters of nodes of other processes, through their ROS 2 parameter services.
 
-Listed, read and described once, as soon as a client wants to see parameters; from then
-on ``/parameter_events`` tells what changes. Nothing here waits.
+Parameters are listed, read and described once, as soon as a client requests them; later
+changes arrive on ``/parameter_events``. No method blocks.
 """
 
 import math
@@ -19,74 +19,73 @@ from navette.viewer.parameters import (
     value_of,
     wire_name,
 )
-from navette.viewer.questions import Answered, Questions
+from navette.viewer.service_calls import OnResponse, ServiceCalls
 
 LIST = "rcl_interfaces/srv/ListParameters"
 _GET = "rcl_interfaces/srv/GetParameters"
 _DESCRIBE = "rcl_interfaces/srv/DescribeParameters"
 _SET = "rcl_interfaces/srv/SetParameters"
 
-# Nobody has as many, except to do harm.
-_MOST_NAMES = 1000
-_MOST_TOLD = 10_000
-_PATIENCE_S = 2.0  # with a node that is busy
-_AGAIN_S = 5.0  # after a question, until a node that did not answer is asked again
+# Limits against nodes that report absurd numbers of parameters.
+_MAX_NAMES = 1000
+_MAX_VALUES = 10_000
+_TIMEOUT_S = 2.0  # longer than the default: a node may be busy
+_RETRY_S = 5.0  # until a node that did not respond is called again
 
 Encode = Callable[[str, Any], Any]
-"""Name and value → rcl_interfaces/msg/Parameter; raises NavetteError for no value."""
+"""Encodes name and value as rcl_interfaces/msg/Parameter; may raise NavetteError."""
 
 
 @dataclass
 class _Remote:
-    """A node elsewhere; ``gid`` tells it from its successor of the same name."""
+    """A node of another process; its successor of the same name has another gid."""
 
     gid: bytes
     is_known: bool = False
-    asked_s: float | None = None
+    requested_s: float | None = None
     waiting: list[Callable[[str], None]] = field(default_factory=list)
 
 
 class RemoteParameters:
-    """What is known of the parameters of nodes that are not here.
+    """Cache of the parameters of nodes of other processes.
 
     Args:
-        questions: asks their services.
-        encode: makes the message of a value.
-        now_s: wall time that only grows.
-        changed: takes values that are new, other than before, or (None) gone.
-        described: takes texts and ranges that are new.
+        encode: creates the message of a value.
+        now_s: monotonic wall time.
+        changed: called with values that are new, changed or (None) deleted.
+        described: called with new descriptions.
     """
 
     def __init__(
         self,
-        questions: Questions,
+        service_calls: ServiceCalls,
         encode: Encode,
         now_s: Callable[[], float],
         changed: Callable[[list[WireParameter]], None],
         described: Callable[[list[ParameterText]], None],
     ) -> None:
-        self._questions = questions
+        self._service_calls = service_calls
         self._encode = encode
         self._now_s = now_s
         self._changed = changed
         self._described = described
         self._nodes: dict[str, _Remote] = {}
-        #: Full name of the parameter → its value; also of nodes that only told it.
+        #: Values by full name; includes nodes that only published events.
         self.values: dict[str, WireParameter] = {}
         self.texts: dict[str, ParameterText] = {}
 
-    # -- who is there ----------------------------------------------------------
+    # -- nodes ------------------------------------------------------------------
 
     def set_nodes(self, serving: Mapping[str, bytes]) -> None:
-        """Nodes that serve their parameters, with the id of that service.
+        """Set the nodes that serve their parameters, with the gid of that service.
 
-        What those that are gone had is forgotten.
+        Parameters of nodes that are gone are dropped.
         """
         for name, remote in list(self._nodes.items()):
             if serving.get(name) != remote.gid:
                 del self._nodes[name]
                 self._forget(name)
-                _tell(remote, f"node {name} is gone")
+                _finish(remote, f"node {name} left the graph")
         for name, gid in serving.items():
             if name not in self._nodes:
                 self._nodes[name] = _Remote(gid)
@@ -102,17 +101,21 @@ class RemoteParameters:
     # -- reading ---------------------------------------------------------------
 
     def fetch(self, done: Callable[[], None] | None = None) -> None:
-        """Read the parameters of the nodes that are not known yet.
+        """Read the parameters of the nodes that were not read yet.
 
-        ``done`` is called when all of them have answered or cannot; without it, those
-        that did not answer a moment ago are left alone.
+        ``done`` is called when all of them have responded or failed; without it, nodes
+        that failed to respond a moment ago are skipped.
         """
         now_s = self._now_s()
         unknown = [
             name
             for name, remote in self._nodes.items()
             if not remote.is_known
-            and (done or remote.asked_s is None or now_s - remote.asked_s > _AGAIN_S)
+            and (
+                done
+                or remote.requested_s is None
+                or now_s - remote.requested_s > _RETRY_S
+            )
         ]
         left = len(unknown)
 
@@ -128,36 +131,36 @@ class RemoteParameters:
             done()
 
     def _fetch(self, node: str, done: Callable[[str], None]) -> None:
-        """``done`` takes why it did not work; empty where it did."""
+        """Call ``done`` with the reason of the failure, or with ""."""
         remote = self._nodes[node]
         remote.waiting.append(done)
-        if len(remote.waiting) > 1:  # under way
+        if len(remote.waiting) > 1:  # already requested
             return
-        remote.asked_s = self._now_s()
+        remote.requested_s = self._now_s()
 
         def listed(response: Any, reason: str) -> None:
             if self._nodes.get(node) is not remote:
                 return
             if response is None:
-                _tell(remote, f"node {node}: {reason}")
+                _finish(remote, f"node {node}: {reason}")
             else:
-                self._read(node, remote, list(response.result.names)[:_MOST_NAMES])
+                self._read(node, remote, list(response.result.names)[:_MAX_NAMES])
 
-        self._ask(f"{node}/list_parameters", LIST, {}, listed)
+        self._call(f"{node}/list_parameters", LIST, {}, listed)
 
     def _read(self, node: str, remote: _Remote, names: list[str]) -> None:
         def got(response: Any, reason: str) -> None:
             if self._nodes.get(node) is not remote:
                 return
             if response is None:
-                _tell(remote, f"node {node}: {reason}")
+                _finish(remote, f"node {node}: {reason}")
                 return
             remote.is_known = True
-            self.take(node, zip(names, response.values, strict=False))
-            _tell(remote, "")
+            self.store(node, zip(names, response.values, strict=False))
+            _finish(remote, "")
 
         def described(response: Any, _reason: str) -> None:
-            # Without texts and ranges they can be shown and set all the same.
+            # Without descriptions, parameters can still be shown and set.
             if response is not None and self._nodes.get(node) is remote:
                 found = zip(names, response.descriptors, strict=False)
                 texts = [ParameterText.of(wire_name(node, n), d) for n, d in found]
@@ -165,19 +168,19 @@ class RemoteParameters:
                 self._described(texts)
 
         wanted = {"names": names}
-        self._ask(f"{node}/describe_parameters", _DESCRIBE, wanted, described)
-        self._ask(f"{node}/get_parameters", _GET, wanted, got)
+        self._call(f"{node}/describe_parameters", _DESCRIBE, wanted, described)
+        self._call(f"{node}/get_parameters", _GET, wanted, got)
 
-    def take(self, node: str, values: Iterable[tuple[str, Any]]) -> None:
-        """Parameters as a node says them: name, rcl_interfaces/msg/ParameterValue."""
-        told = [to_wire(wire_name(node, name), value_of(v)) for name, v in values]
-        for wire in told:
-            if len(self.values) < _MOST_TOLD or wire.name in self.values:
+    def store(self, node: str, values: Iterable[tuple[str, Any]]) -> None:
+        """Store values of a node: name, rcl_interfaces/msg/ParameterValue."""
+        received = [to_wire(wire_name(node, name), value_of(v)) for name, v in values]
+        for wire in received:
+            if len(self.values) < _MAX_VALUES or wire.name in self.values:
                 self.values[wire.name] = wire
-        self._changed(told)
+        self._changed(received)
 
     def drop(self, node: str, names: Iterable[str]) -> None:
-        """Parameters that a node says are deleted."""
+        """Drop parameters that a node deleted."""
         gone = [WireParameter(wire_name(node, name), None) for name in names]
         for wire in gone:
             self.values.pop(wire.name, None)
@@ -186,11 +189,11 @@ class RemoteParameters:
     # -- setting ---------------------------------------------------------------
 
     def serves(self, node: str) -> bool:
-        """Whether the parameters of that node can be asked for and set."""
+        """Whether the node serves its parameters."""
         return node in self._nodes
 
     def set(self, wire: WireParameter, done: Callable[[str], None]) -> None:
-        """Set one; ``done`` takes why it was not set, in the node's words."""
+        """Set one; calls ``done`` with the reason of a refusal, else with ""."""
         node, _ = split_name(wire.name)
         known = self.values.get(wire.name)
         if known is None and not self._nodes[node].is_known:
@@ -199,11 +202,11 @@ class RemoteParameters:
             self._send(wire, done, "")
 
     def _send(
-        self, wire: WireParameter, done: Callable[[str], None], trouble: str
+        self, wire: WireParameter, done: Callable[[str], None], failure: str
     ) -> None:
         node, name = split_name(wire.name)
-        if trouble:
-            done(trouble)
+        if failure:
+            done(failure)
             return
         try:
             value = from_wire(wire, _current(self.values.get(wire.name)))
@@ -212,7 +215,7 @@ class RemoteParameters:
             done(str(error))
             return
 
-        def answered(response: Any, reason: str) -> None:
+        def on_response(response: Any, reason: str) -> None:
             if response is None:
                 done(f"node {node}: {reason}")
                 return
@@ -220,29 +223,33 @@ class RemoteParameters:
             if result is None or not result.successful:
                 done((result.reason if result else "") or "refused")
                 return
-            # The node's event may be late, or (not every node has them) never come.
-            self.take(node, [(name, message.value)])
+            # The node's event may arrive late or, for some nodes, never.
+            self.store(node, [(name, message.value)])
             done("")
 
         fields = {"parameters": [message]}
-        self._ask(f"{node}/set_parameters", _SET, fields, answered)
+        self._call(f"{node}/set_parameters", _SET, fields, on_response)
 
-    def _ask(
-        self, service: str, type_name: str, fields: dict[str, Any], answered: Answered
+    def _call(
+        self,
+        service: str,
+        type_name: str,
+        fields: dict[str, Any],
+        on_response: OnResponse,
     ) -> None:
-        self._questions.ask(
-            service, type_name, fields, answered, patience_s=_PATIENCE_S
+        self._service_calls.call(
+            service, type_name, fields, on_response, timeout_s=_TIMEOUT_S
         )
 
 
-def _tell(remote: _Remote, reason: str) -> None:
+def _finish(remote: _Remote, reason: str) -> None:
     waiting, remote.waiting = remote.waiting, []
     for done in waiting:
         done(reason)
 
 
 def _current(known: WireParameter | None) -> Any:
-    """A value as :func:`from_wire` wants it, to tell what kind it is."""
+    """Return a value of the type that :func:`from_wire` converts to."""
     if known is None:
         return None
     if known.kind == "float64":

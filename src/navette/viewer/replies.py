@@ -1,7 +1,7 @@
-"""Frames that the server sends: values to text and binary, nothing else.
+"""Encode the frames that the server sends.
 
-Source: the Foxglove WebSocket protocol v1 (foxglove/ws-protocol, docs/spec.md), for
-playback control the SDK's (foxglove/foxglove-sdk, rust/foxglove/src/protocol).
+Source: the Foxglove WebSocket protocol v1 (foxglove/ws-protocol, docs/spec.md) and,
+for playback control, the SDK's (foxglove/foxglove-sdk, rust/foxglove/src/protocol).
 """
 
 import json
@@ -12,11 +12,11 @@ from enum import IntEnum
 from typing import Any
 
 from navette.viewer.frames import WireParameter
-from navette.viewer.heartbeats import NodeReport
+from navette.viewer.liveness import NodeReport
 from navette.viewer.parameters import ParameterText
 from navette.viewer.playback import PlaybackState
 
-# A capability that is declared must work; playback control is declared by who plays.
+# A declared capability must work; playbackControl is added with a recording.
 CAPABILITIES = (
     "clientPublish",
     "parameters",
@@ -39,7 +39,7 @@ class Level(IntEnum):
 
 @dataclass(frozen=True)
 class Channel:
-    """A topic with one type, as clients see it; ``latched`` is transient local."""
+    """A topic with one type; ``latched`` means transient local."""
 
     id: int
     topic: str
@@ -50,7 +50,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Graph:
-    """Who publishes and who subscribes: topic → node names."""
+    """Names of the publishing and subscribing nodes by topic."""
 
     published: Mapping[str, tuple[str, ...]]
     subscribed: Mapping[str, tuple[str, ...]]
@@ -62,7 +62,7 @@ EMPTY_GRAPH = Graph({}, {})
 def server_info(
     name: str, session_id: str, playback_range: tuple[int, int] | None = None
 ) -> str:
-    """``playback_range``: first and last stamp (ns) of a recording that is played."""
+    """Encode serverInfo; ``playback_range``: first and last stamp of a bag (ns)."""
     extra: dict[str, Any] = {}
     if playback_range is not None:
         begin, end = (divmod(each, _NS_PER_S) for each in playback_range)
@@ -74,8 +74,8 @@ def server_info(
         name=name,
         capabilities=(*CAPABILITIES, *playback),
         supportedEncodings=ENCODINGS,
-        # Without the distribution's name the Foxglove app does not know that this is
-        # ROS 2, and its publish tools (the goal point!) stay off.
+        # Without a ROS 2 distribution the Foxglove app disables its publish tools,
+        # which set the goal point.
         metadata={"ROS_DISTRO": "jazzy"},
         sessionId=session_id,
         **extra,
@@ -116,7 +116,7 @@ def time(stamp_ns: int) -> bytes:
 
 
 def playback_state(state: PlaybackState, *, did_seek: bool, request_id: str) -> bytes:
-    """``did_seek`` empties panels; ``request_id`` is that of the request, or ""."""
+    """Encode playbackState; ``did_seek`` makes clients clear their panels."""
     text = request_id.encode()
     head = struct.pack(
         "<BBQfBI",
@@ -152,7 +152,7 @@ def _parameter(parameter: WireParameter) -> dict[str, Any]:
 
 
 def graph_update(old: Graph, new: Graph) -> str | None:
-    """The difference of two graphs, or None where they are the same."""
+    """Encode the difference of two graphs; None if they are equal."""
     published = _changed(old.published, new.published)
     subscribed = _changed(old.subscribed, new.subscribed)
     gone = (old.published.keys() | old.subscribed.keys()) - (
@@ -187,13 +187,13 @@ def _changed(
     return {topic: nodes for topic, nodes in new.items() if old.get(topic) != nodes}
 
 
-def nodes(reports: Iterable[NodeReport], hangs_s: float) -> str:
-    """``hangs_s``: how long the program has run no callback, where that is long."""
+def nodes(reports: Iterable[NodeReport], blocked_s: float) -> str:
+    """Encode node states; ``blocked_s``: time since the program ran a callback."""
     document = [
         {"name": each.name, "state": each.state, "since": round(each.since_s, 1)}
         for each in reports
     ]
-    return _json(op="nodes", nodes=document, hangs=round(hangs_s, 1))
+    return _json(op="nodes", nodes=document, blocked=round(blocked_s, 1))
 
 
 def parameter_texts(texts: Iterable[ParameterText]) -> str:
@@ -216,7 +216,7 @@ def service_failure(service_id: int, call_id: int, message: str) -> str:
 
 
 def _json(**fields: Any) -> str:
-    # NaN would make the whole frame unreadable in a browser: better to fail here.
+    # A browser cannot parse a frame with NaN: fail here instead.
     return json.dumps(fields, allow_nan=False, separators=(",", ":"))
 
 

@@ -1,8 +1,7 @@
-"""The socket thread: one port that speaks WebSocket and plain HTTP.
+"""The socket thread: WebSocket and plain HTTP on one port.
 
-An asyncio loop in a thread of its own owns the hub and all sockets. Other threads
-reach it through :meth:`ViewerServer.call` and :meth:`ViewerServer.offer`, which
-never wait.
+An asyncio loop in its own thread owns the hub and all sockets. Other threads use
+:meth:`ViewerServer.call` and :meth:`ViewerServer.offer`, which never block.
 """
 
 import asyncio
@@ -23,23 +22,22 @@ from websockets.typing import Subprotocol
 
 from navette.errors import InvalidValueError, NavetteError
 from navette.viewer.frames import SUBPROTOCOLS
-from navette.viewer.heartbeats import PERIOD_S
 from navette.viewer.hub import Hub
+from navette.viewer.liveness import PERIOD_S
 from navette.viewer.offers import OfferQueue
 from navette.viewer.outbox import Outbox
 from navette.viewer.peer import Peer
 from navette.viewer.session import Watch
-from navette.viewer.web import Answer, Gate, Site, refuse
+from navette.viewer.web import AccessPolicy, HttpResponse, Site, refuse
 
-# Connections that come, go and fail to open are every day's business: only what is
-# wrong in here is worth a line.
+# Connections that open, close or fail are normal; only errors of the server are logged.
 _log = logging.getLogger(__name__)
 _log.setLevel(logging.ERROR)
 _log.addFilter(lambda record: record.msg != "opening handshake failed")
 
-_MAX_FRAME = 16 * 2**20  # bytes of one client frame; a larger one ends the connection
+_MAX_FRAME = 16 * 2**20  # bytes; a larger client frame closes the connection
 _SEND_BUFFER = 256 * 1024  # bytes in flight per client before frames queue up
-_OPEN_S = 2.0  # for a request to come; browsers open connections in advance
+_OPEN_S = 2.0  # until a request; browsers open connections in advance
 _CLOSE_S = 1.0
 
 
@@ -49,30 +47,30 @@ class ViewerServer:
     Args:
         host: address to bind.
         port: TCP port; 0 takes a free one, see :attr:`port`.
-        now_ns: the program's time, asked from the socket thread.
-        on_beat: called there every ``PERIOD_S`` of wall time.
+        now_ns: the program's time; called on the socket thread.
+        on_period: called on the socket thread every ``PERIOD_S`` of wall time.
     """
 
     def __init__(
         self,
         hub: Hub,
         site: Site,
-        gate: Gate,
+        policy: AccessPolicy,
         *,
         host: str,
         port: int,
         now_ns: Callable[[], int],
-        on_beat: Callable[[], None],
+        on_period: Callable[[], None],
         time_rate_hz: float,
         max_clients: int,
     ) -> None:
         self._hub = hub
         self._site = site
-        self._gate = gate
+        self._policy = policy
         self._host = host
         self.port = port
         self._now_ns = now_ns
-        self._on_beat = on_beat
+        self._on_period = on_period
         self._tick_s = 1.0 / time_rate_hz
         self._max_clients = max_clients
         self._loop = asyncio.new_event_loop()
@@ -87,16 +85,16 @@ class ViewerServer:
     # -- any thread ------------------------------------------------------------
 
     def start(self) -> None:
-        """Listen; returns when clients can connect.
+        """Listen; return when clients can connect.
 
         Raises:
-            InvalidValueError: the address cannot be used; names it and says why.
+            InvalidValueError: the address cannot be bound.
         """
         self._thread.start()
         self._started.result()
 
     def close(self) -> None:
-        """Let all clients go and end the thread; closing twice is harmless."""
+        """Disconnect all clients and end the thread; a second call has no effect."""
         if self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._stop.set)
             self._thread.join()
@@ -110,7 +108,7 @@ class ViewerServer:
                 raise
 
     def offer(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
-        """Send a message to whoever watches; the oldest go when too many wait."""
+        """Queue a message for its clients; drops the oldest when the queue is full."""
         self._offers.add(watch, stamp_ns, payload)
 
     # -- socket thread ---------------------------------------------------------
@@ -124,13 +122,14 @@ class ViewerServer:
             self._started.set_exception(self._explain(error))
         finally:
             self._loop.close()
-            self._started.cancel()  # start() must not wait for ever
+            self._started.cancel()  # start() must not block forever
 
     def _explain(self, error: OSError) -> NavetteError:
         where = f"viewer: cannot listen on {self._host} port {self.port}"
         if error.errno == errno.EADDRINUSE:
             return InvalidValueError(
-                f"{where}: the port is in use; stop what uses it or choose another port"
+                f"{where}: the port is in use; stop the program that uses it or "
+                "choose another port"
             )
         return InvalidValueError(f"{where}: {error.strerror or error}")
 
@@ -152,12 +151,12 @@ class ViewerServer:
         self.port = _port_of(server)
         self._started.set_result(None)
         self._tick()
-        self._beat()
+        self._run_period()
         await self._stop.wait()
         await self._end(server)
 
     async def _end(self, server: Server) -> None:
-        """Say good-bye; cut off who does not answer."""
+        """Close all connections; abort those that do not complete the handshake."""
         server.close()
         ended = asyncio.create_task(server.wait_closed())
         await asyncio.wait([ended], timeout=_CLOSE_S)
@@ -168,9 +167,9 @@ class ViewerServer:
     def _answer(
         self, connection: ServerConnection, request: Request
     ) -> Response | None:
-        """HTTP for whoever does not ask for a socket; None lets the socket open."""
+        """Return an HTTP response, or None to open the WebSocket."""
         headers = request.headers
-        refused = self._gate.refusal(headers.get("Host"), headers.get("Origin"))
+        refused = self._policy.refusal(headers.get("Host"), headers.get("Origin"))
         is_socket = headers.get("Upgrade", "").lower() == "websocket"
         if refused:
             return _response(refuse(403, refused))
@@ -179,7 +178,7 @@ class ViewerServer:
             return _response(self._site.answer(method, request.path))
         if not _offers_subprotocol(headers):
             known = " or ".join(SUBPROTOCOLS)
-            return _response(refuse(400, f"wanted the WebSocket subprotocol {known}"))
+            return _response(refuse(400, f"the WebSocket subprotocol must be {known}"))
         if self._hub.clients >= self._max_clients:
             return _response(refuse(503, f"{self._max_clients} clients are connected"))
         return None
@@ -200,20 +199,20 @@ class ViewerServer:
             self._hub.leave(session)
 
     async def _receive(self, peer: Peer) -> None:
-        with contextlib.suppress(ConnectionClosed):  # how every client ends
+        with contextlib.suppress(ConnectionClosed):  # the normal end
             async for frame in peer.connection:
                 if peer.gone:
                     return
                 self._hub.receive(peer.session, frame)
                 peer.wake()
-                # Not reading further makes the client's own socket push back.
+                # While nothing is read, TCP slows the client down.
                 await peer.wait_for_answers()
 
     def _call(self, function: Callable[..., None], *args: Any) -> None:
         function(*args)
         self._wake_clients()
         for peer in self._peers:
-            peer.look_at_answers()
+            peer.check_pending()
 
     def _wake_clients(self) -> None:
         for peer in self._peers:
@@ -226,11 +225,11 @@ class ViewerServer:
         if not self._stop.is_set():
             self._loop.call_later(self._tick_s, self._tick)
 
-    def _beat(self) -> None:
-        self._on_beat()
+    def _run_period(self) -> None:
+        self._on_period()
         self._wake_clients()
         if not self._stop.is_set():
-            self._loop.call_later(PERIOD_S, self._beat)
+            self._loop.call_later(PERIOD_S, self._run_period)
 
 
 def _offers_subprotocol(headers: Headers) -> bool:
@@ -238,7 +237,7 @@ def _offers_subprotocol(headers: Headers) -> bool:
     return any(name.strip() in SUBPROTOCOLS for name in offered)
 
 
-def _response(answer: Answer) -> Response:
+def _response(answer: HttpResponse) -> Response:
     headers = Headers(
         {
             "Content-Type": answer.content_type,

@@ -1,18 +1,18 @@
-"""One client of the live view, and what the view asks of the running program."""
+"""One client of the live view, and the commands that the view sends to the program."""
 
 from dataclasses import dataclass, field
 from typing import Protocol
 
 from navette.viewer import replies
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
-from navette.viewer.memory import STATE_TYPES
+from navette.viewer.last_value_cache import STATE_TYPES
 from navette.viewer.outbox import Outbox
 from navette.viewer.replies import Channel, Level
 
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic of the graph with one type; ``latched`` is transient local."""
+    """A topic of the graph with one type; ``latched`` means transient local."""
 
     name: str
     type_name: str
@@ -21,51 +21,56 @@ class Topic:
 
     @property
     def is_kept(self) -> bool:
-        """Whether newcomers are given the last message from here."""
+        """Whether the view itself stores the last message for new clients."""
         return not self.latched and self.type_name in STATE_TYPES
 
 
 @dataclass(frozen=True)
 class Watch:
-    """A subscription that the program keeps for the viewer.
+    """A subscription that the program keeps for the live view.
 
-    Clients share one (``client`` None), except for latched topics: there each client
-    has its own, so that the graph itself sends the latched messages to newcomers.
+    Clients share one subscription (``client`` None), except for latched topics: there
+    each client has its own, so that the graph delivers the latched messages to it.
     """
 
     channel: Channel
     client: int | None
 
 
-class Robot(Protocol):
-    """What the hub asks of the running program; every call returns at once.
+class ProgramCommands(Protocol):
+    """Commands of the hub to the running program.
 
-    After each publisher, publish, parameter and playback call the program calls
-    :meth:`Hub.done`, so that a client cannot pile up work.
+    :class:`~navette.viewer.node.ViewerNode` executes them on the executor's thread;
+    :class:`~navette.viewer.thread_bridge.ThreadBridge` has the same methods, returns at
+    once and schedules them there. After each publisher, publish, parameter and playback
+    command the program calls :meth:`Hub.done`; the number of unfinished commands of a
+    client is limited.
     """
 
     def watch(self, watch: Watch) -> None: ...
     def unwatch(self, watch: Watch) -> None: ...
     def open_publisher(self, client: int, channel: ClientChannel) -> None: ...
     def close_publisher(self, client: int, channel_id: int) -> None: ...
-    def publish(self, client: int, channel_id: int, data: bytes) -> None: ...
-    def get_parameters(
+    def publish_from_client(
+        self, client: int, channel_id: int, data: bytes
+    ) -> None: ...
+    def request_parameters(
         self, client: int, names: tuple[str, ...], request_id: str | None
     ) -> None: ...
-    def set_parameters(
+    def change_parameters(
         self,
         client: int,
         parameters: tuple[WireParameter, ...],
         request_id: str | None,
     ) -> None: ...
-    def describe_parameters(self, client: int) -> None: ...
+    def request_parameter_texts(self, client: int) -> None: ...
     def control_playback(self, client: int, request: ControlPlayback) -> None: ...
     def step_playback(self, client: int) -> None: ...
 
 
 @dataclass
 class Session:
-    """One client: what it subscribes to, publishes and watches."""
+    """State of one client: subscriptions, published channels, requested reports."""
 
     id: int
     outbox: Outbox
@@ -85,8 +90,8 @@ class Session:
         self.send(replies.status(level, message))
 
     @property
-    def is_curious(self) -> bool:
-        """Whether it wants to know of what only the nodes themselves can tell."""
+    def wants_node_reports(self) -> bool:
+        """Whether the client needs data that nodes of other processes must provide."""
         return self.wants_nodes or self.all_parameters or bool(self.parameter_names)
 
     def wants_parameter(self, name: str) -> bool:

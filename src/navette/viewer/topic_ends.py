@@ -1,4 +1,4 @@
-"""From the ends of topics (who publishes, who subscribes) to what clients are shown."""
+"""Convert publishers and subscriptions to the topics and graph of the protocol."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -21,10 +21,10 @@ class TopicEnd:
 def topics_of(
     ends: Iterable[TopicEnd], definition_of: Callable[[str, str], str | None]
 ) -> list[Topic]:
-    """Each topic and type once; latched if any of its publishers is.
+    """Return each topic and type once; latched if any of its publishers is.
 
     Args:
-        definition_of: ros2msg text for a topic's type; None leaves the topic out.
+        definition_of: ros2msg definition of a topic's type; None omits the topic.
     """
     latched: dict[tuple[str, str], bool] = {}
     for end in ends:
@@ -38,7 +38,7 @@ def topics_of(
 
 
 def graph_of(ends: Iterable[TopicEnd]) -> Graph:
-    """Publishing and subscribing nodes by topic."""
+    """Return the publishing and subscribing nodes by topic."""
     published: dict[str, set[str]] = {}
     subscribed: dict[str, set[str]] = {}
     for end in ends:

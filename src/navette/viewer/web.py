@@ -1,4 +1,4 @@
-"""Plain HTTP on the viewer's port: who may ask, and what is answered."""
+"""Plain HTTP on the viewer's port: access policy and pages."""
 
 import ipaddress
 import json
@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 _LOOPBACK_NAMES = ("localhost", "127.0.0.1", "::1")
-# Names that only a local network gives out; a page on the internet cannot have them.
+# Names that only a local network assigns; a page on the internet cannot have them.
 _LOCAL_SUFFIXES = (".localhost", ".local", ".lan", ".home.arpa", ".internal")
 
 PAGE_POLICY = (
@@ -19,9 +19,7 @@ PAGE_POLICY = (
 
 
 @dataclass(frozen=True)
-class Answer:
-    """An HTTP response."""
-
+class HttpResponse:
     status: int
     content_type: str
     body: bytes
@@ -29,12 +27,12 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Gate:
-    """Decides which hosts and origins may speak to this server.
+class AccessPolicy:
+    """The hosts and origins that may connect to this server.
 
-    A page from the internet must not drive the robot. Browsers tell the page's
-    origin when it opens a socket; and a page that has its own name point at this
-    machine (DNS rebinding) shows in the Host header.
+    A page from the internet must not drive the robot. Browsers send the page's origin
+    when it opens a socket, and a page whose own name resolves to this machine (DNS
+    rebinding) is visible in the Host header.
     """
 
     bound_host: str
@@ -42,7 +40,7 @@ class Gate:
     allowed_hosts: tuple[str, ...] = ()
 
     def refusal(self, host: str | None, origin: str | None) -> str:
-        """Why a request is refused, in words; empty where it may pass."""
+        """Return why a request is refused; empty if it is allowed."""
         if host is not None and not self._host_allowed(host):
             return (
                 f"host {host!r:.120} is not allowed: use localhost or 127.0.0.1, or "
@@ -87,10 +85,10 @@ def _is_address(name: str) -> bool:
 
 
 class Site:
-    """The pages: ``/``, ``/layout.json``, ``/health``, scripts; 404 for all else.
+    """Serves ``/``, ``/layout.json``, ``/health`` and scripts; 404 for other paths.
 
     Args:
-        scripts: path → JavaScript that the page loads.
+        scripts: JavaScript of the page, by path.
     """
 
     def __init__(
@@ -105,32 +103,32 @@ class Site:
         self._layout = layout
         self._health = health
 
-    def answer(self, method: str, target: str) -> Answer:
+    def answer(self, method: str, target: str) -> HttpResponse:
         if method not in ("GET", "HEAD"):
             return refuse(405, f"method {method} is not allowed; use GET")
         path = target.partition("?")[0]
         if path in ("/", "/index.html"):
             headers = {"Content-Security-Policy": PAGE_POLICY}
-            answer = Answer(200, "text/html; charset=utf-8", self._page, headers)
+            answer = HttpResponse(200, "text/html; charset=utf-8", self._page, headers)
         elif path in self._scripts:
             kind = "text/javascript; charset=utf-8"
-            answer = Answer(200, kind, self._scripts[path])
+            answer = HttpResponse(200, kind, self._scripts[path])
         elif path == "/layout.json":
             download = 'attachment; filename="navette-layout.json"'
             headers = {"Content-Disposition": download}
             body = json.dumps(self._layout(), indent=2).encode()
-            answer = Answer(200, "application/json", body, headers)
+            answer = HttpResponse(200, "application/json", body, headers)
         elif path == "/health":
             body = json.dumps(self._health()).encode()
-            answer = Answer(200, "application/json", body)
+            answer = HttpResponse(200, "application/json", body)
         else:
             answer = refuse(
                 404, f"nothing at {path!r:.120}; known: /, /layout.json, /health"
             )
         if method == "HEAD":
-            return Answer(answer.status, answer.content_type, b"", answer.headers)
+            return HttpResponse(answer.status, answer.content_type, b"", answer.headers)
         return answer
 
 
-def refuse(status: int, reason: str) -> Answer:
-    return Answer(status, "text/plain; charset=utf-8", f"{reason}\n".encode())
+def refuse(status: int, reason: str) -> HttpResponse:
+    return HttpResponse(status, "text/plain; charset=utf-8", f"{reason}\n".encode())

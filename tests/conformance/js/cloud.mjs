@@ -1,4 +1,4 @@
-// A browser on the live view's page: shows a point cloud, says what was drawn.
+// A browser on the live view's page: shows a point cloud, prints what was drawn.
 //
 //   node cloud.mjs http://127.0.0.1:PORT CHROMIUM [SCREENSHOT.png]
 import { chromium } from "playwright-core";

@@ -1,4 +1,4 @@
-// A browser on the live view's page: says what it reads, sends a goal.
+// A browser on the live view's page: prints what it reads, sends a goal.
 //
 //   node page.mjs http://127.0.0.1:PORT CHROMIUM
 import { chromium } from "playwright-core";
@@ -54,7 +54,7 @@ try {
   await page.locator(".parameters .hint:visible").waitFor();
   const refusal = await page.textContent(".parameters .hint:visible");
   // The planner said how it is once, and never again.
-  await until(() => document.querySelector("#headline").textContent === "Planner is silent");
+  await until(() => document.querySelector("#headline").textContent === "Planner has stopped responding");
   const open = new URL(await page.getAttribute("#open", "href"));
   console.log(JSON.stringify({
     title: await page.title(), address: await text("#address"), foxglove: open.searchParams.get("ds.url"),

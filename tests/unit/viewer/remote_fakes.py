@@ -1,4 +1,4 @@
-"""Nodes of other processes, as services that answer when a test lets them."""
+"""Fakes of the services of other nodes; the test decides when they respond."""
 
 from collections.abc import Callable
 from typing import Any
@@ -7,13 +7,13 @@ from navette.errors import InvalidValueError
 from navette.msgs import get_interface
 from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
 from navette.runtime import Future, Parameter
-from navette.viewer.questions import Questions
+from navette.viewer.service_calls import ServiceCalls
 
 Answer = Callable[[Any], Any]
 
 
 class Clock:
-    """Wall time that a test moves."""
+    """Wall time, set by the test."""
 
     def __init__(self) -> None:
         self.now_s = 100.0
@@ -23,7 +23,7 @@ class Clock:
 
 
 class Call:
-    """A request that waits."""
+    """A pending request."""
 
     def __init__(self, service: str, request: Any) -> None:
         self.service = service
@@ -32,11 +32,11 @@ class Call:
 
 
 class World:
-    """Services by name; what has no answer of its own stays unanswered."""
+    """Services by name; one without an answer never responds."""
 
     def __init__(self) -> None:
         self.clock = Clock()
-        self.questions = Questions(self.connect, self.clock)
+        self.service_calls = ServiceCalls(self.connect, self.clock)
         self.answers: dict[str, Answer] = {}
         self.calls: list[Call] = []
         self.clients: list[str] = []
@@ -48,7 +48,7 @@ class World:
         return _Client(self, service, get_interface(type_name))
 
     def asked(self) -> list[str]:
-        """Services that were called since the last look."""
+        """Return the services called since the last call."""
         calls, self.calls = self.calls, []
         return [call.service for call in calls]
 
@@ -68,7 +68,7 @@ class _Client:
         return call.future
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Nobody waits for it any more."""
+        """The fake keeps no pending requests."""
 
     def destroy(self) -> None:
         self._world.clients.remove(self._service)

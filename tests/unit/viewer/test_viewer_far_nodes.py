@@ -1,4 +1,4 @@
-"""Nodes of another session on the network: parameters, signs of life, the last path."""
+"""Nodes of another session: parameters, liveness, the last path."""
 
 import threading
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from navette.runtime import Context, Executor, Node, Parameter
 
 
 class Far:
-    """A node with a session, a loop and a thread of its own."""
+    """A node with its own session, loop and thread."""
 
     def __init__(self) -> None:
         self.context = Context(transport="zenoh")
@@ -124,7 +124,7 @@ def test_parameters_are_listed_described_set_and_refused(
     wait_for_speed(client, 0.5)
 
 
-def test_a_latecomer_sees_the_path_that_was_said_before(
+def test_a_late_client_receives_the_last_path(
     program: Program, far: Far, client: Client
 ) -> None:
     client.subscribe("/path", 1)
@@ -139,7 +139,7 @@ def test_a_latecomer_sees_the_path_that_was_said_before(
 
 
 @pytest.mark.slow
-def test_a_node_that_hangs_harms_nobody_and_one_that_ends_is_gone(
+def test_a_blocked_node_is_silent_and_an_ended_node_is_gone(
     client: Client, far: Far
 ) -> None:
     wait_for_state(client, "alive")
@@ -147,7 +147,7 @@ def test_a_node_that_hangs_harms_nobody_and_one_that_ends_is_gone(
     far.freeze()
     set_speed(client, 1.5)
     said = client.wait_for_op("status")["message"]
-    assert said == "parameter '/far.speed_mps': node /far: no answer in 2 s"
+    assert said == "parameter '/far.speed_mps': node /far: no response in 2 s"
     wait_for_state(client, "silent")
     far.thaw.set()
     wait_for_state(client, "alive")

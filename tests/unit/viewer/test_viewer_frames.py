@@ -1,4 +1,4 @@
-"""Client frames in, server frames out: the wire forms of the published protocol."""
+"""Decoding of client frames and encoding of server frames."""
 
 import json
 import struct
@@ -69,11 +69,11 @@ from navette.viewer.replies import Channel, Graph, Level
         ),
     ],
 )
-def test_text_frames_become_values(document: object, value: object) -> None:
+def test_text_frames_are_decoded(document: object, value: object) -> None:
     assert decode(json.dumps(document)) == value
 
 
-def test_binary_frames_become_values() -> None:
+def test_binary_frames_are_decoded() -> None:
     assert decode(b"\x01\x1e\x00\x00\x00abc") == frames.Publish(30, b"abc")
     call = b"\x02" + struct.pack("<III", 10, 12, 4) + b"json" + b"{}"
     assert decode(call) == frames.CallService(10, 12, "json", b"{}")
@@ -100,8 +100,8 @@ def test_binary_frames_become_values() -> None:
         ('{"op": "fetchAsset", "uri": 1, "requestId": 1}', "'uri' has 1, not a string"),
         (b"", "empty"),
         (b"\x09", "unknown binary opcode 9"),
-        (b"\x01\x00", "cut short"),
-        (b"\x02" + struct.pack("<III", 1, 1, 2**31), "cut short"),
+        (b"\x01\x00", "truncated"),
+        (b"\x02" + struct.pack("<III", 1, 1, 2**31), "truncated"),
     ],
 )
 def test_bad_frames_are_named(frame: str | bytes, complaint: str) -> None:
@@ -119,7 +119,7 @@ def complaint_about(frame: str | bytes) -> str:
 
 
 @given(st.one_of(st.text(), st.binary()))
-def test_no_frame_does_worse_than_a_decode_error(frame: str | bytes) -> None:
+def test_any_frame_is_decoded_or_refused(frame: str | bytes) -> None:
     assert len(complaint_about(frame)) < 500
 
 
@@ -139,13 +139,13 @@ json_values = st.recursive(
 
 
 @given(st.sampled_from(sorted(frames._TEXT)), json_values)
-def test_no_json_does_worse_than_a_decode_error(op: str, value: object) -> None:
+def test_any_json_frame_is_decoded_or_refused(op: str, value: object) -> None:
     fields = value if isinstance(value, dict) else {"channels": value}
     complaint = complaint_about(json.dumps({"op": op, **fields}))
     assert not complaint or op in complaint
 
 
-def test_server_info_names_the_ros_distribution_and_what_works() -> None:
+def test_server_info_has_the_ros_distribution_and_capabilities() -> None:
     info = json.loads(replies.server_info("Navette", "abc"))
     assert info["metadata"] == {"ROS_DISTRO": "jazzy"}
     assert info["sessionId"] == "abc"

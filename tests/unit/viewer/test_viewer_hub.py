@@ -1,11 +1,11 @@
-"""Who watches what: sessions, channels and the requests they make."""
+"""Sessions, channels, subscriptions and requests."""
 
 import json
 from pathlib import Path
 from typing import Any
 
 import pytest
-from viewer_fakes import RecordingRobot, sent
+from viewer_fakes import RecordingProgram, sent
 
 from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, WireParameter
@@ -19,12 +19,12 @@ MAP = Topic("/map", "nav_msgs/msg/OccupancyGrid", "int8[] data", latched=True)
 
 
 class Bench:
-    """A hub with a recording robot and clients that speak JSON."""
+    """A hub with a recording program and clients that send JSON."""
 
     def __init__(self, folder: Path) -> None:
-        self.robot = RecordingRobot()
+        self.program = RecordingProgram()
         self.hub = Hub(
-            self.robot,
+            self.program,
             name="test",
             session_id="1",
             assets=AssetFolders({"navette": folder}),
@@ -53,7 +53,7 @@ def bench(tmp_path: Path) -> Bench:
     return Bench(tmp_path)
 
 
-def test_newcomers_get_info_channels_and_time(bench: Bench) -> None:
+def test_new_clients_receive_info_channels_and_time(bench: Bench) -> None:
     bench.hub.set_topics([SCAN])
     bench.hub.set_now(5)
     session = bench.hub.join(Outbox())
@@ -63,7 +63,7 @@ def test_newcomers_get_info_channels_and_time(bench: Bench) -> None:
     assert time[0] == 2
 
 
-def test_topics_come_and_go(bench: Bench) -> None:
+def test_topics_are_added_and_removed(bench: Bench) -> None:
     session = bench.join()
     bench.hub.set_topics([SCAN])
     bench.hub.set_topics([SCAN, MAP])
@@ -74,18 +74,18 @@ def test_topics_come_and_go(bench: Bench) -> None:
     assert third == {"op": "unadvertise", "channelIds": [1]}
 
 
-def test_a_topic_nobody_watches_is_not_subscribed(bench: Bench) -> None:
+def test_a_topic_without_clients_is_not_subscribed(bench: Bench) -> None:
     bench.hub.set_topics([SCAN])
     one, two = bench.join(), bench.join()
     channel = bench.channel("/lidar")
-    assert bench.robot.take() == []
+    assert bench.program.take() == []
     bench.subscribe(one, 10, channel.id)
     bench.subscribe(two, 20, channel.id)
-    assert bench.robot.take() == [("watch", "/lidar", None)]
+    assert bench.program.take() == [("watch", "/lidar", None)]
     bench.ask(one, op="unsubscribe", subscriptionIds=[10])
-    assert bench.robot.take() == []
+    assert bench.program.take() == []
     bench.hub.leave(two)
-    assert bench.robot.take() == [("unwatch", "/lidar", None)]
+    assert bench.program.take() == [("unwatch", "/lidar", None)]
 
 
 def test_messages_go_to_their_watchers_under_their_own_ids(bench: Bench) -> None:
@@ -101,13 +101,13 @@ def test_messages_go_to_their_watchers_under_their_own_ids(bench: Bench) -> None
 
 
 def test_latched_topics_are_watched_once_per_client(bench: Bench) -> None:
-    """Only so do newcomers get what was sent before they came."""
+    """New clients receive earlier messages only through a new subscription."""
     bench.hub.set_topics([MAP])
     one, two = bench.join(), bench.join()
     channel = bench.channel("/map")
     bench.subscribe(one, 1, channel.id)
     bench.subscribe(two, 1, channel.id)
-    assert bench.robot.take() == [
+    assert bench.program.take() == [
         ("watch", "/map", one.id),
         ("watch", "/map", two.id),
     ]
@@ -116,14 +116,14 @@ def test_latched_topics_are_watched_once_per_client(bench: Bench) -> None:
     assert len(sent(two.outbox)) == 1
 
 
-def test_a_topic_that_goes_ends_its_subscriptions(bench: Bench) -> None:
+def test_a_removed_topic_ends_its_subscriptions(bench: Bench) -> None:
     bench.hub.set_topics([SCAN])
     session = bench.join()
     channel = bench.channel("/lidar")
     bench.subscribe(session, 10, channel.id)
     bench.hub.message(Watch(channel, None), 1, b"late")
     bench.hub.set_topics([])
-    assert bench.robot.take()[-1] == ("unwatch", "/lidar", None)
+    assert bench.program.take()[-1] == ("unwatch", "/lidar", None)
     assert sent(session.outbox) == [{"op": "unadvertise", "channelIds": [1]}]
     bench.hub.message(Watch(channel, None), 2, b"too late")
     assert not session.outbox
@@ -179,7 +179,7 @@ def test_clients_publish_on_channels_that_they_advertised(bench: Bench) -> None:
     bench.hub.receive(session, b"\x01\x01\x00\x00\x00{}")
     bench.ask(session, op="unadvertise", channelIds=[1])
     channel = ClientChannel(1, "/goal_point", "json", "geometry_msgs/msg/PointStamped")
-    assert bench.robot.take() == [
+    assert bench.program.take() == [
         ("open", session.id, channel),
         ("publish", session.id, 1, b"{}"),
         ("close", session.id, 1),
@@ -187,10 +187,10 @@ def test_clients_publish_on_channels_that_they_advertised(bench: Bench) -> None:
     bench.hub.receive(session, b"\x01\x01\x00\x00\x00{}")
     (status,) = sent(session.outbox)
     assert "channel 1 is not advertised" in status["message"]
-    assert bench.robot.take() == []
+    assert bench.program.take() == []
 
 
-def test_channels_that_cannot_be_are_refused(bench: Bench) -> None:
+def test_invalid_channels_are_refused(bench: Bench) -> None:
     session = bench.join()
     (status,) = advertise(bench, session, encoding="protobuf")
     assert "known: cdr, json" in status["message"]
@@ -199,20 +199,20 @@ def test_channels_that_cannot_be_are_refused(bench: Bench) -> None:
     assert "channel id 1 is in use" in status["message"]
     for number in range(2, 400):
         replies = advertise(bench, session, id=number)
-    assert "more than 256 channels" in replies[0]["message"]
+    assert "256 channels at most" in replies[0]["message"]
 
 
-def test_what_a_client_published_ends_with_it(bench: Bench) -> None:
+def test_publishers_of_a_client_end_with_it(bench: Bench) -> None:
     session = bench.join()
     advertise(bench, session)
-    bench.robot.take()
+    bench.program.take()
     bench.hub.leave(session)
-    assert bench.robot.take() == [("close", session.id, 1)]
+    assert bench.program.take() == [("close", session.id, 1)]
     bench.hub.done(session.id)
     assert bench.hub.clients == 0
 
 
-def test_work_under_way_is_counted(bench: Bench) -> None:
+def test_pending_requests_are_counted(bench: Bench) -> None:
     session = bench.join()
     advertise(bench, session)
     bench.ask(session, op="getParameters", parameterNames=[], id="x")
@@ -255,7 +255,7 @@ def test_the_graph_is_sent_whole_and_then_in_changes(bench: Bench) -> None:
     assert not other.outbox
 
 
-def test_only_the_newest_time_waits(bench: Bench) -> None:
+def test_only_the_newest_time_is_queued(bench: Bench) -> None:
     session = bench.join()
     for now in (1, 2, 2, 3):
         bench.hub.set_now(now)
@@ -274,7 +274,7 @@ def test_assets_are_sent_or_refused(bench: Bench, tmp_path: Path) -> None:
     assert b"unknown asset 'file:///x'" in missing
 
 
-def test_service_calls_fail_by_name(bench: Bench) -> None:
+def test_service_calls_fail_with_a_message(bench: Bench) -> None:
     session = bench.join()
     bench.hub.receive(session, b"\x02" + bytes(12))
     (failure,) = sent(session.outbox)

@@ -1,4 +1,4 @@
-"""The live view end to end, on a real socket, seen by a client of the protocol."""
+"""The live view end to end, on a real socket, with a protocol client."""
 
 import json
 import threading
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from viewer_harness import PATIENCE_S, Client, DeafClient, Program
+from viewer_harness import PATIENCE_S, Client, NonReadingClient, Program
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from navette.errors import InvalidValueError
@@ -28,7 +28,7 @@ LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Talker(Node):
-    """A chatter, a latched map, a camera that counts its looks, a goal."""
+    """Publishes a chatter, a latched map and a camera; receives goals."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("talker", context=context)
@@ -72,7 +72,7 @@ def client(program: Program) -> Iterator[Client]:
 
 
 @pytest.mark.parametrize("name", ["foxglove.sdk.v1", "foxglove.websocket.v1"])
-def test_both_subprotocols_are_spoken(program: Program, name: str) -> None:
+def test_both_subprotocols_are_accepted(program: Program, name: str) -> None:
     with Client(program.address, name) as client:
         assert client.socket.subprotocol == name
         assert client.info["metadata"]["ROS_DISTRO"] == "jazzy"
@@ -88,7 +88,7 @@ def test_messages_arrive_with_stamp_and_definition(client: Client) -> None:
     assert deserialize(payload, String).data == "hello"
 
 
-def test_every_newcomer_gets_the_latched_map(program: Program) -> None:
+def test_every_new_client_receives_the_latched_map(program: Program) -> None:
     for _ in range(3):
         with Client(program.address) as client:
             client.subscribe("/map", 1)
@@ -96,7 +96,7 @@ def test_every_newcomer_gets_the_latched_map(program: Program) -> None:
             assert deserialize(payload, OccupancyGrid).data.tolist() == [7, -1]
 
 
-def test_a_camera_nobody_watches_has_no_subscriber(
+def test_a_camera_without_clients_has_no_subscriber(
     program: Program, client: Client, talker: Talker
 ) -> None:
     def watchers() -> int:
@@ -114,7 +114,7 @@ def test_a_camera_nobody_watches_has_no_subscriber(
     assert watchers() == 0
 
 
-def test_a_client_that_vanishes_leaves_nothing_behind(
+def test_a_disconnected_client_leaves_no_subscription(
     program: Program, talker: Talker
 ) -> None:
     client = Client(program.address)
@@ -133,7 +133,9 @@ def test_a_client_that_vanishes_leaves_nothing_behind(
 @pytest.mark.parametrize(
     "type_name", ["geometry_msgs/msg/PointStamped", "PointStamped"]
 )
-def test_goals_come_in_as_json(client: Client, talker: Talker, type_name: str) -> None:
+def test_goals_are_received_as_json(
+    client: Client, talker: Talker, type_name: str
+) -> None:
     name = type_name if "/" in type_name else f"geometry_msgs/{type_name}"
     client.advertise(3, "/goal_point", "json", name)
     goal = {
@@ -147,7 +149,7 @@ def test_goals_come_in_as_json(client: Client, talker: Talker, type_name: str) -
     assert got.header.stamp.nanosec == 2
 
 
-def test_goals_come_in_as_cdr(client: Client, talker: Talker) -> None:
+def test_goals_are_received_as_cdr(client: Client, talker: Talker) -> None:
     goal = PointStamped(header=Header(frame_id="map"), point=Point(x=1.0, y=2.0))
     client.advertise(3, "/goal_point", "cdr", "geometry_msgs/msg/PointStamped")
     client.publish(3, serialize(goal))
@@ -181,7 +183,7 @@ def test_goals_come_in_as_cdr(client: Client, talker: Talker) -> None:
         ("protobuf", "std_msgs/msg/String", "/x", b"", "known: cdr, json"),
     ],
 )
-def test_what_cannot_be_published_is_told_to_who_tried(
+def test_a_publish_error_is_reported_to_its_client(
     client: Client,
     talker: Talker,
     encoding: str,
@@ -200,7 +202,7 @@ def test_what_cannot_be_published_is_told_to_who_tried(
     assert talker.goals == []
 
 
-def test_parameters_of_all_nodes_are_there(client: Client) -> None:
+def test_parameters_of_all_nodes_are_listed(client: Client) -> None:
     values = client.get_parameters()
     assert values["/talker.speed_mps"] == 1.0
     assert values["/talker.names"] == ["a", "b"]
@@ -208,7 +210,9 @@ def test_parameters_of_all_nodes_are_there(client: Client) -> None:
     assert client.get_parameters("talker.depth", "/nobody.x") == {"/talker.depth": 3}
 
 
-def test_parameters_are_set_and_watchers_told(program: Program, client: Client) -> None:
+def test_parameters_are_set_and_reported_to_subscribers(
+    program: Program, client: Client
+) -> None:
     with Client(program.address) as watcher:
         watcher.send(op="subscribeParameterUpdates", parameterNames=[])
         watcher.get_parameters()
@@ -229,11 +233,11 @@ def test_parameters_are_set_and_watchers_told(program: Program, client: Client) 
     ("name", "value", "complaint"),
     [
         ("/talker.depth", "deep", "depth"),
-        ("/talker.nothing", 1, "nobody has it"),
-        ("/viewer.port", 80, "takes effect at the start only"),
-        ("depth", 1, "wanted /node.parameter"),
+        ("/talker.nothing", 1, "no node has this parameter"),
+        ("/viewer.port", 80, "can be set at the start only"),
+        ("depth", 1, "the name must be /node.parameter"),
         ("/talker.names", [1, "a"], "names"),
-        ("/talker.names", {"a": 1}, "no ROS 2 type"),
+        ("/talker.names", {"a": 1}, "not a ROS 2 parameter type"),
     ],
 )
 def test_parameters_that_cannot_be_set_are_named(
@@ -268,7 +272,7 @@ def test_topics_that_appear_late_are_advertised_and_withdrawn(
     assert "/late" not in dict(program.do(talker.get_topic_names_and_types))
 
 
-def test_clients_are_told_the_time(client: Client) -> None:
+def test_clients_receive_the_time(client: Client) -> None:
     first = client.wait_for(lambda f: isinstance(f, tuple) and f[0] == 2)
     second = client.wait_for(lambda f: isinstance(f, tuple) and f[0] == 2)
     assert second[1] > first[1]
@@ -278,7 +282,7 @@ def test_clients_are_told_the_time(client: Client) -> None:
     "frame",
     ["{", "[]", '{"op": "dance"}', '{"op": 1}', "[" * 50_000, b"", b"\x07", b"\x01"],
 )
-def test_hostile_frames_bother_nobody_else(
+def test_hostile_frames_do_not_affect_other_clients(
     program: Program, client: Client, frame: str | bytes
 ) -> None:
     with Client(program.address) as other:
@@ -299,7 +303,7 @@ def test_a_huge_frame_ends_its_own_connection_only(
         assert other.get_parameters("/talker.depth") == {"/talker.depth": 3}
 
 
-def test_a_client_that_never_reads_loses_frames_not_the_robot(
+def test_a_client_that_never_reads_loses_frames_and_does_not_slow_the_robot(
     program: Program, talker: Talker
 ) -> None:
     with Client(program.address) as slow, Client(program.address) as other:
@@ -321,12 +325,12 @@ def test_a_client_that_never_reads_loses_frames_not_the_robot(
         assert got == sorted(got)
 
 
-def test_a_client_that_asks_and_never_reads_is_let_go(tmp_path: Path) -> None:
+def test_a_client_that_requests_and_never_reads_is_disconnected(tmp_path: Path) -> None:
     (tmp_path / "large").write_bytes(bytes(20_000_000))
     with (
         Program(Talker, asset_folders={"navette": tmp_path}) as program,
         Client(program.address) as other,
-        DeafClient(program.address) as deaf,
+        NonReadingClient(program.address) as deaf,
     ):
         for request in range(6):
             deaf.send(op="fetchAsset", uri="package://navette/large", requestId=request)
@@ -340,7 +344,7 @@ def test_closing_does_not_wait_for_a_client_that_never_reads(
 ) -> None:
     monkeypatch.setattr("navette.viewer.server._CLOSE_S", 0.05)
     stopwatch = Stopwatch()
-    with Program(Talker) as program, DeafClient(program.address) as deaf:
+    with Program(Talker) as program, NonReadingClient(program.address) as deaf:
         talker = program.nodes[0]
         assert isinstance(talker, Talker)
         image = Image(data=np.zeros(3_000_000, np.uint8))
@@ -383,7 +387,7 @@ def get(program: Program, path: str, **headers: str) -> tuple[int, str, bytes]:
             return error.code, error.headers["Content-Type"], error.read()
 
 
-def test_the_same_port_answers_http(program: Program) -> None:
+def test_the_same_port_serves_http(program: Program) -> None:
     status, kind, page = get(program, "/")
     assert (status, kind) == (200, "text/html; charset=utf-8")
     assert page.rstrip().endswith(b"</html>")
@@ -408,7 +412,7 @@ def test_the_layout_shows_the_frames_of_the_running_nodes() -> None:
         assert layout["configById"]["3D!follow"]["followTf"] == "base_link"
 
 
-def test_pages_of_strangers_cannot_open_the_socket(program: Program) -> None:
+def test_pages_of_other_origins_cannot_open_the_socket(program: Program) -> None:
     with pytest.raises(InvalidStatus, match="403"):
         Client(program.address, origin="https://evil.example")
     with Client(program.address, origin="https://app.foxglove.dev"):
@@ -467,7 +471,7 @@ def test_a_port_in_use_is_named_and_leaves_no_node(program: Program) -> None:
         pass
 
 
-def test_closing_lets_clients_go_and_leaves_no_thread() -> None:
+def test_closing_disconnects_clients_and_ends_the_thread() -> None:
     with Program(Talker) as program:
         client = Client(program.address)
         assert program.viewer.url == f"http://{program.address}"
@@ -482,8 +486,8 @@ def thread_names() -> set[str]:
     return {thread.name for thread in threading.enumerate()}
 
 
-def test_parameters_of_nodes_elsewhere_are_those_they_told() -> None:
-    """Of another process, or of a recording that is played."""
+def test_parameters_of_other_processes_come_from_events() -> None:
+    """The node belongs to another process or to a recording."""
 
     def teller(context: Context) -> Node:
         node = Node("teller", context=context)

@@ -1,4 +1,4 @@
-"""What waits for a slow client."""
+"""Send queue of a slow client."""
 
 from navette.viewer.outbox import Outbox
 
@@ -10,7 +10,7 @@ def drain(outbox: Outbox) -> list[str | bytes]:
     return frames
 
 
-def test_frames_leave_in_order_control_first() -> None:
+def test_frames_are_sent_in_order_control_first() -> None:
     outbox = Outbox()
     outbox.put_data(1, b"a")
     outbox.put_data(2, b"b")
@@ -36,7 +36,7 @@ def test_large_frames_are_bounded_by_bytes_but_one_always_stays() -> None:
     assert drain(outbox) == [b"cccccc", b"m" * 100]
 
 
-def test_a_forgotten_stream_leaves_nothing() -> None:
+def test_a_dropped_stream_leaves_no_frames() -> None:
     outbox = Outbox()
     outbox.put_data(1, b"a")
     outbox.put_data(2, b"b")

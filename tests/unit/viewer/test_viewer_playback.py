@@ -1,4 +1,4 @@
-"""A recording under the live view: what clients are told, and what they may ask."""
+"""Playback of a recording: state reports and client requests."""
 
 import json
 import struct
@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from viewer_fakes import RecordingRobot, sent
+from viewer_fakes import RecordingProgram, sent
 from viewer_harness import Client, Program
 
 from navette.errors import DecodeError, InvalidValueError
@@ -37,7 +37,7 @@ def read_state(frame: bytes) -> tuple[int, int, float, bool, str]:
     return status, place, speed, bool(jumped), frame[19:].decode()
 
 
-def test_requests_become_values() -> None:
+def test_requests_are_decoded() -> None:
     assert decode(request()) == ControlPlayback(True, 1.0, None, "r1")
     assert decode(request(1, 0.5, 7, "x")) == ControlPlayback(False, 0.5, 7, "x")
 
@@ -56,13 +56,13 @@ def test_states_have_the_published_form() -> None:
     assert read_state(frame) == (1, 123, 0.5, True, "r7")
 
 
-def hub_of(playback_range: tuple[int, int] | None) -> tuple[Hub, RecordingRobot]:
-    robot = RecordingRobot()
-    hub = Hub(robot, name="t", session_id="1", playback_range=playback_range)
-    return hub, robot
+def hub_of(playback_range: tuple[int, int] | None) -> tuple[Hub, RecordingProgram]:
+    program = RecordingProgram()
+    hub = Hub(program, name="t", session_id="1", playback_range=playback_range)
+    return hub, program
 
 
-def test_only_who_plays_says_so() -> None:
+def test_playback_control_is_declared_only_with_a_recording() -> None:
     for playback_range in (None, RANGE):
         hub, _ = hub_of(playback_range)
         info = json.loads(hub.join(Outbox()).outbox.pop())
@@ -73,24 +73,24 @@ def test_only_who_plays_says_so() -> None:
 
 
 def test_requests_reach_the_program_or_are_refused() -> None:
-    hub, robot = hub_of(RANGE)
+    hub, program = hub_of(RANGE)
     session = hub.join(Outbox())
     hub.receive(session, request(1, 2.0, 9))
     hub.receive(session, '{"op": "stepPlayback"}')
-    assert robot.take() == [
+    assert program.take() == [
         ("playback", session.id, ControlPlayback(False, 2.0, 9, "r1")),
         ("step", session.id),
     ]
     assert session.pending == 2
-    hub, robot = hub_of(None)
+    hub, program = hub_of(None)
     session = hub.join(Outbox())
     sent(session.outbox)
     hub.receive(session, request())
-    assert robot.take() == []
-    assert "no recording" in sent(session.outbox)[0]["message"]
+    assert program.take() == []
+    assert "does not play a recording" in sent(session.outbox)[0]["message"]
 
 
-def test_everyone_hears_of_changes_and_newcomers_of_the_last() -> None:
+def test_all_clients_receive_changes_and_new_clients_the_last() -> None:
     hub, _ = hub_of(RANGE)
     early = hub.join(Outbox())
     sent(early.outbox)
@@ -101,7 +101,7 @@ def test_everyone_hears_of_changes_and_newcomers_of_the_last() -> None:
     assert read_state(late[-1]) == (0, 110 * S, 2.0, False, "")
 
 
-def test_a_jump_drops_what_was_said_before() -> None:
+def test_a_seek_drops_queued_messages() -> None:
     hub, _ = hub_of(RANGE)
     hub.set_topics([Topic("/a", "std_msgs/msg/String", "string data")])
     session = hub.join(Outbox())
@@ -117,7 +117,7 @@ def test_a_jump_drops_what_was_said_before() -> None:
 
 
 class Tape:
-    """A recording that only notes what is asked of it."""
+    """A fake recording that stores the requests."""
 
     begin_ns, end_ns = RANGE
 

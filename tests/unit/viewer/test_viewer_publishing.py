@@ -1,4 +1,4 @@
-"""Messages from clients: what they may be, and that nothing else gets through."""
+"""Decoding of messages from clients; invalid input is refused."""
 
 import json
 
@@ -19,7 +19,7 @@ from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
 STRING = "std_msgs/msg/String"
 
 
-def test_json_may_leave_fields_out_and_spell_stamps_either_way() -> None:
+def test_json_may_omit_fields_and_use_either_stamp_form() -> None:
     document = {"poses": [{"header": {"stamp": {"sec": 1, "nsec": 5}}}]}
     path = decode_message("json", Path, json.dumps(document).encode())
     assert isinstance(path, Path)
@@ -31,7 +31,7 @@ def test_json_may_leave_fields_out_and_spell_stamps_either_way() -> None:
 
 
 @pytest.mark.parametrize("data", [b"{", b"[]", b"\xff\xfe", b"[" * 100_000])
-def test_what_is_not_json_is_refused(data: bytes) -> None:
+def test_invalid_json_is_refused(data: bytes) -> None:
     with pytest.raises(DecodeError, match="JSON"):
         decode_message("json", Twist, data)
 
@@ -68,7 +68,7 @@ json_values = st.recursive(
 
 
 @given(json_values)
-def test_no_json_does_worse_than_a_named_error(value: object) -> None:
+def test_any_json_is_decoded_or_refused(value: object) -> None:
     for cls in (PointStamped, LaserScan):
         try:
             decode_message("json", cls, json.dumps(value).encode())
@@ -77,7 +77,7 @@ def test_no_json_does_worse_than_a_named_error(value: object) -> None:
 
 
 @given(st.binary(max_size=80), st.integers(0, 60))
-def test_no_cdr_does_worse_than_a_named_error(data: bytes, cut: int) -> None:
+def test_any_cdr_is_decoded_or_refused(data: bytes, cut: int) -> None:
     whole = serialize(LaserScan(ranges=[1.0, 2.0]))
     for payload in (data, b"\0\1\0\0" + data, whole[:cut] + data):
         try:

@@ -1,4 +1,4 @@
-"""Parameters of nodes elsewhere: read, described, set, refused, gone."""
+"""Parameters of other processes: read, described, set, refused, dropped."""
 
 import math
 from types import SimpleNamespace
@@ -21,7 +21,7 @@ ID = bytes(16)
 
 
 class Far(World):
-    """A node ``/far`` with two parameters, and what the live view knows of it."""
+    """A node ``/far`` with two parameters, and the viewer's cache of them."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -30,7 +30,11 @@ class Far(World):
         self.changed: list[WireParameter] = []
         self.texts: list[ParameterText] = []
         self.remote = RemoteParameters(
-            self.questions, encoded, self.clock, self.changed.extend, self.texts.extend
+            self.service_calls,
+            encoded,
+            self.clock,
+            self.changed.extend,
+            self.texts.extend,
         )
         self.answers = {
             "/far/list_parameters": self.on_list,
@@ -87,7 +91,7 @@ def test_values_and_texts_are_read_once(far: Far) -> None:
     assert far.asked() == []
 
 
-def test_two_who_wait_for_the_same_ask_once(far: Far) -> None:
+def test_concurrent_requests_share_one_call(far: Far) -> None:
     answer = far.answers.pop("/far/list_parameters")
     done: list[int] = []
     for number in (1, 2):
@@ -98,12 +102,12 @@ def test_two_who_wait_for_the_same_ask_once(far: Far) -> None:
     assert done == [1, 2]
 
 
-def test_a_frozen_node_is_not_waited_for_long_and_asked_again_later(far: Far) -> None:
+def test_a_frozen_node_times_out_and_is_called_again_later(far: Far) -> None:
     del far.answers["/far/list_parameters"]
     done: list[bool] = []
     far.remote.fetch(lambda: done.append(True))
     far.clock.now_s += 2.1
-    far.questions.give_up_old()
+    far.service_calls.expire()
     assert done == [True]
     far.asked()
     far.remote.fetch()
@@ -113,7 +117,7 @@ def test_a_frozen_node_is_not_waited_for_long_and_asked_again_later(far: Far) ->
     assert far.asked() == ["/far/list_parameters"]
 
 
-def test_setting_takes_the_kind_that_the_parameter_has(far: Far) -> None:
+def test_a_set_value_takes_the_type_of_the_parameter(far: Far) -> None:
     assert far.set("/far.speed", 2) == [""]  # read first, to know the kind
     request = far.calls[-1].request
     (message,) = request.parameters
@@ -121,19 +125,19 @@ def test_setting_takes_the_kind_that_the_parameter_has(far: Far) -> None:
     assert far.remote.values["/far.speed"].value == 2.0
 
 
-def test_a_refusal_is_in_the_nodes_words(far: Far) -> None:
+def test_a_refusal_has_the_reason_of_the_node(far: Far) -> None:
     far.refusal = "too fast"
     assert far.set("/far.speed", 9.0) == ["too fast"]
     assert far.remote.values["/far.speed"].value == 1.0
     del far.answers["/far/set_parameters"]
     said = far.set("/far.speed", 1.5)
     far.clock.now_s += 2.1
-    far.questions.give_up_old()
-    assert said == ["node /far: no answer in 2 s"]
-    assert "no number" in far.set("/far.speed", "fast", "float64")[0]
+    far.service_calls.expire()
+    assert said == ["node /far: no response in 2 s"]
+    assert "not a number" in far.set("/far.speed", "fast", "float64")[0]
 
 
-def test_a_node_that_is_gone_takes_its_parameters_along(far: Far) -> None:
+def test_parameters_of_a_node_that_left_are_dropped(far: Far) -> None:
     far.remote.fetch()
     far.changed.clear()
     far.remote.set_nodes({})
@@ -145,7 +149,7 @@ def test_a_node_that_is_gone_takes_its_parameters_along(far: Far) -> None:
     assert not far.remote.serves("/far")
 
 
-def test_its_successor_of_the_same_name_is_read_anew(far: Far) -> None:
+def test_a_restarted_node_of_the_same_name_is_read_again(far: Far) -> None:
     far.remote.fetch()
     far.have = {"speed": 0.5}
     far.remote.set_nodes({"/far": b"another one's id"})
@@ -153,15 +157,15 @@ def test_its_successor_of_the_same_name_is_read_anew(far: Far) -> None:
     assert {n: w.value for n, w in far.remote.values.items()} == {"/far.speed": 0.5}
 
 
-def test_who_waits_for_a_node_that_goes_is_told(far: Far) -> None:
+def test_a_request_to_a_node_that_leaves_fails(far: Far) -> None:
     del far.answers["/far/list_parameters"]
     said = far.set("/far.speed", 1.5)
     far.remote.set_nodes({})
-    assert said == ["node /far is gone"]
+    assert said == ["node /far left the graph"]
 
 
-def test_what_nodes_tell_is_kept_also_of_unknown_ones(far: Far) -> None:
-    far.remote.take("/player", [("rate", encoded("rate", 2.0).value)])
+def test_parameter_events_of_unknown_nodes_are_kept(far: Far) -> None:
+    far.remote.store("/player", [("rate", encoded("rate", 2.0).value)])
     assert far.remote.values["/player.rate"].value == 2.0
     far.remote.drop("/player", ["rate"])
     assert far.changed[-1] == WireParameter("/player.rate", None)
@@ -171,7 +175,7 @@ def test_what_nodes_tell_is_kept_also_of_unknown_ones(far: Far) -> None:
 @pytest.mark.parametrize(
     ("low", "high"), [(math.nan, 1.0), (0.0, math.inf), (2.0, 1.0), (1.0, 1.0)]
 )
-def test_a_range_that_is_none_is_left_out(low: float, high: float) -> None:
+def test_an_invalid_range_is_omitted(low: float, high: float) -> None:
     bounds = FloatingPointRange(from_value=low, to_value=high)
     text = ParameterText.of("/a.b", ParameterDescriptor(floating_point_range=[bounds]))
     assert (text.low, text.high) == (None, None)

@@ -1,4 +1,4 @@
-"""Assets, HTTP answers, and who may ask."""
+"""Assets, HTTP responses and the access policy."""
 
 import json
 from pathlib import Path
@@ -11,10 +11,10 @@ from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import WireParameter
 from navette.viewer.layout import build_layout
 from navette.viewer.parameters import from_wire, split_name, to_wire
-from navette.viewer.web import Gate, Site
+from navette.viewer.web import AccessPolicy, Site
 
-LOCAL = Gate("127.0.0.1", ("https://app.foxglove.dev",))
-OPEN = Gate("0.0.0.0", (), ("robot.example.org",))
+LOCAL = AccessPolicy("127.0.0.1", ("https://app.foxglove.dev",))
+OPEN = AccessPolicy("0.0.0.0", (), ("robot.example.org",))
 
 
 @pytest.fixture
@@ -53,13 +53,13 @@ def test_assets_are_read_below_their_folder(folder: Path) -> None:
         "meshes/wheel one.stl",
     ],
 )
-def test_nothing_else_is_read(folder: Path, uri: str) -> None:
+def test_other_uris_are_refused(folder: Path, uri: str) -> None:
     with pytest.raises(UnknownNameError, match=r"known: package://navette/…"):
         AssetFolders({"navette": folder}).read(uri)
 
 
 @pytest.mark.parametrize(
-    ("gate", "host", "origin", "passes"),
+    ("policy", "host", "origin", "passes"),
     [
         (LOCAL, "127.0.0.1:8765", None, True),
         (LOCAL, "localhost:8765", "http://localhost:8765", True),
@@ -82,13 +82,13 @@ def test_nothing_else_is_read(folder: Path, uri: str) -> None:
         (OPEN, "robot.example.org", "https://robot.example.org", True),
         (OPEN, "evil.example:8765", "http://evil.example:8765", False),
         (OPEN, "192.168.1.5:8765", "http://evil.example", False),
-        (Gate("0.0.0.0", ("*",)), "jackal", "https://anything.example", True),
+        (AccessPolicy("0.0.0.0", ("*",)), "jackal", "https://anything.example", True),
     ],
 )
-def test_strangers_are_refused(
-    gate: Gate, host: str | None, origin: str | None, passes: bool
+def test_foreign_hosts_and_origins_are_refused(
+    policy: AccessPolicy, host: str | None, origin: str | None, passes: bool
 ) -> None:
-    refusal = gate.refusal(host, origin)
+    refusal = policy.refusal(host, origin)
     assert bool(refusal) is not passes
     if refusal:
         assert "allowed_" in refusal
@@ -151,7 +151,7 @@ def test_the_layout_holds_its_panels_together() -> None:
         (None, WireParameter("p", None)),
     ],
 )
-def test_parameters_go_out(value: object, wire: WireParameter) -> None:
+def test_parameters_are_encoded(value: object, wire: WireParameter) -> None:
     assert to_wire("p", value) == wire
 
 
@@ -172,7 +172,7 @@ def test_parameters_go_out(value: object, wire: WireParameter) -> None:
         (WireParameter("p", "QUJDRA==", "byte_array"), None, [b"A", b"B", b"C", b"D"]),
     ],
 )
-def test_parameters_come_in(
+def test_parameters_are_decoded(
     wire: WireParameter, current: object, value: object
 ) -> None:
     result = from_wire(wire, current)
@@ -198,5 +198,5 @@ def test_parameters_that_contradict_themselves_are_refused(wire: WireParameter) 
 def test_parameter_names_hold_node_and_parameter() -> None:
     assert split_name("/ns/planner.goal.tolerance") == ("/ns/planner", "goal.tolerance")
     assert split_name("planner.method") == ("/planner", "method")
-    with pytest.raises(ParameterError, match=r"wanted /node\.parameter"):
+    with pytest.raises(ParameterError, match=r"must be /node\.parameter"):
         split_name("planner")

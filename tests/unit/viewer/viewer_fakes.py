@@ -1,4 +1,4 @@
-"""A stand-in for the running program and a reader of sent frames."""
+"""A fake of the running program, and a decoder of sent frames."""
 
 import json
 from typing import Any
@@ -8,8 +8,8 @@ from navette.viewer.outbox import Outbox
 from navette.viewer.session import Watch
 
 
-class RecordingRobot:
-    """Notes what the hub asks of the program."""
+class RecordingProgram:
+    """Records the commands of the hub."""
 
     def __init__(self) -> None:
         self.calls: list[tuple[Any, ...]] = []
@@ -26,15 +26,15 @@ class RecordingRobot:
     def close_publisher(self, client: int, channel_id: int) -> None:
         self.calls.append(("close", client, channel_id))
 
-    def publish(self, client: int, channel_id: int, data: bytes) -> None:
+    def publish_from_client(self, client: int, channel_id: int, data: bytes) -> None:
         self.calls.append(("publish", client, channel_id, data))
 
-    def get_parameters(
+    def request_parameters(
         self, client: int, names: tuple[str, ...], request_id: str | None
     ) -> None:
         self.calls.append(("get", client, names, request_id))
 
-    def set_parameters(
+    def change_parameters(
         self,
         client: int,
         parameters: tuple[WireParameter, ...],
@@ -42,7 +42,7 @@ class RecordingRobot:
     ) -> None:
         self.calls.append(("set", client, parameters, request_id))
 
-    def describe_parameters(self, client: int) -> None:
+    def request_parameter_texts(self, client: int) -> None:
         self.calls.append(("describe", client))
 
     def control_playback(self, client: int, request: ControlPlayback) -> None:
@@ -57,7 +57,7 @@ class RecordingRobot:
 
 
 def sent(outbox: Outbox) -> list[Any]:
-    """All frames that wait: JSON ones as objects, binary ones as bytes."""
+    """Return all queued frames: JSON frames as objects, binary frames as bytes."""
     frames: list[Any] = []
     while outbox:
         frame = outbox.pop()

@@ -1,4 +1,4 @@
-"""A running program with a live view, and a client that knows only the protocol."""
+"""A running program with a live view, and an independent protocol client."""
 
 import json
 import socket
@@ -96,7 +96,7 @@ class Program:
 
 
 class Client:
-    """Speaks the published protocol; written without the viewer's own code."""
+    """Implements the published protocol without the viewer's own code."""
 
     def __init__(
         self, address: str, subprotocol: str = "foxglove.websocket.v1", **options: Any
@@ -206,8 +206,8 @@ class Client:
         self.close()
 
 
-class DeafClient:
-    """Opens the socket and speaks, but never reads again."""
+class NonReadingClient:
+    """Opens the socket and sends, but never reads."""
 
     def __init__(self, address: str) -> None:
         host, _, port = address.partition(":")
@@ -232,7 +232,7 @@ class DeafClient:
     def close(self) -> None:
         self._socket.close()
 
-    def __enter__(self) -> "DeafClient":
+    def __enter__(self) -> "NonReadingClient":
         return self
 
     def __exit__(

@@ -1,7 +1,7 @@
-// sensor_msgs/PointCloud2 from above: each pixel shows its highest point, by height.
+// sensor_msgs/PointCloud2 from above: each pixel shows its highest point, coloured by height.
 "use strict";
 
-const MOST_POINTS = 300000;
+const MAX_POINTS = 300000;
 // Low to high; readable on a light and on a dark ground.
 const HEIGHTS = ["#3b5bdb", "#1098ad", "#37b24d", "#f59f00", "#e03131"];
 const NUMBER_TYPES = {
@@ -16,7 +16,7 @@ function fieldReader(view, field, littleEndian, step) {
   return (at) => view[getter](at + field.offset, littleEndian);
 }
 
-/** Between which numbers x (0), y (1) or z (2) lie, but for the outermost fiftieths. */
+/** 2nd and 98th percentile of x (0), y (1) or z (2). */
 function range(points, axis) {
   const some = [], step = 3 * Math.max(1, Math.floor(points.length / 6000));
   for (let at = axis; at < points.length; at += step) some.push(points[at]);
@@ -42,7 +42,7 @@ class CloudLayer {
     const [x, y, z] = ["x", "y", "z"].map((name) => fieldReader(view, fields[name], littleEndian, step));
     this.xyz = new Float32Array(0);
     if (!x || !y || step === 0) return;
-    const stride = Math.max(1, Math.ceil((width * height) / MOST_POINTS));
+    const stride = Math.max(1, Math.ceil((width * height) / MAX_POINTS));
     const row = height > 1 ? Math.max(rowStep, width * step) : width * step;
     const most = Math.min(width * height, Math.floor(bytes.length / step));
     const found = new Float32Array(3 * Math.ceil(most / stride));
@@ -58,7 +58,7 @@ class CloudLayer {
     this.xyz = found.subarray(0, 3 * count);
   }
 
-  /** Where most of it lies in the fixed frame, or null. */
+  /** Bounding box of most points in the fixed frame, or null. */
   box() {
     if (!this.points?.length) return null;
     const [[left, right], [low, high]] = [range(this.points, 0), range(this.points, 1)];
@@ -114,7 +114,7 @@ class CloudLayer {
 }
 
 let colours = null;
-/** 256 colours as pixels hold them: red in the lowest byte. */
+/** 256 colours as pixel values: red in the lowest byte. */
 function heightTable() {
   colours ??= Uint32Array.from({ length: 256 }, (_, index) => {
     const at = (index / 255) * (HEIGHTS.length - 1), low = Math.min(HEIGHTS.length - 2, Math.floor(at));

@@ -1,9 +1,9 @@
-// What is drawn of each message type, seen from above.
+// One layer class per message type, drawn from above.
 "use strict";
 
 const plane = (pose, point) => apply(pose, point).slice(0, 2);
 
-/** nav_msgs/OccupancyGrid as an image: nothing where unknown, darker where dangerous. */
+/** nav_msgs/OccupancyGrid as an image: unknown is transparent, higher cost is darker. */
 class GridLayer {
   constructor(topic) { this.order = 0; this.isQuiet = topic !== "/map"; this.frame = ""; this.image = null; }
   read(reader) {
@@ -14,7 +14,7 @@ class GridLayer {
     this.cells = reader.bytes(reader.u32());
     this.image = null;
   }
-  /** What is known: its corners in the map's frame, or null. */
+  /** Bounding box of the known cells in the map's frame, or null. */
   box() {
     let [left, right, low, high] = [this.width, -1, this.height, -1];
     for (let index = 0; index < this.cells.length; index++) {

@@ -1,42 +1,42 @@
-// How the nodes are: the live view asks those of other programs twice a second and tells us.
+// Node states: the live view probes the nodes of other programs twice a second.
 "use strict";
 
-// Nobody drives without these: a node that says one of them is missed at once.
+// Topics needed to drive: the loss of a publisher of one of them is shown at once.
 const DUTIES = ["/cmd_vel", "/path", "/map", "/costmap", "/odom/filtered", "/odom", "/lidar", "/scan"];
 const MUTE_S = 2.5; // reports come every half second
 
 const nodes = {
   reports: [],
-  hangs: 0,            // s that the program of the live view has not come to its nodes
-  told: null,          // when the last report came, by this machine's clock
-  duties: new Map(),   // node → the topics it is needed for, also when it is gone
+  blocked: 0,          // s since the program of the live view ran a callback
+  received: null,      // local time of the last report
+  duties: new Map(),   // node → the topics it is needed for, kept when it is gone
 
   start(list, count) { this.list = list; this.count = count; },
-  clear() { this.reports = []; this.hangs = 0; this.told = null; this.duties.clear(); this.draw(); },
+  clear() { this.reports = []; this.blocked = 0; this.received = null; this.duties.clear(); this.draw(); },
 
-  take({ nodes: reports, hangs }) {
-    this.reports = reports; this.hangs = hangs; this.told = performance.now();
+  take({ nodes: reports, blocked }) {
+    this.reports = reports; this.blocked = blocked; this.received = performance.now();
     this.draw();
   },
-  /** Who publishes: topic → names. */
+  /** Publishers by topic. */
   note(publishers) {
     for (const topic of DUTIES) for (const name of publishers[topic] ?? []) {
       if (!this.duties.has(name)) this.duties.set(name, new Set());
       this.duties.get(name).add(topic);
     }
   },
-  /** Seconds without a word from the live view itself; 0 while all is well. */
+  /** Seconds without a report of the live view itself; 0 while it responds. */
   get mute() {
-    const age = this.told === null ? 0 : (performance.now() - this.told) / 1000;
+    const age = this.received === null ? 0 : (performance.now() - this.received) / 1000;
     return age > MUTE_S ? age : 0;
   },
   stateOf(name) { return this.reports.find((report) => report.name === name)?.state; },
 
-  /** Nodes that are missed, the needed ones first; `hasStatus`: whether one tells how it is. */
+  /** Missing nodes, needed ones first; `hasStatus`: whether a node publishes a status. */
   missed(hasStatus) {
     const isNeeded = ({ name, state }) => {
       const duties = this.duties.get(name);
-      // Whoever drives by hand may go as he came.
+      // A node that only teleoperates may leave.
       const stays = duties && [...duties].some((topic) => state === "silent" || topic !== "/cmd_vel");
       return stays || hasStatus(name);
     };
@@ -57,10 +57,10 @@ const nodes = {
       const item = this.list.children[index] ?? this.list.appendChild(this.item());
       const { name, state, since } = report;
       if (item.className !== state) item.className = state;
-      const note = { silent: `no answer for ${ageText(since)}`, gone: `gone for ${ageText(since)}`, unknown: "cannot be asked" }[state] ?? "";
+      const note = { silent: `no response for ${ageText(since)}`, gone: `gone for ${ageText(since)}`, unknown: "state unknown" }[state] ?? "";
       if (item.children[1].textContent !== name) item.children[1].textContent = name;
       if (item.children[2].textContent !== note) item.children[2].textContent = note;
-      item.title = { alive: "answers", silent: "frozen, hung or cut off", gone: "has ended, or is cut off", unknown: "has no parameter services: nobody can tell how it is" }[state] ?? "";
+      item.title = { alive: "responds", silent: "stopped, blocked or disconnected", gone: "ended or disconnected", unknown: "has no parameter services, so its state is unknown" }[state] ?? "";
     });
   },
   item() {
@@ -82,12 +82,12 @@ function namesText(reports) {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
-/** What is the matter with the nodes, for the headline; null while nothing is. */
-function nodeTrouble(reports) {
+/** Headline and detail of missing nodes; null without a problem. */
+function nodeProblem(reports) {
   if (!reports.length) return null;
   const states = new Set(reports.map(({ state }) => state)), many = reports.length > 1;
   const longest = ageText(Math.max(...reports.map(({ since }) => since)));
-  if (states.size > 1) return [`${namesText(reports)} are missing`, `Gone or without an answer, for ${longest}.`];
-  if (states.has("gone")) return [`${namesText(reports)} ${many ? "are" : "is"} gone`, `Ended or cut off, ${longest} ago.`];
-  return [`${namesText(reports)} ${many ? "do" : "does"} not answer`, `Frozen, hung or cut off, for ${longest}.`];
+  if (states.size > 1) return [`${namesText(reports)} are missing`, `Gone or not responding for ${longest}.`];
+  if (states.has("gone")) return [`${namesText(reports)} ${many ? "are" : "is"} gone`, `Ended or disconnected ${longest} ago.`];
+  return [`${namesText(reports)} ${many ? "do" : "does"} not respond`, `Stopped, blocked or disconnected for ${longest}.`];
 }

@@ -1,12 +1,12 @@
-// The bar under the picture while a recording is played: play, step, seek, rate.
+// The bar under the map while a recording is played: play, step, seek, rate.
 "use strict";
 
 const PLAYING = 0, ENDED = 3, STEPS = 10000, SEEK_MS = 80;
-const REQUEST = `page-${Math.random().toString(36).slice(2)}-`; // answers go to every page
+const REQUEST = `page-${Math.random().toString(36).slice(2)}-`; // responses go to every page
 
 const playback = {
   begin: 0n, end: 0n, status: null, speed: 1, requests: 0, answered: 0, wanted: null, timer: null,
-  seeking: null, // id of the request that is under way: until its answer the slider stays where it was put
+  seeking: null, // id of the pending request: until its response the slider keeps its position
 
   start(bar, { sendText, sendBinary, onSeek }) {
     const part = (name) => bar.querySelector(`[name="${name}"]`);
@@ -25,7 +25,7 @@ const playback = {
     });
   },
 
-  /** What the server says of itself: is there a recording? */
+  /** Show the bar if the server plays a recording. */
   greet({ capabilities, dataStartTime, dataEndTime }) {
     const ns = ({ sec, nsec }) => BigInt(sec) * 1000000000n + BigInt(nsec);
     const plays = capabilities.includes("playbackControl") && dataStartTime && dataEndTime;
@@ -33,9 +33,9 @@ const playback = {
     this.bar.hidden = !plays;
   },
   get isThere() { return !this.bar.hidden; },
-  /** How it goes, in words. */
-  get said() {
-    return ["Playing a recording", "Recording, paused", "Recording, loading", "Recording, at its end"][this.status] ?? "A recording";
+  /** Status as text. */
+  get description() {
+    return ["Playing a recording", "Recording, paused", "Recording, loading", "Recording, ended"][this.status] ?? "A recording";
   },
   leave() { this.bar.hidden = true; this.status = this.seeking = null; },
 
@@ -62,7 +62,7 @@ const playback = {
     }
     this.rate.value = text;
   },
-  /** The place as the server tells it. */
+  /** Show the position reported by the server. */
   show(now) {
     if (this.bar.hidden || this.seeking !== null || this.timer !== null) return;
     const length = Number(this.end - this.begin);

@@ -1,4 +1,4 @@
-// Driving by hand: a speed command ten times a second while a key is held, then zero.
+// Teleoperation by keys: a velocity command at 10 Hz while a key is held, then zero.
 "use strict";
 
 const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };

@@ -1,4 +1,4 @@
-// The robot from above: a canvas that pans, zooms and follows, with a layer per topic.
+// Top-down view: a canvas that pans, zooms and follows the robot, with a layer per topic.
 "use strict";
 
 const view = {
@@ -6,11 +6,11 @@ const view = {
   centre: [0, 0], scale: 30, // pixels per metre
   follows: true,
   layers: new Map(),         // topic → layer
-  trail: [],                 // where the base was, in the fixed frame
+  trail: [],                 // past positions of the base in the fixed frame
   base: null,                // fixed_T_base
-  outline: [],               // the robot's outline in its base frame
+  outline: [],               // the footprint in the base frame
   goal: null,
-  hidden: new Set(),         // topics that are switched off
+  hidden: new Set(),         // hidden topics
   known: new Set(),          // topics that were drawn before
 
   start(canvas, onClick) {
@@ -21,7 +21,7 @@ const view = {
     listenToPointer(this, onClick);
   },
 
-  /** A message on a topic; true where the view can show its type. */
+  /** Draw a message; true if the view supports its type. */
   take(topic, schema, reader) {
     if (schema === "tf2_msgs/msg/TFMessage") { frames.take(reader); this.invalidate(); return true; }
     const make = LAYERS[schema];
@@ -34,7 +34,7 @@ const view = {
   },
 
   add(topic, layer) {
-    if (layer.isQuiet && !this.known.has(topic)) this.hidden.add(topic); // once: then a person decides
+    if (layer.isQuiet && !this.known.has(topic)) this.hidden.add(topic); // the user decides afterwards
     this.known.add(topic);
     this.layers.set(topic, layer);
     const order = (l) => l.order;
@@ -42,7 +42,7 @@ const view = {
     this.listLayers?.(this);
     return layer;
   },
-  /** What these topics showed is of another time. */
+  /** Remove outdated data of these topics. */
   forget(topics) {
     for (const topic of topics) this.layers.delete(topic);
     this.trail = []; this.base = null;

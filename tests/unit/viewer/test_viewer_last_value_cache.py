@@ -1,4 +1,4 @@
-"""The last message for latecomers: kept, given first, dropped when it means nothing."""
+"""The last message for late clients: cached, sent first, dropped when outdated."""
 
 import struct
 from pathlib import Path
@@ -34,11 +34,11 @@ def latecomer(bench: Bench) -> list[Any]:
     return bench.subscribe(bench.join(), 7, bench.channel("/path").id)
 
 
-def test_a_state_is_listened_to_before_anybody_watches(bench: Bench) -> None:
-    assert bench.robot.take() == [("watch", "/path", None)]
+def test_a_state_topic_is_subscribed_before_a_client_watches(bench: Bench) -> None:
+    assert bench.program.take() == [("watch", "/path", None)]
 
 
-def test_latecomers_are_given_the_last_message(bench: Bench) -> None:
+def test_late_clients_receive_the_last_message(bench: Bench) -> None:
     assert latecomer(bench) == []
     say(bench, 1)
     say(bench, 2, b"newer")
@@ -46,94 +46,96 @@ def test_latecomers_are_given_the_last_message(bench: Bench) -> None:
     assert latecomer(bench) == [message_data(7, 2, b"newer")]
 
 
-def test_it_is_listened_to_on_when_the_last_client_leaves(bench: Bench) -> None:
+def test_a_state_topic_stays_subscribed_when_the_last_client_leaves(
+    bench: Bench,
+) -> None:
     session = bench.join()
     bench.subscribe(session, 1, bench.channel("/path").id)
-    bench.robot.take()
+    bench.program.take()
     bench.hub.leave(session)
-    assert bench.robot.take() == []
+    assert bench.program.take() == []
     say(bench, 3)
     assert latecomer(bench) == [message_data(7, 3, b"way")]
 
 
-def test_what_the_gone_have_said_is_not_kept(bench: Bench) -> None:
+def test_the_message_of_a_publisher_that_left_is_dropped(bench: Bench) -> None:
     say(bench, 1)
-    bench.robot.take()
+    bench.program.take()
     bench.hub.set_graph(Graph({}, {"/path": ("/control",)}))
-    assert bench.robot.take() == [("unwatch", "/path", None)]
+    assert bench.program.take() == [("unwatch", "/path", None)]
     assert latecomer(bench) == []
-    bench.robot.take()
+    bench.program.take()
     bench.hub.set_graph(SAID)  # watched already
-    assert bench.robot.take() == []
+    assert bench.program.take() == []
     say(bench, 2)
     assert latecomer(bench) == [message_data(7, 2, b"way")]
 
 
-def test_commands_are_not_listened_to(bench: Bench) -> None:
-    """Who sends a goal waits for a listener: that must be the planner."""
-    bench.robot.take()
+def test_command_topics_are_not_subscribed(bench: Bench) -> None:
+    """The sender of a goal waits for a subscriber, which must be the planner."""
+    bench.program.take()
     goal = Topic("/goal_point", "geometry_msgs/msg/PointStamped", "float64 x")
     bench.hub.set_topics([goal])
     bench.hub.set_graph(Graph({"/goal_point": ("/missions",)}, {}))
-    assert ("watch", "/goal_point", None) not in bench.robot.take()
+    assert ("watch", "/goal_point", None) not in bench.program.take()
 
 
-def test_after_a_jump_in_a_recording_nothing_holds(bench: Bench) -> None:
+def test_a_seek_clears_the_cache(bench: Bench) -> None:
     say(bench, 1)
     state = PlaybackState(PlaybackStatus.PLAYING, 5, 1.0)
     bench.hub.set_playback(state, did_seek=True, request_id="")
     assert latecomer(bench) == []
 
 
-def test_a_stream_is_let_go_unless_somebody_watches(bench: Bench) -> None:
-    bench.robot.take()
+def test_a_stream_is_unsubscribed_without_a_client(bench: Bench) -> None:
+    bench.program.take()
     for number in range(20):
         say(bench, number * 100_000_000)
-    assert bench.robot.take() == [("unwatch", "/path", None)]
+    assert bench.program.take() == [("unwatch", "/path", None)]
     bench.hub.set_graph(Graph({**SAID.published, "/new": ("/b",)}, {}))
-    assert bench.robot.take() == []
+    assert bench.program.take() == []
     assert latecomer(bench) == []  # the next one comes soon
 
 
-def test_a_stream_that_is_watched_goes_on(bench: Bench) -> None:
+def test_a_watched_stream_stays_subscribed(bench: Bench) -> None:
     session = bench.join()
     bench.subscribe(session, 1, bench.channel("/path").id)
-    bench.robot.take()
+    bench.program.take()
     for number in range(30):
         say(bench, number * 100_000_000)
-    assert bench.robot.take() == []
+    assert bench.program.take() == []
     assert len([f for f in sent(session.outbox) if isinstance(f, bytes)]) == 16
     bench.hub.leave(session)
-    assert bench.robot.take() == [("unwatch", "/path", None)]
+    assert bench.program.take() == [("unwatch", "/path", None)]
 
 
 def test_a_clock_that_is_set_back_makes_no_stream(bench: Bench) -> None:
-    bench.robot.take()
+    bench.program.take()
     for _ in range(20):
         for second in range(0, 30, 10):
             say(bench, second * 1_000_000_000)
-    assert bench.robot.take() == []
+    assert bench.program.take() == []
 
 
-def test_huge_messages_are_not_kept(bench: Bench) -> None:
-    bench.robot.take()
+def test_huge_messages_are_not_cached(bench: Bench) -> None:
+    bench.program.take()
     say(bench, 1, bytes(5_000_000))
-    assert bench.robot.take() == [("unwatch", "/path", None)]
+    assert bench.program.take() == [("unwatch", "/path", None)]
 
 
-def test_a_topic_that_goes_is_not_listened_to(bench: Bench) -> None:
-    bench.robot.take()
+def test_a_removed_topic_is_unsubscribed(bench: Bench) -> None:
+    bench.program.take()
     bench.hub.set_topics([SCAN])
-    assert bench.robot.take() == [("unwatch", "/path", None)]
+    assert bench.program.take() == [("unwatch", "/path", None)]
 
 
-def test_latched_topics_keep_themselves(bench: Bench) -> None:
-    bench.robot.take()
+def test_latched_topics_are_not_cached(bench: Bench) -> None:
+    bench.program.take()
     bench.hub.set_topics([Topic("/map", "nav_msgs/msg/OccupancyGrid", "", True)])
-    assert ("watch", "/map", None) not in bench.robot.take()
+    assert ("watch", "/map", None) not in bench.program.take()
 
 
-def test_the_stamp_is_that_of_its_time(bench: Bench) -> None:
+def test_a_cached_message_keeps_its_stamp(bench: Bench) -> None:
     say(bench, 5)
     ((frame),) = latecomer(bench)
     assert struct.unpack_from("<BIQ", frame) == (1, 7, 5)

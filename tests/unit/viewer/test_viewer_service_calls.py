@@ -1,11 +1,11 @@
-"""Questions to other nodes: answered, refused, given up."""
+"""Service calls to other nodes: response, error, timeout."""
 
 from typing import Any
 
 import pytest
 from remote_fakes import World
 
-from navette.viewer.questions import ANSWER_S
+from navette.viewer.service_calls import TIMEOUT_S
 
 GET = "rcl_interfaces/srv/GetParameters"
 
@@ -17,26 +17,26 @@ def world() -> World:
 
 def ask(world: World, service: str = "/a/get_parameters") -> list[tuple[Any, str]]:
     got: list[tuple[Any, str]] = []
-    world.questions.ask(
+    world.service_calls.call(
         service, GET, {"names": ["x"]}, lambda *said: got.append((said[0], said[1]))
     )
     return got
 
 
-def test_an_answer_is_told_and_the_client_is_gone(world: World) -> None:
+def test_a_response_is_passed_on_and_the_client_destroyed(world: World) -> None:
     got = ask(world)
     assert (got, world.clients) == ([], ["/a/get_parameters"])
     assert world.calls[0].request.names == ["x"]
     world.calls[0].future.set_result("yes")
     assert got == [("yes", "")]
-    assert (world.clients, world.questions.under_way) == ([], 0)
+    assert (world.clients, world.service_calls.pending) == ([], 0)
 
 
-def test_who_does_not_answer_is_given_up(world: World) -> None:
+def test_a_call_without_response_times_out(world: World) -> None:
     got = ask(world)
-    world.clock.now_s += ANSWER_S + 0.1
-    world.questions.give_up_old()
-    assert got == [(None, "no answer in 1 s")]
+    world.clock.now_s += TIMEOUT_S + 0.1
+    world.service_calls.expire()
+    assert got == [(None, "no response in 1 s")]
     world.calls[0].future.set_result("late")
     assert (len(got), world.clients) == (1, [])
 
@@ -54,13 +54,13 @@ def test_failures_have_reasons(world: World) -> None:
     assert world.clients == []
 
 
-def test_a_client_is_kept_for_who_asks_often(world: World) -> None:
-    world.questions.keep("/a/get_parameters")
+def test_a_retained_client_serves_several_calls(world: World) -> None:
+    world.service_calls.retain("/a/get_parameters")
     first, second = ask(world), ask(world)
     assert world.clients == ["/a/get_parameters"]
     for call in world.calls:
         call.future.set_result("yes")
     assert first == second == [("yes", "")]
     assert world.clients == ["/a/get_parameters"]
-    world.questions.let_go("/a/get_parameters")
+    world.service_calls.release("/a/get_parameters")
     assert world.clients == []

@@ -1,17 +1,17 @@
-"""The last message of topics that speak rarely: for clients who come in between.
+"""The last message of topics that are published rarely, for clients that join later.
 
-A path or a marker is said once and holds until the next one; who opens the page in the
-middle of a drive would not see it. Latched topics need nothing of this: there the
-publisher itself keeps the last message.
+A path or a marker is published once and holds until the next one; a client that opens
+the page in between would not see it. Latched topics need no cache here: their
+publishers keep the last message.
 """
 
 from collections import deque
 from dataclasses import dataclass, field
 
-#: Small, and a state: each message replaces the one before. Their topics are listened
-#: to as long as somebody publishes them, who serialises for this. No goals and poses
-#: (PointStamped, PoseStamped): these are commands, and who gives one waits for a
-#: listener, who must not be the live view.
+#: Small types whose messages are a state: each replaces the one before. The view
+#: subscribes to their topics while they have a publisher. Goals and poses
+#: (PointStamped, PoseStamped) are excluded: they are commands, and a publisher that
+#: waits for a subscriber must not find the live view.
 STATE_TYPES = frozenset(
     {
         "geometry_msgs/msg/PolygonStamped",
@@ -23,41 +23,42 @@ STATE_TYPES = frozenset(
     }
 )
 
-_MOST_BYTES = 4_000_000  # of a message
-_OFTEN = 20  # messages in so many seconds are a stream: the next one comes soon enough
-_OFTEN_NS = 5_000_000_000
+_MAX_BYTES = 4_000_000  # of a message
+# This many messages in this time are a stream: the next message comes soon enough.
+_STREAM_MESSAGES = 20
+_STREAM_NS = 5_000_000_000
 
 
 @dataclass
 class _Topic:
     last: tuple[int, bytes] | None = None
-    stamps: deque[int] = field(default_factory=lambda: deque(maxlen=_OFTEN))
+    stamps: deque[int] = field(default_factory=lambda: deque(maxlen=_STREAM_MESSAGES))
 
 
-class LastMessages:
-    """By channel id: the newest message and its stamp (ns)."""
+class LastValueCache:
+    """The newest message and its stamp (ns), by channel id."""
 
     def __init__(self) -> None:
         self._topics: dict[int, _Topic] = {}
         self._streams: set[int] = set()
 
     def open(self, channel: int) -> bool:
-        """Keep what comes from now on; False where that is so, or it is a stream."""
+        """Start to cache a channel; False if it is cached already, or is a stream."""
         if channel in self._topics or channel in self._streams:
             return False
         self._topics[channel] = _Topic()
         return True
 
     def close(self, channel: int) -> None:
-        """Keep nothing any more: nobody publishes it."""
+        """Drop a channel that has no publisher any more."""
         self._topics.pop(channel, None)
         self._streams.discard(channel)
 
     def __contains__(self, channel: int) -> bool:
         return channel in self._topics
 
-    def take(self, channel: int, stamp_ns: int, payload: bytes) -> None:
-        """A message; a topic that proves a stream, or large, is kept no more."""
+    def store(self, channel: int, stamp_ns: int, payload: bytes) -> None:
+        """Store a message; a channel with frequent or large messages is dropped."""
         topic = self._topics.get(channel)
         if topic is None:
             return
@@ -66,18 +67,19 @@ class LastMessages:
             topic.stamps.clear()  # the clock was set back
         topic.stamps.append(stamp_ns)
         is_stream = (
-            len(topic.stamps) == _OFTEN and stamp_ns - topic.stamps[0] < _OFTEN_NS
+            len(topic.stamps) == _STREAM_MESSAGES
+            and stamp_ns - topic.stamps[0] < _STREAM_NS
         )
-        if is_stream or len(payload) > _MOST_BYTES:
+        if is_stream or len(payload) > _MAX_BYTES:
             del self._topics[channel]
             self._streams.add(channel)
 
     def last(self, channel: int) -> tuple[int, bytes] | None:
-        """Stamp (ns) and message, if there is one."""
+        """Return stamp (ns) and message, or None."""
         topic = self._topics.get(channel)
         return None if topic is None else topic.last
 
-    def forget(self) -> None:
-        """What was said no longer holds."""
+    def clear(self) -> None:
+        """Drop all messages, for example after a seek in a recording."""
         for topic in self._topics.values():
             topic.last = None

@@ -1,25 +1,25 @@
-"""What clients ask of a recording that is played, and are told of it.
+"""Clients' requests to a recording that is played, and reports of its state.
 
-All methods but :meth:`PlaybackDesk.position_ns` belong to the executor's thread;
-answers go to the hub by its ``call``.
+All methods but :meth:`PlaybackRequests.position_ns` belong to the executor's thread;
+results are passed to the hub through its ``call``.
 """
 
 from functools import partial
 
 from navette.viewer.frames import ControlPlayback
 from navette.viewer.hub import Hub
-from navette.viewer.parameter_desk import Call
+from navette.viewer.parameter_requests import Call
 from navette.viewer.playback import Playback
 
 
-class PlaybackDesk:
-    """Does what playback bars ask for; without a recording, nothing."""
+class PlaybackRequests:
+    """Executes requests of playback bars; does nothing without a recording."""
 
     def __init__(self, playback: Playback | None, hub: Hub, call: Call) -> None:
         self._playback = playback
         self._hub = hub
         self._call = call
-        self._request_id = ""  # of whoever is answered by the next report
+        self._request_id = ""  # of the request that the next report answers
 
     def begin(self) -> None:
         """Report every change from now on."""
@@ -27,7 +27,7 @@ class PlaybackDesk:
             self._playback.on_change(self._report)
 
     def control(self, request: ControlPlayback) -> None:
-        """Do what a client's playback bar asks for; all clients hear of it."""
+        """Play, pause, seek or change the speed; all clients receive the new state."""
         if self._playback is None:
             return
         self._request_id = request.request_id
@@ -36,16 +36,16 @@ class PlaybackDesk:
                 play=request.play, speed=request.speed, seek_ns=request.seek_ns
             )
         finally:
-            if self._request_id:  # nothing changed: say how it is all the same
+            if self._request_id:  # nothing changed: report the state all the same
                 self._report(False)
 
     def step(self) -> None:
-        """The recording's next message."""
+        """Publish the recording's next message."""
         if self._playback is not None:
             self._playback.step()
 
     def position_ns(self) -> int | None:
-        """Where the recording is, if there is one; from any thread."""
+        """Position in the recording, None without one; callable from any thread."""
         return None if self._playback is None else self._playback.state().position_ns
 
     def _report(self, jumped: bool) -> None:

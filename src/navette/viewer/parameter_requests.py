@@ -1,6 +1,7 @@
-"""What clients see and set of the parameters of all nodes, here and elsewhere.
+"""Clients' requests about the parameters of all nodes, in this and other processes.
 
-All methods belong to the executor's thread; answers go to the hub by its ``call``.
+All methods belong to the executor's thread; results are passed to the hub through its
+``call``.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -26,7 +27,7 @@ Call = Callable[..., None]
 
 
 class LocalNode(Protocol):
-    """What is needed of a node of this process."""
+    """The part of a node of this process that is used here."""
 
     def get_fully_qualified_name(self) -> str: ...
     def has_parameter(self, name: str) -> bool: ...
@@ -36,13 +37,13 @@ class LocalNode(Protocol):
     def set_parameters(self, parameters: list[Any]) -> Sequence[Any]: ...
 
 
-class ParameterDesk:
-    """Answers clients' requests about parameters.
+class ParameterRequests:
+    """Executes clients' requests about parameters.
 
     Args:
-        nodes: those of this process, now.
-        remote: knows those of other processes.
-        parameter: makes a parameter of name and value; ParameterError for no value.
+        nodes: returns the nodes of this process.
+        remote: parameters of the nodes of other processes.
+        parameter: creates a parameter from name and value; may raise ParameterError.
     """
 
     def __init__(
@@ -60,9 +61,9 @@ class ParameterDesk:
         self._parameter = parameter
 
     def get(self, client: int, names: tuple[str, ...], request_id: str | None) -> None:
-        """Send the named parameters, or all, once all nodes have answered.
+        """Send the named parameters, or all, once all nodes have responded.
 
-        Names that nobody has are left out; so are nodes that do not answer.
+        Unknown names and nodes that do not respond are omitted.
         """
 
         def send() -> None:
@@ -82,11 +83,11 @@ class ParameterDesk:
         parameters: tuple[WireParameter, ...],
         request_id: str | None,
     ) -> None:
-        """Set some, of any nodes; the client is told what was refused, and why."""
+        """Set parameters of any nodes; the client receives the reason of refusals."""
         left = len(parameters)
 
         def end() -> None:
-            # The values as they are now tell what was taken and what refused.
+            # The current values show what was set and what was refused.
             if request_id is not None:
                 names = tuple(parameter.name for parameter in parameters)
                 self._send(client, names, request_id)
@@ -96,7 +97,7 @@ class ParameterDesk:
             nonlocal left
             left -= 1
             if reason:
-                # A page tells by the first words where it belongs.
+                # The page finds the parameter by the first words.
                 is_whole = reason.startswith("parameter ") and name in reason
                 text = reason if is_whole else f"parameter {name!r:.120}: {reason}"
                 self._call(self._hub.complain, client, text)
@@ -109,24 +110,24 @@ class ParameterDesk:
             end()
 
     def describe(self, client: int) -> None:
-        """Tell what parameters mean, as far as it is known now."""
+        """Send the known descriptions of parameters."""
         texts = [text for node in self._nodes() for text in _texts_of(node)]
         texts += self._remote.texts.values()
-        self._call(self._hub.describe, texts, client)
+        self._call(self._hub.set_parameter_texts, texts, client)
         self._call(self._hub.done, client)
 
     def on_event(self, event: Any) -> None:
-        """An rcl_interfaces/msg/ParameterEvent."""
+        """Forward an rcl_interfaces/msg/ParameterEvent to the clients."""
         changed = (*event.new_parameters, *event.changed_parameters)
         values = [(each.name, each.value) for each in changed]
         deleted = [each.name for each in event.deleted_parameters]
         if self._node_here(event.node) is None:
-            self._remote.take(event.node, values)
+            self._remote.store(event.node, values)
             self._remote.drop(event.node, deleted)
             return
-        told = [to_wire(wire_name(event.node, n), value_of(v)) for n, v in values]
-        told += [WireParameter(wire_name(event.node, n), None) for n in deleted]
-        self._call(self._hub.parameters_changed, told)
+        changes = [to_wire(wire_name(event.node, n), value_of(v)) for n, v in values]
+        changes += [WireParameter(wire_name(event.node, n), None) for n in deleted]
+        self._call(self._hub.parameters_changed, changes)
 
     def _send(
         self, client: int, names: tuple[str, ...], request_id: str | None
@@ -141,7 +142,7 @@ class ParameterDesk:
         self._call(self._hub.parameters, client, values, request_id)
 
     def _set_one(self, wire: WireParameter, done: Callable[[str], None]) -> None:
-        """``done`` takes why it was not set."""
+        """Call ``done`` with the reason if the parameter was not set, else with ""."""
         try:
             node_name, name = split_name(wire.name)
             node = self._node_here(node_name)
@@ -152,14 +153,14 @@ class ParameterDesk:
                 self._remote.set(whole, done)
                 return
             else:
-                raise ParameterError("nobody has it")
+                raise ParameterError("no node has this parameter")
         except ParameterError as error:
             done(str(error))
         else:
             done("")
 
     def _set_here(self, node: LocalNode, name: str, wire: WireParameter) -> None:
-        """Raises ParameterError with the node's reason."""
+        """Set it; raises ParameterError with the node's reason."""
         value = from_wire(wire, node.get_parameter(name).value)
         (result,) = node.set_parameters([self._parameter(name, value)])
         if not result.successful:
