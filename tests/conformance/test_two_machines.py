@@ -57,7 +57,11 @@ def hasty(tmp_path: Path) -> Iterator[TwoFleets]:
     file = tmp_path / "hasty.json5"
     file.write_text(json.dumps(config), encoding="utf-8")
     router = f"tcp/{ROBOT}:7447"
-    env = {"NAVETTE_ROUTER": router, "ZENOH_SESSION_CONFIG_URI": str(file)}
+    env = {
+        "NAVETTE_ROUTER": router,
+        "NAVETTE_RETRANSMIT": "/count",
+        "ZENOH_SESSION_CONFIG_URI": str(file),
+    }
     with Machines(seed=1, hasty=True) as machines, Fleet(tmp_path, env) as programs:
         yield TwoFleets(programs, machines)
         machines.wire.mend()

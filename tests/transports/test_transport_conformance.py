@@ -285,6 +285,8 @@ def test_graph_lists_endpoints_and_tells_of_changes(local_bench: Bench) -> None:
     assert events == ["changed", "n1>n2", "changed", "n1|n2", "changed", "changed"]
 
 
+# With retransmission every sample is serialised, for the publisher's cache.
+@pytest.mark.parametrize("bench", ["in-process", "zenoh"], indirect=True)
 def test_no_subscription_no_work(bench: Bench) -> None:
     class Loud:
         def __getattr__(self, name: str) -> Any:

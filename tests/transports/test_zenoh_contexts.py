@@ -230,7 +230,7 @@ def test_what_is_destroyed_leaves_nothing_behind(network: Network) -> None:
     assert not transport._ports
     assert not transport._tokens.nodes()
     assert not transport._tokens._made
-    assert not transport._own_gids
+    assert not transport.own_gids
     assert not transport.session.graph._locals
     graph = transport_of(there).session.graph
     until(lambda: not graph._endpoints and not graph._by_name, "the end of endpoints")

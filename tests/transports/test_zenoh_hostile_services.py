@@ -22,8 +22,8 @@ from navette.transports import (
 )
 from navette.transports.zenoh import ZenohTransport
 from navette.transports.zenoh.attachment import Attachment
-from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.keys import data_key
+from navette.transports.zenoh.log_once import LogOnce
 from navette.transports.zenoh.tokens import gid_of
 
 ADD, GET = "example_interfaces/srv/AddTwoInts", "rcl_interfaces/srv/GetParameters"
@@ -217,13 +217,13 @@ def test_a_request_to_another_service_is_refused(pair: ZenohPair) -> None:
 def test_who_calls_itself_something_else_each_time_is_told_of_a_few_times(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    complaints = Complaints()
+    log_once = LogOnce()
     with caplog.at_level(logging.WARNING):
         for number in range(2000):
-            complaints.once(("sample", "/flooded", str(number)), "bad")
-            complaints.once(("sample", "/flooded", "the same"), "bad")
-        complaints.once(("sample", "/other", "somebody"), "bad elsewhere")
+            log_once.warning(("sample", "/flooded", str(number)), "bad")
+            log_once.warning(("sample", "/flooded", "the same"), "bad")
+        log_once.warning(("sample", "/other", "somebody"), "bad elsewhere")
     told = [record.getMessage() for record in caplog.records]
     assert told[:4] == ["bad"] * 4
-    assert told[4].startswith("bad (nothing more")
+    assert told[4].startswith("bad (further warnings")
     assert told[5:] == ["bad elsewhere"]

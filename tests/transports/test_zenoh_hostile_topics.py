@@ -9,7 +9,6 @@ from transport_benches import ZenohPair, message_of, until
 from navette.msgs import serialize, type_hash
 from navette.msgs.std_msgs.msg import String
 from navette.transports import (
-    Encoded,
     Endpoint,
     EndpointKind,
     EndpointQos,
@@ -18,7 +17,7 @@ from navette.transports import (
 )
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.keys import data_key
-from navette.transports.zenoh.recovery.lane import FAR_AHEAD, FAR_BEHIND, Lane
+from navette.transports.zenoh.sequence_filter import FAR_AHEAD
 
 TYPE = "std_msgs/msg/String"
 KEY = data_key(7, "/t", TYPE, type_hash(TYPE))
@@ -61,45 +60,6 @@ def test_a_number_in_anothers_name_does_not_shut_it_out(
     pair.settle()
     heard = [message_of(item).data for item in items]
     assert [text for text in heard if text != "forged"] == ["1", "2", "3"]
-
-
-def test_a_head_that_cannot_be_is_not_waited_for() -> None:
-    lane: Lane[str] = Lane()
-    assert lane.take(1, "a", 1) == ["a"]
-    lane.reach(2**63 - 1)
-    assert lane.missing() is None
-    lane.reach(4)
-    assert lane.missing() == (2, 4)
-
-
-def test_what_is_held_goes_before_a_publisher_that_counts_anew() -> None:
-    lane: Lane[str] = Lane()
-    lane.take(FAR_BEHIND + 2, "a", 1)
-    assert lane.take(FAR_BEHIND + 5, "held", 1) == []
-    assert lane.take(3, "late", 1) == []
-    assert lane.take(1, "anew", 1) == ["anew"]
-    assert lane.take(1, "anew", 1) == []
-    assert lane.take(2, "two in a row", 1) == ["held", "two in a row"]
-    assert lane.passes(3)
-    assert not lane.is_waiting
-
-
-def test_an_answer_to_what_is_no_longer_asked_for_begins_nothing_anew(
-    pair: ZenohPair,
-) -> None:
-    items: list[Item] = []
-    ear = Endpoint(EndpointKind.SUBSCRIPTION, "/t", TYPE, EndpointQos(), "e", "/", b"")
-    port: Any = pair.near.subscribe(ear, String, items.append, shared=False)
-
-    def numbered(number: Any) -> tuple[bytes, Item]:
-        return bytes(16), (Encoded(b"", String, print), 0, 0, number)
-
-    port.arrivals._checked = numbered
-    port.arrivals.take(*numbered(5 * FAR_BEHIND))
-    port.arrivals.start(bytes(16))  # nobody knows whether something was before it
-    port.arrivals.recover(bytes(16), FAR_BEHIND)
-    port.arrivals.take(*numbered(5 * FAR_BEHIND + 1))
-    assert [item[3] for item in items] == [5 * FAR_BEHIND, 5 * FAR_BEHIND + 1]
 
 
 def test_what_is_far_too_long_is_not_even_put_together() -> None:

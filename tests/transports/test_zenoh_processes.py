@@ -221,7 +221,7 @@ def test_a_service_of_another_process_answers_and_its_death_is_named(
     until(lambda: "asked" in server.lines, "the request")
     server.end()
     spin_until(executor, future.done, "the failure")
-    with pytest.raises(ServiceFailedError, match="/add failed: the server went away"):
+    with pytest.raises(ServiceFailedError, match="/add failed: the server closed"):
         future.result()
 
 

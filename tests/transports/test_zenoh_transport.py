@@ -31,7 +31,7 @@ from navette.transports.zenoh import Settings, ZenohTransport
 from navette.transports.zenoh import publisher as publisher_module
 from navette.transports.zenoh.attachment import Attachment
 from navette.transports.zenoh.config import peer_config, router_config
-from navette.transports.zenoh.graph import MOST_TOKENS_OF_A_SESSION
+from navette.transports.zenoh.graph import MAX_TOKENS_OF_A_SESSION
 from navette.transports.zenoh.keys import data_key
 from navette.transports.zenoh.settings import DEFAULT_ROUTER
 from navette.transports.zenoh.tokens import gid_of
@@ -188,7 +188,7 @@ def test_one_serialisation_a_message_and_none_for_nobody(
 
     monkeypatch.setattr(publisher_module, "serialize", counted)
     publisher = advertise(pair.near_zenoh)
-    publisher.send(String(data="unheard"), 0, 1)
+    publisher.send(String(data="unsent"), 0, 1)
     assert calls == []
     first, _ = subscribe(pair.far_zenoh)
     second, _ = subscribe(pair.far_zenoh)
@@ -314,9 +314,9 @@ def test_hostile_tokens_are_ignored_and_told_once(
 
 def test_a_session_cannot_fill_the_graph(pair: ZenohPair) -> None:
     graph = pair.near_zenoh.session.graph
-    for number in range(MOST_TOKENS_OF_A_SESSION + 10):
+    for number in range(MAX_TOKENS_OF_A_SESSION + 10):
         graph.on_tokens([(f"@ros2_lv/7/abc/{number}/{number}/NN/%/%/n", True)])
-    assert len(graph.nodes()) == MOST_TOKENS_OF_A_SESSION
+    assert len(graph.nodes()) == MAX_TOKENS_OF_A_SESSION
 
 
 def serve(transport: ZenohTransport) -> tuple[list[Request], Any]:

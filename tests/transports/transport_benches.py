@@ -142,4 +142,5 @@ def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:
 PAIRS: dict[str, Callable[[], Pair]] = {
     "in-process": InProcessPair,
     "zenoh": ZenohPair,
+    "zenoh with retransmission": lambda: ZenohPair(retransmit=("*",)),
 }

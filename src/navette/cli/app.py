@@ -234,6 +234,6 @@ def main() -> None:
 
 def _end_at_once(exit_code: object) -> None:
     """Not waiting for what closes slowly, if there is such a thing by now."""
-    leaving = sys.modules.get("navette.transports.leaving")
-    if leaving is not None and isinstance(exit_code, int):
-        leaving.end_with(exit_code)
+    shutdown = sys.modules.get("navette.transports.shutdown")
+    if shutdown is not None and isinstance(exit_code, int):
+        shutdown.end_with(exit_code)

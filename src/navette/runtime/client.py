@@ -82,7 +82,7 @@ class Client(ServiceEndpoint):
         """
         port = transport.connect(self.endpoint, self.receive)
         self.ports.append(port)
-        self._sequence = max(self._sequence, port.used)
+        self._sequence = max(self._sequence, port.initial_sequence)
 
     # -- calling ---------------------------------------------------------------
 

@@ -50,7 +50,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         self.ports = ports
         self._send = ports[0].send if len(ports) == 1 else self._send_to_all
         self._loop = loop
-        self._sequence = max((port.used for port in ports), default=0)
+        self._sequence = max((port.initial_sequence for port in ports), default=0)
         self._on_assertion: Callable[[bool], None] | None = None
         #: What it calls back for.
         self.event_handlers: list[EventHandler] = []

@@ -119,8 +119,8 @@ class PublisherPort(ABC):
     __slots__ = ()
 
     @property
-    def used(self) -> int:
-        """The last number that was sent under its gid, by a publisher before it."""
+    def initial_sequence(self) -> int:
+        """Last sequence number sent under this gid by an earlier publisher."""
         return 0
 
     @abstractmethod

@@ -69,8 +69,8 @@ class ClientPort(ABC):
     __slots__ = ()
 
     @property
-    def used(self) -> int:
-        """The last number that was sent under its gid, by a client before it."""
+    def initial_sequence(self) -> int:
+        """Last sequence number sent under this gid by an earlier client."""
         return 0
 
     @abstractmethod

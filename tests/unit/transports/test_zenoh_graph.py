@@ -1,8 +1,8 @@
 """Tokens that come together are filed together."""
 
 from navette.transports.base import TransportObserver
-from navette.transports.zenoh.complaints import Complaints
 from navette.transports.zenoh.graph import RemoteGraph
+from navette.transports.zenoh.log_once import LogOnce
 
 NODES = [f"@ros2_lv/7/abc/{number}/{number}/NN/%/%/n{number}" for number in range(5)]
 
@@ -18,7 +18,7 @@ class Counting(TransportObserver):
 
 
 def test_a_change_is_told_once_for_all_that_came_together() -> None:
-    graph, told = RemoteGraph("fff", Complaints()), Counting()
+    graph, told = RemoteGraph("fff", LogOnce()), Counting()
     graph.observers.append(told)
     graph.on_tokens([(key, True) for key in NODES])
     assert [node.name for node in graph.nodes()] == ["n0", "n1", "n2", "n3", "n4"]
@@ -31,7 +31,7 @@ def test_a_change_is_told_once_for_all_that_came_together() -> None:
 
 
 def test_waiting_tells_what_is_still_missing() -> None:
-    graph = RemoteGraph("fff", Complaints())
+    graph = RemoteGraph("fff", LogOnce())
     graph.on_tokens([(NODES[0], True)])
     assert graph.wait_until_known({NODES[0]}, 60.0) == set()
     assert graph.wait_until_known({*NODES[:2]}, 0.0) == {NODES[1]}

@@ -86,7 +86,7 @@ def look_at_network() -> Network:
     """Try the router's endpoints and ask it who is there."""
     from navette.transports.zenoh import Settings
     from navette.transports.zenoh.config import router_endpoints
-    from navette.transports.zenoh.survey import known_to_router
+    from navette.transports.zenoh.discovery import known_to_router
 
     settings = Settings.from_environment()
     known = known_to_router(settings)

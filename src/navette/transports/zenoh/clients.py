@@ -1,6 +1,5 @@
-"""Clients of services: a query for every request, to all servers that there are."""
+"""Clients of services: each request is a query to all remote servers."""
 
-from collections.abc import Callable
 from enum import IntEnum
 from typing import Any
 
@@ -10,188 +9,159 @@ from navette.errors import DecodeError
 from navette.msgs import deserialize, get_interface, serialize
 from navette.transports.service_ports import ClientPort, Reply, ReplySink
 from navette.transports.zenoh.attachment import Attachment, decode_attachment
-from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.matches import Matches
+from navette.transports.zenoh.ports import Entity, PortOwner
 
-_LONGEST_REASON = 2000
-# What is looked at for one request of those that the graph does not list.
-_MOST_OF_STRANGERS = 20
-# What Zenoh tells in place of a reply when the time is over.
+_MAX_REASON_BYTES = 2000
+# Replies of unlisted sessions that are examined for one request.
+_MAX_UNLISTED = 20
+# Zenoh's error payload when the query timeout is over.
 _TIMEOUT = b"Timeout"
 
 
 class ZenohClient(ClientPort):
-    """Asks all remote servers; tells why where none of them answered.
+    """Sends requests to all remote servers; reports why a request failed.
 
-    Args:
-        gid: as hashed from the liveliness token.
-        used: the last number that was sent under that gid before.
-        timeout_s: so long an answer is waited for. Zenoh keeps 0.8 kB of every request
-            until then, also of one that has been answered.
-        closed: called once when the port is closed.
+    Zenoh keeps 0.8 kB of every request until the service timeout, also after the reply
+    (decision 0018).
     """
 
-    __slots__ = (
-        "_closed",
-        "_complaints",
-        "_gid",
-        "_key",
-        "_longest",
-        "_session",
-        "_sink",
-        "_timeout_s",
-        "_used",
-        "last",
-        "matches",
-    )
+    __slots__ = ("_entity", "_is_open", "_owner", "_sink", "last", "matches")
 
-    def __init__(
-        self,
-        session: zenoh.Session,
-        key: str,
-        gid: bytes,
-        sink: ReplySink,
-        matches: Matches,
-        *,
-        complaints: Complaints,
-        max_message_bytes: int,
-        timeout_s: float,
-        used: int,
-        closed: Callable[["ZenohClient"], None],
-    ) -> None:
-        self.matches = matches
-        #: The newest number, also of a request that nobody remote gets.
-        self.last = self._used = used
-        self._session: zenoh.Session | None = session
-        self._key = key
-        self._gid = gid
+    def __init__(self, owner: PortOwner, entity: Entity, sink: ReplySink) -> None:
+        self.matches = entity.matches
+        #: Newest sequence number, also of requests that had no remote server.
+        self.last = entity.initial_sequence
+        self._owner = owner
+        self._entity = entity
         self._sink = sink
-        self._complaints = complaints
-        self._longest = max_message_bytes
-        self._timeout_s = timeout_s
-        self._closed = closed
+        self._is_open = True
 
     def request(self, message: Any, source_ns: int, sequence: int) -> None:
         self.last = sequence
-        session = self._session  # another thread may close it meanwhile
-        if session is None or not self.matches.remotes:
+        if not (self._is_open and self.matches.remotes):
             return
-        attachment = Attachment(sequence, source_ns, self._gid)
+        attachment = Attachment(sequence, source_ns, self._entity.gid)
         call = _Call(self, sequence)
-        session.get(
-            self._key,
+        self._owner.session.zenoh.get(
+            self._entity.key,
             zenoh.handlers.Callback(call.on_reply, call.on_end, indirect=False),
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
-            timeout=self._timeout_s,
+            timeout=self._owner.session.settings.service_timeout_s,
             payload=serialize(message),
             attachment=attachment.encode(),
             allowed_destination=zenoh.Locality.REMOTE,
         )
 
     @property
-    def used(self) -> int:
-        return self._used
+    def initial_sequence(self) -> int:
+        return self._entity.initial_sequence
 
     @property
     def server_count(self) -> int:
         return len(self.matches.remotes)
 
     def close(self) -> None:
-        if self._session is None:
+        if not self._is_open:
             return
-        self._session = None
-        self._closed(self)
+        self._is_open = False
+        self._owner.release(self)
 
     # -- on Zenoh's threads ------------------------------------------------------
 
-    def give(self, reply: Reply) -> None:
-        """Hand the outcome of a call on, unless the port was closed."""
-        if self._session is not None:
+    def deliver(self, reply: Reply) -> None:
+        """Pass the outcome of a call on, unless the port was closed."""
+        if self._is_open:
             self._sink(reply)
 
-    def judged(self, reply: zenoh.Reply, sequence: int) -> tuple["_Worth", Reply]:
-        """What came for a request, and how much it is worth."""
+    def ranked(self, reply: zenoh.Reply, sequence: int) -> tuple["_Rank", Reply]:
+        """Return the reply to a request with its rank among others."""
         if reply.err is not None:
-            return _Worth.REASON, self._failed(reply.err, sequence)
+            return _Rank.FAILURE, self._failed(reply.err, sequence)
         try:
-            message = self._checked(reply.ok, sequence)
+            message = self._decoded(reply.ok, sequence)
         except DecodeError as error:
             name = self.matches.endpoint.topic
             text = f"service {name}: reply ignored: {error}"
-            self._complaints.once(("reply", name, str(error)), text)
-            return _Worth.MALFORMED, Reply(None, sequence, f"malformed reply: {error}")
-        worth = _Worth.ANSWER if self.is_listed(reply) else _Worth.STRANGERS_ANSWER
-        return worth, Reply(message, sequence)
+            self._owner.session.log_once.warning(("reply", name, str(error)), text)
+            failed = Reply(None, sequence, f"malformed reply: {error}")
+            return _Rank.MALFORMED, failed
+        rank = _Rank.LISTED if self.is_listed(reply) else _Rank.UNLISTED
+        return rank, Reply(message, sequence)
 
     def is_listed(self, reply: zenoh.Reply) -> bool:
-        """Whether the graph has a server of that session."""
+        """Return whether the graph lists a server of the replying session."""
         if reply.replier_id is None:
             return False
         return str(reply.replier_id.zid) in tuple(self.matches.sessions.values())
 
     def _failed(self, error: zenoh.ReplyError, sequence: int) -> Reply:
-        text = error.payload.to_bytes()[:_LONGEST_REASON]
+        text = error.payload.to_bytes()[:_MAX_REASON_BYTES]
         if text != _TIMEOUT:
             return Reply(None, sequence, text.decode(errors="replace"))
-        reason = f"no answer in {self._timeout_s:g} s (NAVETTE_SERVICE_TIMEOUT)"
+        timeout_s = self._owner.session.settings.service_timeout_s
+        reason = f"no reply within {timeout_s:g} s (NAVETTE_SERVICE_TIMEOUT)"
         return Reply(None, sequence, reason, timed_out=True)
 
-    def _checked(self, sample: zenoh.Sample | None, sequence: int) -> Any:
+    def _decoded(self, sample: zenoh.Sample | None, sequence: int) -> Any:
         if sample is None or sample.attachment is None:
             raise DecodeError("without an attachment")
-        if len(sample.payload) > self._longest:
+        max_bytes = self._owner.session.settings.max_message_bytes
+        if len(sample.payload) > max_bytes:
             raise DecodeError(
-                f"{len(sample.payload)} bytes: longer than {self._longest} "
+                f"{len(sample.payload)} bytes: longer than {max_bytes} "
                 "(NAVETTE_MAX_MESSAGE_BYTES)"
             )
         attachment = decode_attachment(sample.attachment.to_bytes())
-        if (attachment.sequence, attachment.gid) != (sequence, self._gid):
-            raise DecodeError(f"number {attachment.sequence} instead of {sequence}")
+        if (attachment.sequence, attachment.gid) != (sequence, self._entity.gid):
+            raise DecodeError(
+                f"sequence number {attachment.sequence} instead of {sequence}"
+            )
         interface: Any = get_interface(self.matches.endpoint.type_name)
         return deserialize(sample.payload.to_bytes(), interface.Response)
 
 
-class _Worth(IntEnum):
-    """Of what comes for a request; the first of the highest worth counts."""
+class _Rank(IntEnum):
+    """Rank of a reply; the first reply of the highest rank is delivered."""
 
-    NOTHING = 0
+    NONE = 0
     MALFORMED = 1
-    REASON = 2
-    STRANGERS_ANSWER = 3
-    ANSWER = 4
+    FAILURE = 2
+    UNLISTED = 3
+    LISTED = 4
 
 
 class _Call:
-    """One request under way.
+    """One request in progress.
 
-    The answer of a server that the graph lists counts at once. Anything else may be of
-    somebody who only pretends to serve, or is broken: it counts when all have spoken.
+    The reply of a server in the graph is delivered at once. Any other reply may come
+    from a program that pretends to serve, or from a broken one: the best of them is
+    delivered when all servers have replied.
     """
 
-    __slots__ = ("_client", "_count", "_found", "_sequence", "_worth")
+    __slots__ = ("_best", "_client", "_count", "_rank", "_sequence")
 
     def __init__(self, client: ZenohClient, sequence: int) -> None:
         self._client = client
         self._sequence = sequence
-        self._worth = _Worth.NOTHING
+        self._rank = _Rank.NONE
         self._count = 0
-        self._found = Reply(None, sequence, "the server went away")
+        self._best = Reply(None, sequence, "the server closed")
 
     def on_reply(self, reply: zenoh.Reply) -> None:
-        """Zenoh has a reply, an error, or the end of the time."""
-        if self._worth == _Worth.ANSWER:
+        """Take a reply, an error or the timeout from Zenoh."""
+        if self._rank == _Rank.LISTED:
             return
         self._count += 1
-        if self._count > _MOST_OF_STRANGERS and not self._client.is_listed(reply):
+        if self._count > _MAX_UNLISTED and not self._client.is_listed(reply):
             return
-        worth, found = self._client.judged(reply, self._sequence)
-        if worth > self._worth:
-            self._worth, self._found = worth, found
-        if worth == _Worth.ANSWER:
-            self._client.give(found)
+        rank, found = self._client.ranked(reply, self._sequence)
+        if rank > self._rank:
+            self._rank, self._best = rank, found
+        if rank == _Rank.LISTED:
+            self._client.deliver(found)
 
     def on_end(self) -> None:
-        """All have spoken, or are gone."""
-        if self._worth != _Worth.ANSWER:
-            self._client.give(self._found)
+        """Deliver the best reply: all servers have replied or closed."""
+        if self._rank != _Rank.LISTED:
+            self._client.deliver(self._best)

@@ -13,13 +13,13 @@ from navette.transports.base import (
     TransportObserver,
 )
 from navette.transports.qos import QoSPolicyKind, incompatible_policies
-from navette.transports.zenoh.complaints import Complaints
+from navette.transports.zenoh.log_once import LogOnce
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.tokens import EndpointToken, Token, gid_of, parse_token
 
 # What is listed of one session; nobody has as many, except to do harm.
-MOST_TOKENS_OF_A_SESSION = 20_000
-_MOST_NAMES = 100_000
+MAX_TOKENS_OF_A_SESSION = 20_000
+_MAX_TOPICS = 100_000
 
 _SENDERS = (EndpointKind.PUBLISHER, EndpointKind.CLIENT)
 
@@ -40,20 +40,20 @@ class RemoteGraph:
         own_zid: the session whose own tokens are left out.
     """
 
-    def __init__(self, own_zid: str, complaints: Complaints) -> None:
+    def __init__(self, own_zid: str, log_once: LogOnce) -> None:
         self.observers: list[TransportObserver] = []
         self._own_zid = own_zid
-        self._complaints = complaints
+        self._log_once = log_once
         self._nodes: dict[str, NodeInfo] = {}
         self._endpoints: dict[str, Endpoint] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[str, Endpoint]] = {}
         self._count_of: Counter[str] = Counter()
         #: Never taken out: a gid means the same for ever.
-        self._names: dict[bytes, str] = {}
+        self._topics: dict[bytes, str] = {}
         self._locals: dict[tuple[EndpointKind, str], list[Matches]] = {}
         self._lock = threading.Condition()
         self._events: deque[Callable[[], None]] = deque()
-        self._telling = threading.RLock()
+        self._notifying = threading.RLock()
 
     # -- the others ------------------------------------------------------------
 
@@ -73,9 +73,9 @@ class RemoteGraph:
                 elif not alive:
                     changed |= self._remove(key)
             if changed:
-                self._events.append(self._tell_changed)
+                self._events.append(self._notify_changed)
                 self._lock.notify_all()
-        self._tell()
+        self._notify()
 
     def nodes(self) -> list[NodeInfo]:
         """Remote nodes, in order of appearance."""
@@ -90,9 +90,9 @@ class RemoteGraph:
 
     def counts(self) -> dict[str, int]:
         """Session → how many nodes and endpoints; the observers know of all of them."""
-        with self._telling:
+        with self._notifying:
             while True:
-                self._tell()
+                self._notify()
                 with self._lock:
                     if not self._events:
                         return dict(self._count_of)
@@ -114,13 +114,13 @@ class RemoteGraph:
 
     def add_local(self, endpoint: Endpoint, type_hash: str) -> Matches:
         """An endpoint of this session, from now on matched against the others."""
-        matches = Matches(endpoint, type_hash, self._names, self._asserted)
+        matches = Matches(endpoint, type_hash, self._topics, self._queue_assertion)
         with self._lock:
             self._locals.setdefault((endpoint.kind, endpoint.topic), []).append(matches)
             there = self._by_name.get((_OPPOSITE[endpoint.kind], endpoint.topic), {})
             for key, remote in there.items():
                 self._meet(matches, key, remote)
-        self._tell()
+        self._notify()
         return matches
 
     def remove_local(self, matches: Matches) -> None:
@@ -136,7 +136,7 @@ class RemoteGraph:
             for remote in matches.remotes.values():
                 self._queue_match(matches.endpoint, remote, up=False)
             matches.clear()
-        self._tell()
+        self._notify()
 
     def _token(self, key: str) -> Token | None:
         """None: one of our own, or none at all."""
@@ -144,7 +144,7 @@ class RemoteGraph:
             token = parse_token(key)
         except DecodeError as error:
             peer = "/".join(key[:200].split("/")[:3])
-            self._complaints.once(("token", peer), f"token ignored: {error}")
+            self._log_once.warning(("token", peer), f"token ignored: {error}")
             return None
         return None if token.zid == self._own_zid else token
 
@@ -153,10 +153,10 @@ class RemoteGraph:
     def _add(self, key: str, token: Token) -> bool:
         if key in self._nodes or key in self._endpoints:
             return False
-        if self._count_of[token.zid] >= MOST_TOKENS_OF_A_SESSION:
-            self._complaints.once(
+        if self._count_of[token.zid] >= MAX_TOKENS_OF_A_SESSION:
+            self._log_once.warning(
                 ("tokens", token.zid),
-                f"session {token.zid} has more than {MOST_TOKENS_OF_A_SESSION} "
+                f"session {token.zid} has more than {MAX_TOKENS_OF_A_SESSION} "
                 "nodes and endpoints: the others are ignored",
             )
             return False
@@ -180,15 +180,15 @@ class RemoteGraph:
         )
         self._endpoints[key] = endpoint
         if endpoint.kind in _SENDERS:
-            self._note_name(endpoint)
+            self._note_topic(endpoint)
         self._by_name.setdefault((endpoint.kind, endpoint.topic), {})[key] = endpoint
         for matches in self._locals.get((_OPPOSITE[token.kind], token.topic), ()):
             self._meet(matches, key, endpoint)
 
-    def _note_name(self, sender: Endpoint) -> None:
-        if len(self._names) >= _MOST_NAMES:
-            del self._names[next(iter(self._names))]
-        self._names[sender.gid] = sender.topic
+    def _note_topic(self, sender: Endpoint) -> None:
+        if len(self._topics) >= _MAX_TOPICS:
+            del self._topics[next(iter(self._topics))]
+        self._topics[sender.gid] = sender.topic
 
     def _remove(self, key: str) -> bool:
         endpoint = self._endpoints.pop(key, None)
@@ -244,32 +244,32 @@ class RemoteGraph:
         for observer in self.observers:
             observer.message_lost(subscription, count)
 
-    def asserted_by(self, gid: bytes, zid: str) -> None:
-        """That session says that its publisher is alive; nothing where it is not."""
+    def asserted(self, gid: bytes) -> None:
+        """Report that a remote publisher asserted its liveliness without a sample."""
         with self._lock:
-            name = EndpointKind.SUBSCRIPTION, self._names.get(gid, "")
+            name = EndpointKind.SUBSCRIPTION, self._topics.get(gid, "")
             for matches in self._locals.get(name, ()):
-                if gid in matches.asserting and matches.sessions.get(gid) == zid:
+                if gid in matches.asserting:
                     self._queue("asserted", matches.by_gid[gid], matches.endpoint)
-        self._tell()
+        self._notify()
 
-    def _asserted(self, matches: Matches, gid: bytes) -> None:
+    def _queue_assertion(self, matches: Matches, gid: bytes) -> None:
         with self._lock:
             publisher = matches.by_gid.get(gid)
             if publisher is None:
                 return
             self._queue("asserted", publisher, matches.endpoint)
-        self._tell()
+        self._notify()
 
     # -- telling ---------------------------------------------------------------
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         """Call the observers, in the order in which things happened."""
-        with self._telling:
+        with self._notifying:
             while self._events:
                 self._events.popleft()()
 
-    def _tell_changed(self) -> None:
+    def _notify_changed(self) -> None:
         for observer in self.observers:
             observer.graph_changed()
 

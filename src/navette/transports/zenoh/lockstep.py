@@ -33,7 +33,7 @@ class ZenohStepWire(StepWire):
     def __init__(self, transport: ZenohTransport) -> None:
         self._transport = transport
         self._space = f"{transport.domain_id}/{SPACE}"
-        self._complaints = transport.session.complaints
+        self._log_once = transport.session.log_once
         self._listening: list[Any] = []
         self._report = self._publisher("report")
         self._grant = self._publisher("grant")
@@ -90,7 +90,7 @@ class ZenohStepWire(StepWire):
                 record = parse(payload.to_bytes())
             except DecodeError as error:
                 text = f"lock-step: {kind} of session {session} ignored: {error}"
-                self._complaints.once(("lockstep", kind, session), text)
+                self._log_once.warning(("lockstep", kind, session), text)
                 return
             callback(session, record)
 

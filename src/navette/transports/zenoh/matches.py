@@ -1,4 +1,4 @@
-"""Whom an endpoint here exchanges samples with."""
+"""The remote endpoints that a local endpoint exchanges samples with."""
 
 from collections.abc import Callable, Mapping
 
@@ -7,21 +7,25 @@ from navette.transports.expiring import age_ns
 
 
 class Matches:
-    """The remote endpoints that an endpoint here exchanges samples with.
-
-    ``remotes`` (by token), ``by_gid`` (the same), ``sessions`` (of each gid),
-    ``asserting`` (gids of those of them that assert themselves) and ``refused`` (gids
-    of those whose QoS does not fit) change while others read them.
+    """Remote endpoints matched with a local one; changed while other threads read.
 
     Args:
-        names: what every publisher or client of others sends on, by gid, also of those
-            that are gone.
-        asserted: told the gid of a publisher that asserts itself, when it is heard.
+        endpoint: the local endpoint.
+        topics: gid → topic of every remote publisher or client ever seen.
+        on_asserted: called with the gid of a publisher whose sample asserts that it is
+            alive.
+
+    Attributes:
+        remotes: matched endpoints by liveliness token.
+        by_gid: the same by gid.
+        sessions: gid → session.
+        asserting: gids of matched publishers with liveliness MANUAL_BY_TOPIC.
+        refused: gids of publishers whose QoS is incompatible.
     """
 
     __slots__ = (
-        "_asserted",
-        "_names",
+        "_on_asserted",
+        "_topics",
         "asserting",
         "by_gid",
         "endpoint",
@@ -35,11 +39,11 @@ class Matches:
         self,
         endpoint: Endpoint,
         type_hash: str,
-        names: Mapping[bytes, str],
-        asserted: Callable[["Matches", bytes], None],
+        topics: Mapping[bytes, str],
+        on_asserted: Callable[["Matches", bytes], None],
     ) -> None:
-        self._names = names
-        self._asserted = asserted
+        self._topics = topics
+        self._on_asserted = on_asserted
         self.endpoint = endpoint
         self.type_hash = type_hash
         self.remotes: dict[str, Endpoint] = {}
@@ -49,7 +53,6 @@ class Matches:
         self.refused: set[bytes] = set()
 
     def add(self, key: str, remote: Endpoint) -> None:
-        """One more, by its token."""
         self.remotes[key] = remote
         self.by_gid[remote.gid] = remote
         self.sessions[remote.gid] = key.split("/", 3)[2]
@@ -57,7 +60,7 @@ class Matches:
             self.asserting.add(remote.gid)
 
     def remove(self, key: str) -> bool:
-        """Whether it was one of them."""
+        """Remove the endpoint of a token; return whether it was matched."""
         remote = self.remotes.pop(key, None)
         if remote is not None:
             self.by_gid.pop(remote.gid, None)
@@ -66,28 +69,27 @@ class Matches:
         return remote is not None
 
     def clear(self) -> None:
-        """There is nobody any more."""
         self.remotes.clear()
         self.by_gid.clear()
         self.sessions.clear()
         self.asserting.clear()
 
-    def astray_from(self, gid: bytes) -> str:
-        """The name that the sender sends on, if it is another one; empty otherwise.
+    def publisher_of_other_topic(self, gid: bytes) -> str:
+        """Return the topic of the gid's publisher if it is another one; else "".
 
-        Zenoh sends numbers in place of keys. After a link was lost, a new one may join
-        what is left of it at one of its ends; until both are renewed, the ends mean
-        different keys by their numbers (decision 0012).
+        Zenoh sends numbers in place of keys. After a link was lost, a new link may join
+        the rest of the old one at one end; until both ends are renewed they mean
+        different keys by the same number (decision 0012).
         """
         if gid in self.by_gid:
             return ""
-        name = self._names.get(gid, "")
-        return "" if name == self.endpoint.topic else name
+        topic = self._topics.get(gid, "")
+        return "" if topic == self.endpoint.topic else topic
 
-    def heard(self, gid: bytes, item: Item) -> None:
-        """A sample by which its publisher says that it is alive; no old one does."""
+    def on_sample(self, gid: bytes, item: Item) -> None:
+        """Assert the publisher of a sample that is not older than its lease."""
         publisher = self.by_gid.get(gid)
         if publisher is None or gid not in self.asserting:
             return
         if age_ns(item) < publisher.qos.lease_ns:
-            self._asserted(self, gid)
+            self._on_asserted(self, gid)

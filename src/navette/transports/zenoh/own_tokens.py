@@ -9,7 +9,7 @@ from navette.msgs import type_hash
 from navette.transports.base import Endpoint, EndpointKind, NodeInfo
 from navette.transports.zenoh.qos_text import announced
 from navette.transports.zenoh.session import Session
-from navette.transports.zenoh.spare import SpareTokens
+from navette.transports.zenoh.token_pool import TokenPool
 from navette.transports.zenoh.tokens import EndpointToken, NodeToken, gid_of
 
 
@@ -30,7 +30,7 @@ class OwnTokens:
         self._nodes: dict[NodeInfo, list[tuple[int, zenoh.LivelinessToken]]] = {}
         #: Numbers of nodes that are gone, for others of their names.
         self._spare_nodes: dict[NodeInfo, list[int]] = {}
-        self._spare = SpareTokens()
+        self._pool = TokenPool()
         #: By gid, until the endpoint is opened.
         self._made: dict[bytes, tuple[EndpointToken, int]] = {}
         self._hashes: dict[str, str] = {}
@@ -93,7 +93,7 @@ class OwnTokens:
         """The endpoint is gone; ``last``: the last number that it has sent."""
         if not self._session.zenoh.is_closed():
             declared.undeclare()
-            self._spare.put(token, last)
+            self._pool.put(token, last)
 
     # -- inside ----------------------------------------------------------------
 
@@ -112,7 +112,7 @@ class OwnTokens:
             type_hash=self._hash(endpoint.type_name),
             qos=announced(endpoint.qos, offers=offers),
         )
-        return self._spare.take(token) if self._reuses_endpoints else (token, 0)
+        return self._pool.take(token) if self._reuses_endpoints else (token, 0)
 
     def _node_of(self, endpoint: Endpoint) -> tuple[int, NodeInfo]:
         """The newest announced node of that name; 0 where none was."""

@@ -17,75 +17,51 @@ from navette.transports.service_ports import (
     ServicePort,
 )
 from navette.transports.zenoh.attachment import Attachment, decode_attachment
-from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.heard import Heard
-from navette.transports.zenoh.matches import Matches
-from navette.transports.zenoh.queryables import Handler
+from navette.transports.zenoh.ports import Entity, PortOwner
+from navette.transports.zenoh.queryables import Queryables
 
-# Requests that wait at one server, and how many of the longest ones; more are refused.
-# Whoever may ask can fill a slow server, but not the memory.
-MOST_WAITING = 10_000
-MOST_OF_THE_LONGEST = 2
-_LONGEST_REASON = 2000
-_MARK_SIZE = 16
+# Requests that wait at one server, in number and in multiples of the longest message.
+# More are refused: a client can fill a slow server, but not the memory.
+MAX_WAITING = 10_000
+MAX_WAITING_MESSAGES = 2
+_MAX_REASON_BYTES = 2000
+_DIGEST_SIZE = 16
 
 
 class ZenohService(ServicePort):
-    """A queryable that hands requests on and remembers whose they are.
+    """A queryable that passes requests on and keeps their queries until the reply."""
 
-    Args:
-        declare: takes the queries from now on; returns what ends that.
-        now_ns: the time here, for the stamps.
-        heard: notes that something came.
-        closed: called once when the port is closed.
-    """
-
-    #: It numbers nothing.
+    #: A server numbers nothing.
     last = 0
 
-    __slots__ = (
-        "_closed",
-        "_complaints",
-        "_heard",
-        "_key",
-        "_longest",
-        "_now_ns",
-        "_sink",
-        "_undeclare",
-        "matches",
-        "waiting",
-    )
+    __slots__ = ("_key", "_owner", "_sink", "_undeclare", "matches", "waiting")
 
     def __init__(
         self,
-        declare: Callable[[str, Handler], Callable[[], None]],
-        key: str,
+        owner: PortOwner,
+        entity: Entity,
         sink: RequestSink,
-        matches: Matches,
-        *,
-        complaints: Complaints,
-        max_message_bytes: int,
-        heard: Heard,
-        now_ns: Callable[[], int],
-        closed: Callable[["ZenohService"], None],
+        queryables: Queryables,
     ) -> None:
-        self.matches = matches
-        self.waiting = Waiting(MOST_OF_THE_LONGEST * max_message_bytes)
-        self._key = key
+        self.matches = entity.matches
+        max_bytes = MAX_WAITING_MESSAGES * owner.session.settings.max_message_bytes
+        self.waiting = WaitingRequests(max_bytes)
+        self._owner = owner
+        self._key = entity.key
         self._sink = sink
-        self._complaints = complaints
-        self._heard = heard
-        self._longest = max_message_bytes
-        self._now_ns = now_ns
-        self._closed = closed
-        self._undeclare: Callable[[], None] | None = declare(key, self._on_query)
+        endpoint = entity.matches.endpoint
+        self._undeclare: Callable[[], None] | None = queryables.open(
+            entity.key,
+            self._on_query,
+            is_of_node=endpoint.topic.rpartition("/")[0] == endpoint.node_full_name,
+        )
 
     def reply(self, request_id: RequestId, message: Any) -> None:
         queries = self.waiting.take(request_id)
-        if not queries:  # of a client in this process, or answered already
+        if not queries:  # of a client in this process, or answered before
             return
-        number, now_ns, gid = request_id.sequence, self._now_ns(), request_id.client_gid
-        attachment = Attachment(number, now_ns, gid).encode()
+        sequence, gid = request_id.sequence, request_id.client_gid
+        attachment = Attachment(sequence, self._owner.now_ns(), gid).encode()
         data = serialize(message)
         for query in queries:
             with query:
@@ -99,7 +75,7 @@ class ZenohService(ServicePort):
         if self._undeclare is None:
             return
         undeclare, self._undeclare = self._undeclare, None
-        self._closed(self)
+        self._owner.release(self)
         undeclare()
         for query in self.waiting.take_all():
             _refuse(query, "the server was closed")
@@ -108,30 +84,31 @@ class ZenohService(ServicePort):
 
     def _on_query(self, query: zenoh.Query) -> None:
         try:
-            request = self._taken(query)
+            request = self._accepted(query)
         except DecodeError as error:
             name = self.matches.endpoint.topic
             text = f"service {name}: request ignored: {error}"
-            self._complaints.once(("request", name, str(error)), text)
+            self._owner.session.log_once.warning(("request", name, str(error)), text)
             _refuse(query, str(error))
             return
-        self._heard.last_ns = self._now_ns()
+        self._owner.session.last_received.time_ns = self._owner.now_ns()
         if request is not None:
             self._sink(request)
 
-    def _taken(self, query: zenoh.Query) -> Request | None:
-        """What is to be done; None: what is under way already."""
+    def _accepted(self, query: zenoh.Query) -> Request | None:
+        """Return the request of a query; None if it is in progress already."""
         payload, attachment = query.payload, query.attachment
         if payload is None or attachment is None:
             raise DecodeError("without a payload or an attachment")
-        if len(payload) > self._longest:
+        max_bytes = self._owner.session.settings.max_message_bytes
+        if len(payload) > max_bytes:
             raise DecodeError(
-                f"{len(payload)} bytes: longer than {self._longest} "
+                f"{len(payload)} bytes: longer than {max_bytes} "
                 "(NAVETTE_MAX_MESSAGE_BYTES)"
             )
         self.waiting.check_room(len(payload))
         sequence, source_ns, gid = decode_attachment(attachment.to_bytes())
-        if other := self.matches.astray_from(gid):
+        if other := self.matches.publisher_of_other_topic(gid):
             raise DecodeError(f"sent to {other}; a link is being renewed")
         interface: Any = get_interface(self.matches.endpoint.type_name)
         data = payload.to_bytes()
@@ -140,34 +117,33 @@ class ZenohService(ServicePort):
         if not ticket:
             return None
         request_id = RequestId(gid, sequence, ticket)
-        return Request(message, source_ns, self._now_ns(), request_id)
+        return Request(message, source_ns, self._owner.now_ns(), request_id)
 
 
-class _Wait(NamedTuple):
-    """One request: who is to hear the answer, its bytes, how it is known again."""
+class _Waiting(NamedTuple):
+    """One request: the queries to answer, its size in bytes, its digest."""
 
     queries: list[zenoh.Query]
     size: int
-    mark: bytes
+    digest: bytes
 
 
-class Waiting:
-    """Queries that are not answered yet, and the bytes that they hold.
+class WaitingRequests:
+    """Queries that are not answered yet, limited in number and bytes.
 
-    The same request may come twice, by two ways: it is done once, and both are told.
-    Another one under the same client's name and number is a request of its own: it may
-    be a stranger's, and which of the two is cannot be known.
+    The same request may arrive twice, by two routes: it is served once, and both
+    queries are answered. Another request with the same client gid and number is a
+    request of its own: it may be forged, and the two cannot be told apart.
 
     Args:
-        most_bytes: of all together.
+        max_bytes: limit of all payloads together.
     """
 
-    def __init__(self, most_bytes: int) -> None:
-        self._most_bytes = most_bytes
-        #: By ticket, and the tickets by what the requests are known by.
-        self._waits: dict[int, _Wait] = {}
-        self._tickets: dict[bytes, int] = {}
-        self._next = itertools.count(1)
+    def __init__(self, max_bytes: int) -> None:
+        self._max_bytes = max_bytes
+        self._by_ticket: dict[int, _Waiting] = {}
+        self._tickets: dict[bytes, int] = {}  # by digest
+        self._next_ticket = itertools.count(1)
         self._count = 0
         self._bytes = 0
         self._lock = threading.Lock()
@@ -176,47 +152,47 @@ class Waiting:
         return self._count
 
     def check_room(self, size: int) -> None:
-        """Whether one more fits, before it is decoded.
+        """Check that one more request fits, before it is decoded.
 
         Raises:
-            DecodeError: too many wait already.
+            DecodeError: too many requests wait.
         """
-        if self._count >= MOST_WAITING or self._bytes + size > self._most_bytes:
+        if self._count >= MAX_WAITING or self._bytes + size > self._max_bytes:
             raise DecodeError(
                 f"{self._count} requests with {self._bytes} bytes wait already"
             )
 
     def add(self, attachment: bytes, query: zenoh.Query, data: bytes) -> int:
-        """Remember it until it is taken: its ticket; 0 where it is there already."""
-        mark = hashlib.blake2b(attachment + data, digest_size=_MARK_SIZE).digest()
+        """Keep a query until :meth:`take`; return its ticket, 0 for a duplicate."""
+        digest = hashlib.blake2b(attachment + data, digest_size=_DIGEST_SIZE).digest()
         size = len(data)
         with self._lock:
             self._count += 1
             self._bytes += size
-            twin = self._tickets.get(mark)
-            if twin is not None:
-                self._waits[twin].queries.append(query)
+            first = self._tickets.get(digest)
+            if first is not None:
+                self._by_ticket[first].queries.append(query)
                 return 0
-            ticket = self._tickets[mark] = next(self._next)
-            self._waits[ticket] = _Wait([query], size, mark)
+            ticket = self._tickets[digest] = next(self._next_ticket)
+            self._by_ticket[ticket] = _Waiting([query], size, digest)
         return ticket
 
     def take(self, request_id: RequestId) -> list[zenoh.Query]:
-        """Remember it no longer: those who asked; nobody where it was not there."""
+        """Remove a request; return its queries, none if it was not waiting."""
         with self._lock:
-            wait = self._waits.pop(request_id.ticket, None)
-            if wait is None:
+            waiting = self._by_ticket.pop(request_id.ticket, None)
+            if waiting is None:
                 return []
-            del self._tickets[wait.mark]
-            self._count -= len(wait.queries)
-            self._bytes -= wait.size * len(wait.queries)
-        return wait.queries
+            del self._tickets[waiting.digest]
+            self._count -= len(waiting.queries)
+            self._bytes -= waiting.size * len(waiting.queries)
+        return waiting.queries
 
     def take_all(self) -> list[zenoh.Query]:
-        """Remember none of them any longer."""
+        """Remove all requests; return their queries."""
         with self._lock:
-            queries = [query for wait in self._waits.values() for query in wait.queries]
-            self._waits.clear()
+            queries = [q for each in self._by_ticket.values() for q in each.queries]
+            self._by_ticket.clear()
             self._tickets.clear()
             self._count = self._bytes = 0
         return queries
@@ -224,4 +200,4 @@ class Waiting:
 
 def _refuse(query: zenoh.Query, reason: str) -> None:
     with query:
-        query.reply_err(reason.encode()[:_LONGEST_REASON])
+        query.reply_err(reason.encode()[:_MAX_REASON_BYTES])

@@ -9,12 +9,13 @@ from typing import Any
 
 import zenoh
 
-from navette.transports.leaving import wait_for_at_end
-from navette.transports.zenoh.complaints import Complaints
+from navette.transports.shutdown import wait_for_at_end
 from navette.transports.zenoh.config import peer_config
 from navette.transports.zenoh.graph import RemoteGraph
-from navette.transports.zenoh.heard import Heard
+from navette.transports.zenoh.last_received import LastReceived
+from navette.transports.zenoh.log_once import LogOnce
 from navette.transports.zenoh.router import RouterRole, refuse
+from navette.transports.zenoh.session_id import new_session_id
 from navette.transports.zenoh.settings import Settings
 from navette.transports.zenoh.threads import provide_threads
 from navette.transports.zenoh.tokens import SPACE
@@ -39,27 +40,26 @@ class Session:
 
     Args:
         domain_id: whose nodes are seen.
-        zid: its name on the network; empty: Zenoh makes one up.
 
     Raises:
         NetworkError: says with which endpoints, and why.
     """
 
-    def __init__(self, settings: Settings, domain_id: int, zid: str = "") -> None:
+    def __init__(self, settings: Settings, domain_id: int) -> None:
         self.settings = settings
-        self.complaints = Complaints()
-        self.heard = Heard()
+        self.log_once = LogOnce()
+        self.last_received = LastReceived()
         self._tokens = f"{SPACE}/{domain_id}/**"
         self._role = RouterRole(settings)
         provide_threads(settings)
         router = self._role.find_or_serve()
         try:
-            self.zenoh = zenoh.open(peer_config(settings, zid))
+            self.zenoh = zenoh.open(peer_config(settings, new_session_id()))
         except zenoh.ZError as error:
             self._role.close()
             raise refuse(settings, error) from error
         self.zid = str(self.zenoh.zid())
-        self.graph = RemoteGraph(self.zid, self.complaints)
+        self.graph = RemoteGraph(self.zid, self.log_once)
         # Through a channel: a callback would run in the thread that declares a token
         # here, and a Ctrl-C that came just then would be lost in it.
         self._closing = threading.Event()

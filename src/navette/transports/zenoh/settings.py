@@ -32,6 +32,8 @@ class Settings:
         max_message_bytes: longer messages of others are rejected.
         service_timeout_s: so long an answer of another process is waited for; an
             action's result is asked for again then.
+        retransmit: topics (names or shell patterns) whose reliable samples are resent
+            when they were lost.
         security: credentials that every link is asked for; None: none.
     """
 
@@ -42,6 +44,7 @@ class Settings:
     explicit: frozenset[str] = frozenset()
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
     service_timeout_s: float = DEFAULT_SERVICE_TIMEOUT_S
+    retransmit: tuple[str, ...] = ()
     security: Path | None = None
 
     @property
@@ -61,8 +64,8 @@ class Settings:
     ) -> "Settings":
         """Read ``NAVETTE_ROUTER``, ``NAVETTE_LISTEN`` (several apart by commas),
         ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_ROUTER_CONFIG_URI``,
-        ``NAVETTE_SECURITY``, ``NAVETTE_MAX_MESSAGE_BYTES`` and
-        ``NAVETTE_SERVICE_TIMEOUT``.
+        ``NAVETTE_SECURITY``, ``NAVETTE_MAX_MESSAGE_BYTES``,
+        ``NAVETTE_SERVICE_TIMEOUT`` and ``NAVETTE_RETRANSMIT``.
 
         Raises:
             InvalidValueError: names variable, value and what is allowed.
@@ -86,6 +89,7 @@ class Settings:
             service_timeout_s=_seconds(
                 environment, "NAVETTE_SERVICE_TIMEOUT", DEFAULT_SERVICE_TIMEOUT_S
             ),
+            retransmit=_list(environment, "NAVETTE_RETRANSMIT"),
         )
 
 
@@ -94,9 +98,13 @@ def _is_local(endpoint: str) -> bool:
     return host.startswith(("127.", "localhost", "[::1]"))
 
 
+def _list(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
+    parts = (part.strip() for part in environment.get(name, "").split(","))
+    return tuple(part for part in parts if part)
+
+
 def _endpoints(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
-    parts = [part.strip() for part in environment.get(name, "").split(",")]
-    endpoints = tuple(part for part in parts if part)
+    endpoints = _list(environment, name)
     for endpoint in endpoints:
         protocol, slash, address = endpoint.partition("/")
         if not (protocol.isalnum() and slash and address):

@@ -1,102 +1,76 @@
-"""Subscriptions: check what arrives and queue its bytes; who takes it decodes."""
+"""Subscriptions: check what arrives and queue its bytes; the executor decodes them."""
 
-from collections.abc import Callable
-from collections.abc import Set as AbstractSet
+import threading
+from functools import partial
 from typing import Any
 
 import zenoh
-from zenoh import ext
 
 from navette.errors import DecodeError
 from navette.transports.base import Endpoint, Item, Sink, SubscriptionPort
 from navette.transports.encoded import Encoded
 from navette.transports.expiring import Lifespans
 from navette.transports.lockstep import Holding
-from navette.transports.qos import EndpointQos
 from navette.transports.zenoh.attachment import decode_attachment
-from navette.transports.zenoh.complaints import Complaints
-from navette.transports.zenoh.heard import Heard
-from navette.transports.zenoh.matches import Matches
-from navette.transports.zenoh.recovery import Arrivals, Recovered, Wants
+from navette.transports.zenoh.ports import Entity, PortOwner
+from navette.transports.zenoh.retransmission import declare_subscriber
+from navette.transports.zenoh.sequence_filter import SequenceFilter
 
 _HEADER_SIZE = 4
 _HEADERS = (b"\x00\x01", b"\x00\x00")  # plain CDR, little and big endian
 
 
 class ZenohSubscription(SubscriptionPort):
-    """Gives each sample to the sink as :class:`Encoded`, in the publisher's order.
+    """Passes each sample to the sink as :class:`Encoded`, in the publisher's order.
 
     Args:
-        wants: where to ask for what is missing; None: nowhere.
-        own_gids: publishers of this very session. Their samples come by another way; a
-            query of the history brings them all the same, whatever its locality.
-        heard: notes that something came.
-        lost: told how many samples were missing and will not come.
-        now_ns: the time here, for the received stamp.
-        closed: called once when the port is closed.
-        holding: in lock-step, where samples go instead of the sink; in any order.
+        retransmits: whether missed samples are fetched from the publisher.
+        holding: in lock-step, takes the samples instead of the sink, in any order.
     """
 
-    #: It numbers nothing.
+    #: A subscription sends nothing.
     last = 0
 
     __slots__ = (
-        "_arrivals",
-        "_closed",
-        "_complaints",
-        "_heard",
+        "_filter",
         "_holding",
         "_is_open",
         "_lifespans",
-        "_longest",
+        "_lock",
         "_message_class",
-        "_now_ns",
-        "_own_gids",
+        "_owner",
+        "_sink",
         "_subscriber",
         "matches",
     )
 
     def __init__(
         self,
-        session: zenoh.Session,
-        key: str,
+        owner: PortOwner,
+        entity: Entity,
         message_class: type,
         sink: Sink,
-        matches: Matches,
         *,
-        wants: Wants | None,
-        own_gids: AbstractSet[bytes],
-        lost: Callable[[int], None],
-        complaints: Complaints,
-        heard: Heard,
-        max_message_bytes: int,
-        now_ns: Callable[[], int],
-        closed: Callable[["ZenohSubscription"], None],
+        retransmits: bool,
         holding: Holding | None = None,
     ) -> None:
-        self.matches = matches
+        self.matches = entity.matches
+        self._owner = owner
         self._message_class = message_class
-        self._own_gids = own_gids
-        self._complaints = complaints
-        self._heard = heard
-        self._longest = max_message_bytes
-        self._now_ns = now_ns
-        self._closed = closed
+        self._sink = sink
         self._holding = holding
-        self._lifespans = Lifespans(matches.by_gid, self._complain_of_age)
-        self._arrivals = Arrivals(
-            matches, key, sink, lost=lost, checked=self._checked, wants=wants
-        )
-        # Samples may come before the declaration returns.
+        self._lifespans = Lifespans(self.matches.by_gid, self._log_expired)
+        self._filter = SequenceFilter(self.matches.by_gid)
+        self._lock = threading.Lock()
+        # Samples may arrive before the declaration returns.
         self._is_open = True
-        self._subscriber: Any = _declare(
-            session, key, matches.endpoint.qos, self._on_sample
+        self._subscriber: Any = declare_subscriber(
+            owner.session.zenoh,
+            entity.key,
+            entity.qos,
+            self._on_sample,
+            retransmits=retransmits,
         )
-
-    @property
-    def arrivals(self) -> Arrivals:
-        """Who puts the samples in order."""
-        return self._arrivals
 
     @property
     def matched_count(self) -> int:
@@ -106,9 +80,8 @@ class ZenohSubscription(SubscriptionPort):
         if not self._is_open:
             return
         self._is_open = False
-        self._closed(self)
+        self._owner.release(self)
         self._subscriber.undeclare()
-        self._arrivals.close()
         if self._holding is not None:
             self._holding.close()
 
@@ -118,84 +91,68 @@ class ZenohSubscription(SubscriptionPort):
         found = self._checked(sample)
         if found is None:
             return
-        self._heard.last_ns = found[1][2]
-        if self._holding is None:
-            if self.matches.asserting:
-                self.matches.heard(*found)
-            self._arrivals.take(*found)
-        else:
-            self._holding.take(*found)
+        gid, item = found
+        self._owner.session.last_received.time_ns = item[2]
+        if self._holding is not None:
+            self._holding.take(gid, item)
+            return
+        if self.matches.asserting:
+            self.matches.on_sample(gid, item)
+        with self._lock:
+            missing = self._filter.accept(gid, item[3])
+            if missing is not None and self._is_open:
+                self._sink(item)
+        if missing:
+            self._owner.session.graph.lost(self.matches.endpoint, missing)
 
-    def _checked(self, sample: zenoh.Sample | Recovered) -> tuple[bytes, Item] | None:
-        """Whose it is, and the item to deliver; None where it is none."""
+    def _checked(self, sample: zenoh.Sample) -> tuple[bytes, Item] | None:
+        """Return the publisher's gid and the item; None if it is not for this port."""
         if not self._is_open:
             return None
         try:
             gid, item = self._decoded(sample)
         except DecodeError as error:
-            self._complain(str(sample.source_info or ""), error)
+            self._log_ignored(str(sample.source_info or ""), str(error))
             return None
-        if gid in self._own_gids or gid in self.matches.refused:
+        # A history query returns samples of this session's publishers too, whatever
+        # its locality; the in-process transport has delivered them already.
+        if gid in self._owner.own_gids or gid in self.matches.refused:
             return None
-        if other := self.matches.astray_from(gid):
-            renewed = f"sent on {other}; a link is being renewed"
-            self._complain(other, DecodeError(renewed))
+        if other := self.matches.publisher_of_other_topic(gid):
+            self._log_ignored(other, f"sent on {other}; a link is being renewed")
             return None
         return gid, self._lifespans.limited(gid, item)
 
-    def _decoded(self, sample: zenoh.Sample | Recovered) -> tuple[bytes, Item]:
+    def _decoded(self, sample: zenoh.Sample) -> tuple[bytes, Item]:
         payload, attachment = sample.payload, sample.attachment
-        if len(payload) > self._longest:
+        max_bytes = self._owner.session.settings.max_message_bytes
+        if len(payload) > max_bytes:
             raise DecodeError(
-                f"{len(payload)} bytes: longer than {self._longest} "
+                f"{len(payload)} bytes: longer than {max_bytes} "
                 "(NAVETTE_MAX_MESSAGE_BYTES)"
             )
         if attachment is None:
             raise DecodeError("without an attachment")
         if len(payload) < _HEADER_SIZE:
-            raise DecodeError(f"{len(payload)} bytes: no CDR header")
+            raise DecodeError(f"{len(payload)} bytes: too short for a CDR header")
         sequence, source_ns, gid = decode_attachment(attachment.to_bytes())
         data = payload.to_bytes()
         if data[:2] not in _HEADERS:
-            raise DecodeError(f"no plain CDR: header {data[:4].hex(' ')}")
+            raise DecodeError(f"not plain CDR: header {data[:4].hex(' ')}")
+        message = Encoded(data, self._message_class, partial(self._log_damaged, gid))
+        return gid, (message, source_ns, self._owner.now_ns(), sequence)
 
-        def failed(error: DecodeError) -> None:
-            self._complain(gid.hex(), error)
-
-        message = Encoded(data, self._message_class, failed)
-        return gid, (message, source_ns, self._now_ns(), sequence)
-
-    def _complain_of_age(self, publisher: Endpoint, text: str) -> None:
+    def _log_expired(self, publisher: Endpoint, text: str) -> None:
         topic = self.matches.endpoint.topic
-        self._complaints.once(
+        self._owner.session.log_once.warning(
             ("age", topic, publisher.gid.hex()), f"topic {topic}: {text}"
         )
 
-    def _complain(self, peer: str, error: DecodeError) -> None:
+    def _log_damaged(self, gid: bytes, error: DecodeError) -> None:
+        self._log_ignored(gid.hex(), str(error))
+
+    def _log_ignored(self, peer: str, reason: str) -> None:
         topic = self.matches.endpoint.topic
-        self._complaints.once(
-            ("sample", topic, peer), f"topic {topic}: message ignored: {error}"
+        self._owner.session.log_once.warning(
+            ("sample", topic, peer), f"topic {topic}: message ignored: {reason}"
         )
-
-
-def _declare(
-    session: zenoh.Session,
-    key: str,
-    qos: EndpointQos,
-    on_sample: Callable[[zenoh.Sample], None],
-) -> Any:
-    # Direct: a thread of Python's for every subscription would be many.
-    handler = zenoh.handlers.Callback(on_sample, indirect=False)
-    if not qos.is_latched:
-        return session.declare_subscriber(
-            key, handler, allowed_origin=zenoh.Locality.REMOTE
-        )
-    return ext.declare_advanced_subscriber(
-        session,
-        key,
-        handler,
-        allowed_origin=zenoh.Locality.REMOTE,
-        history=ext.HistoryConfig(
-            detect_late_publishers=True, max_samples=qos.queue_length
-        ),
-    )

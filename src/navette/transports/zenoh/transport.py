@@ -1,9 +1,8 @@
-"""The Zenoh transport: endpoints of other processes and machines, rmw_zenoh's way."""
+"""The Zenoh transport: endpoints of other processes and machines, as in rmw_zenoh."""
 
 import threading
 from collections.abc import Callable
-from functools import partial
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import zenoh
 
@@ -17,16 +16,16 @@ from navette.transports.base import (
     TransportObserver,
 )
 from navette.transports.lockstep import Holding, StepTraffic
-from navette.transports.qos import EndpointQos, ReliabilityPolicy
 from navette.transports.service_ports import ReplySink, RequestSink
+from navette.transports.zenoh.assertions import LivelinessAssertions
 from navette.transports.zenoh.clients import ZenohClient
 from navette.transports.zenoh.keys import data_key
-from navette.transports.zenoh.kin import new_zid
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.own_tokens import OwnTokens
+from navette.transports.zenoh.ports import Entity
 from navette.transports.zenoh.publisher import ZenohPublisher
 from navette.transports.zenoh.queryables import Queryables
-from navette.transports.zenoh.recovery import Recovery, Retention
+from navette.transports.zenoh.retransmission import retransmits
 from navette.transports.zenoh.services import ZenohService
 from navette.transports.zenoh.session import Session
 from navette.transports.zenoh.settings import Settings
@@ -43,16 +42,18 @@ P = TypeVar("P", bound=Port)
 class ZenohTransport(Transport):
     """Exchanges samples with other sessions only; safe to use from several threads.
 
-    Endpoints of the same transport do not meet here: the in-process one is beside it.
+    Endpoints of the same transport do not meet here: the in-process transport connects
+    them.
 
     Args:
         domain_id: separates systems on one network.
-        now_ns: the time here, for received stamps and replies.
-        traffic: in lock-step with other processes: holds and counts the samples.
+        now_ns: the time for received stamps and replies.
+        settings: default: from the environment.
+        traffic: in lock-step with other processes: buffers and counts the samples.
 
     Raises:
         NetworkError: the network cannot be joined.
-        InvalidValueError: the environment says something that cannot be.
+        InvalidValueError: an environment variable has an invalid value.
     """
 
     def __init__(
@@ -64,23 +65,24 @@ class ZenohTransport(Transport):
         traffic: StepTraffic | None = None,
     ) -> None:
         self.domain_id = domain_id
-        self._now_ns = now_ns
+        self.now_ns = now_ns
         self._traffic = traffic
-        # In lock-step there is no recovery, and nobody is to wait for its letters.
-        zid = new_zid() if traffic is None else ""
-        self.session = Session(settings or Settings.from_environment(), domain_id, zid)
+        self.session = Session(settings or Settings.from_environment(), domain_id)
         self._graph = self.session.graph
-        # In lock-step nothing is lost, and every sample is counted.
-        self._recovery = None if traffic is not None else self._make_recovery()
-        # There each publisher is counted from its first sample on.
-        reuses = traffic is None
-        self._tokens = OwnTokens(self.session, domain_id, reuses_endpoints=reuses)
+        self._assertions = LivelinessAssertions(
+            self.session.zenoh, domain_id, self._graph.asserted
+        )
+        self._graph.observers.append(self._assertions)
+        # In lock-step each publisher is counted from its first sample on, so that it
+        # cannot continue the numbers of an earlier one.
+        self._tokens = OwnTokens(
+            self.session, domain_id, reuses_endpoints=traffic is None
+        )
         self._queryables = Queryables(
             self.session.zenoh, shares=not self.session.settings.has_rules
         )
         self._ports: dict[Port, tuple[EndpointToken, zenoh.LivelinessToken]] = {}
-        #: Gids of the publishers here: those they reach in process are not told twice.
-        self._own_gids: set[bytes] = set()
+        self.own_gids: set[bytes] = set()
         self._lock = threading.Lock()
 
     def observe(self, observer: TransportObserver) -> None:
@@ -103,24 +105,18 @@ class ZenohTransport(Transport):
         return self._tokens.gid_for(endpoint)
 
     def advertise(self, endpoint: Endpoint, message_class: type) -> ZenohPublisher:
-        def make(token: EndpointToken, used: int, matches: Matches) -> ZenohPublisher:
-            gid = gid_of(token.key())
-            self._own_gids.add(gid)
-            key, session, sent = self._key(token), self.session.zenoh, None
+        def make(entity: Entity) -> ZenohPublisher:
+            self.own_gids.add(entity.gid)
+            count_sent = None
             if self._traffic is not None:
-                sent = self._traffic.tally.open(gid, endpoint.node_full_name)
+                count_sent = self._traffic.tally.open(
+                    entity.gid, endpoint.node_full_name
+                )
             return ZenohPublisher(
-                session,
-                key,
-                token.qos,
-                gid,
-                matches,
-                used,
-                self.session.heard,
-                self._retention(gid, key, token.qos, used, matches),
-                self._assert_alive,
-                self._leave,
-                sent,
+                self,
+                entity,
+                retransmits=self._retransmits(entity),
+                count_sent=count_sent,
             )
 
         return self._open(endpoint, make)
@@ -128,77 +124,54 @@ class ZenohTransport(Transport):
     def subscribe(
         self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
     ) -> ZenohSubscription:
-        def make(token: EndpointToken, _: int, matches: Matches) -> ZenohSubscription:
-            recovery = self._recovery_of(token.qos)
-            if recovery is not None:
-                recovery.open()  # letters come as soon as others know of it
-            port = ZenohSubscription(
-                self.session.zenoh,
-                self._key(token),
+        def make(entity: Entity) -> ZenohSubscription:
+            return ZenohSubscription(
+                self,
+                entity,
                 message_class,
                 sink,
-                matches,
-                wants=None if recovery is None else recovery.wants,
-                own_gids=self._own_gids,
-                lost=partial(self._graph.lost, endpoint),
-                now_ns=self._now_ns,
-                heard=self.session.heard,
-                holding=self._holding(endpoint, sink, matches),
-                **self._common(),
+                retransmits=self._retransmits(entity),
+                holding=self._holding(endpoint, sink, entity.matches),
             )
-            if recovery is not None:
-                recovery.hearing.add(gid_of(token.key()), port.arrivals)
-            return port
 
         return self._open(endpoint, make)
 
     def serve(self, endpoint: Endpoint, sink: RequestSink) -> ZenohService:
-        def make(token: EndpointToken, _: int, matches: Matches) -> ZenohService:
-            return ZenohService(
-                partial(self._queryables.open, is_of_node=_is_of_node(endpoint)),
-                self._key(token),
-                sink,
-                matches,
-                heard=self.session.heard,
-                now_ns=self._now_ns,
-                **self._common(),
-            )
-
-        return self._open(endpoint, make)
+        return self._open(
+            endpoint, lambda entity: ZenohService(self, entity, sink, self._queryables)
+        )
 
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> ZenohClient:
-        def make(token: EndpointToken, used: int, matches: Matches) -> ZenohClient:
-            return ZenohClient(
-                self.session.zenoh,
-                self._key(token),
-                gid_of(token.key()),
-                sink,
-                matches,
-                used=used,
-                timeout_s=self.session.settings.service_timeout_s,
-                **self._common(),
-            )
-
-        return self._open(endpoint, make)
+        return self._open(endpoint, lambda entity: ZenohClient(self, entity, sink))
 
     def endpoints(self) -> list[Endpoint]:
-        """Those of other sessions."""
+        """Return the topic endpoints of other sessions."""
         return self._graph.endpoints(_TOPIC_KINDS)
 
     def service_endpoints(self) -> list[Endpoint]:
-        """Those of other sessions."""
+        """Return the servers and clients of other sessions."""
         return self._graph.endpoints(_SERVICE_KINDS)
 
     def close(self) -> None:
         with self._lock:
             ports = list(self._ports)
-        if self._recovery is not None:
-            self._recovery.farewell()
         for port in ports:
             port.close()
         self.session.close()
-        if self._recovery is not None:
-            self._recovery.join()
+
+    # -- for the ports ---------------------------------------------------------
+
+    def release(self, port: Port) -> None:
+        """Withdraw the endpoint of a port that closes."""
+        with self._lock:
+            token, declared = self._ports.pop(port)
+        self.own_gids.discard(port.matches.endpoint.gid)
+        self._graph.remove_local(port.matches)
+        self._tokens.take_back(token, declared, port.last)
+
+    def assert_liveliness(self, matches: Matches) -> bool:
+        """Announce that a publisher is alive; see ``PublisherPort.assert_alive``."""
+        return self._assertions.send(matches)
 
     # -- for a lock-step -------------------------------------------------------
 
@@ -207,7 +180,7 @@ class ZenohTransport(Transport):
         return tuple(dict.fromkeys(node.full_name for node in self._tokens.nodes()))
 
     def own_count(self) -> int:
-        """How many nodes and endpoints are announced here."""
+        """Return how many nodes and endpoints are announced here."""
         with self._lock:
             return len(self._tokens.nodes()) + len(self._ports)
 
@@ -222,61 +195,32 @@ class ZenohTransport(Transport):
             lambda: dict(matches.by_gid),
             is_latched=endpoint.qos.is_latched,
             depth=endpoint.qos.queue_length,
-            heard=matches.heard,
+            heard=matches.on_sample,
         )
-
-    # -- what is lost on the way -------------------------------------------------
-
-    def _make_recovery(self) -> Recovery:
-        session = self.session
-        recovery = Recovery(
-            session.zenoh,
-            session.zid,
-            self.domain_id,
-            session.complaints,
-            session.settings.max_message_bytes,
-            self._graph.asserted_by,
-        )
-        self._graph.observers.append(recovery)
-        return recovery
-
-    def _recovery_of(self, qos: EndpointQos) -> Recovery | None:
-        """None where an endpoint takes what comes."""
-        is_reliable = qos.reliability == ReliabilityPolicy.RELIABLE
-        return self._recovery if is_reliable else None
-
-    def _retention(
-        self, gid: bytes, key: str, qos: EndpointQos, used: int, matches: Matches
-    ) -> Retention | None:
-        recovery = self._recovery_of(qos)
-        if recovery is None:
-            return None
-        retention = Retention(qos.queue_length, used)
-        recovery.offers.add(gid, key, matches, retention)
-        return retention
-
-    def _assert_alive(self, matches: Matches) -> bool:
-        if self._recovery is None:
-            return not matches.remotes
-        return self._recovery.assert_alive(matches)
 
     # -- inside ----------------------------------------------------------------
 
-    def _key(self, token: EndpointToken) -> str:
-        return data_key(token.domain_id, token.topic, token.type_name, token.type_hash)
+    def _retransmits(self, entity: Entity) -> bool:
+        if self._traffic is not None:  # publishers block there: no sample is lost
+            return False
+        topic = entity.matches.endpoint.topic
+        return retransmits(entity.qos, topic, self.session.settings.retransmit)
 
-    def _open(
-        self, endpoint: Endpoint, make: Callable[[EndpointToken, int, Matches], P]
-    ) -> P:
-        """A port that is matched, then announced: who sees its token may rely on it."""
-        token, used = self._tokens.take(endpoint)
+    def _open(self, endpoint: Endpoint, make: Callable[[Entity], P]) -> P:
+        """Make a matched port, then announce it: its token means that it is ready."""
+        token, initial_sequence = self._tokens.take(endpoint)
         matches = self._graph.add_local(endpoint, token.type_hash)
+        entity = Entity(
+            matches,
+            data_key(token.domain_id, token.topic, token.type_name, token.type_hash),
+            gid_of(token.key()),
+            token.qos,
+            initial_sequence,
+        )
         try:
-            port = make(token, used, matches)
+            port = make(entity)
             declared = self._tokens.declare(token)
         except zenoh.ZError as error:
-            if self._recovery is not None:
-                self._recovery.leave(matches)
             self._graph.remove_local(matches)
             raise NetworkError(
                 f"{endpoint.kind.name.lower()} of {endpoint.topic} (node "
@@ -285,24 +229,3 @@ class ZenohTransport(Transport):
         with self._lock:
             self._ports[port] = token, declared
         return port
-
-    def _common(self) -> dict[str, Any]:
-        return {
-            "complaints": self.session.complaints,
-            "max_message_bytes": self.session.settings.max_message_bytes,
-            "closed": self._leave,
-        }
-
-    def _leave(self, port: Port) -> None:
-        with self._lock:
-            token, declared = self._ports.pop(port)
-        self._own_gids.discard(port.matches.endpoint.gid)
-        if self._recovery is not None:
-            self._recovery.leave(port.matches)
-        self._graph.remove_local(port.matches)
-        self._tokens.take_back(token, declared, port.last)
-
-
-def _is_of_node(endpoint: Endpoint) -> bool:
-    """Whether its name is that of its node and one word more."""
-    return endpoint.topic.rpartition("/")[0] == endpoint.node_full_name

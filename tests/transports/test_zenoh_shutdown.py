@@ -35,7 +35,7 @@ print("done")
 
 # A command's end: here is a thread that never comes back.
 STUCK = """
-from navette.transports.leaving import end_with, wait_for_at_end
+from navette.transports.shutdown import end_with, wait_for_at_end
 
 stuck = threading.Thread(target=threading.Event().wait, daemon=True)
 stuck.start()

@@ -71,7 +71,7 @@ def test_samples_are_numbered_on(pair: ZenohPair) -> None:
     pair.near.subscribe(EAR, String, items.append, shared=False)
     for number, text in enumerate("abc"):
         _, port = mouth(pair)
-        assert port.used == number
+        assert port.initial_sequence == number
         pair.settle()
         port.send(String(data=text), 0, number + 1)
         pair.settle()
@@ -97,7 +97,7 @@ def test_who_listens_from_now_on_misses_nothing_of_before(pair: ZenohPair) -> No
     items: list[Item] = []
     pair.near.subscribe(EAR, String, items.append, shared=False)
     pair.settle()
-    port.send(String(data="heard"), 0, port.used + 1)
+    port.send(String(data="heard"), 0, port.initial_sequence + 1)
     pair.settle()
     assert [message_of(item).data for item in items] == ["heard"]
     assert lost == []

@@ -1,4 +1,4 @@
-"""Who is on the network at all, whatever the domain; for reports to people."""
+"""All nodes and endpoints on the network, in every domain; for ``navette doctor``."""
 
 import contextlib
 from itertools import islice
@@ -10,14 +10,14 @@ from navette.transports.zenoh.config import client_config
 from navette.transports.zenoh.settings import Settings
 from navette.transports.zenoh.tokens import SPACE, Token, parse_token
 
-_ASK_S = 1.0
-_MOST = 100_000
+_QUERY_S = 1.0
+_MAX_TOKENS = 100_000
 
 
 def known_to_router(settings: Settings) -> list[Token] | None:
-    """All nodes and endpoints that the router knows; None: no router.
+    """Return all nodes and endpoints that the router knows; None without a router.
 
-    Those are also such as cannot be reached from here.
+    Some of them may not be reachable from here.
     """
     try:
         session = zenoh.open(client_config(settings))
@@ -25,10 +25,10 @@ def known_to_router(settings: Settings) -> list[Token] | None:
         return None
     found: list[Token] = []
     with session:
-        replies = session.liveliness().get(f"{SPACE}/**", timeout=_ASK_S)
-        keys = [str(r.ok.key_expr) for r in islice(replies, _MOST) if r.ok]
+        replies = session.liveliness().get(f"{SPACE}/**", timeout=_QUERY_S)
+        keys = [str(r.ok.key_expr) for r in islice(replies, _MAX_TOKENS) if r.ok]
     for key in keys:
-        # Hostile or foreign ones are complained of by the graph.
+        # The graph logs tokens that it cannot parse.
         with contextlib.suppress(DecodeError):
             found.append(parse_token(key))
     return found

@@ -1,0 +1,65 @@
+"""Liveliness that a publisher asserts without a message (MANUAL_BY_TOPIC).
+
+rmw_zenoh defines no such sample, so only Navette's subscriptions receive it: a put on
+``@navette/<domain>/alive/<gid>``. Wildcards do not match chunks that begin with ``@``.
+"""
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+
+from navette.transports.base import Endpoint, TransportObserver
+from navette.transports.zenoh.matches import Matches
+from navette.transports.zenoh.session_id import is_navette_session
+
+
+class LivelinessAssertions(TransportObserver):
+    """Sends assertions; receives them once a publisher that asserts itself is matched.
+
+    Args:
+        on_asserted: called with the gid of a publisher, on Zenoh's threads.
+    """
+
+    def __init__(
+        self,
+        session: zenoh.Session,
+        domain_id: int,
+        on_asserted: Callable[[bytes], None],
+    ) -> None:
+        self._session = session
+        self._prefix = f"@navette/{domain_id}/alive"
+        self._on_asserted = on_asserted
+        self._subscriber: Any = None
+        self._lock = threading.Lock()
+
+    def send(self, matches: Matches) -> bool:
+        """Assert a publisher; return whether all its subscriptions are Navette's."""
+        sessions = {*dict(matches.sessions).values()}
+        if sessions:
+            self._session.put(
+                f"{self._prefix}/{matches.endpoint.gid.hex()}",
+                b"",
+                congestion_control=zenoh.CongestionControl.DROP,
+                allowed_destination=zenoh.Locality.REMOTE,
+            )
+        return all(map(is_navette_session, sessions))
+
+    def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
+        if not (publisher.is_remote and publisher.qos.asserts_itself):
+            return
+        with self._lock:
+            if self._subscriber is None:
+                self._subscriber = self._session.declare_subscriber(
+                    f"{self._prefix}/*",
+                    zenoh.handlers.Callback(self._on_sample, indirect=False),
+                    allowed_origin=zenoh.Locality.REMOTE,
+                )
+
+    def _on_sample(self, sample: zenoh.Sample) -> None:
+        gid = str(sample.key_expr).rpartition("/")[2]
+        try:
+            self._on_asserted(bytes.fromhex(gid))
+        except ValueError:  # not a gid: sent by a program other than Navette
+            return
