@@ -1,4 +1,4 @@
-"""The stack as processes in lock-step: two runs are one; who dies is named."""
+"""The stack as processes in lock-step: repeatable, and a failed process is named."""
 
 import os
 import signal
@@ -34,7 +34,7 @@ def follow(fleet: Fleet, name: str, *words: str) -> None:
 
 
 def end_of(fleet: Fleet, name: str) -> int:
-    """The exit code; one that does not end says where it is."""
+    """Return the exit code; a process that does not end prints its stack traces."""
     process = fleet.running[name]
     try:
         return process.wait(PATIENCE_S)
@@ -44,7 +44,7 @@ def end_of(fleet: Fleet, name: str) -> int:
 
 
 def drive(folder: Path) -> bytes:
-    """Seven processes, one drive; the bag of it."""
+    """Drive with seven processes; return the content of the bag."""
     bag = folder / "bag.mcap"
     with fleet_in(folder) as fleet:
         for stage in STACK:
@@ -60,8 +60,8 @@ def drive(folder: Path) -> bytes:
     return bag.read_bytes()
 
 
-def test_two_drives_of_the_split_stack_are_the_same(tmp_path: Path) -> None:
-    """Byte by byte, /rosout and everything; and the robot arrives."""
+def test_two_runs_of_the_split_stack_produce_the_same_bag(tmp_path: Path) -> None:
+    """Byte for byte, including /rosout; and the robot reaches the goal."""
     first = drive(tmp_path / "first")
     with open_bag(tmp_path / "first/bag.mcap") as bag:
         last_data = list(bag.messages(["/ground_truth"]))[-1].data
@@ -71,11 +71,14 @@ def test_two_drives_of_the_split_stack_are_the_same(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "limit", "said"),
-    [(signal.SIGKILL, "60", "gone at"), (signal.SIGSTOP, "2", "no answer within 2 s")],
+    ("kind", "limit", "error_text"),
+    [
+        (signal.SIGKILL, "60", "gone at"),
+        (signal.SIGSTOP, "2", "no response within 2 s"),
+    ],
 )
-def test_who_dies_or_hangs_is_named(
-    kind: signal.Signals, limit: str, said: str, tmp_path: Path
+def test_a_process_that_fails_or_hangs_is_named(
+    kind: signal.Signals, limit: str, error_text: str, tmp_path: Path
 ) -> None:
     with fleet_in(tmp_path / "run") as fleet:
         for stage in ("planner", "control"):
@@ -87,6 +90,6 @@ def test_who_dies_or_hangs_is_named(
         assert end_of(fleet, "sim") == 1
         assert end_of(fleet, "planner") == 1
         (error,) = [line for line in fleet.said("sim") if "navette:" in line]
-        assert error.startswith(f"navette: lock-step: {said}")
-        assert "/control" in error  # and who waits for its messages
+        assert error.startswith(f"navette: lock-step: {error_text}")
+        assert "/control" in error  # and the nodes that wait for its messages
         assert "the simulator is gone" in fleet.said("planner")[-1]

@@ -1,10 +1,10 @@
-"""What a step brings, and in what order, does not depend on how it arrived."""
+"""Content and order of a step do not depend on the order of arrival."""
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from navette.transports import Endpoint, EndpointKind, EndpointQos, Item
-from navette.transports.lockstep import HeldSamples, Sent
+from navette.transports.lockstep import SampleBuffer, Sent, SubscriptionInfo
 
 TOPICS = ("/a", "/b")
 PUBLISHERS = {
@@ -13,7 +13,7 @@ PUBLISHERS = {
 }
 Arrival = tuple[bytes, int, int]
 
-#: For every publisher the times at which it sent, oldest first.
+#: Source stamps of each publisher's samples, oldest first.
 sendings = st.fixed_dictionaries(
     {gid: st.lists(st.integers(0, 5), max_size=4).map(sorted) for gid in PUBLISHERS}
 )
@@ -28,42 +28,43 @@ def endpoint(gid: bytes) -> Endpoint:
 def run(
     arrivals: list[Arrival], sent: dict[bytes, Sent], early: int
 ) -> list[tuple[str, Item]]:
-    """All that two subscriptions of each topic get, in order.
+    """Return what two subscriptions of each topic receive, in order.
 
-    ``early`` samples arrive before the step is known to have ended.
+    Args:
+        early: samples that arrive before the end of the step is known.
     """
-    held, got = HeldSamples(), []
-    holdings = []
+    buffer, got = SampleBuffer(), []
+    subscriptions = []
     for topic in (*TOPICS, *TOPICS):
         remotes = {g: endpoint(g) for g, p in PUBLISHERS.items() if p[0] == topic}
-        name = f"{topic}{len(holdings)}"
-        holding = held.open(
+        name = f"{topic}{len(subscriptions)}"
+        info = SubscriptionInfo(
             topic,
             lambda item, name=name: got.append((name, item)),
             lambda remotes=remotes: remotes,
-            is_latched=False,
             depth=10,
         )
-        holdings.append((topic, holding))
-    held.expect({g: Sent(p[1], p[2], 0, 0) for g, p in PUBLISHERS.items()})
+        subscription = buffer.open(info)
+        subscriptions.append((topic, subscription))
+    buffer.expect({g: Sent(p[1], p[2], 0, 0) for g, p in PUBLISHERS.items()})
 
     def arrive(part: list[Arrival]) -> None:
         for gid, source_ns, number in part:
-            for topic, holding in holdings:
+            for topic, subscription in subscriptions:
                 if topic == PUBLISHERS[gid][0]:
-                    holding.take(gid, ((gid, number), source_ns, 99, number))
+                    subscription.take(gid, ((gid, number), source_ns, 99, number))
 
     arrive(arrivals[:early])
-    complete = held.expect(sent)
-    assert complete == (held.missing() == [])
+    complete = buffer.expect(sent)
+    assert complete == (buffer.missing() == [])
     arrive(arrivals[early:])
-    assert held.is_complete()
-    held.release(7)
+    assert buffer.is_complete()
+    buffer.release(7)
     return got
 
 
 @given(sendings, st.data())
-def test_the_order_is_the_same_however_they_arrive(
+def test_the_order_does_not_depend_on_the_arrival(
     sendings: dict[bytes, list[int]], data: st.DataObject
 ) -> None:
     in_order = [
@@ -83,7 +84,7 @@ def test_the_order_is_the_same_however_they_arrive(
     assert len(expected) == 2 * len(in_order)
     by_time = [item[1] for _, item in expected]
     assert by_time == sorted(by_time)
-    for gid in PUBLISHERS:  # and each publisher's own order is kept
+    for gid in PUBLISHERS:  # the order of each publisher is kept
         for name in {name for name, _ in expected}:
             own = [i[3] for n, i in expected if n == name and i[0][0] == gid]
             assert own == sorted(own)

@@ -1,4 +1,4 @@
-"""A lock-step over Zenoh: contexts of one process that share the network alone."""
+"""A lock-step over Zenoh, between contexts that share only the network."""
 
 import threading
 from collections.abc import Iterator
@@ -16,20 +16,20 @@ from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import Int64, String
 from navette.runtime import Executor, SystemClock
 from navette.runtime.context import new_graph
-from navette.runtime.lockstep import Conductor, Follower, LockStepClock
+from navette.runtime.lockstep import Coordinator, LockStepClock, Participant
 from navette.transports.zenoh import ZenohTransport
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-Heard = list[tuple[str, int, int]]  # (what, when, sent when)
+Received = list[tuple[str, int, int]]  # (content, received ms, sent ms)
 
 
 class Member:
-    """A node with a context, a session and a thread of its own."""
+    """A node with its own context, session and thread."""
 
     def __init__(self, name: str, clock: LockStepClock, stack: ExitStack) -> None:
         self.context = stack.enter_context(Context(clock=clock))
         self.node = Node(name, context=self.context)
-        self.heard: Heard = []
+        self.received: Received = []
         self.error: Exception | None = None
         self._thread = threading.Thread(target=self._spin)
         stack.callback(self._end)
@@ -39,16 +39,16 @@ class Member:
         self._executor.add_node(self.node)
         self._thread.start()
 
-    def hear(self, topic: str, kind: type = Int64, qos: Any = 10) -> None:
-        def note(message: Any, info: Any) -> None:
+    def subscribe(self, topic: str, kind: type = Int64, qos: Any = 10) -> None:
+        def receive(message: Any, info: Any) -> None:
             now = self.context.clock.now_ns // 10**6
             sent = info["source_timestamp"] // 10**6
-            self.heard.append((f"{topic} {message.data}", now, sent))
+            self.received.append((f"{topic} {message.data}", now, sent))
 
-        self.node.create_subscription(kind, topic, note, qos)
+        self.node.create_subscription(kind, topic, receive, qos)
 
     def count(self, topic: str, period_s: float) -> None:
-        """Numbers from 1, one each period."""
+        """Publish numbers from 1, one each period."""
         publisher, numbers = (
             self.node.create_publisher(Int64, topic, 10),
             iter(range(1, 10**6)),
@@ -81,15 +81,18 @@ def stack(monkeypatch: pytest.MonkeyPatch) -> Iterator[ExitStack]:
         yield made
 
 
-def run_of_three(backwards: bool) -> list[Heard]:
-    """A simulator that counts, one that answers, one that listens to both."""
+def run_of_three(backwards: bool) -> list[Received]:
+    """Run a simulator that counts, a node that answers, a node that records both."""
     with ExitStack() as stack:
-        sim = Member("sim", Conductor(["echo", "ear"], until_s=0.1), stack)
-        echo, ear = Member("echo", Follower(), stack), Member("ear", Follower(), stack)
+        sim = Member("sim", Coordinator(["echo", "ear"], until_s=0.1), stack)
+        echo, ear = (
+            Member("echo", Participant(), stack),
+            Member("ear", Participant(), stack),
+        )
         sim.count("/tick", 0.02)
-        sim.hear("/answer")
+        sim.subscribe("/answer")
         answers = echo.node.create_publisher(Int64, "/answer", 10)
-        # What was said before all were there, and is not kept, nobody hears.
+        # A volatile message from before the first step is not delivered.
         answers.publish(Int64(data=-1))
         echo.node.create_subscription(
             Int64, "/tick", lambda m: answers.publish(Int64(data=10 * m.data)), 10
@@ -97,8 +100,8 @@ def run_of_three(backwards: bool) -> list[Heard]:
         echo.node.create_publisher(String, "/map", LATCHED).publish(String(data="map"))
         echo.count("/own", 0.03)
         for topic in ("/tick", "/answer", "/own"):
-            ear.hear(topic)
-        ear.hear("/map", String, LATCHED)
+            ear.subscribe(topic)
+        ear.subscribe("/map", String, LATCHED)
         members = [sim, echo, ear]
         for member in reversed(members) if backwards else members:
             member.start()
@@ -106,11 +109,11 @@ def run_of_three(backwards: bool) -> list[Heard]:
             member.wait()
             assert member.error is None
         assert all(m.context.clock.now_ns == 100_000_000 for m in members)
-        return [sim.heard, ear.heard]
+        return [sim.received, ear.received]
 
 
-def test_two_runs_are_the_same(stack: ExitStack) -> None:
-    """Whatever the order in which the processes begin."""
+def test_two_runs_are_equal(stack: ExitStack) -> None:
+    """The order in which the processes start does not matter."""
     sim, ear = run_of_three(backwards=False)
     assert sim == [(f"/answer {n}0", 20 * n + 10, 20 * n) for n in range(1, 5)]
     assert ear[0] == ("/map map", 0, 0)
@@ -124,13 +127,16 @@ def test_two_runs_are_the_same(stack: ExitStack) -> None:
     assert run_of_three(backwards=True) == [sim, ear]
 
 
-def test_a_member_that_goes_is_named(stack: ExitStack) -> None:
-    conductor = Conductor(["echo", "ear"])
-    sim = Member("sim", conductor, stack)
-    echo, ear = Member("echo", Follower(), stack), Member("ear", Follower(), stack)
+def test_a_participant_that_is_gone_is_named(stack: ExitStack) -> None:
+    coordinator = Coordinator(["echo", "ear"])
+    sim = Member("sim", coordinator, stack)
+    echo, ear = (
+        Member("echo", Participant(), stack),
+        Member("ear", Participant(), stack),
+    )
     for member in (sim, echo, ear):
         member.start()
-    until(lambda: conductor.step > 10, "steps")
+    until(lambda: coordinator.step > 10, "steps")
     echo.context.shutdown()
     sim.wait()
     assert "gone at" in str(sim.error)
@@ -140,10 +146,10 @@ def test_a_member_that_goes_is_named(stack: ExitStack) -> None:
     assert "the simulator is gone" in str(ear.error)
 
 
-def test_services_pass_as_they_come(stack: ExitStack) -> None:
-    """From a member and from outside, while steps go on."""
-    conductor = Conductor(["echo"])
-    sim, echo = Member("sim", conductor, stack), Member("echo", Follower(), stack)
+def test_services_work_during_the_lock_step(stack: ExitStack) -> None:
+    """Called by a participant and from outside."""
+    coordinator = Coordinator(["echo"])
+    sim, echo = Member("sim", coordinator, stack), Member("echo", Participant(), stack)
 
     def add(request: Any, response: Any) -> Any:
         response.sum = request.a + request.b
@@ -156,78 +162,78 @@ def test_services_pass_as_they_come(stack: ExitStack) -> None:
     client = node.create_client(AddTwoInts, "/add")
     sim.start()
     echo.start()
-    until(lambda: conductor.step > 3, "steps")
+    until(lambda: coordinator.step > 3, "steps")
     assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=LIMIT_S).sum == 3
     asked = sim.context.loop.call_soon_threadsafe
     futures: list[Any] = []
     asked(lambda: futures.append(inside.call_async(AddTwoInts.Request(a=2, b=3))))
-    until(lambda: bool(futures) and futures[0].done(), "an answer")
+    until(lambda: bool(futures) and futures[0].done(), "a reply")
     assert futures[0].result().sum == 5
 
 
-def test_what_outsiders_say_is_heard(stack: ExitStack) -> None:
-    conductor = Conductor(["echo"])
-    sim, echo = Member("sim", conductor, stack), Member("echo", Follower(), stack)
-    echo.hear("/word", String)
+def test_messages_from_outside_are_received(stack: ExitStack) -> None:
+    coordinator = Coordinator(["echo"])
+    sim, echo = Member("sim", coordinator, stack), Member("echo", Participant(), stack)
+    echo.subscribe("/word", String)
     outside = stack.enter_context(Context(clock=SystemClock(), transport="zenoh"))
     publisher = Node("outside", context=outside).create_publisher(String, "/word", 10)
     sim.start()
     echo.start()
-    until(lambda: publisher.get_subscription_count() > 0, "a listener")
+    until(lambda: publisher.get_subscription_count() > 0, "a subscription")
     for word in "abc":
         publisher.publish(String(data=word))
-    until(lambda: len(echo.heard) >= 3, "all words")
-    assert [text for text, _, _ in echo.heard] == ["/word a", "/word b", "/word c"]
+    until(lambda: len(echo.received) >= 3, "all words")
+    assert [text for text, _, _ in echo.received] == ["/word a", "/word b", "/word c"]
 
 
-def test_a_listener_that_comes_on_the_way_hears_the_steps_after_it(
+def test_a_new_subscription_receives_the_steps_after_it(
     stack: ExitStack,
 ) -> None:
-    conductor = Conductor(["ear"], until_s=1.0)
-    sim, ear = Member("sim", conductor, stack), Member("ear", Follower(), stack)
+    coordinator = Coordinator(["ear"], until_s=1.0)
+    sim, ear = Member("sim", coordinator, stack), Member("ear", Participant(), stack)
     sim.count("/tick", 0.02)
     sim.node.create_publisher(String, "/map", LATCHED).publish(String(data="map"))
 
-    def listen() -> None:
-        ear.hear("/tick")
-        ear.hear("/map", String, LATCHED)
+    def subscribe() -> None:
+        ear.subscribe("/tick")
+        ear.subscribe("/map", String, LATCHED)
 
-    ear.context.loop.call_at(500_000_000, listen)
+    ear.context.loop.call_at(500_000_000, subscribe)
     sim.start()
     ear.start()
     sim.wait()
     ear.wait()
     assert sim.error is ear.error is None
-    # Made at 0.5 s, in the step that ends then; known to all before the next one.
-    assert ear.heard[0] == ("/map map", 500, 0)
-    assert ear.heard[1:3] == [("/tick 26", 520, 520), ("/tick 27", 540, 540)]
-    assert len(ear.heard) == 26
+    # Created at 0.5 s, in the step that ends then; known to all before the next one.
+    assert ear.received[0] == ("/map map", 500, 0)
+    assert ear.received[1:3] == [("/tick 26", 520, 520), ("/tick 27", 540, 540)]
+    assert len(ear.received) == 26
 
 
-def test_who_comes_later_learns_that_it_is_too_late(stack: ExitStack) -> None:
-    conductor = Conductor(["echo"])
-    sim, echo = Member("sim", conductor, stack), Member("echo", Follower(), stack)
+def test_a_participant_that_starts_too_late_is_an_error(stack: ExitStack) -> None:
+    coordinator = Coordinator(["echo"])
+    sim, echo = Member("sim", coordinator, stack), Member("echo", Participant(), stack)
     sim.start()
     echo.start()
-    until(lambda: conductor.step > 3, "steps")
-    late = Member("late", Follower(), stack)
+    until(lambda: coordinator.step > 3, "steps")
+    late = Member("late", Participant(), stack)
     late.start()
     late.wait()
     assert "does not wait for /late" in str(late.error)
     assert sim.error is None
 
 
-def test_nonsense_on_the_wire_is_complained_about_once(
+def test_invalid_reports_are_logged_once(
     stack: ExitStack, caplog: pytest.LogCaptureFixture
 ) -> None:
-    conductor = Conductor(["echo"], until_s=0.5)
-    sim, echo = Member("sim", conductor, stack), Member("echo", Follower(), stack)
+    coordinator = Coordinator(["echo"], until_s=0.5)
+    sim, echo = Member("sim", coordinator, stack), Member("echo", Participant(), stack)
     session = transport_of(sim).session
-    stranger = transport_of(echo).session.zenoh
+    other = transport_of(echo).session.zenoh
     for _ in range(2):
-        stranger.put("0/navette_lockstep/report/abc", b"nonsense")
-        stranger.put("0/navette_lockstep/report/abc", b"x" * (2**22 + 1))
-    until(lambda: "report of session abc ignored" in caplog.text, "a complaint")
+        other.put("0/navette_lockstep/report/abc", b"nonsense")
+        other.put("0/navette_lockstep/report/abc", b"x" * (2**22 + 1))
+    until(lambda: "report of session abc ignored" in caplog.text, "a warning")
     sim.start()
     echo.start()
     sim.wait()
@@ -240,9 +246,9 @@ def test_nonsense_on_the_wire_is_complained_about_once(
 def test_a_second_context_of_a_process_cannot_take_part(stack: ExitStack) -> None:
     graph = new_graph()
     stack.callback(graph.close)
-    Context(clock=Follower(), graph=graph).init(args=[])
+    Context(clock=Participant(), graph=graph).init(args=[])
     with pytest.raises(InvalidValueError, match="only one context"):
-        Context(clock=Follower(), graph=graph).init(args=[])
+        Context(clock=Participant(), graph=graph).init(args=[])
 
 
 def transport_of(member: Member) -> ZenohTransport:

@@ -1,4 +1,4 @@
-"""Reports and grants on the wire; what else comes there is refused."""
+"""Reports and grants on the wire; invalid ones are refused."""
 
 import json
 from typing import Any
@@ -13,12 +13,12 @@ REPORT = Report(3, ("/a", "/b/c"), 17, {"abc1": 4}, {GID: Sent("/a", 1, 2, 9)})
 GRANT = Grant("abc1", 4, 40_000_000, ("f0", "f1"), {GID: Sent("/a", 1, 2, 9)})
 
 
-def test_reports_and_grants_arrive_as_they_were() -> None:
+def test_reports_and_grants_survive_encoding() -> None:
     assert parse_report(REPORT.encode()) == REPORT
     assert parse_grant(GRANT.encode()) == GRANT
 
 
-REPORT_FAULTS: dict[str, Any] = {
+REPORT_INVALID: dict[str, Any] = {
     "step": [-1, True, 1.0, "1", None, 2**63],
     "nodes": ["/a", [1], [""], ["x" * 513], {}],
     "own": [None, -2],
@@ -34,9 +34,9 @@ REPORT_FAULTS: dict[str, Any] = {
 
 
 @pytest.mark.parametrize(
-    ("field", "value"), [(f, v) for f, values in REPORT_FAULTS.items() for v in values]
+    ("field", "value"), [(f, v) for f, values in REPORT_INVALID.items() for v in values]
 )
-def test_a_report_with_a_fault_is_refused(field: str, value: Any) -> None:
+def test_a_report_with_an_invalid_field_is_refused(field: str, value: Any) -> None:
     record = json.loads(REPORT.encode()) | {field: value}
     with pytest.raises(DecodeError, match=field):
         parse_report(json.dumps(record).encode())
@@ -44,9 +44,9 @@ def test_a_report_with_a_fault_is_refused(field: str, value: Any) -> None:
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("is_last", 0), ("conductor", "no!"), ("roster", "ab"), ("until_ns", -1)],
+    [("is_last", 0), ("coordinator", "no!"), ("roster", "ab"), ("until_ns", -1)],
 )
-def test_a_grant_with_a_fault_is_refused(field: str, value: Any) -> None:
+def test_a_grant_with_an_invalid_field_is_refused(field: str, value: Any) -> None:
     record = json.loads(GRANT.encode()) | {field: value}
     with pytest.raises(DecodeError, match=field):
         parse_grant(json.dumps(record).encode())
@@ -65,7 +65,7 @@ def test_a_grant_with_a_fault_is_refused(field: str, value: Any) -> None:
         json.dumps(json.loads(REPORT.encode()) | {"more": 1}).encode(),
     ],
 )
-def test_what_is_no_record_is_refused(data: bytes) -> None:
+def test_invalid_records_are_refused(data: bytes) -> None:
     with pytest.raises(DecodeError):
         parse_report(data)
     with pytest.raises(DecodeError):

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from navette import runtime
 from navette.errors import CallbackError, NavetteError
 from navette.runtime import Context, ContextClock, Node, PacedClock
-from navette.runtime.lockstep import Conductor
+from navette.runtime.lockstep import Coordinator
 from navette.runtime.override_check import check_reached
 from navette.runtime.overrides import ParameterOverrides
 
@@ -251,7 +251,7 @@ def _add_conducting(parser: argparse.ArgumentParser) -> None:
 def _clock_of_sim(given: Any) -> ContextClock:
     if given.lockstep is None:
         return PacedClock(1.0 if given.speed is None else given.speed)
-    return Conductor(
+    return Coordinator(
         given.lockstep.split(","),
         step_s=given.lockstep_step,
         speed=math.inf if given.speed is None else given.speed,

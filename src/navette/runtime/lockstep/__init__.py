@@ -1,13 +1,13 @@
-"""Lock-step between processes: time that waits for the others; deterministic."""
+"""Lock-step between processes: virtual time that waits for all of them."""
 
 from navette.runtime.lockstep.choice import clock_of_environment
 from navette.runtime.lockstep.clock import LockStepClock
-from navette.runtime.lockstep.conductor import Conductor
-from navette.runtime.lockstep.follower import Follower
+from navette.runtime.lockstep.coordinator import Coordinator
+from navette.runtime.lockstep.participant import Participant
 
 __all__ = [
-    "Conductor",
-    "Follower",
+    "Coordinator",
     "LockStepClock",
+    "Participant",
     "clock_of_environment",
 ]

@@ -1,4 +1,4 @@
-"""Which clock a context has where its maker does not say."""
+"""The default clock of a context, from ``NAVETTE_LOCKSTEP``."""
 
 import os
 
@@ -10,16 +10,16 @@ FOLLOW = "follow"
 
 
 def clock_of_environment() -> ContextClock:
-    """The system's clock; a follower where ``NAVETTE_LOCKSTEP`` is ``follow``.
+    """Return the system's clock, or a participant's if the variable is ``follow``.
 
     Raises:
-        InvalidValueError: the variable says something else.
+        InvalidValueError: the variable has another value.
     """
-    wanted = os.environ.get(VARIABLE, "")
-    if not wanted:
+    value = os.environ.get(VARIABLE, "")
+    if not value:
         return SystemClock()
-    if wanted != FOLLOW:
-        raise InvalidValueError(f"{VARIABLE} {wanted!r}; known: {FOLLOW}")
-    from navette.runtime.lockstep.follower import Follower
+    if value != FOLLOW:
+        raise InvalidValueError(f"{VARIABLE} {value!r}: expected {FOLLOW} or nothing")
+    from navette.runtime.lockstep.participant import Participant
 
-    return Follower()
+    return Participant()

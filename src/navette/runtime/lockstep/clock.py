@@ -1,9 +1,9 @@
-"""Time that goes on step by step, in all processes of a lock-step at once.
+"""Virtual time that advances step by step, in all processes of a lock-step together.
 
 A step is a piece of virtual time, ``(T, T + step]``. Each process runs its own events
-in it; what they send to other processes is held there until the next step begins, and
-then comes in at its beginning, in an order that is the same in every run. So nobody
-can tell who was faster: not the processes, not the network.
+in it. Samples to other processes are buffered there until the next step begins, and are
+then delivered in an order that is the same in every run. The result therefore does not
+depend on the speed of the processes or of the network.
 """
 
 import logging
@@ -11,26 +11,32 @@ from abc import abstractmethod
 from collections.abc import Callable
 
 from navette.errors import LockStepError
-from navette.runtime.clock import ContextClock, Stopwatch, Wakeup
-from navette.transports.lockstep import Census, Grant, Report, StepTraffic, StepWire
+from navette.runtime.clock import Stopwatch, ContextClock, Wakeup
+from navette.transports.lockstep import (
+    Grant,
+    Participants,
+    Report,
+    StepTraffic,
+    StepWire,
+)
 
 LIMIT_S = 30.0
 """Wall time that a process may take for a step before the run ends."""
 
-AGAIN_S = 1.0
-"""Wall time after which what was said is said again: a link may just have changed."""
+REPEAT_S = 1.0
+"""Wall time after which a report or grant is sent again: the link may have changed."""
 
-SAY_AFTER_S = 5.0
-"""Wall time after which it is told what is waited for; and again when that changes."""
+LOG_AFTER_S = 5.0
+"""Wall time after which the reason for waiting is logged; again when it changes."""
 
 _log = logging.getLogger(__name__)
 
 
 class LockStepClock(ContextClock):
-    """Goes as far as was granted, then says so and waits for more.
+    """Advances to the end of the granted step, then waits for the next grant.
 
     Args:
-        limit_s: wall time that others may take.
+        limit_s: wall time that other processes may take for a step.
     """
 
     is_virtual = True
@@ -39,25 +45,25 @@ class LockStepClock(ContextClock):
 
     def __init__(self, limit_s: float = LIMIT_S) -> None:
         self.traffic = StepTraffic()
-        self.traffic.held.on_complete = self._wake
+        self.traffic.buffer.on_complete = self._wake
         self.limit_s = limit_s
-        #: What to do when the run is over, as was wanted.
-        self.on_end: Callable[[], object] = _nothing
-        #: How many steps were granted so far.
+        #: Called at the regular end of the run.
+        self.on_end: Callable[[], object] = lambda: None
+        #: Number of the granted step.
         self.step = 0
         self._granted_ns = 0
         self._wire: StepWire | None = None
         self._wakeup: Wakeup | None = None
-        self._next: Grant | None = None  # granted, but not all is here that was sent
+        self._next: Grant | None = None  # granted; samples of the step before missing
         self._is_over = False
         self._waiting = Stopwatch()
-        self.say_after_s = SAY_AFTER_S
-        self._silence = Stopwatch()
-        self._said = ""
+        self.log_after_s = LOG_AFTER_S
+        self._since_log = Stopwatch()
+        self._logged = ""
 
     @property
     def wire(self) -> StepWire:
-        """How the others are reached.
+        """The connection to the other processes.
 
         Raises:
             LockStepError: the context has not joined the network.
@@ -68,56 +74,56 @@ class LockStepClock(ContextClock):
 
     @abstractmethod
     def join(self, wire: StepWire) -> None:
-        """Take part; before the first node is announced."""
+        """Take part in the lock-step; called before the first node is announced."""
 
     def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
-        """As the base class; time waits at the end of a step for the others.
+        """As in the base class; at the end of a step, wait for the other processes.
 
         Raises:
-            LockStepError: somebody is gone or does not answer.
+            LockStepError: a process is gone or does not respond.
         """
         self._wakeup = wakeup
         if target_ns is not None and target_ns <= self._granted_ns:
             self.now_ns = max(self.now_ns, target_ns)
             return True
         self.now_ns = self._granted_ns
-        if self._next is not None and self.traffic.held.is_complete():
+        if self._next is not None and self.traffic.buffer.is_complete():
             self._begin(self._next)
         else:
-            self._await(self.wire.census(), wakeup)
+            self._wait_for_step(self.wire.participants(), wakeup)
         return False
 
-    def _await(self, census: Census, wakeup: Wakeup) -> None:
-        if wakeup.is_pending:  # what came with the census is looked at first
+    def _wait_for_step(self, participants: Participants, wakeup: Wakeup) -> None:
+        if wakeup.is_pending:  # events that came with the participants are run first
             return
         if not (self._is_over or (self._next is not None and self._next.is_last)):
-            self._check_there(census)
+            self._check_present(participants)
         if self._next is None:
-            self._await_others(census, wakeup)
+            self._wait_for_others(participants, wakeup)
         else:
-            self._await_samples(wakeup)
+            self._wait_for_samples(wakeup)
 
     @abstractmethod
-    def _check_there(self, census: Census) -> None:
-        """Raise LockStepError if somebody that is needed is gone."""
+    def _check_present(self, participants: Participants) -> None:
+        """Raise LockStepError if a required process is gone."""
 
     @abstractmethod
-    def _await_others(self, census: Census, wakeup: Wakeup) -> None:
-        """Nothing is left to do in this step."""
+    def _wait_for_others(self, participants: Participants, wakeup: Wakeup) -> None:
+        """Wait for reports or a grant: this process has no events left in the step."""
 
-    def _take(self, grant: Grant) -> None:
-        """A step may begin, when all is here that was sent in the one before."""
+    def _accept(self, grant: Grant) -> None:
+        """Begin the granted step when all samples of the previous one have arrived."""
         self._waiting = Stopwatch()
-        if self.traffic.held.expect(grant.sent):
+        if self.traffic.buffer.expect(grant.sent):
             self._begin(grant)
         else:
             self._next = grant
 
-    def _await_samples(self, wakeup: Wakeup) -> None:
-        if not wakeup.wait(self._patience_s):
+    def _wait_for_samples(self, wakeup: Wakeup) -> None:
+        if not wakeup.wait(self._remaining_s):
             missing = ", ".join(
                 f"{m.samples} of {m.topic} by {m.node}"
-                for m in self.traffic.held.missing()[:10]
+                for m in self.traffic.buffer.missing()[:10]
             )
             raise LockStepError(
                 f"lock-step: messages did not arrive within {self.limit_s:g} s at "
@@ -129,16 +135,21 @@ class LockStepClock(ContextClock):
         self.step = grant.step
         self._granted_ns = grant.until_ns
         self._is_over = grant.is_last
-        self.traffic.tally.granted(grant.sent)
+        self.traffic.sent_counter.granted(grant.sent)
         self._waiting = Stopwatch()
-        self.traffic.held.release(self.now_ns)
+        self.traffic.buffer.release(self.now_ns)
 
-    def _own_report(self, census: Census) -> Report:
-        sent = self.traffic.tally.changed()
-        return Report(self.step, census.nodes, census.own, census.seen, sent)
+    def _own_report(self, participants: Participants) -> Report:
+        return Report(
+            self.step,
+            participants.nodes,
+            participants.own,
+            participants.seen,
+            self.traffic.sent_counter.changed(),
+        )
 
     @property
-    def _patience_s(self) -> float:
+    def _remaining_s(self) -> float:
         """What is left of the limit."""
         return max(0.0, self.limit_s - self._waiting.elapsed_s)
 
@@ -146,12 +157,8 @@ class LockStepClock(ContextClock):
         if self._wakeup is not None:
             self._wakeup.set()
 
-    def _say(self, text: str) -> None:
-        """Log what is waited for, when it has been for a while, and once."""
-        if text != self._said and self._silence.elapsed_s >= self.say_after_s:
-            self._said, self._silence = text, Stopwatch()
+    def _log_waiting(self, text: str) -> None:
+        """Log once what this process waits for, after it has waited for a while."""
+        if text != self._logged and self._since_log.elapsed_s >= self.log_after_s:
+            self._logged, self._since_log = text, Stopwatch()
             _log.warning("lock-step: %s", text)
-
-
-def _nothing() -> None:
-    """Nobody asked."""

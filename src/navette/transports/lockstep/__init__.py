@@ -1,29 +1,35 @@
-"""Lock-step between processes: who sent what, and samples held until a step begins."""
+"""Lock-step between processes: counts of sent samples, samples buffered for a step."""
 
-from navette.transports.lockstep.held import HeldSamples, Holding, Missing
 from navette.transports.lockstep.records import (
-    MOST_BYTES,
+    MAX_BYTES,
     Grant,
     Report,
     Sent,
     parse_grant,
     parse_report,
 )
-from navette.transports.lockstep.tally import SentTally
-from navette.transports.lockstep.wire import Census, StepTraffic, StepWire
+from navette.transports.lockstep.sample_buffer import (
+    BufferedSubscription,
+    Missing,
+    SampleBuffer,
+    SubscriptionInfo,
+)
+from navette.transports.lockstep.sent_counter import SentCounter
+from navette.transports.lockstep.wire import Participants, StepTraffic, StepWire
 
 __all__ = [
-    "MOST_BYTES",
-    "Census",
+    "MAX_BYTES",
+    "BufferedSubscription",
     "Grant",
-    "HeldSamples",
-    "Holding",
     "Missing",
+    "Participants",
     "Report",
+    "SampleBuffer",
     "Sent",
-    "SentTally",
+    "SentCounter",
     "StepTraffic",
     "StepWire",
+    "SubscriptionInfo",
     "parse_grant",
     "parse_report",
 ]

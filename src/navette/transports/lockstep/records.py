@@ -1,6 +1,6 @@
-"""What the processes in lock-step tell each other: reports and grants, as JSON.
+"""Messages between processes in lock-step: reports and grants, as JSON.
 
-What arrives may be anybody's: it is checked field by field and bounded.
+Any program can send them, so every field is checked and limited.
 """
 
 import json
@@ -11,10 +11,10 @@ from typing import Any, NamedTuple, TypeVar
 
 from navette.errors import DecodeError
 
-MOST_BYTES = 2**22
-_MOST_ENTRIES = 20_000
-_LONGEST_NAME = 512
-_MOST = 2**63 - 1
+MAX_BYTES = 2**22
+_MAX_ENTRIES = 20_000
+_MAX_NAME = 512
+_MAX_COUNT = 2**63 - 1
 _GID = re.compile(r"[0-9a-f]{32}", re.ASCII)
 _SESSION = re.compile(r"[0-9a-f]{1,32}", re.ASCII)
 
@@ -22,9 +22,9 @@ T = TypeVar("T")
 
 
 class Sent(NamedTuple):
-    """What a publisher has put on the network so far.
+    """What a publisher has sent so far: count and last sequence number.
 
-    ``publisher`` tells a node's publishers apart, in the order of their making.
+    ``publisher`` numbers the publishers of a node in the order of their creation.
     """
 
     node: str
@@ -35,14 +35,14 @@ class Sent(NamedTuple):
 
 @dataclass(frozen=True)
 class Report:
-    """A process has nothing left to do until the end of a step.
+    """Sent by a process that has no events left in a step.
 
     Attributes:
-        step: which; 0 before the first.
+        step: number of the step; 0 before the first.
         nodes: full names of its nodes.
         own: how many nodes and endpoints it has announced.
-        seen: session → how many nodes and endpoints of it are known here.
-        sent: publishers, by gid, that sent something since the last step.
+        seen: session → how many nodes and endpoints of it the process knows.
+        sent: publishers by gid that have sent samples since the last step.
     """
 
     step: int
@@ -64,18 +64,18 @@ class Report:
 
 @dataclass(frozen=True)
 class Grant:
-    """Time may go on until ``until_ns``, once all that was sent has arrived.
+    """Lets time advance to ``until_ns``, once all samples sent before have arrived.
 
     Attributes:
-        conductor: the session that says so.
-        step: which one begins, from 1.
-        until_ns: the end of it.
+        coordinator: the session that sends the grant.
+        step: number of the step that begins, from 1.
+        until_ns: end of the step.
         roster: the sessions that take part.
-        sent: all publishers, by gid, that sent something in the step before.
-        is_last: there will be no other.
+        sent: all publishers by gid that have sent samples in the previous step.
+        is_last: whether the run ends with it.
     """
 
-    conductor: str
+    coordinator: str
     step: int
     until_ns: int
     roster: tuple[str, ...]
@@ -84,7 +84,7 @@ class Grant:
 
     def encode(self) -> bytes:
         record = {
-            "conductor": self.conductor,
+            "coordinator": self.coordinator,
             "step": self.step,
             "until_ns": self.until_ns,
             "roster": self.roster,
@@ -95,10 +95,10 @@ class Grant:
 
 
 def parse_report(data: bytes) -> Report:
-    """The inverse of :meth:`Report.encode`.
+    """Decode a report.
 
     Raises:
-        DecodeError: says what is wrong.
+        DecodeError: ``data`` is not a report.
     """
     record = _record(data, {"step", "nodes", "own", "seen", "sent"})
     return Report(
@@ -114,17 +114,17 @@ def parse_report(data: bytes) -> Report:
 
 
 def parse_grant(data: bytes) -> Grant:
-    """The inverse of :meth:`Grant.encode`.
+    """Decode a grant.
 
     Raises:
-        DecodeError: says what is wrong.
+        DecodeError: ``data`` is not a grant.
     """
-    fields = {"conductor", "step", "until_ns", "roster", "sent", "is_last"}
+    fields = {"coordinator", "step", "until_ns", "roster", "sent", "is_last"}
     record = _record(data, fields)
     if not isinstance(record["is_last"], bool):
-        raise DecodeError("is_last is neither true nor false")
+        raise DecodeError("is_last: expected true or false")
     return Grant(
-        conductor=_session(record["conductor"], "conductor"),
+        coordinator=_session(record["coordinator"], "coordinator"),
         step=_count(record["step"], "step"),
         until_ns=_count(record["until_ns"], "until_ns"),
         roster=_list(record["roster"], "roster", _session),
@@ -138,14 +138,14 @@ def _packed(sent: Mapping[bytes, Sent]) -> dict[str, list[Any]]:
 
 
 def _record(data: bytes, fields: set[str]) -> dict[str, Any]:
-    if len(data) > MOST_BYTES:
-        raise DecodeError(f"{len(data)} bytes: longer than {MOST_BYTES}")
+    if len(data) > MAX_BYTES:
+        raise DecodeError(f"{len(data)} bytes: longer than {MAX_BYTES}")
     try:
         record = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise DecodeError(f"no JSON: {error}") from error
+        raise DecodeError(f"not JSON: {error}") from error
     if not isinstance(record, dict) or record.keys() != fields:
-        raise DecodeError(f"wanted an object of {', '.join(sorted(fields))}")
+        raise DecodeError(f"expected an object with {', '.join(sorted(fields))}")
     return record
 
 
@@ -153,7 +153,7 @@ def _sent(value: Any) -> dict[bytes, Sent]:
     found: dict[bytes, Sent] = {}
     for key, entry in _table(value, "sent").items():
         if not _GID.fullmatch(key) or not isinstance(entry, list) or len(entry) != 4:
-            raise DecodeError("sent: wanted gid → node, publisher, total, last")
+            raise DecodeError("sent: expected gid → node, publisher, total, last")
         node, *counts = entry
         publisher, total, last = (_count(each, "sent") for each in counts)
         found[bytes.fromhex(key)] = Sent(_name(node, "sent"), publisher, total, last)
@@ -161,30 +161,30 @@ def _sent(value: Any) -> dict[bytes, Sent]:
 
 
 def _table(value: Any, field: str) -> dict[str, Any]:
-    if not isinstance(value, dict) or len(value) > _MOST_ENTRIES:
-        raise DecodeError(f"{field}: wanted an object of at most {_MOST_ENTRIES}")
+    if not isinstance(value, dict) or len(value) > _MAX_ENTRIES:
+        raise DecodeError(f"{field}: expected an object of at most {_MAX_ENTRIES}")
     return value
 
 
 def _list(value: Any, field: str, item: Callable[[Any, str], T]) -> tuple[T, ...]:
-    if not isinstance(value, list) or len(value) > _MOST_ENTRIES:
-        raise DecodeError(f"{field}: wanted a list of at most {_MOST_ENTRIES}")
+    if not isinstance(value, list) or len(value) > _MAX_ENTRIES:
+        raise DecodeError(f"{field}: expected a list of at most {_MAX_ENTRIES}")
     return tuple(item(each, field) for each in value)
 
 
 def _count(value: Any, field: str) -> int:
-    if type(value) is not int or not 0 <= value <= _MOST:
-        raise DecodeError(f"{field}: {str(value)[:40]!r} is no count")
+    if type(value) is not int or not 0 <= value <= _MAX_COUNT:
+        raise DecodeError(f"{field}: {str(value)[:40]!r} is not a count")
     return value
 
 
 def _name(value: Any, field: str) -> str:
-    if not isinstance(value, str) or not 0 < len(value) <= _LONGEST_NAME:
-        raise DecodeError(f"{field}: {str(value)[:40]!r} is no name")
+    if not isinstance(value, str) or not 0 < len(value) <= _MAX_NAME:
+        raise DecodeError(f"{field}: {str(value)[:40]!r} is not a name")
     return value
 
 
 def _session(value: Any, field: str) -> str:
     if not isinstance(value, str) or not _SESSION.fullmatch(value):
-        raise DecodeError(f"{field}: {str(value)[:40]!r} is no session")
+        raise DecodeError(f"{field}: {str(value)[:40]!r} is not a session id")
     return value

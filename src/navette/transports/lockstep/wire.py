@@ -1,31 +1,31 @@
-"""What a lock-step needs of the network."""
+"""Interface between a lock-step and the network."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from navette.transports.lockstep.held import HeldSamples
 from navette.transports.lockstep.records import Grant, Report
-from navette.transports.lockstep.tally import SentTally
+from navette.transports.lockstep.sample_buffer import SampleBuffer
+from navette.transports.lockstep.sent_counter import SentCounter
 
 
 class StepTraffic:
-    """A process's samples in lock-step: those that came, and those that went."""
+    """A process's samples in lock-step: those received and those sent."""
 
     def __init__(self) -> None:
-        self.held = HeldSamples()
-        self.tally = SentTally()
+        self.buffer = SampleBuffer()
+        self.sent_counter = SentCounter()
 
 
 @dataclass(frozen=True)
-class Census:
-    """Who is there, as a process sees it.
+class Participants:
+    """Nodes and endpoints on the network, as one process sees them.
 
     Attributes:
-        nodes: full names of the nodes here.
-        others: full names of the nodes elsewhere.
-        own: how many nodes and endpoints are announced here.
-        seen: session → how many of it are known here.
+        nodes: full names of this process's nodes.
+        others: full names of the nodes of other processes.
+        own: how many nodes and endpoints this process has announced.
+        seen: session → how many nodes and endpoints of it are known here.
     """
 
     nodes: tuple[str, ...]
@@ -35,29 +35,29 @@ class Census:
 
 
 class StepWire(ABC):
-    """Carries reports to the conductor and its grants to all; nothing is lost."""
+    """Carries reports to the coordinator and its grants to the participants."""
 
     @property
     @abstractmethod
     def session(self) -> str:
-        """By which the others know this process."""
+        """Id of this process on the network."""
 
     @abstractmethod
-    def census(self) -> Census:
-        """Who is there; everybody here has been told of it."""
+    def participants(self) -> Participants:
+        """Return who is on the network; all observers here have been notified."""
 
     @abstractmethod
-    def report(self, report: Report) -> None:
-        """Tell the conductor."""
+    def send_report(self, report: Report) -> None:
+        """Send a report to the coordinator."""
 
     @abstractmethod
-    def grant(self, grant: Grant) -> None:
-        """Tell all the others."""
+    def send_grant(self, grant: Grant) -> None:
+        """Send a grant to all participants."""
 
     @abstractmethod
-    def hear_reports(self, callback: Callable[[str, Report], None]) -> None:
+    def subscribe_reports(self, callback: Callable[[str, Report], None]) -> None:
         """Call back with session and report, in another thread."""
 
     @abstractmethod
-    def hear_grants(self, callback: Callable[[Grant], None]) -> None:
+    def subscribe_grants(self, callback: Callable[[Grant], None]) -> None:
         """Call back with every grant, in another thread."""

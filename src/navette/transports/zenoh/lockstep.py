@@ -1,4 +1,4 @@
-"""Reports and grants of a lock-step, under keys of their own beside rmw_zenoh's."""
+"""Reports and grants of a lock-step over Zenoh, on keys beside those of rmw_zenoh."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -7,9 +7,9 @@ import zenoh
 
 from navette.errors import DecodeError
 from navette.transports.lockstep import (
-    MOST_BYTES,
-    Census,
+    MAX_BYTES,
     Grant,
+    Participants,
     Report,
     StepWire,
     parse_grant,
@@ -23,18 +23,17 @@ T = TypeVar("T", Report, Grant)
 
 
 class ZenohStepWire(StepWire):
-    """Reports go to ``<domain>/navette_lockstep/report/<session>``, grants to
+    """Publishes reports on ``<domain>/navette_lockstep/report/<session>`` and grants on
     ``<domain>/navette_lockstep/grant/<session>``.
 
-    To be made before the process announces its first node: who sees that can rely on
-    being heard. It ends with the transport's session.
+    Create it before the process announces its first node: other processes send as soon
+    as they see that node. It ends with the transport's session.
     """
 
     def __init__(self, transport: ZenohTransport) -> None:
         self._transport = transport
         self._space = f"{transport.domain_id}/{SPACE}"
-        self._log_once = transport.session.log_once
-        self._listening: list[Any] = []
+        self._subscribers: list[Any] = []
         self._report = self._publisher("report")
         self._grant = self._publisher("grant")
 
@@ -42,40 +41,40 @@ class ZenohStepWire(StepWire):
     def session(self) -> str:
         return self._transport.session.zid
 
-    def census(self) -> Census:
+    def participants(self) -> Participants:
         seen = self._transport.session.graph.counts()
-        return Census(
+        return Participants(
             nodes=self._transport.own_nodes(),
             others=tuple(n.full_name for n in self._transport.remote_nodes()),
             own=self._transport.own_count(),
             seen=seen,
         )
 
-    def report(self, report: Report) -> None:
+    def send_report(self, report: Report) -> None:
         self._report.put(report.encode())
 
-    def grant(self, grant: Grant) -> None:
+    def send_grant(self, grant: Grant) -> None:
         self._grant.put(grant.encode())
 
-    def hear_reports(self, callback: Callable[[str, Report], None]) -> None:
-        self._hear("report", parse_report, callback)
+    def subscribe_reports(self, callback: Callable[[str, Report], None]) -> None:
+        self._subscribe("report", parse_report, callback)
 
-    def hear_grants(self, callback: Callable[[Grant], None]) -> None:
-        def from_conductor(session: str, grant: Grant) -> None:
-            if grant.conductor == session:
+    def subscribe_grants(self, callback: Callable[[Grant], None]) -> None:
+        def from_coordinator(session: str, grant: Grant) -> None:
+            if grant.coordinator == session:
                 callback(grant)
 
-        self._hear("grant", parse_grant, from_conductor)
+        self._subscribe("grant", parse_grant, from_coordinator)
 
     def _publisher(self, kind: str) -> Any:
         return self._transport.session.zenoh.declare_publisher(
             f"{self._space}/{kind}/{self.session}",
             reliability=zenoh.Reliability.RELIABLE,
             congestion_control=zenoh.CongestionControl.BLOCK,
-            express=True,  # all wait for it
+            express=True,  # every process waits for it
         )
 
-    def _hear(
+    def _subscribe(
         self,
         kind: str,
         parse: Callable[[bytes], T],
@@ -85,16 +84,18 @@ class ZenohStepWire(StepWire):
             session = str(sample.key_expr).rpartition("/")[2]
             payload = sample.payload
             try:
-                if len(payload) > MOST_BYTES:
-                    raise DecodeError(f"{len(payload)} bytes: too long")
+                if len(payload) > MAX_BYTES:
+                    raise DecodeError(f"{len(payload)} bytes: longer than {MAX_BYTES}")
                 record = parse(payload.to_bytes())
             except DecodeError as error:
-                text = f"lock-step: {kind} of session {session} ignored: {error}"
-                self._log_once.warning(("lockstep", kind, session), text)
+                self._transport.session.log_once.warning(
+                    ("lockstep", kind, session),
+                    f"lock-step: {kind} of session {session} ignored: {error}",
+                )
                 return
             callback(session, record)
 
-        self._listening.append(
+        self._subscribers.append(
             self._transport.session.zenoh.declare_subscriber(
                 f"{self._space}/{kind}/*",
                 zenoh.handlers.Callback(on_sample, indirect=False),

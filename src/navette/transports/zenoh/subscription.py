@@ -10,7 +10,7 @@ from navette.errors import DecodeError
 from navette.transports.base import Endpoint, Item, Sink, SubscriptionPort
 from navette.transports.encoded import Encoded
 from navette.transports.expiring import Lifespans
-from navette.transports.lockstep import Holding
+from navette.transports.lockstep import BufferedSubscription
 from navette.transports.zenoh.attachment import decode_attachment
 from navette.transports.zenoh.ports import Entity, PortOwner
 from navette.transports.zenoh.retransmission import declare_subscriber
@@ -25,15 +25,15 @@ class ZenohSubscription(SubscriptionPort):
 
     Args:
         retransmits: whether missed samples are fetched from the publisher.
-        holding: in lock-step, takes the samples instead of the sink, in any order.
+        buffered: in lock-step, takes the samples instead of the sink, in any order.
     """
 
     #: A subscription sends nothing.
     last = 0
 
     __slots__ = (
+        "_buffered",
         "_filter",
-        "_holding",
         "_is_open",
         "_lifespans",
         "_lock",
@@ -52,13 +52,13 @@ class ZenohSubscription(SubscriptionPort):
         sink: Sink,
         *,
         retransmits: bool,
-        holding: Holding | None = None,
+        buffered: BufferedSubscription | None = None,
     ) -> None:
         self.matches = entity.matches
         self._owner = owner
         self._message_class = message_class
         self._sink = sink
-        self._holding = holding
+        self._buffered = buffered
         self._lifespans = Lifespans(self.matches.by_gid, self._log_expired)
         self._filter = SequenceFilter(self.matches.by_gid)
         self._lock = threading.Lock()
@@ -82,8 +82,8 @@ class ZenohSubscription(SubscriptionPort):
         self._is_open = False
         self._owner.release(self)
         self._subscriber.undeclare()
-        if self._holding is not None:
-            self._holding.close()
+        if self._buffered is not None:
+            self._buffered.close()
 
     # -- on Zenoh's threads ------------------------------------------------------
 
@@ -93,8 +93,8 @@ class ZenohSubscription(SubscriptionPort):
             return
         gid, item = found
         self._owner.session.last_received.time_ns = item[2]
-        if self._holding is not None:
-            self._holding.take(gid, item)
+        if self._buffered is not None:
+            self._buffered.take(gid, item)
             return
         if self.matches.asserting:
             self.matches.on_sample(gid, item)

@@ -15,7 +15,11 @@ from navette.transports.base import (
     Transport,
     TransportObserver,
 )
-from navette.transports.lockstep import Holding, StepTraffic
+from navette.transports.lockstep import (
+    BufferedSubscription,
+    StepTraffic,
+    SubscriptionInfo,
+)
 from navette.transports.service_ports import ReplySink, RequestSink
 from navette.transports.zenoh.assertions import LivelinessAssertions
 from navette.transports.zenoh.clients import ZenohClient
@@ -109,7 +113,7 @@ class ZenohTransport(Transport):
             self.own_gids.add(entity.gid)
             count_sent = None
             if self._traffic is not None:
-                count_sent = self._traffic.tally.open(
+                count_sent = self._traffic.sent_counter.open(
                     entity.gid, endpoint.node_full_name
                 )
             return ZenohPublisher(
@@ -131,7 +135,7 @@ class ZenohTransport(Transport):
                 message_class,
                 sink,
                 retransmits=self._retransmits(entity),
-                holding=self._holding(endpoint, sink, entity.matches),
+                buffered=self._buffered(endpoint, sink, entity.matches),
             )
 
         return self._open(endpoint, make)
@@ -184,19 +188,20 @@ class ZenohTransport(Transport):
         with self._lock:
             return len(self._tokens.nodes()) + len(self._ports)
 
-    def _holding(
+    def _buffered(
         self, endpoint: Endpoint, sink: Sink, matches: Matches
-    ) -> Holding | None:
+    ) -> BufferedSubscription | None:
         if self._traffic is None:
             return None
-        return self._traffic.held.open(
+        info = SubscriptionInfo(
             endpoint.topic,
             sink,
             lambda: dict(matches.by_gid),
             is_latched=endpoint.qos.is_latched,
             depth=endpoint.qos.queue_length,
-            heard=matches.on_sample,
+            on_delivered=matches.on_sample,
         )
+        return self._traffic.buffer.open(info)
 
     # -- inside ----------------------------------------------------------------
 

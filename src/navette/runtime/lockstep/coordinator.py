@@ -1,4 +1,4 @@
-"""The simulator's clock: it goes on when everybody named has done the step."""
+"""The simulator's clock: advances when all named nodes have finished the step."""
 
 import logging
 import math
@@ -12,31 +12,32 @@ from navette.runtime.clock import (
     VirtualClock,
     Wakeup,
 )
-from navette.runtime.lockstep.clock import AGAIN_S, LIMIT_S, LockStepClock
-from navette.transports.lockstep import Census, Grant, Report, Sent, StepWire
+from navette.runtime.lockstep.clock import LIMIT_S, REPEAT_S, LockStepClock
+from navette.transports.lockstep import Grant, Participants, Report, Sent, StepWire
 
 STEP_S = 0.01
-_MOST_SESSIONS = 10_000
+_MAX_SESSIONS = 10_000
 
 _log = logging.getLogger(__name__)
 
 
-class Conductor(LockStepClock):
+class Coordinator(LockStepClock):
     """Grants time to the processes of the named nodes, step by step.
 
-    It begins when all of them are there and all know each other's endpoints, and ends
-    with an error that names who is gone or takes longer than the limit for a step.
+    The run begins when all nodes are there and all processes know each other's
+    endpoints. It ends with an error that names the nodes that are gone or take longer
+    than the limit for a step.
 
     Args:
-        nodes: full names (``/planner``; the slash may be left out) of nodes elsewhere.
-        step_s: how much virtual time a step is: the time that a message takes at most
-            from process to process.
-        speed: at most so many times real time.
-        until_s: the run ends for all when it is that time; None = never.
+        nodes: full names of nodes of other processes; the first slash is optional.
+        step_s: virtual time of a step: the longest time that a message takes from
+            process to process.
+        speed: maximum real-time factor.
+        until_s: virtual time at which the run ends for all processes; None: never.
         limit_s: wall time that a process may take for a step.
 
     Raises:
-        InvalidValueError: no nodes, or a value that cannot be.
+        InvalidValueError: no nodes, a node named twice, or a value out of range.
     """
 
     def __init__(
@@ -52,7 +53,7 @@ class Conductor(LockStepClock):
         self.nodes = tuple("/" + name.strip().lstrip("/") for name in nodes)
         if not self.nodes or "/" in self.nodes or len(set(self.nodes)) < len(nodes):
             raise InvalidValueError(
-                f"lock-step with {', '.join(nodes) or 'nobody'}: wanted names of "
+                f"lock-step with {', '.join(nodes) or 'no nodes'}: expected names of "
                 "nodes, each once"
             )
         self._step_ns = _nanoseconds(step_s, "lock-step: step")
@@ -63,18 +64,18 @@ class Conductor(LockStepClock):
         if speed != math.inf:
             self._pace = PacedClock(speed)
         self._reports: dict[str, Report] = {}
-        #: Session → its nodes that are waited for; empty before the first step.
+        #: Session → its named nodes; empty before the first step.
         self._roster: dict[str, tuple[str, ...]] = {}
         self._last: Grant | None = None
         self._run = Stopwatch()
 
     def join(self, wire: StepWire) -> None:
         self._wire = wire
-        wire.hear_reports(self._on_report)
+        wire.subscribe_reports(self._on_report)
 
     def _on_report(self, session: str, report: Report) -> None:
-        """In another thread; of made-up sessions there may be many."""
-        if session not in self._reports and len(self._reports) >= _MOST_SESSIONS:
+        """Store a report; called in another thread, also with forged sessions."""
+        if session not in self._reports and len(self._reports) >= _MAX_SESSIONS:
             return
         self._reports[session] = report
         if all(self._is_done(each) for each in self._roster):
@@ -84,26 +85,26 @@ class Conductor(LockStepClock):
         report = self._reports.get(session)
         return report is not None and report.step == self.step
 
-    def _await_others(self, census: Census, wakeup: Wakeup) -> None:
+    def _wait_for_others(self, participants: Participants, wakeup: Wakeup) -> None:
         if self._is_over:
-            self._end(census, wakeup)
+            self._end(participants, wakeup)
             return
         reports = dict(self._reports)
         if not self.step:
-            roster, problems = self._gathered(census, reports)
+            roster, problems = self._gathered(participants, reports)
         else:
             roster = self._roster
             problems = [_named(roster, s) for s in roster if not self._is_done(s)]
-        problems = problems or self._strangers(census, reports, roster)
+        problems = problems or self._incomplete(participants, reports, roster)
         if problems:
             self._wait(problems, wakeup)
         elif self._pace.go_to(self._granted_ns, wakeup):
             self._roster = roster
             self._grant(reports)
 
-    def _end(self, census: Census, wakeup: Wakeup) -> None:
-        """When all have heard that it is over: that we are gone tells them to go."""
-        there = [session for session in self._roster if session in census.seen]
+    def _end(self, participants: Participants, wakeup: Wakeup) -> None:
+        """End when all have received the last grant; they end when we are gone."""
+        there = [session for session in self._roster if session in participants.seen]
         busy = [_named(self._roster, s) for s in there if not self._is_done(s)]
         if busy:
             self._wait(busy, wakeup)
@@ -111,30 +112,29 @@ class Conductor(LockStepClock):
             self.on_end()
 
     def _wait(self, problems: list[str], wakeup: Wakeup) -> None:
-        """For a report, or for somebody to come or go.
+        """Wait for a report or a change of the participants, within the limit.
 
-        However often something comes: reports are repeated, and change nothing where
-        somebody never gets to see what all others see.
+        Repeated reports do not extend the limit.
         """
         listed = "; ".join(sorted(problems)[:20])
         if self._last is None:
-            self._say(f"waiting for {listed}")
-            wakeup.wait(AGAIN_S)
-        elif self._patience_s <= 0.0:
+            self._log_waiting(f"waiting for {listed}")
+            wakeup.wait(REPEAT_S)
+        elif self._remaining_s <= 0.0:
             raise LockStepError(
-                f"lock-step: no answer within {self.limit_s:g} s at "
+                f"lock-step: no response within {self.limit_s:g} s at "
                 f"{self.now_ns / 1e9:g} s: {listed}"
             )
-        elif not wakeup.wait(min(AGAIN_S, self._patience_s)):
-            self.wire.grant(self._last)
+        elif not wakeup.wait(min(REPEAT_S, self._remaining_s)):
+            self.wire.send_grant(self._last)
 
-    # -- who takes part --------------------------------------------------------
+    # -- participants --------------------------------------------------------
 
     def _gathered(
-        self, census: Census, reports: dict[str, Report]
+        self, participants: Participants, reports: dict[str, Report]
     ) -> tuple[dict[str, tuple[str, ...]], list[str]]:
-        """Session → the named nodes it has; and who is missing."""
-        here = {s: r for s, r in reports.items() if s in census.seen}
+        """Return session → its named nodes, and what is missing."""
+        here = {s: r for s, r in reports.items() if s in participants.seen}
         roster: dict[str, tuple[str, ...]] = {}
         problems: list[str] = []
         for name in self.nodes:
@@ -143,34 +143,38 @@ class Conductor(LockStepClock):
                 raise LockStepError(f"lock-step: {len(having)} processes have {name}")
             if having:
                 roster[having[0]] = (*roster.get(having[0], ()), name)
-            elif name in census.others:
-                problems.append(f"{name} (there, but not with NAVETTE_LOCKSTEP=follow)")
+            elif name in participants.others:
+                problems.append(f"{name} (running without NAVETTE_LOCKSTEP=follow)")
             else:
                 problems.append(name)
         idle = [n for s, r in here.items() if s not in roster for n in r.nodes]
         if problems and idle:
             listed = ", ".join(sorted(idle)[:20])
-            problems.append(f"following, but not named: {listed}")
+            problems.append(
+                f"running with NAVETTE_LOCKSTEP=follow, but not named: {listed}"
+            )
         return roster, problems
 
-    def _check_there(self, census: Census) -> None:
-        gone = [_named(self._roster, s) for s in self._roster if s not in census.seen]
+    def _check_present(self, participants: Participants) -> None:
+        gone = [
+            _named(self._roster, s) for s in self._roster if s not in participants.seen
+        ]
         if gone:
             raise LockStepError(
                 f"lock-step: gone at {self.now_ns / 1e9:g} s: {', '.join(gone)}"
             )
 
-    def _strangers(
+    def _incomplete(
         self,
-        census: Census,
+        participants: Participants,
         reports: dict[str, Report],
         roster: dict[str, tuple[str, ...]],
     ) -> list[str]:
-        """Those of the lock-step that do not know all of each other's endpoints yet."""
+        """Return which processes do not know all endpoints of another one yet."""
         own = {s: reports[s].own for s in roster}
-        own[self.wire.session] = census.own
+        own[self.wire.session] = participants.own
         seen = {s: reports[s].seen for s in roster}
-        seen[self.wire.session] = census.seen
+        seen[self.wire.session] = participants.seen
         return [
             f"{_named(roster, one)} to see all of {_named(roster, other)}"
             for one in own
@@ -181,7 +185,7 @@ class Conductor(LockStepClock):
     # -- steps -----------------------------------------------------------------
 
     def _grant(self, reports: dict[str, Report]) -> None:
-        sent: dict[bytes, Sent] = dict(self.traffic.tally.changed())
+        sent: dict[bytes, Sent] = dict(self.traffic.sent_counter.changed())
         for session in self._roster:
             sent.update(reports[session].sent)
         is_last = self._end_ns is not None and self._granted_ns >= self._end_ns
@@ -189,12 +193,12 @@ class Conductor(LockStepClock):
             self._run = Stopwatch()
             _log.info("lock-step: begins, with %s", ", ".join(self.nodes))
         if is_last:
-            self._tell_end()
+            self._log_end()
         until_ns = self._granted_ns + (0 if is_last else self._step_ns)
         if self._end_ns is not None:
             until_ns = min(until_ns, self._end_ns)
         grant = Grant(
-            conductor=self.wire.session,
+            coordinator=self.wire.session,
             step=self.step + 1,
             until_ns=until_ns,
             roster=tuple(self._roster),
@@ -202,10 +206,10 @@ class Conductor(LockStepClock):
             is_last=is_last,
         )
         self._last = grant
-        self.wire.grant(grant)
-        self._take(grant)
+        self.wire.send_grant(grant)
+        self._accept(grant)
 
-    def _tell_end(self) -> None:
+    def _log_end(self) -> None:
         wall_s, run_s = self._run.elapsed_s, self._granted_ns / 1e9
         _log.info(
             "lock-step: %d steps to %g s in %.1f s: %.1f × real time",
@@ -222,5 +226,5 @@ def _named(roster: dict[str, tuple[str, ...]], session: str) -> str:
 
 def _nanoseconds(seconds: float, what: str) -> int:
     if not 1e-6 <= seconds <= 1e9:
-        raise InvalidValueError(f"{what} of {seconds!r} s: wanted 0.000001 … 1e9 s")
+        raise InvalidValueError(f"{what} of {seconds!r} s: expected 0.000001 to 1e9 s")
     return round(seconds * 1e9)
