@@ -11,7 +11,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 
 from navette.errors import LockStepError
-from navette.runtime.clock import Stopwatch, ContextClock, Wakeup
+from navette.runtime.clock import ContextClock, Stopwatch, Wakeup
 from navette.transports.lockstep import (
     Grant,
     Participants,

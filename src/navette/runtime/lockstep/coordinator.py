@@ -150,9 +150,7 @@ class Coordinator(LockStepClock):
         idle = [n for s, r in here.items() if s not in roster for n in r.nodes]
         if problems and idle:
             listed = ", ".join(sorted(idle)[:20])
-            problems.append(
-                f"running with NAVETTE_LOCKSTEP=follow, but not named: {listed}"
-            )
+            problems.append(f"not named, but NAVETTE_LOCKSTEP=follow: {listed}")
         return roster, problems
 
     def _check_present(self, participants: Participants) -> None:
