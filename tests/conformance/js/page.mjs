@@ -15,7 +15,7 @@ try {
   page.on("console", (message) => { if (message.type() === "error") problems.push(message.text()); });
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("request", (request) => { if (!request.url().startsWith(url) && !request.url().startsWith("data:")) problems.push(request.url()); });
-  // Each headline, however short it was to be seen on a busy machine.
+  // Every headline, even one shown only briefly.
   await page.addInitScript(() => {
     window.headlines = new Set();
     const look = () => window.headlines.add(document.querySelector("#headline")?.textContent);
@@ -30,8 +30,8 @@ try {
   await page.fill("#x", "6");
   await page.fill("#y", "-12,5");
   await page.click("#go");
-  await until(() => /is sent/.test(document.querySelector("#answer").textContent));
-  // The picture: what it draws, a goal by a click, speed commands by a held key.
+  await until(() => /^Goal .* sent\.$/.test(document.querySelector("#answer").textContent));
+  // The map view: layers, a goal by a click, velocity commands by a held key.
   await until(() => new Set(new Uint32Array(view.context.getImageData(0, 0, view.canvas.width, view.canvas.height).data.buffer)).size > 5);
   const place = await page.evaluate(() => view.toWorld(200, 100));
   await page.click("#above canvas", { position: { x: 200, y: 100 } });
@@ -44,7 +44,7 @@ try {
   await page.keyboard.up("ArrowUp");
   await page.keyboard.up("ArrowLeft");
   const rows = await page.$$eval("#topics tr", (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
-  // A parameter by its slider, heard of by its node.
+  // A parameter set by its slider.
   await page.selectOption("#node", "/robot");
   await page.locator('input[aria-label="/robot.speed_mps, slider"]').fill("1.5");
   await until(() => document.querySelector('input[aria-label="/robot.speed_mps"]').value === "1.5");
@@ -53,7 +53,7 @@ try {
   await page.press('input[aria-label="/robot.speed_mps"]', "Enter");
   await page.locator(".parameters .hint:visible").waitFor();
   const refusal = await page.textContent(".parameters .hint:visible");
-  // The planner said how it is once, and never again.
+  // The planner published its status once only.
   await until(() => document.querySelector("#headline").textContent === "Planner has stopped responding");
   const open = new URL(await page.getAttribute("#open", "href"));
   console.log(JSON.stringify({
