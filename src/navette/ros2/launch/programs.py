@@ -10,7 +10,7 @@ from queue import SimpleQueue
 from threading import Lock
 
 from navette.ros2.launch.streams import program_output, program_streams
-from navette.ros2.names.blocking_calls import sleeping_lets_others_run
+from navette.ros2.names.blocking_calls import cooperative_blocking_calls
 from navette.ros2.names.process import RunningProgram, program_threads
 from navette.ros2.names.program import Program, entry_point, script
 from navette.ros2.packages.launch.logging import get_logger
@@ -45,7 +45,7 @@ class InProcessRunner:
         # What the programs start goes with the launch as well.
         self._stack.enter_context(self._processes.keeper.keeping_all())
         self._stack.enter_context(program_threads())
-        self._stack.enter_context(sleeping_lets_others_run())
+        self._stack.enter_context(cooperative_blocking_calls())
         self._stack.enter_context(program_streams())
 
     def start(self, command: Command, listener: Listener) -> Running:

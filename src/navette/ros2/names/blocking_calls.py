@@ -1,10 +1,10 @@
-"""``time.sleep`` and ``Event.wait`` in a callback of a MultiThreadedExecutor.
+"""``time.sleep`` and ``Event.wait`` in callbacks of a MultiThreadedExecutor.
 
-On ROS 2 other threads of the executor go on meanwhile, and programs count on that: an
-action's execute callback sleeps and is cancelled all the same; a callback asks a
-service and waits for a ``threading.Event`` that the answer sets. Here one thread runs
-all callbacks; while one of them waits, the loop goes on from inside it, with its
-callback group held back (for an event but for servers, as in a blocking call).
+In ROS 2 the executor's other threads run callbacks meanwhile, and programs depend on
+it: an action's execute callback sleeps and can still be cancelled; a callback calls a
+service and waits for a ``threading.Event`` that the response sets. Navette runs all
+callbacks in one thread. While a callback waits, the loop runs inside the call and holds
+back the callback's group (for an event except for servers, as in a blocking call).
 """
 
 import sys
@@ -20,16 +20,16 @@ from navette.runtime.context import current_scope
 _sleep = time.sleep
 _wait = threading.Event.wait
 _set = threading.Event.set
-#: An event's attribute: the loop that waits for it.
+#: Attribute of an event: the loop that waits for it.
 _LOOP = "_navette_loop"
 
 
 @contextmanager
-def sleeping_lets_others_run() -> Iterator[None]:
-    """As long as the block runs; in all threads."""
-    time.sleep = _sleep_in_callback
-    # (mypy takes a class's function for a bound method here)
-    threading.Event.wait = _wait_in_callback  # type: ignore[method-assign, assignment]
+def cooperative_blocking_calls() -> Iterator[None]:
+    """Let callbacks run during blocking calls, in all threads, within this context."""
+    time.sleep = _cooperative_sleep
+    # mypy treats a function assigned to a class as a bound method.
+    threading.Event.wait = _cooperative_wait  # type: ignore[method-assign, assignment]
     threading.Event.set = _set_and_wake  # type: ignore[method-assign, assignment]
     try:
         yield
@@ -39,19 +39,19 @@ def sleeping_lets_others_run() -> Iterator[None]:
         threading.Event.set = _set  # type: ignore[method-assign]
 
 
-def _sleep_in_callback(seconds: float | SupportsIndex, /) -> None:
-    context = _context_that_goes_on()
+def _cooperative_sleep(seconds: float | SupportsIndex, /) -> None:
+    context = _context_to_run()
     if context is None:
         _sleep(seconds)
         return
-    # Under a virtual clock it is the clock's time that passes.
+    # The context's clock counts: with a virtual clock no wall time passes.
     context.loop.run(until_ns=context.clock.now_ns + round(float(seconds) * 1e9))
 
 
-def _wait_in_callback(event: threading.Event, timeout: float | None = None) -> bool:
-    if event.is_set() or not _is_programs(sys._getframe(1).f_globals):
+def _cooperative_wait(event: threading.Event, timeout: float | None = None) -> bool:
+    if event.is_set() or not _is_program(sys._getframe(1).f_globals):
         return _wait(event, timeout)
-    context = _context_that_goes_on()
+    context = _context_to_run()
     if context is None:
         return _wait(event, timeout)
     until_ns = None
@@ -69,17 +69,17 @@ def _set_and_wake(event: threading.Event) -> None:
         loop.wake()
 
 
-def _is_programs(names: dict[str, object]) -> bool:
-    """Whether a module with these globals is no part of Python or Navette.
+def _is_program(names: dict[str, object]) -> bool:
+    """Whether a module with these globals belongs neither to Python nor to Navette.
 
-    Those wait for what has nothing to do with callbacks, such as a thread's start.
+    Their own waits, such as for a thread's start, have no relation to callbacks.
     """
     top = str(names.get("__name__", "")).partition(".")[0]
     return top not in sys.stdlib_module_names and top != "navette"
 
 
-def _context_that_goes_on() -> Context | None:
-    """That of the running callback, if its node has more than one thread on ROS 2."""
+def _context_to_run() -> Context | None:
+    """Return the running callback's context if its node has a MultiThreadedExecutor."""
     for context in tuple(current_scope.get().contexts):
         if not context.loop.in_driver_thread:
             continue

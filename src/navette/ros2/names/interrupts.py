@@ -1,29 +1,29 @@
-"""Ctrl-C for a program in a thread: KeyboardInterrupt raised in it, and only in it."""
+"""Ctrl-C for a program in a thread: raise KeyboardInterrupt in that thread only."""
 
 import ctypes
 import sys
 import threading
 from collections.abc import Callable
 
-_LOOK_S = 0.01
+_POLL_S = 0.01
 
 
 class ThreadInterrupt:
-    """Interrupts what :meth:`run` runs; not what comes before or after.
+    """Interrupt of the function that :meth:`run` calls, not of code before or after it.
 
     Args:
-        wake: called after each interrupt: makes the thread stop waiting.
+        wake: called after each interrupt; must end a wait of the thread.
     """
 
     def __init__(self, wake: Callable[[], object]) -> None:
         self._wake = wake
         self._ident: int | None = None
-        self._is_wished = False
+        self._is_requested = False
         self._over = threading.Event()
         self._lock = threading.Lock()
 
     def run(self, work: Callable[[], int]) -> int | None:
-        """``work()`` in this thread; None where an interrupt got out of it."""
+        """Call ``work`` in this thread; return None if an interrupt ended it."""
         result, has_begun = None, False
         while True:
             try:
@@ -34,13 +34,13 @@ class ThreadInterrupt:
                 self._refuse()
                 return result
             except KeyboardInterrupt:
-                continue  # refuse, and leave
+                continue  # refuse further interrupts and return
 
     def interrupt(self) -> None:
-        """From another thread. Before the start: it is interrupted as it starts.
+        """Interrupt the thread, from another one; before :meth:`run`, at its start.
 
-        Not amid an import: Python's import locks would stay taken, and whoever imports
-        next would wait for ever. It comes right after.
+        An import in progress is completed first: otherwise Python's import locks would
+        remain held, and every later import would block.
         """
         if not self._deliver():
             threading.Thread(target=self._deliver_later, daemon=True).start()
@@ -48,31 +48,32 @@ class ThreadInterrupt:
     def _accept(self) -> None:
         with self._lock:
             self._ident = threading.get_ident()
-            wished = self._is_wished
-        if wished:
+            requested = self._is_requested
+        if requested:
             raise KeyboardInterrupt
 
     def _refuse(self) -> None:
-        """From here on none comes; one under way is taken back."""
+        """Refuse further interrupts and withdraw a pending one."""
         self._over.set()
-        self._lock.acquire()  # no `with`: it could be left half entered
+        # Without `with`, which an interrupt could leave after half of its entry.
+        self._lock.acquire()
         self._lock.release()
         _raise_in(threading.get_ident(), None)
 
     def _deliver_later(self) -> None:
         pause = threading.Event()
         while not self._deliver():
-            pause.wait(_LOOK_S)
+            pause.wait(_POLL_S)
 
     def _deliver(self) -> bool:
-        """Interrupt it now; False if that has to wait."""
+        """Interrupt now; return False if the thread imports a module."""
         if self._over.is_set():
             return True
         with self._lock:
             if self._over.is_set():
                 return True
             if self._ident is None:
-                self._is_wished = True
+                self._is_requested = True
                 return True
             if _is_importing(self._ident):
                 return False
@@ -82,13 +83,13 @@ class ThreadInterrupt:
 
 
 def _raise_in(ident: int, exception: type[BaseException] | None) -> None:
-    """Let a thread raise; None takes back what it has not raised yet."""
+    """Raise an exception in a thread; None withdraws a pending one."""
     raised = None if exception is None else ctypes.py_object(exception)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), raised)
 
 
 def _is_importing(ident: int) -> bool:
-    """Whether a thread is in Python's import machinery, at whatever depth."""
+    """Whether any frame of a thread belongs to Python's import machinery."""
     frame = sys._current_frames().get(ident)
     while frame is not None:
         if frame.f_code.co_filename.startswith("<frozen importlib"):

@@ -1,4 +1,4 @@
-"""What to do about a module that a program imports and nobody has."""
+"""Advice for programs that import a package of ROS that Navette does not provide."""
 
 from navette.msgs.registry import PATH_VARIABLE
 
@@ -7,7 +7,7 @@ _ROS_1 = frozenset(
     "rosmsg rosnode rosparam rospkg rospy rosservice rostest rostopic tf".split()
 )
 _INTERFACES = ("_msgs", "_interfaces", "_msg", "_srvs", "_actions")
-#: Packages of ROS 2 that programs use and that are not here → what is.
+#: Package of ROS 2 → what to use instead.
 _ROS_2 = {
     "ament_copyright": "leave the linters' tests out",
     "ament_flake8": "leave the linters' tests out",
@@ -15,21 +15,22 @@ _ROS_2 = {
     "launch_testing": "start programs with navette.ros2.packages or subprocess in a "
     "test of pytest",
     "nav2_simple_commander": "navette.navigation.missions drives to goals",
-    "ros2cli": "the commands are navette's: navette --help",
+    "ros2cli": "navette's commands do the same: navette --help",
     "rosbag2_py": "navette.bags reads and writes recordings",
-    "turtlesim": "examples/17_draw_a_square.py drives a robot as one drives the turtle",
+    "turtlesim": "examples/17_draw_a_square.py drives a robot like the turtle",
 }
 
 
 def advice(module: str) -> str | None:
-    """What to say to a program that wants ``module``; None if it is not ROS's."""
+    """Return the advice for a program that imports ``module``; None if not ROS's."""
     top = module.partition(".")[0]
     if top in _ROS_1:
         return (
-            f"{top} is ROS 1's; docs/reference/idioms.md says what stands for it here"
+            f"{top} belongs to ROS 1; docs/reference/idioms.md lists the equivalents "
+            "in Navette"
         )
     if top in _ROS_2:
-        return f"Navette has no {top}; instead: {_ROS_2[top]}"
+        return f"Navette does not provide {top}; instead: {_ROS_2[top]}"
     if top.endswith(_INTERFACES):
         return (
             f"no package {top} with msg/, srv/ or action/ is in the workspace "

@@ -1,4 +1,4 @@
-"""Node classes by name, for whoever makes the nodes himself."""
+"""Load node classes by name."""
 
 import importlib
 import inspect
@@ -11,15 +11,17 @@ from navette.ros2.names.hook import install
 from navette.ros2.names.program import load_file, search_path
 from navette.runtime import Node
 
-_FORMS = "wanted MODULE:Class or FILE.py:Class"
+_FORMS = "expected MODULE:Class or FILE.py:Class"
 
 
 def load_node_class(target: str) -> type[Node]:
-    """The class that ``MODULE:Class`` or ``FILE.py:Class`` names; rclpy's are found.
+    """Return the class that ``MODULE:Class`` or ``FILE.py:Class`` names.
+
+    Installs the import hook, so that the module may import rclpy.
 
     Raises:
-        InvalidValueError: it has another form, or what it names is no node class.
-        UnknownNameError: there is no such file, module or class.
+        InvalidValueError: the target has another form.
+        UnknownNameError: the file, module or node class does not exist.
     """
     place, colon, name = target.rpartition(":")
     if not colon or not name.isidentifier() or not place:

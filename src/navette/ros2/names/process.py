@@ -1,7 +1,8 @@
-"""Programs in this process: one in the main thread, or several that meet.
+"""Run programs in this process: one in the main thread, or several in threads.
 
-Several run in a thread each, with a context and a loop of their own, on one graph. What
-Python has once a process they get once a program: ``sys.argv``, the default context.
+Each of several programs has a thread, a context and a loop; all share one graph. State
+that Python has once per process exists once per program: ``sys.argv`` and the default
+context.
 """
 
 import asyncio
@@ -14,7 +15,7 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any, overload
 
-from navette.ros2.names.blocking_calls import sleeping_lets_others_run
+from navette.ros2.names.blocking_calls import cooperative_blocking_calls
 from navette.ros2.names.interrupts import ThreadInterrupt
 from navette.ros2.names.program import (
     FAILED,
@@ -23,76 +24,75 @@ from navette.ros2.names.program import (
     Program,
     run,
 )
-from navette.ros2.names.startup_barrier import Readiness, watch_start
+from navette.ros2.names.startup_barrier import StartupBarrier, watch_startup
 from navette.runtime.clock import Stopwatch
 from navette.runtime.context import Scope, current_scope, new_graph
 from navette.runtime.graph import Graph
 
-# A program that was interrupted has this long before its context is shut down, and
-# this long in all before it is left behind.
+# Time from a program's interrupt to the shutdown of its contexts, and to giving up.
 _GRACE_S = 0.5
 _LONGEST_END_S = 5.0
-_LOOK_S = 0.1
+_POLL_S = 0.1
 
 _argv: contextvars.ContextVar[list[str]] = contextvars.ContextVar("navette_argv")
 
 
 def run_alone(program: Program) -> int:
-    """Run in the main thread; Ctrl-C raises in it as Python does."""
+    """Run in the main thread; Ctrl-C raises KeyboardInterrupt, as usual in Python."""
     argv, sys.argv = sys.argv, program.argv
-    over: list[int] = []
-    watch_start(current_scope.get(), lambda: bool(over), Readiness().one_is_ready)
+    ended = threading.Event()
+    watch_startup(current_scope.get(), ended.is_set, StartupBarrier().program_ready)
     try:
-        # SIGTERM ends a program as ROS 2's does: its contexts are shut down.
+        # As in ROS 2, SIGTERM shuts the contexts down.
         with (
             _on_path(program),
             _on_signal(signal.SIGTERM, _shut_down_everything),
-            sleeping_lets_others_run(),
+            cooperative_blocking_calls(),
         ):
             return run(program)
     finally:
-        over.append(1)
+        ended.set()
         sys.argv = argv
 
 
 def run_together(programs: Sequence[Program]) -> int:
-    """Run until all have ended; Ctrl-C and SIGTERM end all.
+    """Run until all programs have ended; Ctrl-C and SIGTERM end all.
 
-    One that fails ends the others as Ctrl-C does.
+    A program that fails ends the others in the same manner as Ctrl-C.
 
     Returns:
-        The exit code of the first that failed, or 0.
+        The exit code of the first program that failed, or 0.
     """
     graph = new_graph()
-    readiness = Readiness(len(programs))
+    barrier = StartupBarrier(len(programs))
     running = [
-        RunningProgram(program, graph, on_ready=readiness.one_is_ready)
+        RunningProgram(program, graph, on_ready=barrier.program_ready)
         for program in programs
     ]
-    wishes: list[_End] = []
+    requests: list[_End] = []
     with ExitStack() as stack:
         stack.enter_context(program_threads())
-        stack.enter_context(sleeping_lets_others_run())
+        stack.enter_context(cooperative_blocking_calls())
         for program in programs:
             stack.enter_context(_on_path(program))
         for signum, how in _ENDS.items():
-            stack.enter_context(_on_signal(signum, partial(wishes.append, how)))
+            stack.enter_context(_on_signal(signum, partial(requests.append, how)))
         for each in running:
             each.start()
-        failed = _wait_for_end(running, wishes)
-        # A second signal changes nothing: ``timeout`` and shells send several.
-        _end_all(running, wishes[0] if wishes else RunningProgram.interrupt)
+        failed = _wait_for_end(running, requests)
+        # Only the first signal counts: ``timeout`` and shells send several.
+        _end_all(running, requests[0] if requests else RunningProgram.interrupt)
     graph.close()
     return failed or _first_failure(running)
 
 
 class RunningProgram:
-    """A program in a thread of its own.
+    """A program in a thread.
 
     Args:
-        graph: where it meets the others.
-        on_end: called in its thread, with its exit code.
-        on_ready: called in another one, when its nodes are made and spin.
+        graph: graph that the programs share.
+        on_end: called in the program's thread with its exit code.
+        on_ready: called in another thread when the program's nodes exist and spin.
     """
 
     def __init__(
@@ -108,26 +108,26 @@ class RunningProgram:
         self._on_end = on_end
         self._on_ready = on_ready
         self._interrupt = ThreadInterrupt(self._wake)
-        # A daemon: one that never ends must not keep the process.
+        # A daemon, so that the process can end before the program does.
         self._thread = threading.Thread(
             target=self._run, name=program.name, daemon=True
         )
 
     def start(self) -> None:
         self._thread.start()
-        watch_start(self.scope, lambda: self.exit_code is not None, self._on_ready)
+        watch_startup(self.scope, lambda: self.exit_code is not None, self._on_ready)
 
     @property
     def is_alive(self) -> bool:
         return self._thread.is_alive()
 
     def join(self, timeout_s: float | None = None) -> bool:
-        """Wait for its end; tells whether it has come."""
+        """Wait for the program's end; return whether it has ended."""
         self._thread.join(timeout_s)
         return not self._thread.is_alive()
 
     def interrupt(self) -> None:
-        """Raise KeyboardInterrupt in its main thread, as Ctrl-C does for a process."""
+        """Raise KeyboardInterrupt in the program's thread, as Ctrl-C in a process."""
         self._interrupt.interrupt()
 
     def _wake(self) -> None:
@@ -135,7 +135,7 @@ class RunningProgram:
             context.loop.wake()
 
     def shut_down(self) -> None:
-        """Shut its contexts down, as SIGTERM does: its spins end, ``ok()`` is False."""
+        """Shut the program's contexts down, as SIGTERM does in a process."""
         for context in tuple(self.scope.contexts):
             context.try_shutdown()
 
@@ -155,7 +155,7 @@ class RunningProgram:
 
 @contextmanager
 def _main_thread_event_loop() -> Iterator[None]:
-    """asyncio's default loop, which it gives to the main thread alone."""
+    """Give this thread a default asyncio loop; asyncio makes one in the main thread."""
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     try:
@@ -172,13 +172,17 @@ _ENDS: dict[signal.Signals, _End] = {
 }
 
 
-def _wait_for_end(running: Sequence[RunningProgram], wishes: Sequence[_End]) -> int:
-    """Until all have ended, one failed (returns its exit code), or there is a wish."""
-    while not wishes and not _first_failure(running):
+def _wait_for_end(running: Sequence[RunningProgram], requests: Sequence[_End]) -> int:
+    """Wait until all have ended, one has failed, or a signal requests the end.
+
+    Returns:
+        The exit code of the program that failed, or 0.
+    """
+    while not requests and not _first_failure(running):
         alive = [each for each in running if each.is_alive]
         if not alive:
             break
-        alive[0].join(_LOOK_S)
+        alive[0].join(_POLL_S)
     return _first_failure(running)
 
 
@@ -192,24 +196,22 @@ def _end_all(running: Sequence[RunningProgram], how: _End) -> None:
         how(each)
     for each in running:
         each.join(max(0.0, _GRACE_S - watch.elapsed_s))
-    # Again and again: one that began only now may still make a context.
+    # Repeatedly: a program that has just begun may create a context after a shutdown.
     while watch.elapsed_s < _LONGEST_END_S and any(each.is_alive for each in running):
         for each in running:
             each.shut_down()
-            each.join(_LOOK_S / len(running))
+            each.join(_POLL_S / len(running))
     for each in running:
         if each.is_alive:
-            sys.stderr.write(
-                f"navette: {each.program.name} does not end; left behind\n"
-            )
+            sys.stderr.write(f"navette: {each.program.name} does not end; abandoned\n")
             each.exit_code = INTERRUPTED
 
 
 @contextmanager
 def program_threads() -> Iterator[None]:
-    """Give threads that a program starts its context and its ``sys.argv``.
+    """Give the threads that a program starts its context and its ``sys.argv``.
 
-    From 3.14 on Python can do this by itself (``thread_inherit_context``).
+    Python 3.14 and later can do the same (``thread_inherit_context``).
     """
     argv, plain_start = sys.argv, threading.Thread.start
 
@@ -232,13 +234,17 @@ def _inheriting(function: Callable[[], None]) -> Callable[[], None]:
 
 
 class _ProgramArguments(MutableSequence[str]):
-    """``sys.argv`` of the program that asks."""
+    """``sys.argv`` of the program that reads it.
 
-    def __init__(self, outside: list[str]) -> None:
-        self._outside = outside
+    Args:
+        default: the arguments in threads that belong to no program.
+    """
+
+    def __init__(self, default: list[str]) -> None:
+        self._default = default
 
     def _list(self) -> list[str]:
-        return _argv.get(self._outside)
+        return _argv.get(self._default)
 
     def __len__(self) -> int:
         return len(self._list())

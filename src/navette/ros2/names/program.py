@@ -1,4 +1,4 @@
-"""A program, run as ROS 2 runs an executable: script, entry point or node class."""
+"""A program (script, entry point or node class) and its run as ROS 2 executable."""
 
 import importlib
 import inspect
@@ -22,12 +22,12 @@ INTERRUPTED = 130  # 128 + SIGINT, as a shell reports it
 
 @dataclass(frozen=True)
 class Program:
-    """What to run, and what it finds in ``sys.argv``."""
+    """What to run, with its arguments."""
 
     name: str
     arguments: tuple[str, ...]
     main: Callable[[], object]
-    #: Added to the front of Python's path, as Python does with a script's folder.
+    #: Inserted at the front of ``sys.path``, as Python does with a script's folder.
     path: tuple[Path, ...] = ()
 
     @property
@@ -36,7 +36,7 @@ class Program:
 
 
 def script(path: Path, arguments: tuple[str, ...] = ()) -> Program:
-    """A Python file, run as ``__main__``."""
+    """Return the program of a Python file, run as ``__main__``."""
     return Program(
         str(path), arguments, lambda: _run_file(path), search_path(path.resolve())
     )
@@ -45,7 +45,10 @@ def script(path: Path, arguments: tuple[str, ...] = ()) -> Program:
 def entry_point(
     module: str, attribute: str, arguments: tuple[str, ...] = (), *, name: str = ""
 ) -> Program:
-    """A function that is called without arguments, or a node class that is spun."""
+    """Return the program of a function or node class in an importable module.
+
+    The function is called without arguments; a node of the class is created and spun.
+    """
     return Program(
         name or f"{module}:{attribute}",
         arguments,
@@ -57,7 +60,7 @@ def entry_point(
 def file_entry_point(
     path: Path, attribute: str, arguments: tuple[str, ...] = ()
 ) -> Program:
-    """As :func:`entry_point`, for a module given by its file."""
+    """Return the program of a function or node class in a file."""
     return Program(
         f"{path}:{attribute}",
         arguments,
@@ -67,10 +70,10 @@ def file_entry_point(
 
 
 def run(program: Program) -> int:
-    """Run in this thread, to the end; returns the exit code Python would give.
+    """Run in this thread and return the exit code that Python would return.
 
-    Prints the traceback of an exception that the program lets out. The context is
-    shut down if the program left it open.
+    Print the traceback of an uncaught exception. Shut the context down if the program
+    did not.
     """
     try:
         return _exit_code(program.main())
@@ -86,7 +89,7 @@ def run(program: Program) -> int:
 
 
 def _exit_code(value: object) -> int:
-    """As ``sys.exit`` takes it: None is 0, a number itself, a text an error."""
+    """Return the exit code for an argument of ``sys.exit``; print a text argument."""
     if value is None:
         return SUCCEEDED
     if isinstance(value, int):
@@ -96,7 +99,7 @@ def _exit_code(value: object) -> int:
 
 
 def search_path(file: Path) -> tuple[Path, ...]:
-    """The file's folder and, if that is a Python package, where it is imported from."""
+    """Return the file's folder and, in a Python package, the folder above it."""
     root = file.parent
     while (root / "__init__.py").is_file():
         root = root.parent
@@ -115,15 +118,15 @@ def _import(name: str) -> ModuleType:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
         if error.name is None or not f"{name}.".startswith(f"{error.name}."):
-            raise  # found, and wants another one itself
+            raise  # the module exists; one of its imports is missing
         raise InvalidValueError(
-            f"module {name!r} cannot be imported: {error} (looked for from "
-            f"{Path.cwd()}, in its workspace and among what is installed)"
+            f"module {name!r} cannot be imported: {error} (searched "
+            f"{Path.cwd()}, its workspace and the installed modules)"
         ) from None
 
 
 def load_file(path: Path, name: str) -> ModuleType:
-    """A Python file as the module of that name."""
+    """Load a Python file as the module of that name."""
     module = sys.modules[name] = _new_module(path, name)
     _execute(path, module)
     return module
@@ -148,7 +151,7 @@ def _run_attribute(module: ModuleType, name: str) -> object:
     if callable(value) and not inspect.isclass(value):
         return value()
     raise InvalidValueError(
-        f"{module.__name__}:{name}: wanted a node class or a function; {_offer(module)}"
+        f"{module.__name__}:{name} is not a node class or a function; {_offer(module)}"
     )
 
 
@@ -163,9 +166,9 @@ def _offer(module: ModuleType) -> str:
 
 
 def _ros_of(value: Any) -> Any:
-    """The module with ``init`` and ``spin`` for a node class; None for anything else.
+    """Return the module with ``init`` and ``spin`` for a node class, else None.
 
-    Navette's, or a real rclpy's where the program runs on that.
+    It is Navette's runtime, or ROS 2's rclpy where the program runs on ROS 2.
     """
     if not inspect.isclass(value):
         return None
@@ -176,30 +179,29 @@ def _ros_of(value: Any) -> Any:
 
 
 def _spin(node_class: Any, ros: Any) -> None:
-    """Init, make the node, spin until Ctrl-C or shutdown."""
     ros.init()
     node = node_class()
     try:
         ros.spin(node)
     except KeyboardInterrupt:
-        pass  # the way to end a node that spins
+        pass  # Ctrl-C is the normal end
     finally:
         node.destroy_node()
         ros.try_shutdown()
 
 
 def _print_traceback(error: BaseException) -> None:
-    """Without the frames that led to the program, with what helps."""
+    """Print the traceback without Navette's frames, with advice where there is any."""
     if isinstance(error, ModuleNotFoundError) and error.name is not None:
-        said = advice(error.name)
-        if said is not None:
-            error.add_note(said)
+        note = advice(error.name)
+        if note is not None:
+            error.add_note(note)
     shown: TracebackType | None = error.__traceback__
     while shown is not None and shown.tb_frame.f_code.co_filename == __file__:
         shown = shown.tb_next
-    if shown is None and isinstance(error, InvalidValueError):  # what was asked for
+    if shown is None and isinstance(error, InvalidValueError):  # of the command line
         sys.stderr.write(f"navette: {error}\n")
         return
-    if shown is None and not isinstance(error, SyntaxError):  # a file's own has none
+    if shown is None and not isinstance(error, SyntaxError):  # in a script, no frame
         shown = error.__traceback__
     sys.stderr.write("".join(shortened(error, shown).format()))

@@ -1,4 +1,4 @@
-"""``pytest -p navette.ros2.names.pytest_plugin``: tests of rclpy programs run here.
+"""``pytest -p navette.ros2.names.pytest_plugin`` runs tests of rclpy programs.
 
 Where ROS 2 is installed, the tests run on ROS 2.
 """
@@ -7,6 +7,6 @@ from navette.ros2.names.hook import install, installed_rclpy
 
 
 def pytest_configure() -> None:
-    """Called by pytest before it imports any test."""
+    """Install the hook before pytest imports the tests."""
     if installed_rclpy() is None:
         install()

@@ -1,7 +1,7 @@
-"""When a program's nodes are made and spin: what it was given is looked through then.
+"""Detection of the moment at which a program's nodes exist and spin.
 
-Who started it may want to know, as with systemd's services: it passes a pipe, and its
-number in the environment.
+Unused arguments are reported then. A parent process can wait for that moment: it passes
+the number of a pipe in the environment, similar to systemd's ``NOTIFY_SOCKET``.
 """
 
 import contextlib
@@ -10,45 +10,51 @@ import threading
 from collections.abc import Callable
 from functools import partial
 
-from navette.ros2.names.unused_arguments import warn_of_leftovers
+from navette.ros2.names.unused_arguments import warn_of_unused_arguments
 from navette.runtime.context import Context, Scope
 
 VARIABLE = "NAVETTE_READY_FD"
-# Many programs that start at once are not to be slowed down by looking at each.
-_FIRST_LOOK_S, _LONGEST_LOOK_S = 0.01, 0.16
+# The period doubles up to the limit, so that polling does not slow down many programs
+# that start at the same time.
+_FIRST_POLL_S, _LONGEST_POLL_S = 0.01, 0.16
 
 
-class Readiness:
-    """Tells, once, when all programs of a process are ready; if asked to.
+class StartupBarrier:
+    """Writes to the parent's pipe, if there is one, when all programs are ready.
 
     Args:
-        programs: how many there are.
+        programs: number of programs in this process.
     """
 
     def __init__(self, programs: int = 1) -> None:
         number = os.environ.pop(VARIABLE, "")
         self._pipe = int(number) if number.isdigit() else None
-        self._left = programs
+        self._pending = programs
         self._lock = threading.Lock()
 
-    def one_is_ready(self) -> None:
-        """From any thread."""
+    def program_ready(self) -> None:
+        """Count one more ready program; may be called from any thread."""
         with self._lock:
-            self._left -= 1
-            if self._left or self._pipe is None:
+            self._pending -= 1
+            if self._pending or self._pipe is None:
                 return
-            # Whoever asked may be gone by now.
+            # The parent may have ended.
             with contextlib.suppress(OSError):
                 os.write(self._pipe, b"ready")
                 os.close(self._pipe)
 
 
-def watch_start(
+def watch_startup(
     scope: Scope,
     is_over: Callable[[], bool],
     on_ready: Callable[[], object] | None = None,
 ) -> None:
-    """Look, from a thread, until a context of the scope has nodes and runs."""
+    """Start a thread that waits until a context of the scope has nodes and spins.
+
+    Args:
+        is_over: whether the program has ended; then the thread ends too.
+        on_ready: called in that thread.
+    """
     thread = threading.Thread(target=_watch, args=(scope, is_over, on_ready))
     thread.daemon = True
     thread.start()
@@ -59,14 +65,16 @@ def _watch(
     is_over: Callable[[], bool],
     on_ready: Callable[[], object] | None,
 ) -> None:
-    pause, look_s = threading.Event(), _FIRST_LOOK_S
+    pause, poll_s = threading.Event(), _FIRST_POLL_S
     while not (ready := _ready_contexts(scope)):
         if is_over():
             return
-        pause.wait(look_s)
-        look_s = min(2 * look_s, _LONGEST_LOOK_S)
+        pause.wait(poll_s)
+        poll_s = min(2 * poll_s, _LONGEST_POLL_S)
     for context in ready:
-        context.loop.call_soon_threadsafe(partial(warn_of_leftovers, context), "start")
+        context.loop.call_soon_threadsafe(
+            partial(warn_of_unused_arguments, context), "start"
+        )
     if on_ready is not None:
         on_ready()
 
@@ -76,5 +84,5 @@ def _ready_contexts(scope: Scope) -> list[Context]:
         context
         for context in tuple(scope.contexts)
         if context.loop.is_running
-        and context.nodes  # in this order: it may be half made
+        and context.nodes  # second: a context under construction has no nodes yet
     ]

@@ -1,4 +1,4 @@
-"""What a person typed after ``navette run`` → programs."""
+"""Parse the words after ``navette run`` into programs."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,11 +18,12 @@ _FORMS = (
 
 
 def read_programs(words: Sequence[str]) -> list[Program]:
-    """The programs, of which each but the first stands behind a ``--with``.
+    """Return the programs, which are separated by ``--with``.
 
     Raises:
-        InvalidValueError: a program is missing or has none of the forms.
-        UnknownNameError: no such package or executable; lists those known.
+        InvalidValueError: a program is missing or has none of the accepted forms.
+        UnknownNameError: the package or executable does not exist; lists the existing
+            ones.
     """
     groups: list[list[str]] = [[]]
     for word in words:
@@ -35,7 +36,7 @@ def read_programs(words: Sequence[str]) -> list[Program]:
 
 def _read_program(words: Sequence[str]) -> Program:
     if not words:
-        raise InvalidValueError(f"a program is missing; wanted {_FORMS}")
+        raise InvalidValueError(f"a program is missing; expected {_FORMS}")
     target, arguments = words[0], tuple(words[1:])
     place, colon, attribute = target.rpartition(":")
     if colon and attribute.isidentifier():
@@ -49,21 +50,21 @@ def _read_program(words: Sequence[str]) -> Program:
     if any(each.name == target for each in built_in_executables(BUILT_IN)):
         return _executable(BUILT_IN, target, arguments)
     hint = f" (./{target} runs the file)" if Path(target).is_file() else ""
-    raise InvalidValueError(f"{target!r} is no program{hint}; wanted {_FORMS}")
+    raise InvalidValueError(f"{target!r} is not a program{hint}; expected {_FORMS}")
 
 
 def _names_file(target: str) -> bool:
-    """Whether it is a file and says so, by a suffix or a folder.
+    """Whether the target is an existing file with a suffix or a folder in its name.
 
-    What happens to lie in the working folder takes no package's or stage's name.
+    A file without either in the working folder does not hide a package or a stage.
     """
     path = Path(target)
-    is_said = bool(path.suffix) or "/" in target or path.name != target
-    return is_said and path.is_file()
+    is_explicit = bool(path.suffix) or "/" in target or path.name != target
+    return is_explicit and path.is_file()
 
 
 def _executable(package: str, name: str, arguments: tuple[str, ...]) -> Program:
-    """A program of a package, as its setup.py, pyproject.toml or CMake names it."""
+    """Return a program that a package declares (setup.py, pyproject.toml or CMake)."""
     found = find_package(package)
     executable = found.executable(name)
     if executable.path is None:
@@ -86,7 +87,7 @@ def _existing(path: Path) -> Path:
 
 
 def _near(path: Path) -> str:
-    """A program of that name one folder up or down, or one of nearly that name."""
+    """Return a hint: the file one folder up or down, or a file of a similar name."""
     folder = path.parent if path.parent.is_dir() else Path()
     for pattern in (path.name, f"*/{path.name}", f"../{path.name}"):
         for found in folder.glob(pattern):
@@ -97,10 +98,10 @@ def _near(path: Path) -> str:
 
 
 def find_sources(words: Sequence[str]) -> list[Path]:
-    """The files and folders that a program is made of, where they can be told.
+    """Return the files and folders that contain a program's source.
 
-    A package's folder, a script, the folder of a module here; nothing for what is
-    installed.
+    These are the package's folder, the script, or the module below the working folder;
+    none for an installed module.
     """
     place, colon, attribute = words[0].rpartition(":")
     target = place if colon and attribute.isidentifier() else words[0]

@@ -1,4 +1,4 @@
-"""A program's traceback without the frames in between that are Navette's."""
+"""Tracebacks of programs without Navette's frames."""
 
 import os
 from collections.abc import Iterator
@@ -12,14 +12,14 @@ _PACKAGE = str(Path(__file__).parents[2]) + os.sep
 
 
 def shortened(error: BaseException, start: TracebackType | None) -> TracebackException:
-    """What to print of an exception and of those that led to it.
+    """Return the traceback of an exception and of its causes, ready to print.
 
-    Of a callback that raises, three frames of four are the executor's. They are left
-    out where the program itself, or a check of Navette's, raised; what went wrong
-    inside Navette is shown whole.
+    Most frames of an exception in a callback belong to the executor. They are removed
+    if the program or one of Navette's checks raised the exception; the traceback of an
+    internal error stays complete.
 
     Args:
-        start: its first frame to show.
+        start: the first frame to show.
     """
     shown = TracebackException(type(error), error, start)
     for each, original in _chain(shown, error):
@@ -33,7 +33,7 @@ def shortened(error: BaseException, start: TracebackType | None) -> TracebackExc
 def _chain(
     shown: TracebackException, error: BaseException
 ) -> Iterator[tuple[TracebackException, BaseException]]:
-    """An exception, what caused it, and what was handled when it came."""
+    """Yield an exception, its cause, and the exception handled when it was raised."""
     yield shown, error
     for name in ("__cause__", "__context__"):
         before, original = getattr(shown, name), getattr(error, name)

@@ -1,6 +1,6 @@
-"""What was given to a program and reaches none of its nodes: said, not passed over.
+"""Warnings of ROS arguments (parameters, remappings) that affect no node.
 
-As warnings: a node may declare parameters, and make topics, long after it began.
+They are not errors: a node may still declare parameters and create topics later.
 """
 
 from collections.abc import Sequence
@@ -11,8 +11,8 @@ from navette.runtime.names import NodeRemapper, RemapRule
 from navette.runtime.override_check import check_reached
 
 
-def warn_of_leftovers(context: Context) -> None:
-    """To be called on the context's loop, once its nodes are made."""
+def warn_of_unused_arguments(context: Context) -> None:
+    """Log a warning for each unused argument; to be called on the context's loop."""
     nodes = list(context.nodes)
     if not nodes:
         return
@@ -23,36 +23,39 @@ def warn_of_leftovers(context: Context) -> None:
         log.warning(str(error))
     for rule in context.arguments.remaps:
         if not rule.match.startswith("__") and not _is_used(rule, nodes):
-            names = sorted({name for node in nodes for name in _names(node)})
+            names = sorted({name for node in nodes for name in _own_names(node)})
             log.warning(
-                f"remapping {rule.match}:={rule.replacement}: nothing was called so; "
-                f"there is {', '.join(names) or 'no topic or service'}"
+                f"remapping {rule.match}:={rule.replacement} matches no name of the "
+                f"program's nodes; their names: "
+                f"{', '.join(names) or 'no topic or service'}"
             )
 
 
 def _is_used(rule: RemapRule, nodes: Sequence[Node]) -> bool:
-    return any(_reaches(rule, node) for node in nodes)
+    return any(_matches(rule, node) for node in nodes)
 
 
-def _reaches(rule: RemapRule, node: Node) -> bool:
-    """Whether the node has something of the new name (or below it, as an action)."""
+def _matches(rule: RemapRule, node: Node) -> bool:
+    """Whether the node has the new name, as a topic, service or action."""
     name, namespace = node.get_name(), node.get_namespace()
     target = NodeRemapper([], name, namespace).resolve(rule.replacement)
     return any(
-        each == target or each.startswith(f"{target}/_action/")
-        for each in _names(node, with_hidden=True)
+        each == target or each.startswith(f"{target}/_action/") for each in _names(node)
     )
 
 
-def _names(node: Node, *, with_hidden: bool = False) -> list[str]:
-    """What the node made itself: not what every node has."""
-    graph = node.context.graph
-    full = node.get_fully_qualified_name()
-    every = [*graph.endpoints(), *graph.service_endpoints()]
-    found = [each.topic for each in every if each.node_full_name == full]
-    own = (f"{full}/", "/rosout", "/parameter_events")
+def _own_names(node: Node) -> list[str]:
+    """Return the node's topics and services without those that every node has."""
+    common = (f"{node.get_fully_qualified_name()}/", "/rosout", "/parameter_events")
     return [
         name
-        for name in found
-        if with_hidden or not (name.startswith(own) or "/_action/" in name)
+        for name in _names(node)
+        if not (name.startswith(common) or "/_action/" in name)
     ]
+
+
+def _names(node: Node) -> list[str]:
+    graph = node.context.graph
+    full_name = node.get_fully_qualified_name()
+    endpoints = [*graph.endpoints(), *graph.service_endpoints()]
+    return [each.topic for each in endpoints if each.node_full_name == full_name]

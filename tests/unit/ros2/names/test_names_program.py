@@ -1,4 +1,4 @@
-"""Programs run as Python and ROS 2 run them: name, arguments, exit code."""
+"""Programs: names, arguments, exit codes, several in one process."""
 
 import sys
 import threading
@@ -45,7 +45,7 @@ def test_a_script_is_main_and_has_its_arguments_and_folder(
 
 
 @pytest.mark.parametrize(
-    ("line", "code", "said"),
+    ("line", "code", "printed"),
     [
         ("pass", 0, ""),
         ("raise SystemExit(3)", 3, ""),
@@ -58,20 +58,20 @@ def test_exit_codes(
     capsys: pytest.CaptureFixture[str],
     line: str,
     code: int,
-    said: str,
+    printed: str,
 ) -> None:
     assert run(write(line)) == code
-    assert capsys.readouterr().err == said
+    assert capsys.readouterr().err == printed
 
 
-def test_a_file_that_cannot_be_compiled_shows_its_own_line_only(
+def test_the_traceback_of_a_syntax_error_has_no_frame_of_navette(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(write("x = 'two")) == 1
-    said = capsys.readouterr().err
-    assert said.splitlines()[1:2] == ["    x = 'two"]
-    assert "unterminated string" in said
-    assert "interop" not in said
+    printed = capsys.readouterr().err
+    assert printed.splitlines()[1:2] == ["    x = 'two"]
+    assert "unterminated string" in printed
+    assert "navette" not in printed
 
 
 def test_a_traceback_starts_in_the_program(
@@ -85,7 +85,7 @@ def test_a_traceback_starts_in_the_program(
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "expected"),
     [
         ("import rospy", "docs/reference/idioms.md"),
         ("from rosbag2_py import SequentialReader", "navette.bags"),
@@ -93,32 +93,32 @@ def test_a_traceback_starts_in_the_program(
         ("from fleet_msgs.msg import Truck", "NAVETTE_INTERFACE_PATH"),
     ],
 )
-def test_a_module_of_ros_that_is_not_here_says_what_to_do(
-    write: Write, capsys: pytest.CaptureFixture[str], line: str, said: str
+def test_the_error_of_a_missing_ros_package_gives_advice(
+    write: Write, capsys: pytest.CaptureFixture[str], line: str, expected: str
 ) -> None:
     assert run(write(line)) == 1
     error, advice = capsys.readouterr().err.splitlines()[-2:]
     assert error.startswith("ModuleNotFoundError: No module named ")
-    assert said in advice
+    assert expected in advice
 
 
 @pytest.mark.parametrize(
-    ("word", "said"),
+    ("word", "expected"),
     [
         ("no_such.nodes:Drive", "module 'no_such.nodes' cannot be imported: No module"),
-        ("{path}:Fly", "program:Fly: wanted a node class or a function; "),
+        ("{path}:Fly", "program:Fly is not a node class or a function; "),
     ],
 )
-def test_a_program_that_is_not_there_is_told_in_a_line(
-    write: Write, capsys: pytest.CaptureFixture[str], word: str, said: str
+def test_a_missing_program_is_an_error_of_one_line(
+    write: Write, capsys: pytest.CaptureFixture[str], word: str, expected: str
 ) -> None:
     path = write("def walk(): pass\n")
     assert run(word.format(path=path)) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"navette: {said}")
+    assert line.startswith(f"navette: {expected}")
 
 
-def test_other_modules_that_are_not_here_are_pythons_business(
+def test_the_error_of_another_missing_module_is_pythons(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(write("import wings")) == 1
@@ -126,7 +126,7 @@ def test_other_modules_that_are_not_here_are_pythons_business(
     assert lines[-1] == "ModuleNotFoundError: No module named 'wings'"
 
 
-def test_what_the_program_left_open_is_shut_down(write: Write) -> None:
+def test_a_context_that_the_program_left_open_is_shut_down(write: Write) -> None:
     from navette.runtime import ok
 
     assert run(write("import rclpy\nrclpy.init()\nassert rclpy.ok()")) == 0
@@ -151,10 +151,10 @@ class Talker(Node):
 class Listener(Node):
     def __init__(self):
         super().__init__("listener")
-        self.create_subscription(String, "chatter", self.hear, 10)
+        self.create_subscription(String, "chatter", self.receive, 10)
 
-    def hear(self, msg):
-        print("heard", msg.data)
+    def receive(self, msg):
+        print("received", msg.data)
         raise SystemExit(self.context.arguments.other[1:] and 7)
 
 def stop():
@@ -162,15 +162,15 @@ def stop():
 """
 
 
-def test_a_node_class_is_made_and_spun(
+def test_a_node_of_a_node_class_is_created_and_spun(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = write(NODES)
     assert run(f"{path}:Talker", "--with", f"{path}:Listener", "loud") == 7
-    assert capsys.readouterr().out == "heard hello 1\n"
+    assert capsys.readouterr().out == "received hello 1\n"
 
 
-def test_each_program_has_its_own_remaps_and_parameters(
+def test_remappings_and_parameters_belong_to_one_program(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = write(NODES)
@@ -183,14 +183,14 @@ def test_each_program_has_its_own_remaps_and_parameters(
         )
         == 7
     )  # fmt: skip
-    assert capsys.readouterr().out == "heard hello 1\n"
+    assert capsys.readouterr().out == "received hello 1\n"
 
 
-def test_a_function_is_called_and_its_value_is_the_exit_code(write: Write) -> None:
+def test_the_result_of_a_function_is_the_exit_code(write: Write) -> None:
     assert run(f"{write(NODES)}:stop") == 5
 
 
-def test_another_attribute_is_refused_and_the_fitting_ones_named(
+def test_the_error_of_another_attribute_lists_the_valid_ones(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(f"{write(NODES)}:Robot") == 1
@@ -213,10 +213,10 @@ def test_threads_of_a_program_belong_to_it(
 import sys, threading, rclpy
 rclpy.init()
 node = rclpy.create_node(sys.argv[1])
-def look():
+def check():
     context = rclpy.get_default_context()
     print(sys.argv[1:], context is node.context)
-thread = threading.Thread(target=look)
+thread = threading.Thread(target=check)
 thread.start()
 thread.join()
 """
@@ -226,7 +226,7 @@ thread.join()
     assert lines == ["['a'] True", "['b'] True"]
 
 
-def test_arguments_are_a_list_like_any_other(
+def test_sys_argv_behaves_as_a_list(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = """
@@ -251,15 +251,15 @@ from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 
 rclpy.init()
 node = rclpy.create_node("sleeper")
-said = []
+ran = []
 
 def sleep():
     time.sleep(0.05)  # as ROS 2 programs do
-    print("other" in said)
+    print("other" in ran)
     raise SystemExit
 
 node.create_timer(0.01, sleep)
-node.create_timer(0.02, lambda: said.append("other"), ReentrantCallbackGroup())
+node.create_timer(0.02, lambda: ran.append("other"), ReentrantCallbackGroup())
 executor = globals()[sys.argv[1] + "ThreadedExecutor"]()
 executor.add_node(node)
 executor.spin()
@@ -270,14 +270,14 @@ executor.spin()
     ("executor", "other_ran"),
     [("Multi", "True\n"), ("Single", "False\n")],
 )
-def test_sleeping_in_a_callback_lets_others_run_where_ros_has_threads(
+def test_other_callbacks_run_during_a_sleep_with_a_multi_threaded_executor(
     write: Write, capsys: pytest.CaptureFixture[str], executor: str, other_ran: str
 ) -> None:
     assert run(write(SLEEPER), executor) == 0
     assert capsys.readouterr().out == other_ran
 
 
-ASKER = """
+CALLER = """
 import threading
 import rclpy
 from rclpy.executors import MultiThreadedExecutor
@@ -287,16 +287,16 @@ def answer(request, response):
     response.message = "here"
     return response
 
-def ask():
+def call():
     timer.cancel()
     future = client.call_async(Trigger.Request())
     answered = threading.Event()
     future.add_done_callback(lambda _: answered.set())
     print(answered.wait(20.0), future.result().message)
-    told = threading.Event()
-    thread = threading.Thread(target=told.set)
+    notified = threading.Event()
+    thread = threading.Thread(target=notified.set)
     other.create_guard_condition(thread.start).trigger()
-    print(told.wait(20.0), threading.Event().wait(0.001))
+    print(notified.wait(20.0), threading.Event().wait(0.001))
     thread.join()
     raise SystemExit
 
@@ -304,7 +304,7 @@ rclpy.init()
 node, other = rclpy.create_node("n"), rclpy.create_node("m")
 node.create_service(Trigger, "answer", answer)
 client = node.create_client(Trigger, "answer")
-timer = node.create_timer(0.01, ask)
+timer = node.create_timer(0.01, call)
 executor = MultiThreadedExecutor()
 executor.add_node(node)
 executor.add_node(other)
@@ -312,17 +312,17 @@ executor.spin()
 """
 
 
-def test_an_event_that_an_answer_sets(
+def test_a_callback_waits_for_an_event_that_a_response_sets(
     write: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(write(ASKER)) == 0
+    assert run(write(CALLER)) == 0
     assert capsys.readouterr().out == "True here\nTrue False\n"
 
 
 def test_an_interrupt_waits_for_the_end_of_an_import(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """An import lock that is never let go would stop every later import."""
+    """An import lock that is never released would block every later import."""
     (tmp_path / "slow_module.py").write_text(
         "import gates\ngates.entered.set()\ngates.go_on.wait(20)\nvalue = 1\n"
     )

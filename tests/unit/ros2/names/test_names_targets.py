@@ -1,4 +1,4 @@
-"""What may stand behind ``navette run``."""
+"""The forms of a program on the command line of ``navette run``."""
 
 from pathlib import Path
 
@@ -34,7 +34,7 @@ def test_a_file_inside_a_package_finds_its_siblings_by_full_name(
     assert program.path == (package, tmp_path)
 
 
-def test_a_file_takes_no_stages_name(
+def test_a_file_does_not_hide_a_stage_of_the_same_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -43,11 +43,13 @@ def test_a_file_takes_no_stages_name(
     (file,) = read_programs(["./planner"])
     with pytest.raises(LookupError, match="the file"):
         file.main()
-    monkeypatch.delattr(targets, "script")  # it is not asked for
+    monkeypatch.delattr(targets, "script")  # must not be called
     assert read_programs(["planner"])[0].name == "planner"
     assert find_sources(["planner"]) == []
     assert find_sources(["./planner"]) == [Path("planner")]
-    with pytest.raises(InvalidValueError, match=r"no program \(./drive runs the file"):
+    with pytest.raises(
+        InvalidValueError, match=r"a program \(./drive runs the file"
+    ):
         read_programs(["drive"])
 
 
@@ -62,17 +64,17 @@ def test_several_programs_each_with_its_arguments(talker: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
-        ([], "a program is missing; wanted FILE"),
+        ([], "a program is missing; expected FILE"),
         (["a:B", "--with"], "a program is missing"),
         (["missing.py"], r"missing\.py: no such file"),
         (["missing.py:Node"], r"missing\.py: no such file"),
-        (["talker"], "'talker' is no program; wanted FILE"),
+        (["talker"], "'talker' is not a program; expected FILE"),
     ],
 )
-def test_anything_else_is_refused(words: list[str], said: str) -> None:
-    with pytest.raises(InvalidValueError, match=said):
+def test_another_form_is_an_error(words: list[str], message: str) -> None:
+    with pytest.raises(InvalidValueError, match=message):
         read_programs(words)
 
 

@@ -1,4 +1,4 @@
-"""A traceback shows the program's lines; Navette's only where that is to blame."""
+"""Tracebacks show the program's lines, and Navette's for internal errors only."""
 
 import pytest
 
@@ -22,7 +22,7 @@ def printed(error: BaseException) -> str:
     return "".join(shortened(error, error.__traceback__).format())
 
 
-def test_a_callback_that_raises_shows_where() -> None:
+def test_an_exception_in_a_callback_shows_the_programs_lines() -> None:
     names: dict[str, object] = {}
     exec(compile(PROGRAM, "motor.py", "exec"), names)
     main = names["main"]
@@ -38,7 +38,7 @@ def test_a_callback_that_raises_shows_where() -> None:
     assert "loop.py" not in text
 
 
-def test_what_navette_refuses_shows_who_asked() -> None:
+def test_a_failed_check_shows_the_call() -> None:
     with pytest.raises(navette.errors.NavetteError) as caught:
         navette.QoSProfile(depth=-1)
     text = printed(caught.value)
@@ -46,7 +46,7 @@ def test_what_navette_refuses_shows_who_asked() -> None:
     assert text.count("File ") == 1
 
 
-def test_a_fault_within_navette_is_shown_whole() -> None:
+def test_the_traceback_of_an_internal_error_is_complete() -> None:
     with pytest.raises(AttributeError) as caught:
         navette.Node.get_name(None)  # type: ignore[arg-type]
     assert printed(caught.value).count("File ") == 2

@@ -1,4 +1,4 @@
-"""What reaches no node of a program is said, once its nodes spin."""
+"""Warnings of parameters and remappings that affect no node."""
 
 import re
 from pathlib import Path
@@ -8,11 +8,11 @@ import pytest
 
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.std_srvs.srv import Trigger
-from navette.ros2.names.unused_arguments import warn_of_leftovers
+from navette.ros2.names.unused_arguments import warn_of_unused_arguments
 from navette.runtime import Context, Node, VirtualClock
 
 FILE = """
-/**: {ros__parameters: {everybodys: 1}}
+/**: {ros__parameters: {common: 1}}
 others: {ros__parameters: {a: 1}}
 """
 
@@ -25,12 +25,12 @@ others: {ros__parameters: {a: 1}}
         ("--params-file wrong.yaml", "no node matches '/tlak'; nodes: /ns/talk"),
         ("--params-file stack.yaml", None),
         ("--params-file typo.yaml", "unknown parameter 'raet' for '/ns/talk'"),
-        ("-r chattr:=/x", r"remapping chattr:=/x: nothing .*; there is /ns/\w+, /ns/"),
+        ("-r chattr:=/x", r"remapping chattr:=/x matches no name .*: /ns/\w+, /ns/"),
         ("-r ask:=answer", None),
-        ("-r nobody:chatter:=x", "remapping chatter:=x: nothing was called so"),
+        ("-r other:chatter:=x", "remapping chatter:=x matches no name"),
     ],
 )
-def test_leftovers(
+def test_warnings(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: str, warning: str | None
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -39,20 +39,20 @@ def test_leftovers(
     Path("typo.yaml").write_text("/ns/talk: {ros__parameters: {raet: 2.0}}")
     context = Context(clock=VirtualClock())
     context.init(args=["--ros-args", *words.split()])
-    heard: list[Any] = []
-    context.log.sinks.append(heard.append)
+    logged: list[Any] = []
+    context.log.sinks.append(logged.append)
     node = Node("talk", namespace="ns", context=context)
     node.declare_parameter("rate", 1.0)
     node.create_publisher(String, "chatter", 1)
     node.create_service(Trigger, "ask", lambda request, response: response)
-    warn_of_leftovers(context)
+    warn_of_unused_arguments(context)
     context.shutdown()
-    texts = [each.message for each in heard]
+    texts = [each.message for each in logged]
     assert len(texts) == (warning is not None), texts
     if warning is not None:
         assert re.search(warning, texts[0]), texts[0]
 
 
-def test_without_nodes_there_is_nobody_to_say_it() -> None:
+def test_without_nodes_there_is_no_warning() -> None:
     with Context(clock=VirtualClock()) as context:
-        warn_of_leftovers(context)
+        warn_of_unused_arguments(context)
