@@ -47,9 +47,7 @@ def test_a_file_does_not_hide_a_stage_of_the_same_name(
     assert read_programs(["planner"])[0].name == "planner"
     assert find_sources(["planner"]) == []
     assert find_sources(["./planner"]) == [Path("planner")]
-    with pytest.raises(
-        InvalidValueError, match=r"a program \(./drive runs the file"
-    ):
+    with pytest.raises(InvalidValueError, match=r"a program \(./drive runs the file"):
         read_programs(["drive"])
 
 
