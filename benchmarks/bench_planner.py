@@ -172,7 +172,7 @@ def add_whole_plans(bench: Benchmark) -> None:
     occupancy[:3] = occupancy[-3:] = occupancy[:, :3] = occupancy[:, -3:] = 100
     for row, column in ((80, 90), (140, 140), (210, 70), (230, 190), (120, 230)):
         occupancy[row : row + 25, column : column + 25] = 100
-    planner = Planner(PlannerParams(footprint=outline))
+    planner = Planner(PlannerParams(footprint_m=outline))
     planner.set_map(occupancy, spec)
     easy = Pose2(-12.0, -12.0, 0.8), Goal(12.0, 11.0)
     tight = Pose2(-13.1, -13.1, math.radians(-135)), Goal(-5.0, -12.0)

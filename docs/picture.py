@@ -262,7 +262,7 @@ def take(moment_s: float) -> Image.Image:
     simulation.executor.add_node(seen)
     simulation.run()
     reached = sum(g.result == "reached" for g in simulation.summary().goals)
-    footprint = Footprint.from_flat(simulation.stack.control.params.footprint)
+    footprint = Footprint.from_flat(simulation.stack.control.params.footprint_m)
     simulation.close()
     canvas = Canvas()
     paint_drive(canvas, seen, reached)

@@ -48,7 +48,7 @@ IMU = """
 """
 GPS = """
     gps0: /gps/fix
-    gps0_datum: [45.75, -73.65]
+    gps0_datum_deg: [45.75, -73.65]
 """
 
 

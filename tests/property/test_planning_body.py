@@ -14,7 +14,7 @@ OUTLINE = (0.6, 0.25, -0.2, 0.25, -0.2, -0.25, 0.6, -0.25)
 """A body that sweeps much more when it turns than it is wide (m)."""
 
 PARAMS = PlannerParams(
-    footprint=OUTLINE,
+    footprint_m=OUTLINE,
     clearance_margin_m=0.1,
     tight_margin_m=0.1,
     comfort_m=0.1,

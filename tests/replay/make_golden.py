@@ -22,7 +22,7 @@ GOALS = ((-6.0, -12.0),)
 PARAMETERS = """
 costmap:
   ros__parameters:
-    size: 10.0 # small, so that the bags are small
+    size_m: 10.0 # small, so that the bags are small
 """
 LONGEST_BYTES = 300_000
 

@@ -38,7 +38,7 @@ def test_golden_bags_stay_small(stage: Stage) -> None:
 @pytest.mark.parametrize(
     ("name", "argument", "field"),
     [
-        ("costmap", "costmap:inflation_radius:=0.5", "data[]"),
+        ("costmap", "costmap:inflation_radius_m:=0.5", "data[]"),
         ("control", "control:cruise_speed_mps:=0.5", "linear.x"),
     ],
 )

@@ -35,7 +35,7 @@ def filter_for(sim: SimNode, context: Context) -> EkfNode:
         "imu0_config": config("yaw", "vyaw"),
     }
     start = {"initial_state": [-6.0, *[0.0] * 14]}
-    values = {**frames, **inputs, **start, "frequency": 20.0}
+    values = {**frames, **inputs, **start, "frequency_hz": 20.0}
     overrides = [Parameter(name, value=value) for name, value in values.items()]
     return EkfNode(context=context, parameter_overrides=overrides)
 
@@ -47,8 +47,8 @@ def test_the_robot_drives_by_filtered_wheels_and_imu() -> None:
     context = Context(clock=VirtualClock())
     with context:
         resolved.override_parameters(context.overrides)
-        context.overrides.add("missions", {"goals": list(GOAL)}, "test")
-        noisy = {"odometry": "wheel", "wheel_noise": 0.02, "odometry_child_frame": ""}
+        context.overrides.add("missions", {"goals_m": list(GOAL)}, "test")
+        noisy = {"odometry": "wheel", "wheel_noise_m": 0.02, "odometry_child_frame": ""}
         context.overrides.add("sim", noisy, "test")
         sim = SimNode(resolved.scene, context=context, cli_args=REMAP)
         ekf = filter_for(sim, context)

@@ -75,7 +75,7 @@ class RecorderNode(StageNode):
     PARAMS: ClassVar[type[Params]] = RecorderParams
     FIXED_AT_START: ClassVar[Collection[str]] = (
         "compression",
-        "max_bag_size",
+        "max_bag_size_bytes",
         "max_bag_duration_s",
         "snapshot_duration_s",
         "snapshot_bytes",
@@ -302,11 +302,11 @@ def _open(path: Path, params: RecorderParams) -> Recording:
             max_bytes=params.snapshot_bytes,
             compression=params.compression,
         )
-    if params.max_bag_size or params.max_bag_duration_s:
+    if params.max_bag_size_bytes or params.max_bag_duration_s:
         return SplitFiles(
             path,
             compression=params.compression,
-            max_size=params.max_bag_size,
+            max_size=params.max_bag_size_bytes,
             max_duration_ns=round(params.max_bag_duration_s * 1e9),
         )
     return SingleFile(path, compression=params.compression)

@@ -28,7 +28,7 @@ class RecorderParams(Params):
         at_most=10.0,
     )
     compression: str = param("zstd", "of the file's chunks", choices=COMPRESSIONS)
-    max_bag_size: int = param(
+    max_bag_size_bytes: int = param(
         0, "size at which a new file begins; 0 for one file", unit="B", at_least=0
     )
     max_bag_duration_s: float = param(

@@ -44,7 +44,7 @@ class SimParams(Params):
         "what /odom/filtered carries: the true pose, or dead reckoning by the wheels",
         choices=("true", "wheel"),
     )
-    wheel_noise: float = param(
+    wheel_noise_m: float = param(
         0.0,
         "stddev of a wheel's measured travel after a metre; grows with the way's root",
         unit="m",
@@ -96,7 +96,7 @@ class SimParams(Params):
 # What the simulator or its topics are built from: changing it needs a new start.
 FIXED_AT_START = frozenset(
     {
-        *("timestep_s", "seed", "camera_renderer", "odometry", "wheel_noise"),
+        *("timestep_s", "seed", "camera_renderer", "odometry", "wheel_noise_m"),
         *("map_frame", "odom_frame", "base_frame", "odometry_child_frame"),
         *("link_frame_prefix", "clock_rate_hz", "odometry_rate_hz", "tf_rate_hz"),
         "joint_tf_rate_hz",

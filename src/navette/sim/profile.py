@@ -61,10 +61,10 @@ def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
             "max_accel_mps2": acceleration,
             "max_yaw_accel_radps2": yaw_acceleration,
         },
-        "map_memory": {"footprint": flat},
-        "planner": {"footprint": flat},
+        "map_memory": {"footprint_m": flat},
+        "planner": {"footprint_m": flat},
         "control": {
-            "footprint": flat,
+            "footprint_m": flat,
             "cruise_speed_mps": cruise,
             "reverse_speed_mps": min(reverse, cruise / 2),
             "max_speed_mps": speed,

@@ -71,7 +71,7 @@ class Simulator:
         self.imus = tuple(imus_of(self.compiled))
         self.cameras = tuple(cameras_of(self.compiled, self.params))
         drive = self.compiled.robot.drive
-        self._wheel_odometry = WheelOdometry(drive, noise=self.params.wheel_noise)
+        self._wheel_odometry = WheelOdometry(drive, noise=self.params.wheel_noise_m)
         self.reset()
 
     def reset(self) -> None:

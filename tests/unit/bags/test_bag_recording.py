@@ -86,7 +86,7 @@ def test_files_of_a_length(tmp_path: Path) -> None:
 
 def test_files_of_a_size(tmp_path: Path) -> None:
     path = tmp_path / "run"
-    Run(path, max_bag_size=6000, flush_period_s=0.1).go(10).end()
+    Run(path, max_bag_size_bytes=6000, flush_period_s=0.1).go(10).end()
     files = sorted(path.glob("*.mcap"))
     assert len(files) > 2
     assert chatter(path) == list(range(1, 1001))
@@ -94,7 +94,7 @@ def test_files_of_a_size(tmp_path: Path) -> None:
 
 def test_a_folder_that_is_there_is_not_replaced(tmp_path: Path) -> None:
     with pytest.raises(FileFormatError, match="exists already"):
-        Run(tmp_path, max_bag_size=6000)
+        Run(tmp_path, max_bag_size_bytes=6000)
 
 
 def test_the_last_seconds(tmp_path: Path) -> None:

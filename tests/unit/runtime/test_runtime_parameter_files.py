@@ -22,7 +22,7 @@ planner:
   ros__parameters:
     method: astar
     tolerance: 0.5
-    footprint: [0.5, 0.5, -0.5, 0.5]
+    footprint_m: [0.5, 0.5, -0.5, 0.5]
     nested:
       depth.of: {it: 3}
 /robot:
@@ -41,7 +41,7 @@ def test_nodes_and_nested_names() -> None:
             {
                 "method": "astar",
                 "tolerance": 0.5,
-                "footprint": [0.5, 0.5, -0.5, 0.5],
+                "footprint_m": [0.5, 0.5, -0.5, 0.5],
                 "nested.depth.of.it": 3,
             },
         ),

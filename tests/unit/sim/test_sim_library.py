@@ -63,7 +63,9 @@ def test_parameter_files_fit_the_robot(name: str) -> None:
     nodes = yaml.safe_load(robot.params_file.read_text())
     values = nodes["sim"]["ros__parameters"]
     SimParams.from_dict(values)
-    told = Footprint.from_flat(tuple(nodes["control"]["ros__parameters"]["footprint"]))
+    told = Footprint.from_flat(
+        tuple(nodes["control"]["ros__parameters"]["footprint_m"])
+    )
     shape = Footprint(footprint_of(robot.model))
     assert told.circumscribed_radius == pytest.approx(
         shape.circumscribed_radius, abs=0.02
@@ -90,7 +92,7 @@ def test_another_robot_takes_the_place_of_the_worlds_own() -> None:
 
 def test_derived_parameters_of_the_course_robot() -> None:
     derived = derive_parameters(load_robot("course").model)
-    outline = Footprint.from_flat(tuple(derived["planner"]["footprint"]))  # type: ignore[arg-type]
+    outline = Footprint.from_flat(tuple(derived["planner"]["footprint_m"]))  # type: ignore[arg-type]
     assert outline.circumscribed_radius == pytest.approx(1.58, abs=0.01)
     SimParams.from_dict(derived["sim"])
     assert derived["control"]["cruise_speed_mps"] == pytest.approx(0.7)

@@ -150,7 +150,7 @@ def record(
         "images": True,
         "hidden": include_hidden_topics,
         "compression": compression,
-        "max_bag_size": max_bag_size,
+        "max_bag_size_bytes": max_bag_size,
         "max_bag_duration_s": max_bag_duration,
         "snapshot_duration_s": snapshot_duration,
         "paused": paused,

@@ -63,13 +63,13 @@ class ControlParams(Params):
     path_tolerance_m: float = param(
         0.05, "how far corners may be rounded off the path", unit="m", above=0.0
     )
-    pid_kp: float = param(
+    pid_kp_per_m2: float = param(
         2.5, "curvature per cross-track error", unit="1/m²", at_least=0.0
     )
-    pid_ki: float = param(
+    pid_ki_per_m3: float = param(
         0.4, "curvature per cross-track error times metres", unit="1/m³", at_least=0.0
     )
-    pid_kd: float = param(
+    pid_kd_per_m: float = param(
         2.5, "curvature per heading error (= slope of the error)", unit="1/m",
         at_least=0.0,
     )  # fmt: skip
@@ -94,7 +94,7 @@ class ControlParams(Params):
         1.0, "farther from the path the robot stops (off_path)", unit="m", above=0.0
     )
 
-    footprint: tuple[float, ...] = param(
+    footprint_m: tuple[float, ...] = param(
         (0.25, 0.2, -0.25, 0.2, -0.25, -0.2, 0.25, -0.2),
         "outline of the body about the axle: x1, y1, x2, y2, …", unit="m",
     )  # fmt: skip
@@ -140,9 +140,9 @@ class ControlParams(Params):
                 f"{self.lookahead_m:g}"
             )
         try:
-            Footprint.from_flat(self.footprint)
+            Footprint.from_flat(self.footprint_m)
         except InvalidValueError as error:
-            raise ParameterError(f"parameter 'footprint': {error}") from error
+            raise ParameterError(f"parameter 'footprint_m': {error}") from error
 
     def limits(self) -> MotionLimits:
         """The part that bounds commands."""

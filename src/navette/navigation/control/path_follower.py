@@ -210,12 +210,14 @@ def _steering_of(params: ControlParams) -> Steering:
             time=params.lookahead_time_s,
             tolerance=params.path_tolerance_m,
         )
-    return CrossTrackPid(params.pid_kp, params.pid_ki, params.pid_kd)
+    return CrossTrackPid(
+        params.pid_kp_per_m2, params.pid_ki_per_m3, params.pid_kd_per_m
+    )
 
 
 def _collision_of(params: ControlParams) -> CollisionCheck:
     return CollisionCheck(
-        Footprint.from_flat(params.footprint),
+        Footprint.from_flat(params.footprint_m),
         margin=params.collision_margin_m,
         horizon=params.slow_clearance_m,
         reaction=params.reaction_s,

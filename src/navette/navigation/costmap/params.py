@@ -10,24 +10,24 @@ from navette.params import Params, param
 class CostmapParams(Params):
     """How a scan becomes a costmap."""
 
-    resolution: float = param(0.1, "edge of a cell", unit="m", above=0.0, at_most=1.0)
-    size: float = param(
+    resolution_m: float = param(0.1, "edge of a cell", unit="m", above=0.0, at_most=1.0)
+    size_m: float = param(
         30.0,
         "edge of the square grid around the sensor; what lies outside is not seen",
         unit="m",
         above=0.0,
         at_most=200.0,
     )
-    inflation_radius: float = param(
+    inflation_radius_m: float = param(
         1.0, "distance from an obstacle at which cost ends", unit="m", at_least=0.0
     )
     inflation_method: str = param(
         "linear",
-        "how cost falls with distance d: max_cost (1 - d / inflation_radius), "
-        "or max_cost exp(-inflation_decay d)",
+        "how cost falls with distance d: max_cost (1 - d / inflation_radius_m), "
+        "or max_cost exp(-inflation_decay_per_m d)",
         choices=("linear", "exponential"),
     )
-    inflation_decay: float = param(
+    inflation_decay_per_m: float = param(
         3.0, "decay of the exponential inflation", unit="1/m", at_least=0.0
     )
     max_cost: int = param(
@@ -36,7 +36,7 @@ class CostmapParams(Params):
         at_least=0,
         at_most=100,
     )
-    grazing_margin: float = param(
+    grazing_margin_m: float = param(
         0.5,
         "at most this far before a hit a beam stops freeing cells, when it grazes "
         "the surface and would free cells that the surface is in",
@@ -46,14 +46,14 @@ class CostmapParams(Params):
     )
 
     def check(self) -> None:
-        cells = self.size / self.resolution
+        cells = self.size_m / self.resolution_m
         if not 1 <= cells <= 4000:
             raise ParameterError(
-                f"parameter 'size': {self.size} m at a resolution of "
-                f"{self.resolution} m is {cells:.0f} cells; wanted 1 to 4000"
+                f"parameter 'size_m': {self.size_m} m at a resolution of "
+                f"{self.resolution_m} m is {cells:.0f} cells; wanted 1 to 4000"
             )
-        if self.inflation_radius > self.size:
+        if self.inflation_radius_m > self.size_m:
             raise ParameterError(
-                f"parameter 'inflation_radius': {self.inflation_radius} m; wanted at "
-                f"most the size, {self.size} m"
+                f"parameter 'inflation_radius_m': {self.inflation_radius_m} m; wanted "
+                f"at most size_m, {self.size_m} m"
             )

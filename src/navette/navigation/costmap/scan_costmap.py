@@ -57,17 +57,17 @@ class ScanCostmap:
 
     def __init__(self, params: CostmapParams) -> None:
         self.params = params
-        cells = 2 * math.ceil(params.size / params.resolution / 2 - 0.5 - 1e-9) + 1
-        corner = -cells * params.resolution / 2
+        cells = 2 * math.ceil(params.size_m / params.resolution_m / 2 - 0.5 - 1e-9) + 1
+        corner = -cells * params.resolution_m / 2
         self.spec = GridSpec(
-            params.resolution, cells, cells, Pose2(corner, corner, 0.0)
+            params.resolution_m, cells, cells, Pose2(corner, corner, 0.0)
         )
         self._table = cost_table(
             "linear" if params.inflation_method == "linear" else "exponential",
-            inflation_radius_m=params.inflation_radius,
-            resolution=params.resolution,
+            inflation_radius_m=params.inflation_radius_m,
+            resolution=params.resolution_m,
             max_cost=params.max_cost,
-            decay_per_m=params.inflation_decay,
+            decay_per_m=params.inflation_decay_per_m,
         )
         self._beams: tuple[float, float, int] | None = None
         self._directions = np.empty((0, 2))
@@ -108,8 +108,8 @@ class ScanCostmap:
             directions,
             range_min=scan.range_min,
             range_max=scan.range_max,
-            clearance=self.params.resolution * math.sqrt(0.5),
-            most=self.params.grazing_margin,
+            clearance=self.params.resolution_m * math.sqrt(0.5),
+            most=self.params.grazing_margin_m,
         )
 
     def _directions_of(self, scan: Scan) -> NDArray[np.float64]:

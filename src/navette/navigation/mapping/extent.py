@@ -38,7 +38,7 @@ def grow_to_hold(
     """The map's extent enlarged until it holds ``points``, or None if it does.
 
     Grows on the sides that need it, by whole chunks, while an edge stays within
-    ``max_size``; what would not fit stays outside.
+    ``max_size_m``; what would not fit stays outside.
 
     Args:
         spec: the extent now.

@@ -12,7 +12,7 @@ class FusionGate:
     - On the timer: when the robot moved or turned far enough since the last.
     - On arrival: when it contradicts the map near the robot (something moved, or came
       into view), so that a robot that waits, or one that is fast, is not left with an
-      old map until the next timer; not more often than ``change_period``.
+      old map until the next timer; not more often than ``change_period_s``.
 
     Never while the robot spins, falls or tilts: its scan is smeared, or of another
     height than the robot drives at.
@@ -37,7 +37,7 @@ class FusionGate:
             return True
         if not self.params.fuse_on_change:
             return False
-        if now_ns - self._last_ns < round(self.params.change_period * 1e9):
+        if now_ns - self._last_ns < round(self.params.change_period_s * 1e9):
             return False
         changes = memory.changes(costmap)
         return max(changes) >= self.params.change_cells
@@ -52,7 +52,8 @@ class FusionGate:
         moved = last.map_T_base.distance_to(newest.map_T_base)
         turned = abs(angle_difference(newest.map_T_base.yaw, last.map_T_base.yaw))
         return (
-            moved >= self.params.update_distance or turned >= self.params.update_angle
+            moved >= self.params.update_distance_m
+            or turned >= self.params.update_angle_rad
         )
 
     def fused(self, costmap: PlacedCostmap, now_ns: int) -> None:
@@ -62,7 +63,7 @@ class FusionGate:
     def _is_unsteady(self, costmap: PlacedCostmap) -> bool:
         motion, params = costmap.motion, self.params
         return (
-            abs(motion.yaw_rate) > params.max_yaw_rate
-            or abs(motion.vertical_speed) > params.max_vertical_speed
-            or motion.tilt > params.max_tilt
+            abs(motion.yaw_rate) > params.max_yaw_rate_radps
+            or abs(motion.vertical_speed) > params.max_vertical_speed_mps
+            or motion.tilt > params.max_tilt_rad
         )

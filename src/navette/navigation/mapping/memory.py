@@ -67,20 +67,20 @@ class MapMemory:
     def configure(self, params: MapMemoryParams) -> None:
         """Use other values from now on; :meth:`MapMemoryParams.shape` must not change.
 
-        A map that has outgrown a smaller ``max_size`` keeps its size.
+        A map that has outgrown a smaller ``max_size_m`` keeps its size.
         """
         self.params = params
         self._footprint = (
-            Footprint.from_flat(params.footprint) if params.footprint else None
+            Footprint.from_flat(params.footprint_m) if params.footprint_m else None
         )
 
     def reset(self) -> None:
         """Forget everything: all cells unknown, the extent as at the start."""
         params = self.params
-        edge = max(1, round(params.size / params.resolution))
-        corner = edge * params.resolution / 2
-        origin = Pose2(params.center_x - corner, params.center_y - corner, 0.0)
-        self.spec = GridSpec(params.resolution, edge, edge, origin)
+        edge = max(1, round(params.size_m / params.resolution_m))
+        corner = edge * params.resolution_m / 2
+        origin = Pose2(params.center_x_m - corner, params.center_y_m - corner, 0.0)
+        self.spec = GridSpec(params.resolution_m, edge, edge, origin)
         self._cells = np.full(self.spec.shape, UNKNOWN, np.int8)
         self._log_odds: NDArray[np.float32] | None = None
         if params.fusion == "log_odds":
@@ -102,7 +102,7 @@ class MapMemory:
                 costmap.spec,
                 "max" if self.params.fusion == "max" else "overwrite",
                 sensor=costmap.sensor,
-                erase_within_m=self.params.erase_range,
+                erase_within_m=self.params.erase_range_m,
             )
         if self._footprint is not None:
             self._free_under(self._footprint, costmap.map_T_base)
@@ -122,14 +122,14 @@ class MapMemory:
             costmap.cells,
             costmap.spec,
             center=costmap.sensor,
-            radius_m=self.params.change_range,
+            radius_m=self.params.change_range_m,
         )
 
     def warm_up(self) -> None:
         """Load or compile the kernels now, not at the first costmap."""
-        trial = MapMemory(replace(self.params, size=self.params.resolution))
+        trial = MapMemory(replace(self.params, size_m=self.params.resolution_m))
         cells = np.full((1, 1), LETHAL, np.int8)
-        spec = GridSpec(self.params.resolution, 1, 1, trial.spec.origin)
+        spec = GridSpec(self.params.resolution_m, 1, 1, trial.spec.origin)
         here = trial.spec.origin
         costmap = PlacedCostmap(cells, spec, (here.x, here.y), here, 0)
         trial.fuse(costmap)
@@ -137,7 +137,10 @@ class MapMemory:
 
     def _grow(self, corners: NDArray[np.float64]) -> None:
         growth = grow_to_hold(
-            self.spec, corners, chunk=self.params.growth, max_size=self.params.max_size
+            self.spec,
+            corners,
+            chunk=self.params.growth_m,
+            max_size=self.params.max_size_m,
         )
         if growth is None:
             return

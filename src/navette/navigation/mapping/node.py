@@ -63,7 +63,7 @@ class MapMemoryNode(StageNode):
         self._tracker = self._new_tracker()
         self._start()
         self._memory.warm_up()
-        self._timer = self.create_timer(self.params.update_period, self.on_timer)
+        self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
 
     def on_odometry(self, msg: Odometry) -> None:
         """Follow the robot; place the costmaps that waited for this."""
@@ -93,9 +93,9 @@ class MapMemoryNode(StageNode):
 
     def on_params_changed(self, old: MapMemoryParams) -> None:
         """Values that shape the map start it anew; the others apply from now on."""
-        if self.params.update_period != old.update_period:
+        if self.params.update_period_s != old.update_period_s:
             self.destroy_timer(self._timer)
-            self._timer = self.create_timer(self.params.update_period, self.on_timer)
+            self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
         if self.params.shape() != old.shape():
             if self.params.frames() != old.frames():
                 self._tracker = self._new_tracker()
@@ -122,7 +122,7 @@ class MapMemoryNode(StageNode):
         self._memory.reset()
         self._gate.reset()
         self._waiting = PlacementQueue[OccupancyGrid](
-            round(self.params.pose_wait * 1e9)
+            round(self.params.pose_wait_s * 1e9)
         )
         self._newest: PlacedCostmap | None = None
         self._last_stamp_ns = 0

@@ -126,7 +126,7 @@ class MissionNode(StageNode):
     def on_params_changed(self, old: MissionParams) -> None:
         """New goals are added; times and failure rule hold from the next goal on."""
         params: MissionParams = self.params
-        if params.goals != old.goals:
+        if params.goals_m != old.goals_m:
             for goal in params.goal_points():
                 self._sequence.add(*goal)
         self._sequence.timeout_ns = round(params.goal_timeout_s * 1e9)

@@ -13,7 +13,7 @@ class MissionParams(Params):
 
     map_frame: str = param("map", "frame of the goals sent and of the pose")
     base_frame: str = param("base_link", "frame whose path length is measured")
-    goals: tuple[float, ...] = param((), "goals to start with: x1, y1, …", unit="m")
+    goals_m: tuple[float, ...] = param((), "goals to start with: x1, y1, …", unit="m")
     goal_timeout_s: float = param(
         300.0, "a goal not reached by then has timed out; 0: never", unit="s",
         at_least=0.0,
@@ -25,15 +25,15 @@ class MissionParams(Params):
     rate_hz: float = param(10.0, "checks per second", unit="Hz", at_least=1.0)
 
     def check(self) -> None:
-        if len(self.goals) % 2:
+        if len(self.goals_m) % 2:
             raise ParameterError(
-                f"parameter 'goals': {len(self.goals)} numbers; wanted pairs x, y"
+                f"parameter 'goals_m': {len(self.goals_m)} numbers; wanted pairs x, y"
             )
-        if not all(map(math.isfinite, self.goals)):
+        if not all(map(math.isfinite, self.goals_m)):
             raise ParameterError(
-                f"parameter 'goals': {self.goals}; wanted finite numbers"
+                f"parameter 'goals_m': {self.goals_m}; wanted finite numbers"
             )
 
     def goal_points(self) -> list[tuple[float, float]]:
         """The goals as points (x, y), metres."""
-        return list(zip(self.goals[0::2], self.goals[1::2], strict=True))
+        return list(zip(self.goals_m[0::2], self.goals_m[1::2], strict=True))

@@ -64,7 +64,7 @@ class DetourPlanner:
             step_m=step,
             reach_m=body.circumscribed_m,
             sample_m=min(params.path_spacing_m, step / 2),
-            turn_cost_m=params.turn_cost_m,
+            turn_cost_m_per_rad=params.turn_cost_m_per_rad,
             reverse_factor=params.reverse_factor,
         )
 
@@ -87,7 +87,7 @@ class DetourPlanner:
         return path_shape.path_cost(
             poses,
             self.grid,
-            turn_cost_m=self.params.turn_cost_m,
+            turn_cost_m_per_rad=self.params.turn_cost_m_per_rad,
             reverse_factor=self.params.reverse_factor,
         )
 

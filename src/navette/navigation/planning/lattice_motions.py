@@ -31,7 +31,7 @@ class Motions:
         reach_m: furthest point of the body from the base, for the sampling of turns.
         headings: number of headings on the circle.
         sample_m: no body point moves further than about this between two samples.
-        turn_cost_m: what a radian of turning in place costs, in metres driven.
+        turn_cost_m_per_rad: what a radian of turning in place costs, in metres driven.
         reverse_factor: what a metre backwards costs, in metres forwards.
         cusp_cost_m: what a change of direction costs.
     """
@@ -40,7 +40,7 @@ class Motions:
     reach_m: float
     headings: int = 32
     sample_m: float = 0.1
-    turn_cost_m: float = 0.5
+    turn_cost_m_per_rad: float = 0.5
     reverse_factor: float = 1.5
     cusp_cost_m: float = 0.5
 
@@ -86,7 +86,7 @@ class Motions:
         costs = []
         for direction, turn in MOVES:
             if direction == 0:
-                costs.append(self.turn_cost_m * self.heading_step)
+                costs.append(self.turn_cost_m_per_rad * self.heading_step)
             else:
                 factor = 1.0 if direction > 0 else self.reverse_factor
                 # More than the straight piece, or the path weaves for nothing.

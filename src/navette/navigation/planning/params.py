@@ -16,7 +16,7 @@ class PlannerParams(Params):
     base_frame: str = param("base_link", "frame that is driven: the axle's midpoint")
     method: str = param("a_star", "search on the grid", choices=METHODS)
 
-    footprint: tuple[float, ...] = param(
+    footprint_m: tuple[float, ...] = param(
         (0.25, 0.2, -0.25, 0.2, -0.25, -0.2, 0.25, -0.2),
         "corners x1, y1, x2, y2, … of the body in the base frame",
         unit="m",
@@ -84,8 +84,8 @@ class PlannerParams(Params):
         above=0.0,
         at_most=3.2,
     )
-    turn_cost_m: float = param(
-        0.5, "what a radian of turning in place is worth in metres driven", unit="m",
+    turn_cost_m_per_rad: float = param(
+        0.5, "cost of turning in place, in metres per radian", unit="m/rad",
         at_least=0.0,
     )  # fmt: skip
     reverse_factor: float = param(

@@ -102,7 +102,11 @@ def directions(poses: Poses) -> NDArray[np.int8]:
 
 
 def path_cost(
-    poses: Poses, grid: PlanningGrid, *, turn_cost_m: float, reverse_factor: float
+    poses: Poses,
+    grid: PlanningGrid,
+    *,
+    turn_cost_m_per_rad: float,
+    reverse_factor: float,
 ) -> float:
     """What driving the path is worth, in metres of free driving forwards."""
     if len(poses) < 2:
@@ -111,7 +115,9 @@ def path_cost(
     cells = np.clip(cells, 0, (grid.spec.width - 1, grid.spec.height - 1))
     factor = grid.factor_at(cells[:, 1], cells[:, 0])
     factor = np.where(directions(poses) < 0, factor * reverse_factor, factor)
-    return float((lengths(poses) * factor).sum() + turn_cost_m * turns(poses).sum())
+    return float(
+        (lengths(poses) * factor).sum() + turn_cost_m_per_rad * turns(poses).sum()
+    )
 
 
 @njit(cache=True)

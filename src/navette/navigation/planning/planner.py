@@ -65,7 +65,7 @@ class Planner:
 
     def __init__(self, params: PlannerParams) -> None:
         self.params = params
-        self.footprint = Footprint.from_flat(params.footprint)
+        self.footprint = Footprint.from_flat(params.footprint_m)
         self.router = GridRouter(params)
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._body: BodyShape | None = None
@@ -153,7 +153,7 @@ class Planner:
         return path_cost(
             poses,
             self.grid(),
-            turn_cost_m=self.params.turn_cost_m,
+            turn_cost_m_per_rad=self.params.turn_cost_m_per_rad,
             reverse_factor=self.params.reverse_factor,
         )
 

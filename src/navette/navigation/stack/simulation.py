@@ -67,7 +67,7 @@ class Simulation:
         goals = [value for goal in self.options.goals for value in goal]
         overrides.add("sim", {"seed": self.options.seed}, "--seed")
         if goals:
-            overrides.add("missions", {"goals": goals}, "--goal")
+            overrides.add("missions", {"goals_m": goals}, "--goal")
         if self.options.record is not None:
             images = {"images": self.options.record_images}
             overrides.add("recorder", images, "--record-images")

@@ -137,7 +137,7 @@ def missions() -> None:
     profile = _profile(_resolve(given), "missions")
     if given.goal:
         goals = [value for goal in given.goal for value in goal]
-        profile.add("missions", {"goals": goals}, "--goal")
+        profile.add("missions", {"goals_m": goals}, "--goal")
     made: list[MissionNode] = []
 
     def make(context: Context) -> Node:

@@ -117,7 +117,7 @@ def big_robot(**changes: object) -> ControlParams:
     values: dict[str, object] = {
         "cruise_speed_mps": 1.5,
         "reverse_speed_mps": 0.5,
-        "footprint": (
+        "footprint_m": (
             1.5, 0.5, 0.4, 0.5, 0.4, 0.7, -0.4, 0.7, -0.4, 0.5, -0.5, 0.5,
             -0.5, -0.5, -0.4, -0.5, -0.4, -0.7, 0.4, -0.7, 0.4, -0.5, 1.5, -0.5,
         ),

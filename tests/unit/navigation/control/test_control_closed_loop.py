@@ -171,7 +171,7 @@ def seg(a: tuple[float, float], b: tuple[float, float]) -> np.ndarray:
 
 
 def closest(result: Run, points: np.ndarray) -> float:
-    outline = np.array(big_robot().footprint).reshape(-1, 2)
+    outline = np.array(big_robot().footprint_m).reshape(-1, 2)
     return min(
         body_distance(points, outline, p.x, p.y, p.yaw, 1.7, 5.0) - 0.05
         for p in result.poses

@@ -283,7 +283,7 @@ def test_parameters_can_change_on_the_way(world: World) -> None:
     assert result.successful
     world.graph.run_for(1.5)
     assert world.plant.speed == pytest.approx(0.2, abs=0.01)
-    [result] = world.node.set_parameters([Parameter("footprint", value=[1.0, 2.0])])
+    [result] = world.node.set_parameters([Parameter("footprint_m", value=[1.0, 2.0])])
     assert not result.successful
     world.node.set_parameters([Parameter("method", value="cross_track_pid")])
     world.node.set_parameters([Parameter("rate_hz", value=10.0)])

@@ -24,7 +24,7 @@ def test_a_wrong_value_is_named(changes: dict[str, object], named: str) -> None:
 @pytest.mark.parametrize("footprint", [(1.0, 2.0, 3.0), (1.0, 1.0, 2.0, 1.0, 2.0, 2.0)])
 def test_a_wrong_footprint_is_refused(footprint: tuple[float, ...]) -> None:
     with pytest.raises(InvalidValueError, match="footprint"):
-        ControlParams(footprint=footprint)
+        ControlParams(footprint_m=footprint)
 
 
 def test_limits_carry_the_wheel_coupling() -> None:

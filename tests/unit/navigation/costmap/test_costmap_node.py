@@ -55,11 +55,11 @@ def test_one_costmap_for_each_scan_in_its_frame_and_with_its_stamp() -> None:
 
 def test_parameters_apply_to_the_next_scan() -> None:
     with GraphHarness() as graph:
-        node, costmaps = started(graph, resolution=0.05, size=10.0)
+        node, costmaps = started(graph, resolution_m=0.05, size_m=10.0)
         graph.publish("/lidar", scan([3.0] * 21))
         graph.run_for(0.1)
         assert costmaps.last.info.width == 201
-        node.set_parameters([Parameter("size", value=4.0)])
+        node.set_parameters([Parameter("size_m", value=4.0)])
         graph.publish("/lidar", scan([3.0] * 21))
         graph.run_for(0.1)
         assert costmaps.last.info.width == 81
@@ -70,9 +70,9 @@ def test_wrong_parameters_are_refused() -> None:
         with pytest.raises(ParameterError, match="inflation_method"):
             started(graph, inflation_method="cubic")
         node, _ = started(graph)
-        results = node.set_parameters([Parameter("size", value=1000.0)])
+        results = node.set_parameters([Parameter("size_m", value=1000.0)])
         assert not results[0].successful
-        assert node.params.size == 30.0
+        assert node.params.size_m == 30.0
 
 
 def test_a_scan_without_sense_gives_no_costmap_and_the_next_one_works() -> None:

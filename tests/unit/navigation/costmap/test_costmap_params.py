@@ -6,7 +6,7 @@ from navette.navigation.costmap import CostmapParams
 
 def test_defaults_are_those_documented() -> None:
     params = CostmapParams()
-    assert (params.resolution, params.inflation_radius, params.max_cost) == (
+    assert (params.resolution_m, params.inflation_radius_m, params.max_cost) == (
         0.1,
         1,
         100,
@@ -17,12 +17,12 @@ def test_defaults_are_those_documented() -> None:
 @pytest.mark.parametrize(
     ("values", "text"),
     [
-        ({"resolution": 0.0}, "'resolution': 0.0 is not allowed; wanted > 0"),
+        ({"resolution_m": 0.0}, "'resolution_m': 0.0 is not allowed; wanted > 0"),
         ({"inflation_method": "cubic"}, "wanted one of linear, exponential"),
         ({"max_cost": 101}, "'max_cost': 101"),
-        ({"size": 100.0, "resolution": 0.01}, "'size': 100.0 m .* 10000 cells"),
-        ({"size": 0.01, "inflation_radius": 0.0}, "'size': 0.01 m"),
-        ({"inflation_radius": 31.0}, "'inflation_radius': 31.0 m"),
+        ({"size_m": 100.0, "resolution_m": 0.01}, "'size_m': 100.0 m .* 10000 cells"),
+        ({"size_m": 0.01, "inflation_radius_m": 0.0}, "'size_m': 0.01 m"),
+        ({"inflation_radius_m": 31.0}, "'inflation_radius_m': 31.0 m"),
     ],
 )
 def test_bad_values_are_named(values, text) -> None:

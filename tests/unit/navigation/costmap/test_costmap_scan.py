@@ -6,7 +6,7 @@ import pytest
 from navette.errors import InvalidValueError
 from navette.navigation.costmap import CostmapParams, Scan, ScanCostmap
 
-PARAMS = CostmapParams(size=10.0, inflation_radius=0.5)
+PARAMS = CostmapParams(size_m=10.0, inflation_radius_m=0.5)
 
 
 def scan(ranges, *, angle_min=0.0, increment=0.01, range_max=8.0) -> Scan:
@@ -20,7 +20,9 @@ def arc(distance: float) -> np.ndarray:
 
 def test_sensor_sits_in_the_middle_of_the_middle_cell() -> None:
     for size, resolution in ((10.0, 0.1), (3.0, 0.05), (0.25, 0.1), (0.1, 0.1)):
-        params = CostmapParams(size=size, resolution=resolution, inflation_radius=0.1)
+        params = CostmapParams(
+            size_m=size, resolution_m=resolution, inflation_radius_m=0.1
+        )
         spec = ScanCostmap(params).spec
         assert spec.width == spec.height
         assert spec.width * resolution >= size - 1e-9
@@ -49,10 +51,10 @@ def test_cost_falls_linearly_before_the_hit() -> None:
 
 def test_exponential_inflation() -> None:
     params = CostmapParams(
-        size=10.0,
-        inflation_radius=0.5,
+        size_m=10.0,
+        inflation_radius_m=0.5,
         inflation_method="exponential",
-        inflation_decay=2.0,
+        inflation_decay_per_m=2.0,
         max_cost=80,
     )
     cost = ScanCostmap(params).build(scan(arc(3.0), angle_min=-0.1))
@@ -102,9 +104,9 @@ def test_beam_along_a_wall_does_not_free_the_cells_the_wall_is_in() -> None:
     angles = 0.11 + increment * np.arange(20)
     wall = (0.52 / np.sin(angles)).astype(np.float32)
     beams = scan(wall, angle_min=0.11, increment=increment)
-    keeping = ScanCostmap(CostmapParams(size=10.0, inflation_radius=0.0))
+    keeping = ScanCostmap(CostmapParams(size_m=10.0, inflation_radius_m=0.0))
     erasing = ScanCostmap(
-        CostmapParams(size=10.0, inflation_radius=0.0, grazing_margin=0.0)
+        CostmapParams(size_m=10.0, inflation_radius_m=0.0, grazing_margin_m=0.0)
     )
     assert (erasing.build(beams)[55] == 0).sum() >= 5
     assert (keeping.build(beams)[55] == 0).sum() == 0

@@ -145,7 +145,7 @@ def config(*names: str) -> tuple[bool, ...]:
         ({"odom0": "/odom", "odom0_config": config("x", "z")}, "z is chosen.*planar"),
         ({"imu0": "/imu", "imu0_config": config("x")}, "x is chosen.*not give it"),
         ({"process_noise_covariance": (1.0,)}, "1 numbers; wanted 15"),
-        ({"gps0": "/fix", "gps0_datum": (91.0, 0.0)}, "wanted latitude"),
+        ({"gps0": "/fix", "gps0_datum_deg": (91.0, 0.0)}, "wanted latitude"),
         ({"odom0_pose_rejection_threshold": 0.0}, "rejection_threshold"),
     ],
 )

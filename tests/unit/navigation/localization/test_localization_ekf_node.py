@@ -90,7 +90,7 @@ def test_velocities_add_up_to_a_pose_in_odometry_and_tf() -> None:
 
 def test_it_goes_on_by_prediction_then_falls_silent_and_says_so() -> None:
     with GraphHarness() as graph:
-        _, estimates = started(graph, **WHEELS, sensor_timeout=0.5)
+        _, estimates = started(graph, **WHEELS, sensor_timeout_s=0.5)
         logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
         graph.publish("/wheels", wheels(100.0, 2.0))
         graph.run_for(3.0)
@@ -180,7 +180,7 @@ def fix(stamp_s: float, latitude: float, longitude: float, status: int = 0):
 def test_a_fix_is_where_the_antenna_is() -> None:
     with GraphHarness() as graph:
         placed(graph, "antenna", Transform3((0.5, 0.0, 2.0), (0.0, 0.0, 0.0, 1.0)))
-        datum = {"gps0": "/fix", "gps0_datum": [48.0, 11.0]}
+        datum = {"gps0": "/fix", "gps0_datum_deg": [48.0, 11.0]}
         _, estimates = started(graph, **datum)
         logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
         # 100 m east at 48°: 1° of longitude is 74 628.5 m on WGS 84.
@@ -295,7 +295,7 @@ def test_parameters_may_change_while_it_runs() -> None:
         node, estimates = started(graph, **WHEELS)
         graph.publish("/wheels", wheels(1.0, 1.0))
         graph.run_for(0.2)
-        node.set_parameters([Parameter("frequency", value=10.0)])
+        node.set_parameters([Parameter("frequency_hz", value=10.0)])
         estimates.clear()
         graph.publish("/wheels", wheels(1.2, 1.0))
         graph.run_for(0.35)

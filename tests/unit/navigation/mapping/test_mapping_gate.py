@@ -53,7 +53,7 @@ def test_timer_waits_for_way_or_turn(x, yaw, expected) -> None:
 
 def test_the_same_costmap_is_not_fused_twice() -> None:
     first = costmap()
-    gate, _ = fused_once(first, update_distance=0.0)
+    gate, _ = fused_once(first, update_distance_m=0.0)
     assert not gate.on_timer(first)
     assert gate.on_timer(costmap())
 
@@ -87,7 +87,7 @@ def test_a_robot_that_stands_still_sees_what_changed() -> None:
 
 
 def test_changes_are_rate_limited_and_can_be_switched_off() -> None:
-    gate, memory = fused_once(costmap(), change_period=0.3)
+    gate, memory = fused_once(costmap(), change_period_s=0.3)
     changed = costmap(obstacle=True)
     assert not gate.on_arrival(changed, memory, 299_999_999)
     assert gate.on_arrival(changed, memory, 300_000_000)

@@ -8,7 +8,7 @@ from navette.geometry import Pose2
 from navette.grids import GridSpec, placed
 from navette.navigation.mapping import MapMemory, MapMemoryParams, PlacedCostmap
 
-SMALL = {"size": 10.0, "growth": 2.0, "max_size": 20.0}
+SMALL = {"size_m": 10.0, "growth_m": 2.0, "max_size_m": 20.0}
 SPEC = GridSpec(0.1, 41, 41, Pose2(-2.02, -2.02, 0.0))
 ORIGIN = Pose2(0.0, 0.0, 0.0)
 
@@ -34,7 +34,7 @@ def at(mem: MapMemory, x: float, y: float) -> int:
 
 
 def test_starts_unknown_and_centred_as_told() -> None:
-    mem = memory(center_x=3.0, center_y=-1.0)
+    mem = memory(center_x_m=3.0, center_y_m=-1.0)
     assert (mem.occupancy() == -1).all()
     assert mem.spec.shape == (100, 100)
     assert mem.spec.origin == Pose2(-2.0, -6.0, 0.0)
@@ -69,7 +69,7 @@ def test_max_never_lowers() -> None:
 
 
 def test_log_odds_need_evidence_to_change_their_mind() -> None:
-    mem, hit = memory(fusion="log_odds", erase_range=0.0), free()
+    mem, hit = memory(fusion="log_odds", erase_range_m=0.0), free()
     hit[20, 30] = 100
     post = SPEC.center_of(20, 30)
     for _ in range(3):
@@ -110,7 +110,7 @@ def test_thin_posts_survive_every_heading() -> None:
 
 
 def test_far_beams_do_not_erase_what_near_ones_saw() -> None:
-    post, mem = (1.0, 0.0), memory(erase_range=1.5)
+    post, mem = (1.0, 0.0), memory(erase_range_m=1.5)
     near = free()
     near[SPEC.cell_of(*post)] = 100
     mem.fuse(costmap(near))
@@ -156,7 +156,9 @@ def test_growth_is_bounded(fusion) -> None:
 def test_a_robot_far_outside_the_largest_map_leaves_it_unknown(
     fusion: str, far: float
 ) -> None:
-    mem = memory(fusion=fusion, footprint=(0.5, 0.5, -0.5, 0.5, -0.5, -0.5, 0.5, -0.5))
+    mem = memory(
+        fusion=fusion, footprint_m=(0.5, 0.5, -0.5, 0.5, -0.5, -0.5, 0.5, -0.5)
+    )
     assert mem.fuse(costmap(free(), Pose2(far, far, 0.3)))
     assert mem.spec.shape == (200, 200)
     assert (mem.occupancy() == -1).all()
@@ -165,7 +167,7 @@ def test_a_robot_far_outside_the_largest_map_leaves_it_unknown(
 def test_cells_under_the_body_are_free() -> None:
     body = (-0.5, -0.7, 1.5, -0.7, 1.5, 0.7, -0.5, 0.7)
     for fusion in ("overwrite", "log_odds"):
-        mem, cells = memory(fusion=fusion, footprint=body), unknown()
+        mem, cells = memory(fusion=fusion, footprint_m=body), unknown()
         cells[10:31, 10:31] = -1
         cells[20, 24] = 100
         cells[20, 40] = 100
@@ -195,9 +197,9 @@ def test_what_is_handed_out_is_a_copy() -> None:
     ("values", "text"),
     [
         ({"fusion": "mean"}, "wanted one of overwrite, max, log_odds"),
-        ({"max_size": 5.0}, "'max_size': 5.0 m; wanted at least the size, 10.0 m"),
-        ({"max_size": 1e6}, "at most 20000 cells"),
-        ({"update_period": 0.0}, "'update_period'"),
+        ({"max_size_m": 5.0}, "'max_size_m': 5.0 m; wanted at least size_m, 10.0 m"),
+        ({"max_size_m": 1e6}, "at most 20000 cells"),
+        ({"update_period_s": 0.0}, "'update_period_s'"),
     ],
 )
 def test_bad_parameters_are_named(values, text) -> None:
@@ -206,5 +208,5 @@ def test_bad_parameters_are_named(values, text) -> None:
 
 
 def test_bad_footprint_is_named() -> None:
-    with pytest.raises(ParameterError, match="'footprint': footprint: 3 numbers"):
-        memory(footprint=(0.0, 1.0, 2.0))
+    with pytest.raises(ParameterError, match="'footprint_m': footprint: 3 numbers"):
+        memory(footprint_m=(0.0, 1.0, 2.0))

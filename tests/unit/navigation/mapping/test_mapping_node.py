@@ -66,7 +66,7 @@ class Rig:
     """A map memory, its transforms, and what it publishes."""
 
     def __init__(self, graph: GraphHarness, **values) -> None:
-        values = {"size": 20.0} | values
+        values = {"size_m": 20.0} | values
         overrides = [Parameter(name, value=value) for name, value in values.items()]
         self.graph = graph
         self.node = graph.add(
@@ -159,7 +159,7 @@ def test_a_costmap_is_placed_at_its_own_stamp_not_with_what_is_newest() -> None:
 
 def test_without_odometry_costmaps_are_dropped() -> None:
     with GraphHarness() as graph:
-        rig = Rig(graph, pose_wait=0.3)
+        rig = Rig(graph, pose_wait_s=0.3)
         rig.costmap(with_post(1.0, 0.0), 50 * MS)
         rig.run_ms(400)
         rig.odometry(0.0, 0.0, 40 * MS)
@@ -273,8 +273,8 @@ def test_parameters_that_shape_the_map_start_it_anew_others_do_not() -> None:
         rig.run_ms(20)
         rig.node.set_parameters(
             [
-                Parameter("update_distance", value=0.2),
-                Parameter("update_period", value=0.5),
+                Parameter("update_distance_m", value=0.2),
+                Parameter("update_period_s", value=0.5),
             ]
         )
         rig.run_ms(20)

@@ -66,7 +66,7 @@ def send_odometry(graph: GraphHarness, x: float) -> None:
 
 def test_goals_are_sent_in_turn_and_recorded(graph: GraphHarness) -> None:
     planner = FakePlanner(graph, ["reached", "reached", "reached"])
-    node = mission(graph, goals=[1.0, 0.0, 3.0, 0.0])
+    node = mission(graph, goals_m=[1.0, 0.0, 3.0, 0.0])
     send_map(graph)
     graph.publish_every(
         0.1, "/odom/filtered", lambda _: Odometry(child_frame_id="base_link")
@@ -84,7 +84,7 @@ def test_goals_are_sent_in_turn_and_recorded(graph: GraphHarness) -> None:
 def test_path_length_and_distance_left_are_measured(graph: GraphHarness) -> None:
     FakePlanner(graph, ["reached"])
     send_map(graph)
-    node = mission(graph, goals=[3.0, 0.0])
+    node = mission(graph, goals_m=[3.0, 0.0])
     graph.run_for(0.6)
     for k in range(6):
         send_odometry(graph, 0.5 * k)
@@ -96,7 +96,7 @@ def test_path_length_and_distance_left_are_measured(graph: GraphHarness) -> None
 
 
 def test_nothing_is_sent_before_map_and_planner_are_there(graph: GraphHarness) -> None:
-    node = mission(graph, goals=[1.0, 0.0])
+    node = mission(graph, goals_m=[1.0, 0.0])
     graph.run_for(1.0)
     planner = FakePlanner(graph, ["reached"])
     graph.run_for(1.0)
@@ -118,7 +118,7 @@ def test_after_a_failure_it_goes_on_or_stops(
 ) -> None:
     FakePlanner(graph, ["reached", "no_path", "reached"])
     send_map(graph)
-    node = mission(graph, goals=[1.0, 0.0, 2.0, 0.0, 3.0, 0.0], on_failure=on_failure)
+    node = mission(graph, goals_m=[1.0, 0.0, 2.0, 0.0, 3.0, 0.0], on_failure=on_failure)
     assert graph.run_until(lambda: node.done, 20.0)
     assert [o.result for o in node.outcomes] == results
 
@@ -126,7 +126,7 @@ def test_after_a_failure_it_goes_on_or_stops(
 def test_a_goal_that_takes_too_long_times_out(graph: GraphHarness) -> None:
     FakePlanner(graph, ["following"])
     send_map(graph)
-    node = mission(graph, goals=[1.0, 0.0], goal_timeout_s=3.0)
+    node = mission(graph, goals_m=[1.0, 0.0], goal_timeout_s=3.0)
     assert graph.run_until(lambda: node.done, 10.0)
     assert node.outcomes[0].result == "timed_out"
     assert node.outcomes[0].time_s == pytest.approx(3.0, abs=0.11)
@@ -134,7 +134,7 @@ def test_a_goal_that_takes_too_long_times_out(graph: GraphHarness) -> None:
 
 def test_wrong_goals_are_refused(graph: GraphHarness) -> None:
     with pytest.raises(ParameterError, match="pairs"):
-        mission(graph, goals=[1.0, 0.0, 2.0])
+        mission(graph, goals_m=[1.0, 0.0, 2.0])
     node = mission(graph)
     with pytest.raises(InvalidValueError, match="finite"):
         node.add_goal(float("nan"), 0.0)
@@ -146,7 +146,7 @@ def test_goals_can_be_given_while_it_runs(graph: GraphHarness) -> None:
     send_map(graph)
     node = mission(graph)
     graph.run_for(1.0)
-    [result] = node.set_parameters([Parameter("goals", value=[4.0, 5.0])])
+    [result] = node.set_parameters([Parameter("goals_m", value=[4.0, 5.0])])
     assert result.successful
     assert graph.run_until(lambda: node.done, 10.0)
     assert planner.goals == [(4.0, 5.0)]

@@ -20,14 +20,14 @@ from navette.navigation.planning.planning_grid import (
 )
 from navette.navigation.planning.traversal import LETHAL
 
-PARAMS = PlannerParams(footprint=COURSE_FOOTPRINT, comfort_m=0.2)
+PARAMS = PlannerParams(footprint_m=COURSE_FOOTPRINT, comfort_m=0.2)
 BODY = BodyShape.of(Footprint.from_flat(COURSE_FOOTPRINT), 0.1)
 
 
 def walled(**changes: object):
     occupancy, spec = empty_map(12, 8)
     fill(occupancy, spec, (0, 0.3), (0, 8))
-    params = PlannerParams(footprint=COURSE_FOOTPRINT, comfort_m=0.2, **changes)
+    params = PlannerParams(footprint_m=COURSE_FOOTPRINT, comfort_m=0.2, **changes)
     return occupancy, planning_grid(occupancy, spec, BODY, params), params
 
 
@@ -49,10 +49,10 @@ def test_inflation_in_the_map_is_not_taken_for_obstacles() -> None:
     occupancy, spec = empty_map(12, 8)
     fill(occupancy, spec, (3, 6), (2, 5), 99)
     assert planning_grid(occupancy, spec, BODY, PARAMS).cost.max() == 0
-    softer = PlannerParams(footprint=COURSE_FOOTPRINT, map_cost_weight=2.0)
+    softer = PlannerParams(footprint_m=COURSE_FOOTPRINT, map_cost_weight=2.0)
     cost = planning_grid(occupancy, spec, BODY, softer).cost
     assert 0 < cost.max() < LETHAL
-    stricter = PlannerParams(footprint=COURSE_FOOTPRINT, lethal_cost=99)
+    stricter = PlannerParams(footprint_m=COURSE_FOOTPRINT, lethal_cost=99)
     assert planning_grid(occupancy, spec, BODY, stricter).cost.max() == LETHAL
 
 
@@ -61,7 +61,7 @@ def test_unknown_cells_cost_more_or_are_closed() -> None:
     fill(occupancy, spec, (3, 6), (2, 5), -1)
     cost = planning_grid(occupancy, spec, BODY, PARAMS).cost
     assert 0 < cost[30, 40] < 30
-    shy = PlannerParams(footprint=COURSE_FOOTPRINT, allow_unknown=False)
+    shy = PlannerParams(footprint_m=COURSE_FOOTPRINT, allow_unknown=False)
     assert planning_grid(occupancy, spec, BODY, shy).cost[30, 40] == LETHAL
 
 
@@ -152,7 +152,7 @@ def test_a_turn_takes_the_short_way_in_small_steps() -> None:
 def test_path_cost_counts_length_turns_reverse_and_price() -> None:
     _, grid, _ = walled()
     out = np.array([[6.0, 4, 0], [7, 4, 0], [7, 4, math.pi], [6.5, 4, math.pi]])
-    rates = {"turn_cost_m": 0.5, "reverse_factor": 2.0}
+    rates = {"turn_cost_m_per_rad": 0.5, "reverse_factor": 2.0}
     cost = path_shape.path_cost(out, grid, **rates)
     assert cost == pytest.approx(1 + 0.5 * math.pi + 0.5)
     back = np.array([[6.0, 4, 0], [5.5, 4, 0]])

@@ -42,7 +42,7 @@ def plan(
     max_expansions: int = 40_000,
 ) -> LatticeResult:
     body = BodyShape.of(COURSE, spec.resolution)
-    params = PlannerParams(footprint=COURSE_FOOTPRINT, clearance_margin_m=MARGIN)
+    params = PlannerParams(footprint_m=COURSE_FOOTPRINT, clearance_margin_m=MARGIN)
     grid = planning_grid(occupancy, spec, body, params)
     grid = open_at(grid, spec.cell_of(start.x, start.y), body)
     world = LatticeWorld(

@@ -26,7 +26,7 @@ from navette.navigation.planning import (
 )
 
 SMALL = PlannerParams(clearance_margin_m=0.1, comfort_m=0.1)
-COURSE = PlannerParams(footprint=COURSE_FOOTPRINT)
+COURSE = PlannerParams(footprint_m=COURSE_FOOTPRINT)
 
 
 def planner(
@@ -241,7 +241,7 @@ def test_an_about_turn_goes_the_roomier_way_round() -> None:
     outline = (0.9, 0.2, -0.2, 0.2, -0.2, -0.2, 0.9, -0.2)
     occupancy, spec = empty_map(10, 8)
     fill(occupancy, spec, (4.5, 5.5), (5.05, 5.25))  # a shelf on the left
-    params = PlannerParams(footprint=outline, clearance_margin_m=0.05)
+    params = PlannerParams(footprint_m=outline, clearance_margin_m=0.05)
     made = planner(occupancy, spec, params)
     for goal_y in (3.9, 4.1):
         plan = made.plan(Pose2(5, 4, 0), Goal(1, goal_y))

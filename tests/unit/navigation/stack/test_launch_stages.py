@@ -92,7 +92,7 @@ def test_the_odom_integrator_finds_its_configuration_under_any_name() -> None:
         ("sim --speed 0", "real-time factor 0.0"),
         ("odom_integrator --ros-args -p odom_type:=speed", "one of pos, gps, vel"),
         ("ekf", "wanted the topic of at least one of odom0"),
-        ("missions --goal 1 nan", "'goals': nan is not allowed"),
+        ("missions --goal 1 nan", "'goals_m': nan is not allowed"),
     ],
 )
 def test_what_is_wrong_is_told_in_a_line(

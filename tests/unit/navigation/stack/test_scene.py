@@ -17,13 +17,13 @@ def test_a_model_file_brings_the_parameters_that_lie_beside_it(tmp_path: Path) -
     model = Path(shutil.copy(JACKAL, tmp_path / "mine.sdf"))
     alone = resolve_scene(RunOptions(world="empty", robot=str(model)))
     assert alone.params_file is None
-    assert alone.derived["control"]["footprint"]
+    assert alone.derived["control"]["footprint_m"]
 
     beside = tmp_path / "params.yaml"
     beside.write_text("control:\n  ros__parameters:\n    cruise_speed_mps: 0.3\n")
     resolved = resolve_scene(RunOptions(world="empty", robot=str(model)))
     assert resolved.params_file == beside
-    assert resolved.derived["control"]["footprint"]  # for what the file leaves open
+    assert resolved.derived["control"]["footprint_m"]  # for what the file leaves open
 
 
 @pytest.mark.parametrize(

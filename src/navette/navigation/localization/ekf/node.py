@@ -1,8 +1,8 @@
 """The filter's node: odometry, IMU, GNSS, … → where the robot is.
 
-Before the first measurement it publishes nothing. When no sensor says anything it goes
-on by prediction for ``sensor_timeout``, then publishes nothing until one does again, so
-that what drives by it stops. Stamps are those of the measurements, and only go ahead;
+Before the first measurement it publishes nothing. Without measurements it
+predicts for ``sensor_timeout_s``, then publishes nothing until a measurement arrives,
+so that the controller stops. Stamps are those of the measurements, and only go ahead;
 after a jump of the measurements' time (a bag that loops) it begins anew.
 """
 
@@ -85,7 +85,7 @@ class EkfNode(StageNode):
             self._buffer, self, static_only=not self._is_on_map
         )
         self._start()
-        self._timer = self.create_timer(1.0 / self.params.frequency, self.on_timer)
+        self._timer = self.create_timer(1.0 / self.params.frequency_hz, self.on_timer)
 
     def inputs(self) -> tuple[Input, ...]:
         if not self.params.used:
@@ -127,7 +127,7 @@ class EkfNode(StageNode):
         if newest_ns is None:
             return
         waited_ns = 0 if self._is_fresh else self._now_ns() - self._arrived_ns
-        if waited_ns > round(self.params.sensor_timeout * 1e9):
+        if waited_ns > round(self.params.sensor_timeout_s * 1e9):
             self._fall_silent()
             return
         self._is_fresh = False
@@ -138,10 +138,12 @@ class EkfNode(StageNode):
 
     def on_params_changed(self, old: EkfParams) -> None:
         """Another rate applies at once; anything else begins anew."""
-        if self.params.frequency != old.frequency:
+        if self.params.frequency_hz != old.frequency_hz:
             self.destroy_timer(self._timer)
-            self._timer = self.create_timer(1.0 / self.params.frequency, self.on_timer)
-        if replace(self.params, frequency=old.frequency) != old:
+            self._timer = self.create_timer(
+                1.0 / self.params.frequency_hz, self.on_timer
+            )
+        if replace(self.params, frequency_hz=old.frequency_hz) != old:
             self._start()
 
     def base_in(self, child: str) -> Transform3:
@@ -165,8 +167,8 @@ class EkfNode(StageNode):
         )
         self._filter = OrderedEkf(
             PlanarEkf(noise, initial, np.array(params.initial_state)[PLANAR]),
-            round(params.history_length * 1e9),
-            round(params.max_gap * 1e9),
+            round(params.history_length_s * 1e9),
+            round(params.max_gap_s * 1e9),
         )
         self._sensors: dict[str, Sensor] = {
             source: KINDS[source](source, params, self) for source in params.used

@@ -64,8 +64,8 @@ _RELATIVE = "take its poses as seen from its first"
 class EkfParams(Params):
     """Which sensors there are, what they tell, and how much the model is trusted."""
 
-    frequency: float = param(30.0, "estimates published", unit="1/s", above=0.0)
-    sensor_timeout: float = param(
+    frequency_hz: float = param(30.0, "estimates published", unit="Hz", above=0.0)
+    sensor_timeout_s: float = param(
         0.5,
         "so long it goes on by prediction when no sensor says anything; then it "
         "publishes nothing",
@@ -94,7 +94,7 @@ class EkfParams(Params):
         (0.0,) * len(SPATIAL),
         "before the first measurement: " + " ".join(SPATIAL) + ", m and rad",
     )
-    history_length: float = param(
+    history_length_s: float = param(
         1.0,
         "a measurement so much older than the newest is put in its place in time; an "
         "older one is left out",
@@ -102,14 +102,14 @@ class EkfParams(Params):
         at_least=0.0,
         at_most=60.0,
     )
-    max_gap: float = param(
+    max_gap_s: float = param(
         10.0,
         "when nothing came for longer by the stamps (a bag was set forward), the "
         "filter begins anew",
         unit="s",
         above=0.0,
     )
-    gravitational_acceleration: float = param(
+    gravitational_acceleration_mps2: float = param(
         9.80665, "what an accelerometer at rest shows", unit="m/s²"
     )
 
@@ -155,10 +155,11 @@ class EkfParams(Params):
     gps0: str = _topic("sensor_msgs/msg/NavSatFix")
     gps0_queue_size: int = _queue()
     gps0_rejection_threshold: float = _threshold("position")
-    gps0_datum: tuple[float, ...] = param(
+    gps0_datum_deg: tuple[float, ...] = param(
         (),
-        "latitude and longitude (degrees) of the world frame's origin, whose x axis "
-        "points east; empty = the first fix",
+        "latitude and longitude of the world frame's origin, whose x axis points "
+        "east; empty = the first fix",
+        unit="deg",
     )
 
     @property
@@ -175,7 +176,7 @@ class EkfParams(Params):
 
     @property
     def datum(self) -> GeoPoint | None:
-        return GeoPoint(*self.gps0_datum) if self.gps0_datum else None
+        return GeoPoint(*self.gps0_datum_deg) if self.gps0_datum_deg else None
 
     def check(self) -> None:
         if not self.two_d_mode:
@@ -197,10 +198,10 @@ class EkfParams(Params):
             )
         for source in self.used:
             self._check_config(source)
-        datum = self.gps0_datum
+        datum = self.gps0_datum_deg
         if datum and not (len(datum) == 2 and GeoPoint(*datum).is_valid):
             raise ParameterError(
-                f"parameter 'gps0_datum': {list(datum)}; wanted latitude (±90) and "
+                f"parameter 'gps0_datum_deg': {list(datum)}; wanted latitude (±90) and "
                 "longitude in degrees"
             )
 

@@ -61,7 +61,7 @@ class Sensor(ABC):
 
     def reset(self) -> None:
         """Forget the messages so far."""
-        self._changes = PoseChanges(round(self.params.max_gap * 1e9))
+        self._changes = PoseChanges(round(self.params.max_gap_s * 1e9))
         self._first = FirstPoseIsZero()
 
     @abstractmethod
@@ -211,7 +211,7 @@ class ImuSensor(Sensor):
         if self._option("remove_gravitational_acceleration"):
             world_R_base = multiply(_quaternion(msg.orientation), imu_R_base)
             up = rotate(_inverse(world_R_base), (0.0, 0.0, 1.0))
-            force = force - self.params.gravitational_acceleration * np.array(up)
+            force = force - self.params.gravitational_acceleration_mps2 * np.array(up)
         reading = Reading(stamp_ns, force[:2], covariance[:2, :2])
         _check(reading)
         limit = self._option("linear_acceleration_rejection_threshold")
