@@ -1,7 +1,7 @@
 """The simulated robot: worlds, physics and sensors on MuJoCo.
 
-MuJoCo is loaded with the first name that needs it: who reads worlds and robots, as each
-stage does for its robot's parameters, needs none of it.
+MuJoCo is imported with the first name that needs it: reading worlds and robots, as each
+stage does for its robot's parameters, works without it.
 """
 
 from typing import TYPE_CHECKING, Any

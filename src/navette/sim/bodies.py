@@ -3,9 +3,9 @@
 
 Wheels touch the ground through a crowned tyre, an ellipsoid of the wheel's radius
 and width: one contact point in the wheel's plane, as a tyre has. A rigid cylinder
-rests on both rims, which scrub against each other when the robot turns: it turned
-6–12 % slower than commanded, the crowned tyre within 1 %. Against obstacles the
-wheel keeps its true shape.
+rests on both rims, which scrub when the robot turns: measured yaw rates were 6–12 %
+too low with a cylinder and within 1 % with the crowned tyre. For contacts with
+obstacles the wheel keeps its true shape.
 """
 
 import math
@@ -36,7 +36,7 @@ _LEAST_MASS, _LEAST_INERTIA = 1e-3, 1e-6
 
 
 def camera_name(model: Model, link: str, sensor: CameraSensor) -> str:
-    """MuJoCo's name of a camera, for drawing with OpenGL."""
+    """Return MuJoCo's name of a camera, for the OpenGL renderer."""
     return f"{model.name}/{link}/{sensor.name}"
 
 
@@ -53,7 +53,7 @@ def add_cameras(body: mujoco.MjsBody, model: Model, link: Link) -> None:
 
 
 def tyre_of(geometry: Geometry) -> Geometry | None:
-    """The crowned tyre of a solid wheel; None when it needs none."""
+    """Return the crowned tyre of a solid wheel; None if it needs none."""
     shape = geometry.shape
     if not geometry.collides or not isinstance(shape, Cylinder):
         return None
@@ -67,9 +67,9 @@ def wxyz(pose: Transform3) -> tuple[float, float, float, float]:
 
 
 def set_inertia(body: mujoco.MjsBody, link: Link, *, moves: bool) -> None:
-    """Mass and inertia; MuJoCo's own default pose would add the body's position.
+    """Set mass and inertia; MuJoCo's own default pose would add the body's position.
 
-    A link without any is massless; what moves by itself must weigh something.
+    A link without inertial is massless, except for one with its own degree of freedom.
     """
     body.explicitinertial = True
     inertial = link.inertial
@@ -82,7 +82,7 @@ def set_inertia(body: mujoco.MjsBody, link: Link, *, moves: bool) -> None:
     values, axes = np.linalg.eigh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
     if not _is_physical(values):
         raise InvalidValueError(
-            f"link {link.name!r}: inertia {inertial.inertia} is not that of a body"
+            f"link {link.name!r}: inertia {inertial.inertia} is not physically possible"
         )
     if np.linalg.det(axes) < 0:
         axes[:, 0] = -axes[:, 0]
@@ -95,7 +95,8 @@ def set_inertia(body: mujoco.MjsBody, link: Link, *, moves: bool) -> None:
 
 
 def _is_physical(moments: NDArray[np.float64]) -> bool:
-    """Principal moments (ascending) are positive and obey the triangle rule."""
+    """Whether the principal moments (ascending) are positive and satisfy the triangle
+    inequality."""
     a, b, c = moments
     return bool(a > 0 and a + b >= c * (1 - 1e-6))
 

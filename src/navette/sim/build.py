@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compiles a scene into a MuJoCo model and remembers which index is what.
+"""Compile a scene to a MuJoCo model, with the indices of its parts.
 
 Skid steering slides all four tyres sideways. On stiff contacts that makes MuJoCo's
-wheels hop and the robot turns at a fifth of the commanded rate, in jerks; compliant
-tyres, as such robots have, slide smoothly. A drive's effective wheel separation
-then is 1.6 (Jackal) to 2 (Husky) times the track, as the makers' settings too say.
+wheels hop, and the robot turns jerkily at a fifth of the commanded rate; compliant
+tyres, as on such robots, slide smoothly. The effective wheel separation is then 1.6
+(Jackal) to 2 (Husky) times the track, as in the manufacturers' settings.
 """
 
 import logging
@@ -22,18 +22,18 @@ from navette.sim.masks import ROBOT_GROUP
 from navette.sim.model_builder import ModelBuilder, carrier_of
 from navette.sim.scene import DiffDrive, Model, Scene
 
-# MuJoCo's own way is a file MUJOCO_LOG.TXT in whatever folder one works in.
+# By default MuJoCo writes MUJOCO_LOG.TXT to the working directory.
 mujoco.set_mju_user_warning(logging.getLogger(__name__).warning)
 
-_STIFF_IMPRATIO = 10.0  # friction stiffer than contact: little creep
+_STIFF_IMPRATIO = 10.0  # friction stiffer than contact, for little creep
 _STIFF_SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's default
 _TYRE_IMPRATIO = 1.0
-_TYRE_SOLIMP = (0.3, 0.8, 0.01, 0.5, 2.0)  # a tyre that gives by millimetres
+_TYRE_SOLIMP = (0.3, 0.8, 0.01, 0.5, 2.0)  # a tyre that deforms by millimetres
 
 
 @dataclass(frozen=True)
 class RobotIndex:
-    """Where the robot is in MuJoCo's arrays."""
+    """Indices of the robot in MuJoCo's arrays."""
 
     model: Model
     drive: DiffDrive
@@ -63,10 +63,10 @@ class Compiled:
 
 
 def compile_scene(scene: Scene, *, timestep_s: float) -> Compiled:
-    """MuJoCo model of a scene that has a robot.
+    """Compile a scene that has a robot.
 
     Raises:
-        InvalidValueError: no robot in it, or a model that physics cannot take.
+        InvalidValueError: no robot in the scene, or MuJoCo rejects the model.
     """
     robot = scene.robot
     if robot is None or robot.drive is None:
@@ -110,7 +110,7 @@ def _mjcf_spec(path: Path) -> mujoco.MjSpec:
 
 
 def _add_sky(spec: mujoco.MjSpec, scene: Scene) -> None:
-    """Sun and sky, seen by OpenGL only; ray casting has its own."""
+    """Add sun and sky for OpenGL; ray casting has its own."""
     spec.visual.headlight.ambient = (0.5, 0.5, 0.5)
     spec.worldbody.add_light(
         name="sun",

@@ -23,7 +23,7 @@ from navette.sim.scene import (
 
 
 class World:
-    """Collects static shapes on a floor at z = 0; every ``add_…`` returns itself."""
+    """Static shapes on a floor at z = 0; every ``add_…`` method returns the world."""
 
     def __init__(self, name: str = "world") -> None:
         self._name = name
@@ -39,7 +39,7 @@ class World:
         yaw: float = 0.0,
         colour: Colour = (0.36, 0.47, 0.58, 1.0),
     ) -> Self:
-        """A box standing on the floor; size along its own x and y, metres."""
+        """Add a box on the floor; size along its own x and y (m)."""
         _check_positive("box", (*size, height))
         pose = _standing(centre, height, yaw)
         return self._add("box", Box((*size, height)), pose, colour)
@@ -52,7 +52,7 @@ class World:
         height: float = 1.0,
         colour: Colour = (0.80, 0.50, 0.33, 1.0),
     ) -> Self:
-        """An upright cylinder standing on the floor, metres."""
+        """Add an upright cylinder on the floor (m)."""
         _check_positive("cylinder", (radius, height))
         pose = _standing(centre, height, 0.0)
         return self._add("cylinder", Cylinder(radius, height), pose, colour)
@@ -65,7 +65,7 @@ class World:
         height: float = 1.0,
         colour: Colour = (0.55, 0.57, 0.60, 1.0),
     ) -> Self:
-        """Four walls about the origin; ``size`` is the free space between them."""
+        """Add four walls around the origin; ``size`` is the free space between them."""
         _check_positive("walls", (*size, thickness, height))
         x, y = (edge / 2 + thickness / 2 for edge in size)
         long_x, long_y = size[0] + 2 * thickness, size[1]
@@ -78,7 +78,7 @@ class World:
         return self
 
     def add_robot(self, robot: Model) -> Self:
-        """Put a robot into the world, where its model says it is."""
+        """Add a robot at its model's pose."""
         self._models.append(robot)
         return self
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pinhole camera drawn by ray casting: works anywhere, without OpenGL."""
+"""A pinhole camera rendered by ray casting, without OpenGL."""
 
 import math
 
@@ -20,7 +20,7 @@ Image = NDArray[np.uint8]  # (height, width, 3) red, green, blue
 
 
 class Camera:
-    """One ray a pixel, shaded; never sees the robot that carries it."""
+    """One shaded ray per pixel; the robot itself is invisible to it."""
 
     def __init__(
         self, sensor: CameraSensor, mount: Mount, scene: Scene, model: mujoco.MjModel
@@ -35,7 +35,7 @@ class Camera:
         self._sky = np.array(scene.sky[:3])
 
     def render(self, model: mujoco.MjModel, data: mujoco.MjData) -> Image:
-        """The image now (kinematics must be fresh)."""
+        """Render the current image (kinematics must be up to date)."""
         s, shapes = self.sensor, self._shapes
         shapes.update(data)
         origin, world_R_camera = self.mount.world(data)
@@ -71,12 +71,12 @@ class Camera:
 
 
 def focal_length(sensor: CameraSensor) -> float:
-    """In pixels; pixels are square."""
+    """Focal length in pixels; pixels are square."""
     return sensor.width / (2.0 * math.tan(sensor.horizontal_fov / 2.0))
 
 
 def pixel_rays(sensor: CameraSensor) -> NDArray[np.float64]:
-    """Rays (height · width, 3) through pixel centres: one ahead (x), z up."""
+    """Rays (height · width, 3) through pixel centres, with x = 1 and z up."""
     focal = focal_length(sensor)
     right = (np.arange(sensor.width) + 0.5 - sensor.width / 2) / focal
     down = (np.arange(sensor.height) + 0.5 - sensor.height / 2) / focal

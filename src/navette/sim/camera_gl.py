@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pinhole camera drawn by OpenGL, where the machine has it."""
+"""A pinhole camera rendered by OpenGL, if available."""
 
 import functools
 import importlib
@@ -28,10 +28,10 @@ _PROBE_TIMEOUT_S = 30.0
 
 @functools.cache
 def probe() -> str | None:
-    """The OpenGL backend that works here, as ``MUJOCO_GL`` names it; None: none.
+    """Return the OpenGL backend that works, as a value of ``MUJOCO_GL``, or None.
 
-    Tried in another process: a missing library fails the import of MuJoCo's context,
-    a broken driver may end the process.
+    Probed in another process: a missing library breaks the import of MuJoCo's context,
+    and a broken driver may crash the process.
     """
     chosen = os.environ.get("MUJOCO_GL")
     candidates = [chosen] if chosen else ["egl", "osmesa", ""]
@@ -53,26 +53,26 @@ def probe() -> str | None:
 
 
 def wants_gl(renderer: str) -> bool:
-    """Whether cameras shall use OpenGL, by the parameter ``camera_renderer``.
+    """Whether cameras use OpenGL, by the parameter ``camera_renderer``.
 
     Raises:
-        ParameterError: OpenGL is demanded and does not work here.
+        ParameterError: OpenGL is required but not available.
     """
     if renderer == "raycast":
         return False
     found = probe() is not None
     if renderer == "gl" and not found:
         raise ParameterError(
-            "parameter 'camera_renderer': 'gl' does not work here (it needs PyOpenGL "
-            "and EGL, OSMesa or a display); wanted raycast, or auto"
+            "parameter 'camera_renderer': 'gl' is not available (it needs PyOpenGL "
+            "and EGL, OSMesa or a display); use raycast or auto"
         )
     if not found:
-        _log.info("no OpenGL here: cameras are drawn by ray casting")
+        _log.info("OpenGL is not available: cameras are rendered by ray casting")
     return found
 
 
 class GlCamera:
-    """MuJoCo's own renderer; as the ray-cast camera, it does not see the robot."""
+    """MuJoCo's renderer; the robot is invisible to it, as to the ray-cast camera."""
 
     def __init__(
         self, sensor: CameraSensor, camera: str, model: mujoco.MjModel
@@ -89,14 +89,14 @@ class GlCamera:
         self._option.geomgroup[[SEEN_SOLID, SEEN]] = 1
 
     def render(self, model: mujoco.MjModel, data: mujoco.MjData) -> Image:
-        """The image now (kinematics must be fresh)."""
+        """Render the current image (kinematics must be up to date)."""
         mujoco.mj_camlight(model, data)
         self._renderer.update_scene(data, self._camera, self._option)
         return np.asarray(self._renderer.render(), dtype=np.uint8)
 
 
 def _use_backend(backend: str) -> None:
-    """MuJoCo picks its OpenGL context when it is imported; let it pick again."""
+    """Reload MuJoCo's OpenGL context, which is chosen at import."""
     from mujoco.rendering.classic import gl_context
 
     if os.environ.get("MUJOCO_GL") != backend:

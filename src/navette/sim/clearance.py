@@ -13,14 +13,14 @@ from navette.sim.masks import OBSTACLE
 
 @dataclass(frozen=True)
 class Clearance:
-    """Distance in metres (negative: inside) and whose it is ("" = no obstacle)."""
+    """Distance (m, negative inside) and the nearest obstacle ("" without one)."""
 
     distance: float
     obstacle: str
 
 
 class ClearanceProbe:
-    """Measures body to obstacle: boxes around obstacles first, then exact pairs.
+    """Distance of body to obstacles: bounding boxes first, then exact pairs.
 
     Obstacles are tried in the order of a lower bound on their distance; the search
     ends when no bound is below the best pair found.
@@ -38,14 +38,14 @@ class ClearanceProbe:
         self.reach = self._farthest(data)
 
     def _farthest(self, data: mujoco.MjData) -> float:
-        """Farthest point of the robot from its root body, an upper bound, m."""
+        """Upper bound of the distance from the root body to the robot's surface (m)."""
         root = data.xpos[self._compiled.robot.root_body]
         away = np.linalg.norm(data.geom_xpos[self._parts] - root, axis=1)
         radius = self._compiled.model.geom_rbound[self._parts]
         return float((away + radius).max())
 
     def measure(self, data: mujoco.MjData) -> Clearance:
-        """The nearest obstacle now (kinematics must be fresh)."""
+        """Return the nearest obstacle (kinematics must be up to date)."""
         if not len(self._obstacles):
             return Clearance(np.inf, "")
         model = self._compiled.model
@@ -65,7 +65,7 @@ class ClearanceProbe:
         return Clearance(float(best), self._compiled.geom_owner[nearest])
 
     def _lower_bounds(self, data: mujoco.MjData) -> NDArray[np.float64]:
-        """For each obstacle a distance that the true one cannot undercut."""
+        """Return a lower bound of the distance for each obstacle."""
         radius = self._compiled.model.geom_rbound[self._parts]
         centres = data.geom_xpos[self._parts]
         centre = centres.mean(axis=0)
@@ -83,7 +83,7 @@ class ClearanceProbe:
 
 
 def _meets_obstacles(model: mujoco.MjModel) -> NDArray[np.bool_]:
-    """Geoms that obstacles can touch (tyres only meet the ground)."""
+    """Geoms that can touch obstacles (tyres touch the ground only)."""
     touches: NDArray[np.bool_] = (np.array(model.geom_conaffinity) & OBSTACLE) != 0
     return touches
 

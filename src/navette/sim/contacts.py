@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the robot bumped into."""
+"""Contacts of the robot with obstacles."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ import numpy as np
 
 from navette.sim.build import Compiled
 
-_GAP_NS = 250_000_000  # touching again within this is the same episode
+_GAP_NS = 250_000_000  # a repeated contact within this time belongs to the same episode
 
 
 @dataclass(frozen=True)
 class ContactEpisode:
-    """The robot touched something; ``part`` is the robot's link that did."""
+    """A contact of the robot's link ``part`` with an obstacle."""
 
     start_ns: int
     end_ns: int
@@ -22,9 +22,9 @@ class ContactEpisode:
 
 
 class ContactMonitor:
-    """Collects contacts of the robot with anything that it should not touch.
+    """Collects contacts of the robot with obstacles.
 
-    Wheels, casters and whatever else is made to stand on the ground may touch it.
+    Wheels, casters and other parts that reach the ground may touch the ground.
     """
 
     def __init__(self, compiled: Compiled, data: mujoco.MjData) -> None:
@@ -45,7 +45,7 @@ class ContactMonitor:
         self._open.clear()
 
     def observe(self, data: mujoco.MjData, now_ns: int) -> bool:
-        """Note the contacts of the last physics step; whether there were any."""
+        """Record the contacts of the last physics step; return whether one exists."""
         pairs = data.contact.geom
         robot = self._robot[pairs]
         bad = robot.any(axis=1) & ~robot.all(axis=1)
@@ -72,7 +72,7 @@ class ContactMonitor:
 def _stands(
     compiled: Compiled, data: mujoco.MjData
 ) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-    """Which geoms reach down to where the wheels touch the ground, (ngeom,)."""
+    """Geoms that reach down to the wheels' contact height, (ngeom,) bool."""
     model = compiled.model
     rotation = data.geom_xmat.reshape(-1, 3, 3)
     local = model.geom_aabb

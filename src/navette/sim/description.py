@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""URDF text of the robot and of the world, for viewers to draw."""
+"""URDF of the robot and of the world, for viewers."""
 
 import math
 from xml.etree import ElementTree as Xml
@@ -28,7 +28,7 @@ _GREY: Colour = (0.7, 0.7, 0.72, 1.0)
 
 
 def describe_robot(compiled: Compiled, frames: RobotFrames) -> str:
-    """URDF of the robot: its root is the base frame, its links carry frame names."""
+    """URDF of the robot: its root is the base frame, its links are named by frames."""
     robot = compiled.robot
     root = Xml.Element("robot", name=robot.model.name)
     _add_link(root, frames.base, None)
@@ -49,7 +49,7 @@ def describe_robot(compiled: Compiled, frames: RobotFrames) -> str:
 
 
 def describe_world(compiled: Compiled, map_frame: str) -> str:
-    """URDF of everything that stands still, as one link in the map frame."""
+    """URDF of all static models, as one link in the map frame."""
     model = compiled.model
     root = Xml.Element("robot", name=compiled.scene.name)
     link = Xml.SubElement(root, "link", name=map_frame)
@@ -102,7 +102,7 @@ def _add_geometry(element: Xml.Element, geometry: Geometry) -> None:
 def _add_visual(
     link: Xml.Element, shape: Shape, pose: Transform3, colour: Colour
 ) -> None:
-    """URDF has boxes, cylinders and spheres; the others are put together of these."""
+    """Compose a shape of boxes, cylinders and spheres, which URDF has."""
     if isinstance(shape, Capsule):
         tip = Transform3((0.0, 0.0, shape.length / 2), (0.0, 0.0, 0.0, 1.0))
         _add_visual(link, Cylinder(shape.radius, shape.length), pose, colour)
@@ -136,10 +136,10 @@ def _add_origin(owner: Xml.Element, pose: Transform3) -> None:
 
 
 def _rpy(q: Quaternion) -> tuple[float, float, float]:
-    """Roll, pitch, yaw (rad) about fixed axes, as URDF has them."""
+    """Roll, pitch, yaw (rad) about fixed axes, as in URDF."""
     x, y, z, w = q
     sine = 2 * (w * y - z * x)
-    if abs(sine) > 1 - 1e-12:  # looking straight up or down: yaw is free, take 0
+    if abs(sine) > 1 - 1e-12:  # pitch ±90°: yaw is undetermined, use 0
         return (2 * math.atan2(x, w), math.copysign(math.pi / 2, sine), 0.0)
     return (
         math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The motor controller: turns speed commands into wheel speeds within limits."""
+"""Motor controller: velocity commands to wheel speeds, within limits."""
 
 import math
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ class SpeedRamp:
         self._expires_ns = None
 
     def command(self, linear: float, angular: float, now_ns: int) -> bool:
-        """Take a command; False (and no change) if it is not finite."""
+        """Set the command; False (and no change) if it is not finite."""
         if not (math.isfinite(linear) and math.isfinite(angular)):
             return False
         p = self.params
@@ -50,7 +50,7 @@ class SpeedRamp:
         return True
 
     def advance(self, now_ns: int) -> BodySpeed:
-        """Speed for the next control period."""
+        """Return the velocity of the next control period."""
         if self._expires_ns is not None and now_ns >= self._expires_ns:
             self._target, self._expires_ns = _STOP, None
         dw = self.params.max_yaw_accel_radps2 * CONTROL_PERIOD_S
@@ -62,7 +62,7 @@ class SpeedRamp:
         return self.speed
 
     def _next_linear(self, v: float, target: float) -> float:
-        """Brake towards zero, accelerate away from it; turning round stops first."""
+        """Ramp with the deceleration towards zero and the acceleration away from it."""
         if v * (target - v) < 0:
             brake = self.params.max_decel_mps2 * CONTROL_PERIOD_S
             wanted = target if v * target > 0 else 0.0
@@ -71,7 +71,7 @@ class SpeedRamp:
         return v + min(max(target - v, -dv), dv)
 
     def constant_until_ns(self) -> float:
-        """Time before which :meth:`advance` would change nothing (0 = ramping)."""
+        """Time until which :meth:`advance` has no effect (0 while ramping)."""
         if self.speed != self._target:
             return 0.0
         return math.inf if self._expires_ns is None else float(self._expires_ns)

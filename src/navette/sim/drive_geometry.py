@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a robot's base frame is: on the floor, midway between its drive wheels."""
+"""The base frame of a robot: on the floor, midway between its drive wheels."""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from navette.sim.scene import Model
 
 @dataclass(frozen=True)
 class DriveWheel:
-    """A driven wheel: ``direction`` is ±1, the joint's sense that rolls forward."""
+    """A driven wheel; ``direction`` ±1 is the joint's sign of rolling forward."""
 
     joint: str
     link: str
@@ -21,7 +21,7 @@ class DriveWheel:
 
 
 def drive_wheels(model: Model) -> tuple[DriveWheel, ...]:
-    """The driven wheels of a model, left ones first.
+    """Return the driven wheels of a model, left ones first.
 
     Raises:
         InvalidValueError: the drive names a joint that the model does not have.
@@ -41,20 +41,20 @@ def drive_wheels(model: Model) -> tuple[DriveWheel, ...]:
 
 
 def base_of(model: Model) -> Transform3:
-    """``model_T_base``: at the axle's middle on the floor, x forward, z up."""
+    """``model_T_base``: axle midpoint on the floor, x forward, z up."""
     assert model.drive is not None, "base_of() of a model without a drive"
     left, right = _sides(model)
     x, y, z = ((a + b) / 2 for a, b in zip(left, right, strict=True))
     to_left = _left_of(model)
     yaw = math.atan2(-to_left[0], to_left[1])
-    # Tiny angles are rounding of files that write pi with five digits.
+    # Tiny angles come from files that write pi with five digits.
     yaw = 0.0 if abs(yaw) < 1e-3 else yaw
     floor = z - model.drive.wheel_radius
     return Transform3((x, y, floor), quaternion_from_yaw(yaw))
 
 
 def base_pose_on_floor(pose: Pose2, floor: float) -> Transform3:
-    """``world_T_base`` of a robot that stands at ``pose`` on a floor at that z."""
+    """``world_T_base`` of a robot at ``pose`` on a floor at height z."""
     return Transform3.from_pose2(pose, z=floor)
 
 

@@ -18,7 +18,7 @@ _CAMERA_T_OPTICAL = Transform3(
 
 @dataclass(frozen=True)
 class FixedFrame:
-    """A frame that does not move against its parent frame."""
+    """A frame fixed to its parent frame."""
 
     parent: str
     name: str
@@ -28,7 +28,7 @@ class FixedFrame:
 class RobotFrames:
     """Frames of links and sensors: ``<prefix><link>`` and ``<link's>/<sensor>``.
 
-    A link whose frame would have the base frame's name is the base frame.
+    A link with the name of the base frame is the base frame.
     """
 
     def __init__(self, robot: RobotIndex, params: SimParams) -> None:
@@ -47,7 +47,7 @@ class RobotFrames:
         return f"{self._prefix}{link.replace('::', '/')}"
 
     def of_sensor(self, link: str, sensor: Sensor) -> str:
-        """The frame that the sensor's messages are stamped with."""
+        """Frame id of the sensor's messages."""
         frame = f"{self.of_link(link)}/{sensor.name}"
         return f"{frame}/optical" if isinstance(sensor, CameraSensor) else frame
 
@@ -55,13 +55,14 @@ class RobotFrames:
         """``base_T_frame``.
 
         Raises:
-            ParameterError: no such frame, or one that moves; lists the fixed ones.
+            ParameterError: unknown or moving frame; lists the fixed ones.
         """
         pose = self.base_T_frame.get(frame)
         if pose is None:
             known = ", ".join(self.base_T_frame)
             raise ParameterError(
-                f"frame {frame!r} is not fixed to the robot's base; known: {known}"
+                f"frame {frame!r} is not fixed to the robot's base; fixed frames: "
+                f"{known}"
             )
         return pose
 

@@ -16,7 +16,7 @@ _LONGEST_MEAN_NS = 200_000_000
 
 
 class ImuReading(NamedTuple):
-    """In the sensor's frame: rad/s, and m/s² including the reaction to gravity."""
+    """In the sensor's frame: angular velocity (rad/s), specific force (m/s²)."""
 
     stamp_ns: int
     orientation: Quaternion  # world_R_sensor
@@ -25,10 +25,10 @@ class ImuReading(NamedTuple):
 
 
 class Imu:
-    """Specific force is the mean since the last reading, as integrating units give.
+    """Specific force is the mean since the last reading, as of integrating units.
 
-    f = R^T (Δv / Δt − g), v the velocity of the sensor's own point. A first reading,
-    or one after a long pause, is taken as unaccelerated.
+    f = R^T (Δv / Δt − g), with v the velocity of the sensor's origin. A first reading,
+    or one after a long pause, assumes no acceleration.
     """
 
     def __init__(self, sensor: ImuSensor, mount: Mount) -> None:
@@ -47,7 +47,7 @@ class Imu:
         stamp_ns: int,
         rng: np.random.Generator,
     ) -> ImuReading:
-        """The reading now (kinematics must be fresh)."""
+        """Return the current reading (kinematics must be up to date)."""
         position, world_R_sensor = self.mount.world(data)
         velocity, omega = state.point_velocity(position)
         acceleration = self._mean_acceleration(velocity, stamp_ns)
@@ -68,5 +68,5 @@ class Imu:
     ) -> NDArray[np.float64]:
         last, self._last = self._last, (stamp_ns, velocity)
         if last is None or not 0 < stamp_ns - last[0] <= _LONGEST_MEAN_NS:
-            return np.zeros(3)  # nothing to compare with: taken as unaccelerated
+            return np.zeros(3)  # no earlier velocity: assume no acceleration
         return (velocity - last[1]) / ((stamp_ns - last[0]) * 1e-9)

@@ -27,9 +27,9 @@ _WORLD_READERS = {
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot and the file of its parameters for all nodes, where there is one.
+    """A robot and the parameter file of all nodes for it, or None.
 
-    A built-in robot has one; a model file has one if ``params.yaml`` lies beside it.
+    A built-in robot has one; a model file has one if ``params.yaml`` is beside it.
     """
 
     name: str
@@ -48,11 +48,11 @@ def robot_names() -> list[str]:
 
 
 def load_world(name_or_path: str | Path) -> Scene:
-    """A built-in world by name, or one from a .sdf, .world, .urdf, .xml, .yaml file.
+    """Load a built-in world by name, or a .sdf, .world, .urdf, .xml or .yaml file.
 
     Raises:
         UnknownNameError: neither a built-in name nor a file; lists the names.
-        FileFormatError: the file is of no known kind or broken.
+        FileFormatError: the file has an unknown extension or is invalid.
     """
     if str(name_or_path) in world_names():
         return replace(
@@ -62,16 +62,18 @@ def load_world(name_or_path: str | Path) -> Scene:
     reader = _WORLD_READERS.get(path.suffix.lower())
     if reader is None:
         kinds = ", ".join(_WORLD_READERS)
-        raise FileFormatError(path, f"not a kind of world that is read: {kinds}")
+        raise FileFormatError(
+            path, f"unknown extension of a world file; known: {kinds}"
+        )
     return reader(path)
 
 
 def load_robot(name_or_path: str | Path) -> Robot:
-    """A built-in robot by name, or the robot in an .sdf or .urdf file.
+    """Load a built-in robot by name, or the robot in an .sdf or .urdf file.
 
     Raises:
         UnknownNameError: neither a built-in name nor a file; lists the names.
-        FileFormatError: the file is broken or holds no model with a drive.
+        FileFormatError: the file is invalid or has no model with a drive.
     """
     if str(name_or_path) in robot_names():
         folder = _ROBOTS / str(name_or_path)
@@ -86,13 +88,13 @@ def load_robot(name_or_path: str | Path) -> Robot:
     if path.suffix.lower() in (".sdf", ".world"):
         model = _driven(read_sdf(path), path)
         return Robot(model.name, model, params_file)
-    raise FileFormatError(path, "not a kind of robot that is read: .sdf, .urdf")
+    raise FileFormatError(path, "unknown extension of a robot file; known: .sdf, .urdf")
 
 
 def identify_robot(model: Model) -> Robot | None:
-    """The built-in robot that ``model`` is, told by its name and its wheels.
+    """Return the built-in robot with the name and the wheels of ``model``, or None.
 
-    A world that brings its own copy of a known robot gets that robot's parameters.
+    A world with its own copy of a built-in robot gets that robot's parameters.
     """
     for name in robot_names():
         known = load_robot(name)
@@ -113,12 +115,14 @@ def _same_drive(a: Model, b: Model) -> bool:
 
 def _driven(scene: Scene, path: Path) -> Model:
     if scene.robot is None:
-        raise FileFormatError(path, "no model with a differential drive in it")
+        raise FileFormatError(path, "the file has no model with a differential drive")
     return scene.robot
 
 
 def _existing(name_or_path: str | Path, kind: str, known: list[str]) -> Path:
     path = Path(name_or_path)
     if not path.is_file():
-        raise UnknownNameError.of(f"{kind} (nor is it a file)", str(path), known)
+        raise UnknownNameError.of(
+            f"{kind} (and there is no such file)", str(path), known
+        )
     return path

@@ -17,9 +17,9 @@ from navette.sim.shape_table import ShapeTable
 
 @dataclass(frozen=True)
 class Scan:
-    """One turn of beams: ``ranges`` (N,) metres, beam i at min + i · increment.
+    """One scan: ``ranges`` (N,) in metres, beam i at angle_min + i · increment.
 
-    +inf: nothing within range_max; −inf: closer than range_min; NaN: a beam lost
+    +inf: nothing within range_max; −inf: closer than range_min; NaN: lost beam
     (REP 117).
     """
 
@@ -32,7 +32,7 @@ class Scan:
 
 
 class Lidar:
-    """Casts the beams of one sensor; never sees the robot that carries it."""
+    """Casts the beams of one sensor; the robot itself is invisible to it."""
 
     def __init__(
         self,
@@ -54,13 +54,13 @@ class Lidar:
         self._distance = np.empty(n)
 
     def set_noise(self, params: SimParams) -> None:
-        """Noise and lost beams from now on; below 0 the sensor's own noise."""
+        """Set noise and share of lost beams; below 0 means the sensor's own noise."""
         own = params.lidar_noise_m < 0
         self._noise_m = self.sensor.noise_stddev if own else params.lidar_noise_m
         self._dropout = params.lidar_dropout
 
     def warm_up(self) -> None:
-        """Compile what casts the beams, which takes seconds on the very first run."""
+        """Compile the kernels, which takes seconds on the very first run."""
         empty = np.zeros((0, 3))
         cast_fan(
             np.zeros(0, dtype=np.int64), empty, empty, np.zeros((0, 3, 3)),
@@ -74,7 +74,7 @@ class Lidar:
         stamp_ns: int,
         rng: np.random.Generator,
     ) -> Scan:
-        """Cast all beams in the present state (kinematics must be fresh)."""
+        """Cast all beams in the current state (kinematics must be up to date)."""
         s = self.sensor
         distance = self._cast(model, data)
         ranges = np.where(distance <= s.range_max, distance, np.inf)

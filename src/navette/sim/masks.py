@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who touches whom and who is seen by whom, as MuJoCo's bit masks and groups.
+"""Collision and visibility as MuJoCo's bit masks and geometry groups.
 
-Collision masks: ground (1) and obstacles (2) never meet each other; free bodies
-(4) and the robot meet them and one another. Geometry groups tell sensors what to
-see: 0 seen and solid, 1 only seen, 2 only solid; 3, 4, 5 the same for the robot,
-which its own sensors do not see.
+Collision masks: ground (1) and obstacles (2) never collide with each other; free bodies
+(4) and the robot collide with both and with one another. Geometry groups: 0 visible and
+solid, 1 visible only, 2 solid only; 3, 4, 5 the same for the robot, which is invisible
+to its own sensors.
 """
 
 from navette.sim.scene import Geometry

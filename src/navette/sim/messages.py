@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The simulator's plain values as ROS messages."""
+"""Convert the simulator's values to ROS messages."""
 
 import numpy as np
 
@@ -64,10 +64,10 @@ def odometry_message(
     base_T_child: Transform3,
     planar: PlanarCovariances | None = None,
 ) -> Odometry:
-    """Pose and velocity of a point fixed to the base, the velocity in its own axes.
+    """Odometry of a frame fixed to the base; the velocity is in that frame.
 
-    ``frames`` are the frame of the pose and the child frame. Covariances that are not
-    given are 0, as are those of height, roll and pitch: the robot drives in the plane.
+    ``frames``: frame of the pose and child frame. Missing covariances are 0, as are
+    those of height, roll and pitch: the robot drives in the plane.
     """
     (x, y, z), (qx, qy, qz, qw) = frame_T_base @ base_T_child
     lever = cross(motion.angular, base_T_child.translation)
@@ -105,10 +105,10 @@ def _spatial(planar: Matrix) -> Matrix:
 
 
 def scan_message(scan: Scan, stamp_ns: int, frame: str, period_s: float) -> LaserScan:
-    """With the precision that the message has (32 bits).
+    """Round to the precision of the message (32 bits).
 
-    So who reads it in this process reads the same numbers as who reads it from a bag
-    or in another process.
+    Subscribers in this process then receive the same numbers as readers of a bag or
+    subscribers in another process.
     """
     angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
     return LaserScan(
@@ -160,7 +160,7 @@ def image_message(pixels: Pixels, stamp_ns: int, frame: str) -> Image:
 
 
 def camera_info_message(sensor: CameraSensor, stamp_ns: int, frame: str) -> CameraInfo:
-    """A pinhole without distortion."""
+    """CameraInfo of a pinhole without distortion."""
     f = focal_length(sensor)
     cx, cy = sensor.width / 2, sensor.height / 2
     return CameraInfo(
@@ -176,7 +176,7 @@ def camera_info_message(sensor: CameraSensor, stamp_ns: int, frame: str) -> Came
 
 
 def contact_message(episode: ContactEpisode, count: int) -> DiagnosticStatus:
-    """A new contact: who touched what, when, and how many there were."""
+    """Diagnostics of a new contact: link, obstacle, time and number of contacts."""
     values = {
         "part": episode.part,
         "obstacle": episode.obstacle,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MuJoCo model files as worlds: checked here, compiled by MuJoCo itself."""
+"""MuJoCo model files as worlds: checked here, compiled by MuJoCo."""
 
 from pathlib import Path
 
@@ -11,25 +11,25 @@ _REFUSED = ("plugin", "extension")
 
 
 def read_mjcf(path: Path) -> Scene:
-    """A world from an MJCF file; the file's own contents stay as MuJoCo reads them.
+    """Read a world from an MJCF file; MuJoCo itself parses the contents.
 
     Raises:
         FileFormatError: not MJCF, unsafe XML, plugins, or files outside its folder.
     """
     root = parse_xml(path)
     if root.tag != "mujoco":
-        raise root.error("an MJCF file starts with <mujoco>")
+        raise root.error("the root element must be <mujoco>")
     _check(root, {path.resolve()})
     return Scene(name=root.attributes.get("model", path.stem), mjcf=path)
 
 
 def _check(node: XmlNode, seen: set[Path]) -> None:
     if node.tag in _REFUSED:
-        raise node.error("plugins are not loaded")
+        raise node.error("plugins are not allowed")
     for key in _FILE_ATTRIBUTES:
         value = node.attributes.get(key, "")
         if value and (Path(value).is_absolute() or ".." in Path(value).parts):
-            raise node.error(f"{key}={value!r} leaves the file's folder")
+            raise node.error(f"{key}={value!r} is outside the file's folder")
     for child in node.children:
         _check(child, seen)
     if node.tag == "include" and "file" in node.attributes:

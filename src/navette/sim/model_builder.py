@@ -11,7 +11,7 @@ from navette.sim.masks import FREE, GROUND, OBSTACLE, ROBOT_GROUP, SOLID, group_
 from navette.sim.scene import DiffDrive, Geometry, JointKind, Link, Model, Plane, Scene
 from navette.sim.shape_geoms import add_geom, friction_of
 
-_SERVO_TIME_S = 0.002  # time constant of the wheel speed servo; longer ones droop
+_SERVO_TIME_S = 0.002  # time constant of the wheel speed servo; a longer one droops
 
 
 class ModelBuilder:
@@ -31,8 +31,8 @@ class ModelBuilder:
             for geometry in link.geometries
             if isinstance(geometry.shape, Plane) and geometry.friction is not None
         ]
-        # Gazebo takes the smaller friction of a pair, MuJoCo the larger: the
-        # wheels get the smaller one and the say (priority).
+        # Gazebo uses the smaller friction of a pair, MuJoCo the larger: the
+        # wheels get the smaller one and the higher priority.
         self.ground_friction = min(planes, default=1.0)
 
     def add_ground_if_missing(self) -> None:
@@ -163,7 +163,7 @@ class ModelBuilder:
         )
 
     def add_servos(self, robot: Model, drive: DiffDrive) -> None:
-        """A speed servo on each driven wheel, with a gain that suits its load."""
+        """Add a speed servo to each driven wheel, with a gain that suits its load."""
         mass = sum(link.inertial.mass if link.inertial else 0.0 for link in robot.links)
         wheels = drive_wheels(robot)
         for wheel in wheels:
@@ -176,7 +176,7 @@ class ModelBuilder:
                 trntype=mujoco.mjtTrn.mjTRN_JOINT,
             )
             servo.set_to_velocity(kv=load / _SERVO_TIME_S)
-            # A geared motor's rotor weighs on the wheel about as much as the load.
+            # The rotor inertia of a geared motor is about that of the load.
             # Without it the implicit integrator, stiff servo and light wheel make
             # the wheel slip when it brakes, and the body rocks.
             self.spec.joint(f"{robot.name}/{wheel.joint}").armature = load
@@ -186,10 +186,10 @@ class ModelBuilder:
 
 
 def root_links(model: Model) -> list[Link]:
-    """Links that no other link carries.
+    """Return the links without a parent.
 
     Raises:
-        InvalidValueError: two joints carry one link, or links carry each other.
+        InvalidValueError: a link has two parents, or the joints form a cycle.
     """
     carried = [joint.child for joint in model.joints if joint.parent != "world"]
     twice = {name for name in carried if carried.count(name) > 1}
@@ -204,13 +204,13 @@ def root_links(model: Model) -> list[Link]:
     if twice or lost:
         raise InvalidValueError(
             f"model {model.name!r}: joints must form a tree; "
-            f"see links {', '.join(sorted(twice | lost))}"
+            f"check links {', '.join(sorted(twice | lost))}"
         )
     return roots
 
 
 def carrier_of(model: Model, link: str) -> Link:
-    """The root link that carries ``link`` through any number of joints."""
+    """Return the root link above ``link``."""
     parents = {j.child: j.parent for j in model.joints if j.parent != "world"}
     while link in parents:
         link = parents[link]

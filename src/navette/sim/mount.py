@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a sensor sits on its body."""
+"""Pose of a sensor on its body."""
 
 import mujoco
 import numpy as np

@@ -20,19 +20,19 @@ from navette.sim.sensors import sensors_of
 from navette.sim.simulator import Simulator
 from navette.sim.wheel_odometry import PlanarCovariances
 
-_HEARTBEAT_S = 0.1  # physics goes on, and contacts are told, without any listener
+_HEARTBEAT_S = 0.1  # steps physics and reports contacts without any subscriber
 
 
 class SimNode(StageNode):
-    """One robot in one world: takes speed commands, gives sensors and truth.
+    """One robot in one world: subscribes to commands, publishes sensors and truth.
 
-    Physics advances when something is due: a message somebody listens to, a command,
-    or the heartbeat. A message is only built while somebody listens to its topic.
-    Before the first command the robot stands (or falls to the floor).
+    Physics advances when a message with a subscriber, a command or the periodic step is
+    due. A message is created only while its topic has a subscriber. Before the first
+    command the robot does not move (it may fall to the floor).
 
     Args:
         scene: the world with the robot in it.
-        start: where the robot stands; without it, where the scene puts it.
+        start: initial pose; None takes the pose in the scene.
     """
 
     PARAMS = SimParams
@@ -41,7 +41,7 @@ class SimNode(StageNode):
         Input(
             topic="/cmd_vel",
             type="geometry_msgs/msg/Twist",
-            role="wanted speed; clamped to the limits, zero after the timeout",
+            role="commanded velocity; clamped to the limits, zero after the timeout",
             callback="on_cmd_vel",
         ),
     )
@@ -61,19 +61,19 @@ class SimNode(StageNode):
         Output(
             topic="/camera_info",
             type="sensor_msgs/msg/CameraInfo",
-            role="the camera's geometry",
+            role="intrinsics of the camera",
             rate_hz=30,
         ),
         Output(
             topic="/odom/filtered",
             type="nav_msgs/msg/Odometry",
-            role="where the robot takes itself to be",
+            role="estimated pose and velocity",
             rate_hz=50,
         ),
         Output(
             topic="/ground_truth",
             type="nav_msgs/msg/Odometry",
-            role="where the axle's middle truly is, in the world frame",
+            role="true pose of the axle midpoint in the world frame",
             rate_hz=50,
         ),
         Output(
@@ -92,7 +92,7 @@ class SimNode(StageNode):
         Output(
             topic="/contacts",
             type="diagnostic_msgs/msg/DiagnosticStatus",
-            role="each time the robot starts to touch something it should not",
+            role="start of each contact with an obstacle",
         ),
         Output(
             topic="/robot_description",
@@ -110,7 +110,7 @@ class SimNode(StageNode):
         ),
     )
 
-    _forget_graph: Callable[[], None] | None = None  # also while half made
+    _forget_graph: Callable[[], None] | None = None  # also if construction failed
 
     def __init__(
         self,
@@ -126,8 +126,8 @@ class SimNode(StageNode):
             lidar.warm_up()
         if not self.simulator.lidars:
             self.get_logger().warning(
-                "the robot has no laser scanner: without /lidar it sees no obstacles "
-                "and navigation will not drive it"
+                "the robot has no laser scanner: without /lidar there is no costmap "
+                "and navigation does not drive the robot"
             )
         self._origin_ns = self.get_clock().now_ns
         self.frames = RobotFrames(self.simulator.compiled.robot, self.params)
@@ -147,13 +147,13 @@ class SimNode(StageNode):
         super().destroy_node()
 
     def reset(self) -> None:
-        """Robot and world back to the start; the clock goes on."""
+        """Reset robot and world to the start; the clock continues."""
         self.simulator.reset()
         self._origin_ns = self.get_clock().now_ns
         self._contacts_told = 0
 
     def on_cmd_vel(self, msg: Twist) -> None:
-        """Refuse what is not finite (the robot keeps its last command)."""
+        """Apply a command; a non-finite one is refused and the last one stays."""
         self._advance()
         if not self.simulator.command(msg.linear.x, msg.angular.z):
             self.get_logger().error(
@@ -166,7 +166,7 @@ class SimNode(StageNode):
         self.simulator.change_params(self.params)
 
     def _advance(self) -> int:
-        """Bring physics to the present; the stamp of its state."""
+        """Advance physics to the current time; return the stamp of its state."""
         now_ns = self.get_clock().now_ns
         self.simulator.advance_to(now_ns - self._origin_ns)
         return self._origin_ns + self.simulator.now_ns
@@ -208,7 +208,7 @@ class SimNode(StageNode):
     def _every(
         self, rate_hz: float, publish: Callable[[int], None], *topics: str
     ) -> None:
-        """Call ``publish(stamp)`` at a rate, while somebody listens."""
+        """Call ``publish(stamp)`` at a rate while the topic has a subscriber."""
 
         def tick() -> None:
             publish(self._advance())
@@ -217,7 +217,7 @@ class SimNode(StageNode):
         self._sleepers.append((timer, topics))
 
     def _wake_and_rest(self) -> None:
-        """Run the timers of topics that somebody listens to, and no others."""
+        """Run the timers of the topics that have a subscriber, and no others."""
         for timer, topics in self._sleepers:
             wanted = any(map(self.has_listeners, topics))
             if wanted and timer.is_canceled():
@@ -231,7 +231,7 @@ class SimNode(StageNode):
         topic: str,
         publish: Callable[[str, int, str, int], None],
     ) -> None:
-        """Timers of all sensors of a kind; the first has the plain topic."""
+        """Create timers for all sensors of a kind; the first has the plain topic."""
         model = self.simulator.compiled.robot.model
         for index, (link, sensor) in enumerate(sensors_of(model, kind)):
             own = topic if index == 0 else self._further_topic(topic, sensor)
@@ -281,7 +281,7 @@ class SimNode(StageNode):
         self.publish("/odom/filtered", message)
 
     def _odometry(self) -> tuple[Transform3, Motion, PlanarCovariances | None]:
-        """Pose and motion of the base as the robot knows them, and how well."""
+        """Return the estimated pose and motion of the base, and their covariances."""
         if self.params.odometry == "true":
             return self.simulator.pose(), self.simulator.motion(), None
         wheels = self.simulator.wheel_odometry()
@@ -291,7 +291,7 @@ class SimNode(StageNode):
         return Transform3.from_pose2(wheels.pose), motion, covariances
 
     def _believed_pose(self) -> Transform3:
-        """Pose of the base as the robot knows it."""
+        """Return the estimated pose of the base."""
         if self.params.odometry == "true":
             return self.simulator.pose()
         return Transform3.from_pose2(self.simulator.wheel_odometry().pose)

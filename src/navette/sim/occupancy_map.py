@@ -33,10 +33,10 @@ class _MapFile:
 
 
 def read_map(path: Path) -> Scene:
-    """Occupied cells become boxes: runs along a row, merged over equal rows.
+    """Convert occupied cells to boxes: runs along a row, merged over equal rows.
 
     Raises:
-        FileFormatError: the yaml or its image is broken, missing or too large.
+        FileFormatError: the YAML file or its image is invalid, missing or too large.
     """
     described = _read_yaml(path)
     occupied = _occupied(described, path)
@@ -100,13 +100,15 @@ def _read_yaml(path: Path) -> _MapFile:
         line = mark.line + 1 if mark else None
         raise FileFormatError(path, f"not YAML: {error}", line) from None
     if not isinstance(values, dict):
-        raise FileFormatError(path, "a map file is a mapping with image, resolution, …")
+        raise FileFormatError(
+            path, "a map file must be a mapping with image, resolution, …"
+        )
     mode = values.get("mode", "trinary")
     if mode not in ("trinary", "scale", "raw"):
         raise FileFormatError(path, f"mode {mode!r}; known: trinary, scale, raw")
     image = values.get("image")
     if not isinstance(image, str) or not image:
-        raise FileFormatError(path, "'image' names no file")
+        raise FileFormatError(path, "'image' must name a file")
     origin = values.get("origin", [0.0, 0.0, 0.0])
     if not isinstance(origin, list) or len(origin) != 3:
         raise FileFormatError(path, f"'origin' is {origin!r}; wanted [x, y, yaw]")

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from navette.errors import ParameterError
 from navette.params import Params, param
 
-CONTROL_PERIOD_S = 0.01  # a motor controller's cycle
+CONTROL_PERIOD_S = 0.01  # cycle of the motor controller
 
 
 @dataclass(frozen=True, kw_only=True)
 class SimParams(Params):
-    """A robot's limits, what its sensors suffer from, and its frames."""
+    """Limits of the robot, noise of its sensors, and its frames."""
 
     timestep_s: float = param(
         0.002,
@@ -24,54 +24,55 @@ class SimParams(Params):
 
     command_timeout_s: float = param(
         0.5,
-        "a command older than this stops the robot; 0 = never",
+        "age of a command that stops the robot; 0 = no timeout",
         unit="s",
         at_least=0.0,
     )
     max_speed_mps: float = param(1.0, "fastest forward", unit="m/s", above=0.0)
     max_reverse_speed_mps: float = param(0.5, "fastest backward", unit="m/s", above=0.0)
     max_yaw_rate_radps: float = param(1.0, "fastest turn", unit="rad/s", above=0.0)
-    max_accel_mps2: float = param(1.0, "growth of speed", unit="m/s²", above=0.0)
-    max_decel_mps2: float = param(
-        4.0, "decrease of speed: how hard the brakes are", unit="m/s²", above=0.0
-    )
+    max_accel_mps2: float = param(1.0, "maximum acceleration", unit="m/s²", above=0.0)
+    max_decel_mps2: float = param(4.0, "maximum deceleration", unit="m/s²", above=0.0)
     max_yaw_accel_radps2: float = param(
-        2.0, "change of yaw rate", unit="rad/s²", above=0.0
+        2.0, "maximum yaw acceleration", unit="rad/s²", above=0.0
     )
 
     odometry: str = param(
         "true",
-        "what /odom/filtered carries: the true pose, or dead reckoning by the wheels",
+        "source of /odom/filtered: true pose, or dead reckoning by the wheels",
         choices=("true", "wheel"),
     )
     wheel_noise_m: float = param(
         0.0,
-        "stddev of a wheel's measured travel after a metre; grows with the way's root",
+        "stddev of a wheel's measured travel after 1 m; grows with its square root",
         unit="m",
         at_least=0.0,
         at_most=0.5,
     )
     lidar_noise_m: float = param(
-        -1.0, "stddev of ranges; -1 = as the robot's file says", unit="m", at_least=-1.0
+        -1.0,
+        "stddev of ranges; -1 = value of the robot's file",
+        unit="m",
+        at_least=-1.0,
     )
     lidar_dropout: float = param(
-        0.0, "share of beams that return nothing valid", at_least=0.0, at_most=1.0
+        0.0, "share of beams that return an invalid range", at_least=0.0, at_most=1.0
     )
     camera_renderer: str = param(
         "raycast",
-        "how images are made: by ray casting, by OpenGL, or OpenGL where it works",
+        "camera renderer: ray casting, OpenGL, or OpenGL where it is available",
         choices=("raycast", "gl", "auto"),
     )
 
-    map_frame: str = param("map", "the world's frame")
-    odom_frame: str = param("odom", "frame of odometry; may equal map_frame")
+    map_frame: str = param("map", "world frame")
+    odom_frame: str = param("odom", "odometry frame; may equal map_frame")
     base_frame: str = param(
-        "base_link", "midway between the drive wheels, on the floor"
+        "base_link", "frame midway between the drive wheels, on the floor"
     )
     odometry_child_frame: str = param(
-        "", "frame whose pose /odom/filtered carries; empty = base_frame"
+        "", "frame whose pose /odom/filtered contains; empty = base_frame"
     )
-    link_frame_prefix: str = param("", "put before link names to make their frames")
+    link_frame_prefix: str = param("", "prefix of link names in frame names")
 
     clock_rate_hz: float = param(100.0, "/clock", unit="Hz", above=0.0, at_most=1000.0)
     odometry_rate_hz: float = param(
@@ -93,7 +94,7 @@ class SimParams(Params):
             )
 
 
-# What the simulator or its topics are built from: changing it needs a new start.
+# Parameters that are read at the start only.
 FIXED_AT_START = frozenset(
     {
         *("timestep_s", "seed", "camera_renderer", "odometry", "wheel_noise_m"),

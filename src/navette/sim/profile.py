@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters for a robot that nobody described: from its shape and its drive."""
+"""Parameters derived from the shape and the drive of a robot without its own."""
 
 import math
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ Point2 = tuple[float, float]
 
 
 def footprint_of(model: Model) -> tuple[Point2, ...]:
-    """Convex outline of everything solid, seen from above, in the base frame."""
+    """Convex outline of the solid geometry, from above, in the base frame."""
     base_T_model = base_of(model).inverse()
     points = [
         (x, y)
@@ -37,10 +37,10 @@ def footprint_of(model: Model) -> tuple[Point2, ...]:
 
 
 def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
-    """Parameters by node name; speeds from the drive's limits, else by size.
+    """Return parameters by node name; speeds from the drive's limits, else by size.
 
-    Defaults for a robot of radius r (m): 1 m/s, or slower below half a metre; one
-    second to full speed, half a second to full turn.
+    Defaults for a robot of radius r: 1 m/s, less if r < 0.5 m; 1 s to full speed, 0.5 s
+    to full yaw rate.
     """
     assert model.drive is not None, "derive_parameters() of a model without a drive"
     outline = footprint_of(model)
@@ -77,7 +77,7 @@ def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
 
 
 def convex_hull(points: list[Point2]) -> tuple[Point2, ...]:
-    """Corners in counter-clockwise order (Andrew's monotone chain, 1979)."""
+    """Return the corners counter-clockwise (Andrew's monotone chain, 1979)."""
     ordered = sorted({(round(x, 6), round(y, 6)) for x, y in points})
 
     def chain(sequence: list[Point2]) -> list[Point2]:
@@ -92,7 +92,7 @@ def convex_hull(points: list[Point2]) -> tuple[Point2, ...]:
 
 
 def _turn(a: Point2, b: Point2, c: Point2) -> float:
-    """Twice the signed area of the triangle: above 0 is a left turn."""
+    """Twice the signed area of the triangle; positive for a left turn."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
@@ -102,7 +102,7 @@ def _outline(geometry: Geometry, base_T_link: Transform3) -> Iterator[Vector3]:
 
 
 def _surface(shape: Shape) -> Iterator[Vector3]:
-    """Points whose convex hull holds the shape."""
+    """Points whose convex hull contains the shape."""
     if isinstance(shape, Plane):
         return
     if isinstance(shape, Cylinder):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What MuJoCo's state says about the robot: pose, motion, wheels, links."""
+"""Pose, motion, wheels and links of the robot in MuJoCo's state."""
 
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ class Motion(NamedTuple):
 
 
 class RobotState:
-    """Reads the robot out of MuJoCo's arrays; writes only its start pose."""
+    """Reads the robot's state from MuJoCo's arrays; writes only its start pose."""
 
     def __init__(self, robot: RobotIndex, data: mujoco.MjData) -> None:
         self._robot = robot
@@ -32,11 +32,11 @@ class RobotState:
         self._left = np.array([wheel.side > 0 for wheel in robot.wheels])
 
     def pose(self) -> Transform3:
-        """``world_T_base``: the axle's middle, on the floor."""
+        """``world_T_base`` of the axle midpoint on the floor."""
         return self._root_pose() @ self._root_T_base
 
     def place(self, world_T_base: Transform3) -> None:
-        """Put the robot somewhere, at rest."""
+        """Set the robot's pose, at rest."""
         at = self._robot.qpos
         pose = world_T_base @ self._base_T_root
         x, y, z, w = pose.rotation
@@ -61,17 +61,17 @@ class RobotState:
         omega = rotate(pose.rotation, omega_root)
         px, py, pz = p_world.tolist()
         x, y, z = pose.translation
-        # Not np.cross: three numbers at 100 Hz, and it takes twenty times as long.
+        # Not np.cross, which takes twenty times as long for three numbers.
         around = cross(omega, (px - x, py - y, pz - z))
         return np.array(v_world) + np.array(around), np.array(omega)
 
     def wheel_travel(self) -> tuple[float, float]:
-        """How far the left and the right wheels have turned forward, rad (means)."""
+        """Mean forward rotation of the left and the right wheels (rad)."""
         angles = self._data.qpos[self._robot.wheel_qpos] * self._direction
         return float(angles[self._left].mean()), float(angles[~self._left].mean())
 
     def link_in_base(self, name: str) -> Transform3:
-        """Pose of a link in the base frame (kinematics must be fresh)."""
+        """Pose of a link in the base frame (kinematics must be up to date)."""
         body = self._robot.bodies[name]
         w, x, y, z = self._data.xquat[body].tolist()
         px, py, pz = self._data.xpos[body].tolist()
@@ -83,14 +83,14 @@ class RobotState:
         return Transform3((x, y, z), (qx, qy, qz, qw))
 
     def _root_velocity(self) -> tuple[Vector3, Vector3]:
-        """Of a free joint: linear in the world frame, angular in the root's."""
+        """Velocity of a free joint: linear in the world, angular in the root frame."""
         at = self._robot.qvel
         vx, vy, vz, wx, wy, wz = self._data.qvel[at : at + 6].tolist()
         return (vx, vy, vz), (wx, wy, wz)
 
 
 def moving_links(model: Model) -> tuple[str, ...]:
-    """Links that move against the base: everything beyond a joint that moves."""
+    """Links that move relative to the base: all beyond a movable joint."""
     moving: list[str] = []
     for _ in model.joints:
         for joint in model.joints:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain data that every reader makes and the builder compiles: a scene of models.
+"""A scene of models: plain data that file readers create and the builder compiles.
 
 Poses are :class:`~navette.geometry.Transform3`, named ``outer_T_inner``. Lengths
 are metres, angles radians, masses kilograms. All poses inside a model are resolved
-to the model's frame, so that nothing below has to know SDF's or URDF's rules.
+to the model's frame, so that the rules of SDF and URDF end at the readers.
 """
 
 from dataclasses import dataclass, field, replace
@@ -51,7 +51,7 @@ class Ellipsoid:
 
 @dataclass(frozen=True)
 class Plane:
-    """An infinite plane through the origin; ``size`` is only how much is drawn."""
+    """An infinite plane through the origin; ``size`` is the drawn part."""
 
     normal: Vector3 = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (100.0, 100.0)
@@ -59,12 +59,12 @@ class Plane:
 
 Shape = Box | Cylinder | Capsule | Sphere | Ellipsoid | Plane
 
-_LARGEST_M = 1e5  # beyond it physics loses the millimetres that contacts need
+_LARGEST_M = 1e5  # beyond it contacts lose millimetre precision
 
 
 @dataclass(frozen=True, kw_only=True)
 class Geometry:
-    """A shape on a link: seen by sensors, touched by others, or both."""
+    """A shape on a link: visible to sensors, solid, or both."""
 
     name: str
     shape: Shape
@@ -102,7 +102,7 @@ class Inertial:
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
-    """What all sensors have; ``topic`` is empty when the file gives none."""
+    """Common fields of all sensors; ``topic`` is empty if the file has none."""
 
     name: str
     link_T_sensor: Transform3 = _IDENTITY
@@ -120,7 +120,7 @@ class LidarSensor(Sensor):
     range_min: float = 0.1
     range_max: float = 20.0
     noise_stddev: float = 0.0
-    sees_visuals: bool = True  # a gpu_lidar sees what is drawn, a ray what collides
+    sees_visuals: bool = True  # a gpu_lidar sees visuals, a ray sensor collisions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +143,7 @@ class ImuSensor(Sensor):
 
 @dataclass(frozen=True, kw_only=True)
 class ContactSensor(Sensor):
-    """Names collisions of its link to be watched; all contacts are reported."""
+    """A bumper on named collisions of its link; all contacts are reported."""
 
     collisions: tuple[str, ...] = ()
 
@@ -181,7 +181,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class SpeedLimits:
-    """Limits of a drive; None where the file says nothing. SI units."""
+    """Limits of a drive in SI units; None where the file has none."""
 
     speed: float | None = None
     reverse_speed: float | None = None
@@ -192,10 +192,10 @@ class SpeedLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class DiffDrive:
-    """Wheels driven in two groups; more than one a side is skid steering.
+    """Wheels driven in two groups; several per side mean skid steering.
 
-    ``wheel_separation`` turns a yaw rate into wheel speeds: for skid steering it is
-    the effective one, wider than the distance between the wheels.
+    ``wheel_separation`` converts a yaw rate to wheel speeds: with skid steering it is
+    the effective separation, larger than the distance between the wheels.
     """
 
     left_joints: tuple[str, ...]
@@ -209,7 +209,7 @@ class DiffDrive:
 
 @dataclass(frozen=True, kw_only=True)
 class Model:
-    """Links and joints that move together; nested models are already flattened.
+    """Links and joints; nested models are flattened already.
 
     ``frames`` are further named frames: name → (link it is attached to, pose).
     """
@@ -240,10 +240,10 @@ class Model:
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """A world: models, gravity (m/s²) and how it looks.
+    """A world: models, gravity (m/s²) and colours.
 
-    ``start`` is where a robot without a pose of its own begins. ``mjcf`` is a
-    MuJoCo model file whose contents join the scene as they are.
+    ``start`` is the initial pose of a robot without its own. ``mjcf`` is a MuJoCo model
+    file whose contents are added to the scene unchanged.
     """
 
     name: str
@@ -260,10 +260,10 @@ class Scene:
         return next((m for m in self.models if m.drive is not None), None)
 
     def with_robot(self, robot: Model) -> "Scene":
-        """The same scene with ``robot`` instead of its own, if it had one.
+        """Return the scene with ``robot`` in place of its own robot, if it has one.
 
-        It takes the own robot's place on the floor, or else stands at ``start``;
-        the pose that the model itself carries is added to that.
+        The robot is placed at the own robot's pose on the floor, or else at ``start``;
+        the model's own pose is added to that.
         """
         own = self.robot
         place = self.start

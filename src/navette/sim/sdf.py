@@ -3,7 +3,7 @@
 
 Supported: world, model (nested too), link, frame, joint (fixed, revolute,
 continuous, prismatic, ball), collision and visual with primitive shapes, sensors,
-diff-drive plugins, gravity. What else a file holds is named in one warning a kind.
+diff-drive plugins, gravity. Other elements are ignored with one warning per kind.
 """
 
 from dataclasses import dataclass, replace
@@ -54,18 +54,18 @@ _KINDS = {
     "prismatic": JointKind.PRISMATIC,
     "ball": JointKind.BALL,
 }
-_UNLIMITED = 1e16  # files write "no limit" as 1e16, 1e308 or inf
+_UNLIMITED = 1e16  # files express "no limit" as 1e16, 1e308 or inf
 
 
 def read_sdf(path: Path) -> Scene:
-    """Read a world (or a file that only holds models) into a scene.
+    """Read a world (or a file with models only) into a scene.
 
     Raises:
-        FileFormatError: what is broken, with file and line.
+        FileFormatError: with file and line.
     """
     root = parse_xml(path)
     if root.tag != "sdf":
-        raise root.error("an SDF file starts with <sdf>")
+        raise root.error("the root element must be <sdf>")
     unsupported = Unsupported(path)
     worlds = list(root.all("world"))
     for extra in worlds[1:]:
@@ -76,7 +76,7 @@ def read_sdf(path: Path) -> Scene:
 
 
 def read_sdf_models(root: XmlNode, path: Path) -> tuple[Model, ...]:
-    """The models of an already parsed element."""
+    """Return the models of a parsed element."""
     unsupported = Unsupported(path)
     models = _read_world(root, path, unsupported).models
     unsupported.report()
@@ -119,7 +119,7 @@ def _vector(owner: XmlNode, tag: str, default: Vector3) -> Vector3:
 
 
 def _read_includes(world: XmlNode, unsupported: Unsupported) -> list[Model]:
-    """Includes are not followed; the two that nearly every world has are built in."""
+    """Handle <include>: only ground_plane and sun are built in, others are ignored."""
     models = []
     for node in world.all("include"):
         uri = node.words("uri")
@@ -153,7 +153,7 @@ class _Read:
 
 
 def _read_model(node: XmlNode, unsupported: Unsupported) -> _Read:
-    """A model with everything resolved to its own frame (its pose left out)."""
+    """Read a model with all poses resolved to its own frame, without its own pose."""
     name = node.name()
     graph = PoseGraph("__model__")
     nested = [_read_model(child, unsupported) for child in node.all("model")]
@@ -173,7 +173,7 @@ def _read_model(node: XmlNode, unsupported: Unsupported) -> _Read:
     for joint in joints:
         for end in (joint.parent, joint.child):
             if end not in known:
-                raise node.error(f"joint {joint.name!r} names no link {end!r}")
+                raise node.error(f"joint {joint.name!r} refers to unknown link {end!r}")
     model = Model(
         name=name,
         static=node.flag("static"),
@@ -231,7 +231,7 @@ def _read_link(node: XmlNode, graph: PoseGraph, unsupported: Unsupported) -> Lin
 def _read_joint(node: XmlNode, graph: PoseGraph, unsupported: Unsupported) -> Joint:
     kind = node.need_attribute("type")
     if kind not in _KINDS:
-        unsupported.note(f"joint of type {kind!r} (made fixed)", node)
+        unsupported.note(f"joint of type {kind!r} (treated as fixed)", node)
     name = node.name()
     model_T_joint = graph.pose_of(name, node)
     axis, limits, damping, friction = (0.0, 0.0, 1.0), None, 0.0, 0.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""SDF poses: `pose` elements and the graph of frames they are given in."""
+"""SDF poses: `pose` elements and the graph of their frames."""
 
 import math
 from dataclasses import dataclass
@@ -18,9 +18,9 @@ class RawPose:
 
 
 def read_pose(owner: XmlNode) -> RawPose:
-    """The ``<pose>`` of an element; identity when it has none.
+    """Read the ``<pose>`` of an element; identity without one.
 
-    ``frame`` is what SDF up to 1.6 called ``relative_to``.
+    The attribute ``frame`` is the name of ``relative_to`` up to SDF 1.6.
     """
     node = owner.find("pose")
     if node is None:
@@ -52,7 +52,7 @@ def _normalised(node: XmlNode, values: list[float]) -> Quaternion:
 
 
 class PoseGraph:
-    """Named frames of one scope, each given relative to another; resolved lazily."""
+    """Named frames of one scope, each relative to another; resolved lazily."""
 
     def __init__(self, root: str) -> None:
         self._root = root
@@ -61,7 +61,7 @@ class PoseGraph:
         self._resolving: list[str] = []
 
     def add(self, name: str, pose: RawPose, default: str = "") -> None:
-        """Add frame ``name``; ``default`` is what an empty relative_to means."""
+        """Add frame ``name``; ``default`` replaces an empty relative_to."""
         if name in self._raw:
             raise pose.node.error(f"the name {name!r} is used twice")
         parent = pose.relative_to or default or self._root
@@ -73,12 +73,12 @@ class PoseGraph:
         self._raw[name] = (parent, transform, node)
 
     def resolve(self, pose: RawPose) -> Transform3:
-        """``root_T_here`` of a pose that has no name of its own."""
+        """``root_T_here`` of an unnamed pose."""
         parent = pose.relative_to or self._root
         return self.pose_of(parent, pose.node) @ pose.transform
 
     def resolve_in(self, frame: str, pose: RawPose) -> Transform3:
-        """``frame_T_here``; exact when the pose is given in ``frame`` itself."""
+        """``frame_T_here``; exact if the pose is relative to ``frame`` itself."""
         if pose.relative_to in ("", frame):
             return pose.transform
         root_T_frame = self.pose_of(frame, pose.node)
@@ -88,7 +88,7 @@ class PoseGraph:
         """``root_T_name``.
 
         Raises:
-            FileFormatError: the name is unknown or the frames form a circle.
+            FileFormatError: the name is unknown or the frames form a cycle.
         """
         if name in self._resolved:
             return self._resolved[name]
@@ -97,7 +97,7 @@ class PoseGraph:
             raise asked_by.error(f"unknown frame {name!r}; known: {known}")
         if name in self._resolving:
             circle = " → ".join([*self._resolving, name])
-            raise asked_by.error(f"frames refer to each other in a circle: {circle}")
+            raise asked_by.error(f"frames form a cycle: {circle}")
         parent, transform, node = self._raw[name]
         self._resolving.append(name)
         resolved = self.pose_of(parent, node) @ transform

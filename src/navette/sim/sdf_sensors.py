@@ -22,7 +22,7 @@ MAX_PIXELS = 4096 * 4096
 
 _LIDAR_TYPES = ("ray", "lidar", "gpu_ray", "gpu_lidar")
 
-# Plugins whose work Navette's own nodes do; no need to warn about them.
+# Plugins whose function Navette's own nodes have; ignored without a warning.
 _REPLACED = (
     "posepublisher",
     "pose-publisher",
@@ -43,7 +43,7 @@ _REPLACED = (
 
 
 class _Common(TypedDict):
-    """What every sensor has."""
+    """Read the common fields of a sensor."""
 
     name: str
     link_T_sensor: Transform3
@@ -53,7 +53,7 @@ class _Common(TypedDict):
 def read_sensors(
     link: XmlNode, graph: PoseGraph, link_name: str, unsupported: Unsupported
 ) -> tuple[Sensor, ...]:
-    """The sensors of a link that the simulator can play."""
+    """Read the supported sensors of a link."""
     sensors: list[Sensor] = []
     for node in link.all("sensor"):
         common = _Common(
@@ -87,7 +87,7 @@ def _read_sensor(
 
 
 def _rate(node: XmlNode, default: float) -> float:
-    """SDF's 0 means "as fast as possible": the default is used then."""
+    """Read the update rate; SDF's 0 ("as fast as possible") means the default."""
     rate = node.number("update_rate", 0.0)
     if rate < 0 or rate > 1000:
         raise node.error(f"<update_rate> is {rate:g}; wanted 0 to 1000 Hz")
@@ -106,11 +106,13 @@ def _lidar(
 ) -> LidarSensor:
     body = node.find("ray") or node.find("lidar")
     if body is None:
-        raise node.error("a <ray> or <lidar> is missing")
+        raise node.error("<ray> or <lidar> is missing")
     horizontal = body.need("scan").need("horizontal")
     vertical = body.find("scan", "vertical")
     if vertical is not None and vertical.number("samples", 1.0) > 1:
-        unsupported.note("rows of beams of a lidar above one (one is made)", vertical)
+        unsupported.note(
+            "lidar with several rows of beams (one row is simulated)", vertical
+        )
     samples = round(
         horizontal.positive("samples", 640.0) * horizontal.positive("resolution", 1.0)
     )
@@ -119,11 +121,15 @@ def _lidar(
     angle_min = horizontal.number("min_angle", 0.0)
     angle_max = horizontal.number("max_angle", 0.0)
     if angle_max < angle_min or angle_max - angle_min > math.tau + 1e-6:
-        raise horizontal.error(f"angles {angle_min:g} to {angle_max:g} make no scan")
+        raise horizontal.error(
+            f"angles {angle_min:g} to {angle_max:g} are not a valid scan"
+        )
     limits = body.need("range")
     range_min, range_max = limits.number("min", 0.0), limits.positive("max")
     if not 0 <= range_min < range_max:
-        raise limits.error(f"min {range_min:g} and max {range_max:g} m make no range")
+        raise limits.error(
+            f"min {range_min:g} and max {range_max:g} m are not a valid range"
+        )
     return LidarSensor(
         **common,
         rate_hz=_rate(node, 10.0),
@@ -146,7 +152,9 @@ def _camera(node: XmlNode, common: _Common) -> CameraSensor:
         raise body.error(f"{width} x {height} pixels; at most {MAX_PIXELS}")
     fov = body.positive("horizontal_fov", 1.047)
     if fov >= math.pi:
-        raise body.error(f"<horizontal_fov> is {fov:g}; a pinhole has less than pi")
+        raise body.error(
+            f"<horizontal_fov> is {fov:g}; a pinhole camera requires less than pi"
+        )
     return CameraSensor(
         **common,
         rate_hz=_rate(node, 30.0),
@@ -196,7 +204,7 @@ def _plugin_name(plugin: XmlNode) -> str:
 
 
 def read_drive(plugin: XmlNode) -> DiffDrive:
-    """Wheel joints, geometry and limits of a differential or skid-steer plugin."""
+    """Read a differential or skid-steer plugin: wheel joints, geometry and limits."""
     left = _joints(plugin, "left")
     right = _joints(plugin, "right")
     if not left or not right:
@@ -207,7 +215,7 @@ def read_drive(plugin: XmlNode) -> DiffDrive:
     if radius is None and diameter is not None:
         radius = diameter / 2
     if separation is None or radius is None or min(separation, radius) <= 0:
-        raise plugin.error("wheel separation and radius must be given and > 0")
+        raise plugin.error("wheel separation and radius must be > 0")
     multiplier = _first(plugin, ("wheel_separation_multiplier",)) or 1.0
     return DiffDrive(
         left_joints=left,
@@ -240,7 +248,7 @@ def _first(plugin: XmlNode, tags: tuple[str, ...]) -> float | None:
 
 
 def _limits(plugin: XmlNode) -> SpeedLimits:
-    """Positive limits; gz gives signed minima, and infinity for "none" is absent."""
+    """Read positive limits; gz has signed minima, and infinity means no limit."""
 
     def positive(*tags: str) -> float | None:
         value = _first(plugin, tags)

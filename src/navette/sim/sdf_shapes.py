@@ -19,7 +19,7 @@ from navette.sim.scene import (
 from navette.sim.sdf_poses import PoseGraph, read_pose
 from navette.sim.xml_tree import Unsupported, XmlNode
 
-# Names from Gazebo's material script that worlds use most.
+# The most frequent names of Gazebo's material script.
 _GAZEBO_COLOURS: dict[str, Colour] = {
     "Grey": (0.5, 0.5, 0.5, 1.0),
     "DarkGrey": (0.25, 0.25, 0.25, 1.0),
@@ -41,7 +41,7 @@ _GAZEBO_COLOURS: dict[str, Colour] = {
 def read_geometries(
     link: XmlNode, graph: PoseGraph, link_name: str, unsupported: Unsupported
 ) -> tuple[Geometry, ...]:
-    """Collisions and visuals; a visual equal to a collision becomes one shape."""
+    """Read collisions and visuals; a visual equal to a collision is merged with it."""
     collisions: list[Geometry] = []
     visuals: list[Geometry] = []
     for kind, found in (("collision", collisions), ("visual", visuals)):
@@ -71,7 +71,7 @@ def _geometry(
 def merge_geometries(
     collisions: list[Geometry], visuals: list[Geometry]
 ) -> tuple[Geometry, ...]:
-    """One geometry for each pair of collision and visual that coincide."""
+    """Merge each pair of collision and visual that coincide."""
     left = list(visuals)
     merged = []
     for collision in collisions:
@@ -108,7 +108,7 @@ def _read_shape(geometry: XmlNode, unsupported: Unsupported) -> Shape | None:
         if node.tag != "empty":
             unsupported.note(f"<{node.tag}> geometry", node)
         return None
-    raise geometry.error("no shape in it")
+    raise geometry.error("shape is missing")
 
 
 def _read_plane(node: XmlNode) -> Plane:
@@ -162,7 +162,7 @@ def _read_friction(collision: XmlNode) -> float | None:
 
 
 def read_inertial(link: XmlNode, graph: PoseGraph, link_name: str) -> Inertial:
-    """Mass and inertia; without numbers SDF means 1 kg and 1 kg m²."""
+    """Read mass and inertia; SDF's defaults are 1 kg and 1 kg m²."""
     node = link.find("inertial")
     if node is None:
         return Inertial(1.0, Transform3.identity(), (1.0, 1.0, 1.0, 0.0, 0.0, 0.0))

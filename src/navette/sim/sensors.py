@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the sensors that a robot's model lists."""
+"""Create the sensors of a robot's model."""
 
 from collections.abc import Iterator
 from typing import TypeVar
@@ -18,7 +18,7 @@ S = TypeVar("S", bound=Sensor)
 
 
 def sensors_of(model: Model, kind: type[S]) -> Iterator[tuple[str, S]]:
-    """(link name, sensor) of one kind, in the order of the model."""
+    """Return (link name, sensor) of one kind, in the order of the model."""
     for link in model.links:
         for sensor in link.sensors:
             if isinstance(sensor, kind):
@@ -36,7 +36,7 @@ def imus_of(compiled: Compiled) -> Iterator[Imu]:
 
 
 def cameras_of(compiled: Compiled, params: SimParams) -> Iterator[Camera | GlCamera]:
-    """Raises ParameterError where OpenGL is demanded and does not work."""
+    """Create the cameras; raises ParameterError if required OpenGL is not available."""
     robot, model = compiled.robot.model, compiled.model
     cameras = list(sensors_of(robot, CameraSensor))
     use_gl = bool(cameras) and wants_gl(params.camera_renderer)

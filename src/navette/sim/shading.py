@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns what each pixel sees into a colour, compiled."""
+"""Shading of the ray-cast image, compiled."""
 
 import math
 
@@ -11,8 +11,8 @@ from navette.sim.ray_kernels import BOX, CAPSULE, CYLINDER, ELLIPSOID, PLANE, SP
 _AMBIENT = 0.55
 _DIFFUSE = 0.45
 _TILE_M = 1.0
-_DARK_TILE = 0.90  # every other floor tile, so that motion can be seen
-_HAZE_PER_M = 0.01  # how fast things fade into the horizon
+_DARK_TILE = 0.90  # checkered floor, so that motion is visible
+_HAZE_PER_M = 0.01  # rate at which objects fade into the horizon
 _MOST_HAZE = 0.6
 
 
@@ -47,10 +47,10 @@ def shade(  # type: ignore[no-untyped-def]
     kind, size, position, rotation, colour, origin, world_R_camera, focal,
     depth, shape, sun, sky, horizon, image,
 ):  # fmt: skip
-    """Colours (H, W, 3) uint8 written to ``image``.
+    """Write colours (H, W, 3) uint8 to ``image``.
 
-    Lambert's cosine to the sun above an ambient share, a checkered floor, haze that
-    grows with distance, and a sky from the horizon's to the zenith's colour.
+    Lambert's cosine law plus ambient light, a checkered floor, haze that grows with
+    distance, and a sky gradient from horizon to zenith.
 
     Args:
         depth, shape: from :func:`navette.sim.ray_kernels.cast_image`.

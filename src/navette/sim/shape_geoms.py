@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A geometry of the scene as a MuJoCo geom."""
+"""Convert a geometry of the scene to a MuJoCo geom."""
 
 import math
 
@@ -20,11 +20,11 @@ from navette.sim.scene import (
 
 _DEFAULT_COLOUR: Colour = (0.7, 0.7, 0.72, 1.0)
 _DEFAULT_FRICTION = 1.0
-_MAX_FRICTION = 2.0  # files write 100 for "never slips"; that only stiffens the solver
+_MAX_FRICTION = 2.0  # files use 100 for "never slips", which only stiffens the solver
 
 
 def friction_of(value: float | None) -> float:
-    """Sliding friction coefficient used for a file's value."""
+    """Return the sliding friction coefficient for a file's value."""
     return _DEFAULT_FRICTION if value is None else min(value, _MAX_FRICTION)
 
 
@@ -41,7 +41,7 @@ def add_geom(
     priority: int = 0,
     solimp: tuple[float, ...] | None = None,
 ) -> None:
-    """Add one geom to a body; friction is the geometry's own unless given."""
+    """Add one geom to a body; ``friction`` overrides the geometry's own."""
     kind, size = _size(geometry.shape)
     rotation = body_T_shape.rotation
     if isinstance(geometry.shape, Plane):
@@ -56,7 +56,7 @@ def add_geom(
         size=size,
         pos=body_T_shape.translation,
         quat=(w, x, y, z),
-        # MuJoCo's rays pass through what is fully transparent.
+        # MuJoCo's rays pass through fully transparent geoms.
         rgba=(r, g, b, max(a, 0.05)),
         group=group,
         contype=contype,
@@ -86,7 +86,7 @@ def _size(shape: Shape) -> tuple[mujoco.mjtGeom, list[float]]:
 
 
 def _tilt(normal: Vector3) -> Quaternion:
-    """The shortest rotation from +z to ``normal``."""
+    """Return the shortest rotation from +z to ``normal``."""
     length = math.sqrt(sum(c * c for c in normal))
     x, y, z = (c / length for c in normal)
     if z < -1 + 1e-9:

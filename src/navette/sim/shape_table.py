@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shapes that a sensor can see, as the arrays that ray casting wants."""
+"""The shapes visible to a sensor, as arrays for ray casting."""
 
 from collections.abc import Sequence
 
@@ -23,9 +23,9 @@ class ShapeTable:
     """Geoms of the given groups; poses of moving ones follow :meth:`update`.
 
     Attributes:
-        kind, size, position, rotation: as :mod:`navette.sim.ray_kernels` has them.
-        has_others: a mesh or height field is among them (MJCF worlds): only MuJoCo
-            can cast rays against these.
+        kind, size, position, rotation: as in :mod:`navette.sim.ray_kernels`.
+        has_others: there are meshes or height fields (MJCF worlds), against which only
+            MuJoCo can cast rays.
     """
 
     def __init__(self, model: mujoco.MjModel, groups: Sequence[int]) -> None:
@@ -48,7 +48,7 @@ class ShapeTable:
         self.groups[list(groups)] = 1
 
     def update(self, data: mujoco.MjData) -> None:
-        """Take poses from fresh kinematics; fixed shapes only the first time."""
+        """Copy poses from the kinematics; those of static shapes only once."""
         rows = self._moving if self._is_placed else np.arange(len(self.geoms))
         self._is_placed = True
         if len(rows):
@@ -64,7 +64,7 @@ class ShapeTable:
         directions: NDArray[np.float64],
         reach: float,
     ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        """Distances (N,) in lengths of the rays (N, 3), inf for none; and the rows."""
+        """Distances (N,) in lengths of the rays (N, 3), inf without a hit; and rows."""
         count = len(directions)
         distance, geom = np.empty(count), np.empty(count, dtype=np.int32)
         mujoco.mj_multiRay(

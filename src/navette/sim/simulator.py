@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The simulator: physics, drive and sensors of one robot in one world.
 
-Knows no node and no topic. Time is integer nanoseconds and advances in whole
-physics steps, in batches as long as nothing changes in between. What happens does
-not depend on how often anybody looks: commands, limits and checks act on fixed
-multiples of the physics step, and sensors only read.
+Independent of nodes and topics. Time is integer nanoseconds and advances in whole
+physics steps, in batches while nothing changes in between. The result does not depend
+on how often sensors are read: commands, limits and checks act at fixed multiples of the
+physics step, and sensors do not change the state.
 """
 
 import math
@@ -28,7 +28,7 @@ from navette.sim.sensors import cameras_of, imus_of, lidars_of
 from navette.sim.wheel_odometry import WheelOdometry
 
 _WATCH_PERIOD_NS = 100_000_000  # clearance is measured at 10 Hz
-_TOUCHES_M = 0.01  # a world's own robot may lean on things, not stand in them
+_TOUCHES_M = 0.01  # a world's own robot may touch obstacles, but not overlap them
 
 _BLOWN_UP = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -43,8 +43,8 @@ class Simulator:
     Args:
         scene: the world, with a robot in it.
         params: limits, noise and physics step.
-        start: where the robot stands (x, y, yaw) on the floor; without it, the
-            robot starts where the scene puts it (and may have to fall).
+        start: initial pose (x, y, yaw) on the floor; None takes the pose in the scene,
+            from which the robot may fall.
 
     Raises:
         InvalidValueError: the scene has no robot, or it starts in an obstacle.
@@ -75,7 +75,7 @@ class Simulator:
         self.reset()
 
     def reset(self) -> None:
-        """Back to the start: state, time, noise and records."""
+        """Reset state, time, noise and records."""
         mujoco.mj_resetData(self.compiled.model, self._data)
         self._seed_noise()
         self._steps = 0
@@ -85,7 +85,9 @@ class Simulator:
         self.contacts.reset()
         self.min_clearance = Clearance(math.inf, "")
         if self._start is not None:
-            floor = self._floor() + 1e-3  # a hair above: no contact to resolve yet
+            floor = (
+                self._floor() + 1e-3
+            )  # slightly above the floor: no contact to resolve yet
             self.state.place(Transform3.from_pose2(self._start, z=floor))
         for imu in self.imus:
             imu.reset()
@@ -97,14 +99,16 @@ class Simulator:
         if first.distance >= (0.0 if self._start is not None else -_TOUCHES_M):
             return
         start = self._start or self.pose().to_pose2()
-        whose = "" if self._start is not None else " (the world's; give another)"
+        whose = (
+            "" if self._start is not None else " (from the world; pass another start)"
+        )
         raise InvalidValueError(
             f"start ({start.x:g}, {start.y:g}, {math.degrees(start.yaw):g}°){whose}: "
-            f"the robot would stand {-first.distance:.2f} m inside {first.obstacle!r}"
+            f"the robot would be {-first.distance:.2f} m inside {first.obstacle!r}"
         )
 
     def _seed_noise(self) -> None:
-        """A stream for each sensor: reading one does not change another's noise."""
+        """Create one random stream per sensor, so that readings are independent."""
         seeds = np.random.SeedSequence(self.params.seed).spawn(2 + len(self.lidars))
         self._imu_rng, self._wheel_rng, *self._lidar_rng = map(
             np.random.default_rng, seeds
@@ -116,7 +120,7 @@ class Simulator:
         return float(self._data.geom_xpos[ground[0], 2]) if len(ground) else 0.0
 
     def change_params(self, params: SimParams) -> None:
-        """Take new limits, timeout and lidar noise; the rest is fixed at the start."""
+        """Apply new limits, timeout and lidar noise; other parameters are fixed."""
         self.params = self._ramp.params = params
         for lidar in self.lidars:
             lidar.set_noise(params)
@@ -126,7 +130,7 @@ class Simulator:
         return self._steps * self._step_ns
 
     def command(self, linear: float, angular: float) -> bool:
-        """Set the wanted speed (m/s, rad/s); False if it is refused as not finite."""
+        """Set the commanded velocity (m/s, rad/s); False if it is not finite."""
         return self._ramp.command(linear, angular, self.now_ns)
 
     def step(self, count: int = 1) -> None:
@@ -141,7 +145,7 @@ class Simulator:
                 self._watch()
             batch = min(end, self._next_event(control, watch)) - self._steps
             if self._near:
-                self._step_watchfully(batch)
+                self._step_checking_contacts(batch)
             else:
                 mujoco.mj_step(self.compiled.model, self._data, batch)
                 self._steps += batch
@@ -153,7 +157,7 @@ class Simulator:
             self.step(count)
 
     def _next_event(self, control: int, watch: int) -> int:
-        """The step at which the drive or the watch has to act next."""
+        """Return the step at which the drive or the contact check acts next."""
         next_watch = (self._steps // watch + 1) * watch
         constant_until = self._ramp.constant_until_ns() / self._step_ns
         if constant_until >= next_watch:
@@ -161,8 +165,8 @@ class Simulator:
         tick = max(self._steps + 1, math.ceil(constant_until))
         return min(next_watch, math.ceil(tick / control) * control)
 
-    def _step_watchfully(self, count: int) -> None:
-        """Step one by one, so that no short contact is missed."""
+    def _step_checking_contacts(self, count: int) -> None:
+        """Step singly, so that no short contact is missed."""
         for _ in range(count):
             mujoco.mj_step(self.compiled.model, self._data, 1)
             self._steps += 1
@@ -180,7 +184,7 @@ class Simulator:
             self._data.ctrl[actuator] = wheel.direction * rim / drive.wheel_radius
 
     def _watch(self) -> None:
-        """Measure clearance; decide whether contacts are possible until next time."""
+        """Measure clearance; decide whether contact is possible until the next."""
         self._check_physics()
         clearance = self.clearance()
         if clearance.distance < self.min_clearance.distance:
@@ -196,22 +200,22 @@ class Simulator:
         self._near = clearance.distance < margin
 
     def _check_physics(self) -> None:
-        """MuJoCo answers a state that blew up by starting anew, where we must not."""
+        """Raise if the state diverged; MuJoCo itself would reset it silently."""
         for warning in _BLOWN_UP:
             if self._data.warning[warning].number:
                 raise InvalidValueError(
-                    "physics became unstable: look for extreme masses, sizes or "
+                    "physics became unstable: check for extreme masses, sizes or "
                     f"speeds in the robot's model ({self.now_ns / 1e9:.3f} s)"
                 )
 
     def _refresh(self) -> None:
-        """Bring body and geom poses up to the present state."""
+        """Update body and geom poses to the current state."""
         if self._fresh_at != self._steps:
             mujoco.mj_kinematics(self.compiled.model, self._data)
             self._fresh_at = self._steps
 
     def pose(self) -> Transform3:
-        """``world_T_base``: the axle's middle, on the floor."""
+        """``world_T_base`` of the axle midpoint on the floor."""
         return self.state.pose()
 
     def motion(self) -> Motion:
@@ -224,31 +228,31 @@ class Simulator:
         return self.state.link_in_base(name)
 
     def clearance(self) -> Clearance:
-        """Distance from the robot's body to the nearest obstacle now."""
+        """Current distance from the robot's body to the nearest obstacle."""
         self._refresh()
         return self._probe.measure(self._data)
 
     def scan(self, index: int = 0) -> Scan:
-        """A scan of lidar ``index`` now."""
+        """Current scan of lidar ``index``."""
         self._refresh()
         return self.lidars[index].scan(
             self.compiled.model, self._data, self.now_ns, self._lidar_rng[index]
         )
 
     def imu(self, index: int = 0) -> ImuReading:
-        """A reading of IMU ``index`` now."""
+        """Current reading of IMU ``index``."""
         self._refresh()
         return self.imus[index].read(
             self.state, self.compiled.model, self._data, self.now_ns, self._imu_rng
         )
 
     def image(self, index: int = 0) -> Image:
-        """An image (height, width, 3) of camera ``index`` now."""
+        """Current image (height, width, 3) of camera ``index``."""
         self._refresh()
         return self.cameras[index].render(self.compiled.model, self._data)
 
     def wheel_odometry(self) -> WheelOdometry:
-        """Dead reckoning, brought up to now; it started at the true pose."""
+        """Dead reckoning up to now; starts at the true pose."""
         wheels = self.state.wheel_travel()
         self._wheel_odometry.update(wheels, self.now_ns, self._wheel_rng)
         return self._wheel_odometry

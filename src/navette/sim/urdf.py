@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads URDF robots and environments (http://wiki.ros.org/urdf/XML).
 
-Drive plugins and sensors come from the ``<gazebo>`` extension, as Gazebo takes them.
+Drive plugins and sensors come from the ``<gazebo>`` extension, as in Gazebo.
 """
 
 from dataclasses import replace
@@ -40,7 +40,7 @@ _KNOWN = {"link", "joint", "material", "gazebo", "transmission"}
 
 
 def read_urdf_world(path: Path) -> Scene:
-    """A URDF as a world: static, unless it describes a robot with a drive."""
+    """Read a URDF as a world: static, unless it has a robot with a drive."""
     model = _read(path)
     if model.drive is None:
         model = replace(_solid(model), static=True)
@@ -48,7 +48,7 @@ def read_urdf_world(path: Path) -> Scene:
 
 
 def read_urdf_robot(path: Path) -> Model:
-    """A URDF robot; it needs a diff-drive plugin in its ``<gazebo>`` extension."""
+    """Read a URDF robot; requires a diff-drive plugin in its ``<gazebo>`` extension."""
     model = _read(path)
     if model.drive is None:
         raise FileFormatError(
@@ -58,7 +58,7 @@ def read_urdf_robot(path: Path) -> Model:
 
 
 def _solid(model: Model) -> Model:
-    """Environments made for viewing have no collisions: what is seen is solid then."""
+    """Make visuals solid in a model without any collision, made for viewing."""
     if any(g.collides for link in model.links for g in link.geometries):
         return model
     links = tuple(
@@ -73,7 +73,7 @@ def _solid(model: Model) -> Model:
 def _read(path: Path) -> Model:
     root = parse_xml(path)
     if root.tag != "robot":
-        raise root.error("a URDF file starts with <robot>")
+        raise root.error("the root element must be <robot>")
     unsupported = Unsupported(path)
     for node in root.children:
         if node.tag not in _KNOWN:
@@ -106,22 +106,22 @@ def _origin(owner: XmlNode) -> Transform3:
 def _link_poses(
     root: XmlNode, joints: list[XmlNode], unsupported: Unsupported
 ) -> dict[str, Transform3]:
-    """``model_T_link`` of every link; the model's frame is the first root link's."""
+    """``model_T_link`` of every link; the model frame is the first root link."""
     links = {node.name(): node for node in root.all("link")}
     if not links:
-        raise root.error("a robot without links")
+        raise root.error("the robot has no links")
     carrier = _carriers(joints, links)
     poses: dict[str, Transform3] = {}
     for name in links:
         chain: list[str] = []
         while name not in poses and name in carrier:
             if name in chain:
-                raise carrier[name].error("joints form a circle")
+                raise carrier[name].error("joints form a cycle")
             chain.append(name)
             name = _end(carrier[name], "parent")
         if name not in poses:
             if poses:
-                kind = "link without a joint (put at the origin)"
+                kind = "link without a joint (placed at the origin)"
                 unsupported.note(kind, links[name])
             poses[name] = Transform3.identity()
         for child in reversed(chain):
@@ -131,7 +131,7 @@ def _link_poses(
 
 
 def _carriers(joints: list[XmlNode], links: dict[str, XmlNode]) -> dict[str, XmlNode]:
-    """The joint that carries each link."""
+    """Return the parent joint of each link."""
     carrier: dict[str, XmlNode] = {}
     for node in joints:
         child = _end(node, "child")
@@ -153,7 +153,7 @@ def _read_joint(
 ) -> Joint:
     kind = node.need_attribute("type")
     if kind not in _KINDS:
-        unsupported.note(f"joint of type {kind!r} (made fixed)", node)
+        unsupported.note(f"joint of type {kind!r} (treated as fixed)", node)
     child = _end(node, "child")
     axis = node.find("axis")
     x, y, z = (

@@ -7,7 +7,7 @@ from navette.sim.xml_tree import Unsupported, XmlNode
 
 
 class Materials:
-    """Named colours of a URDF: a name may be used before it is defined."""
+    """Named colours of a URDF; a name may be used before its definition."""
 
     def __init__(self, root: XmlNode) -> None:
         self._colours: dict[str, Colour] = {}
@@ -32,7 +32,7 @@ def _own_colour(material: XmlNode) -> Colour | None:
     if node is not None:
         text = node.need_attribute("rgba")
     else:
-        node = material.find("diffuse")  # SDF's way, seen in URDF files too
+        node = material.find("diffuse")  # SDF syntax, found in URDF files too
         if node is None:
             return None
         text = node.text
@@ -46,7 +46,7 @@ def read_urdf_geometry(
     materials: Materials,
     unsupported: Unsupported,
 ) -> Geometry | None:
-    """A ``<collision>`` or ``<visual>``; None when its shape is not supported."""
+    """Read a ``<collision>`` or ``<visual>``; None if its shape is not supported."""
     shape = _shape(element.need("geometry"), unsupported)
     if shape is None:
         return None
@@ -63,7 +63,7 @@ def read_urdf_geometry(
 
 def _shape(geometry: XmlNode, unsupported: Unsupported) -> Shape | None:
     if not geometry.children:
-        raise geometry.error("no shape in it")
+        raise geometry.error("shape is missing")
     node = geometry.children[0]
     if node.tag == "box":
         x, y, z = _positive(node, "size", 3)

@@ -12,14 +12,14 @@ from navette.sim.scene import DiffDrive
 
 Matrix = np.ndarray[Any, np.dtype[np.float64]]
 
-#: Nothing is stated to be known better than to this, metres and radians (a second):
-#: a variance of 0 would say "not known" to one reader and "exactly" to another.
+#: Lower bound of stated standard deviations (m, rad and per second): a variance of 0
+#: means "unknown" to some readers and "exact" to others.
 LEAST_STDDEV = 1e-3
 
 
 @dataclass(frozen=True)
 class WheelMotion:
-    """Mean speed (m/s) and yaw rate (rad/s) of the axle's midpoint over a time.
+    """Mean speed (m/s) and yaw rate (rad/s) of the axle midpoint over an interval.
 
     ``covariance``: (3, 3) of forward speed, sideways speed, yaw rate.
     """
@@ -31,7 +31,7 @@ class WheelMotion:
 
 @dataclass(frozen=True)
 class PlanarCovariances:
-    """What is known of a pose (x, y, yaw) and of a motion in the body's own axes.
+    """Covariances of a pose (x, y, yaw) and of a motion in the body frame.
 
     Both (3, 3).
     """
@@ -40,7 +40,7 @@ class PlanarCovariances:
     twist: Matrix
 
     def of_child(self, frame_T_base: Pose2, base_T_child: Pose2) -> "PlanarCovariances":
-        """These of the base → those of a frame that is fixed to it."""
+        """Transform from the base to a frame fixed to it."""
         x, y, turn = base_T_child
         child = frame_T_base @ base_T_child
         pose_J_base = _lever(child.x - frame_T_base.x, child.y - frame_T_base.y)
@@ -54,12 +54,12 @@ class PlanarCovariances:
 
 
 class WheelOdometry:
-    """Integrates the turns of the wheels along circular arcs.
+    """Integrates wheel rotations along circular arcs.
 
     Each side's measured travel has a random relative error, whose variance grows
-    with the distance: after a metre its standard deviation is ``noise`` metres. The
+    with the distance: after 1 m its standard deviation is ``noise`` metres. The
     covariances follow from it to first order (Siegwart, Nourbakhsh, Scaramuzza,
-    "Autonomous Mobile Robots", 2nd ed., section 5.2.4); slip is not in them.
+    "Autonomous Mobile Robots", 2nd ed., section 5.2.4) and do not include slip.
     """
 
     def __init__(self, drive: DiffDrive, *, noise: float) -> None:
@@ -68,32 +68,32 @@ class WheelOdometry:
         self.reset(Pose2(0.0, 0.0, 0.0), (0.0, 0.0))
 
     def reset(self, pose: Pose2, wheels: tuple[float, float]) -> None:
-        """Start at a pose, known exactly, with the encoders at these angles (rad)."""
+        """Start at an exact pose with the encoders at these angles (rad)."""
         self.pose = pose
         self._wheels = wheels
         self._stamp_ns = self._told_ns = 0
         self._covariance = np.zeros((3, 3))
-        self._left = self._right = 0.0  # since the motion was told, metres
+        self._left = self._right = 0.0  # metres since the last call of motion
         self._spread = (0.0, 0.0)  # variances of these
         self._motion = WheelMotion(0.0, 0.0, _floor())
 
     @property
     def pose_covariance(self) -> Matrix:
-        """(3, 3) of x, y, yaw of :attr:`pose`, in the frame that it is given in."""
+        """(3, 3) of x, y, yaw of :attr:`pose`, in its frame."""
         return self._covariance + _floor()
 
     def update(
         self, wheels: tuple[float, float], stamp_ns: int, rng: np.random.Generator
     ) -> Pose2:
-        """Pose after the encoders moved to ``wheels`` (left, right; rad)."""
+        """Integrate up to encoder angles ``wheels`` (left, right; rad)."""
         radius = self._drive.wheel_radius
         true_left = (wheels[0] - self._wheels[0]) * radius
         true_right = (wheels[1] - self._wheels[1]) * radius
         left, right = self._measured(true_left, rng), self._measured(true_right, rng)
         self._wheels = wheels
         self._stamp_ns = stamp_ns
-        # Of the measured travel they would hang together with the very errors that they
-        # describe, and a filter that believes them would be biased.
+        # Variances of the measured travel would correlate with the errors that they
+        # describe, and bias a filter.
         spread = self._noise**2 * abs(true_left), self._noise**2 * abs(true_right)
         self._left, self._right = self._left + left, self._right + right
         self._spread = self._spread[0] + spread[0], self._spread[1] + spread[1]
@@ -101,7 +101,7 @@ class WheelOdometry:
         return self.pose
 
     def motion(self) -> WheelMotion:
-        """Mean motion between the last :meth:`update` and that before the last call."""
+        """Mean motion since the :meth:`update` before the previous call."""
         seconds = (self._stamp_ns - self._told_ns) * 1e-9
         if seconds > 0:
             travel, turn = self._travel_and_turn(self._left, self._right)
@@ -146,7 +146,7 @@ _FORWARD_AND_YAW = np.ix_([0, 2], [0, 2])
 
 
 def _lever(x: float, y: float) -> Matrix:
-    """(3, 3): how a point at (x, y) moves when the origin moves and turns."""
+    """(3, 3) Jacobian of a point at (x, y) with respect to the origin's motion."""
     return np.array([[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]])
 
 

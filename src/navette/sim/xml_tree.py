@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""XML of robots and worlds: parsed safely, every element knows its line.
+"""Safe parsing of robot and world XML, with the line of every element.
 
-World files come from strangers. ``defusedxml`` refuses document types, entities
-and external references; the bounds below refuse files made to exhaust memory.
+World files are untrusted. ``defusedxml`` refuses document types, entities and external
+references; the limits below refuse files that exhaust memory.
 """
 
 import logging
@@ -37,14 +37,14 @@ class XmlNode:
     children: list["XmlNode"] = field(default_factory=list)
 
     def error(self, reason: str) -> FileFormatError:
-        """The error to raise about this element; it carries file and line."""
+        """Return an error about this element, with file and line."""
         return FileFormatError(self.path, f"<{self.tag}>: {reason}", self.line)
 
     def all(self, tag: str) -> Iterator["XmlNode"]:
         return (child for child in self.children if child.tag == tag)
 
     def find(self, *tags: str) -> "XmlNode | None":
-        """The first descendant along the path of tags, or None."""
+        """Return the first descendant along the path of tags, or None."""
         node: XmlNode | None = self
         for tag in tags:
             node = next(node.all(tag), None) if node is not None else None
@@ -53,7 +53,7 @@ class XmlNode:
     def need(self, tag: str) -> "XmlNode":
         child = self.find(tag)
         if child is None:
-            raise self.error(f"a <{tag}> is missing")
+            raise self.error(f"<{tag}> is missing")
         return child
 
     def name(self) -> str:
@@ -66,7 +66,7 @@ class XmlNode:
         return value
 
     def words(self, tag: str, default: str = "") -> str:
-        """Text of a child, or the default when absent or empty."""
+        """Text of a child, or the default if it is missing or empty."""
         child = self.find(tag)
         return (child.text.strip() if child is not None else "") or default
 
@@ -77,7 +77,7 @@ class XmlNode:
         raise self.need(tag).error(f"{text!r} is not true or false")
 
     def number(self, tag: str, default: float | None = None) -> float:
-        """A finite number from a child; without default it must be there."""
+        """A finite number from a child; required without a default."""
         child = self.find(tag) if default is not None else self.need(tag)
         if child is None or not child.text.strip():
             if default is None:
@@ -108,7 +108,7 @@ class XmlNode:
 
 
 class Unsupported:
-    """Collects what a reader skips; says each kind once when the file is read."""
+    """Collects ignored elements; logs each kind once after reading the file."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -132,7 +132,7 @@ class Unsupported:
 
 
 class _TreeBuilder:
-    """Target of the parser: makes :class:`XmlNode` and enforces the bounds."""
+    """Target of the parser: creates :class:`XmlNode` and enforces the limits."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -168,21 +168,23 @@ class _TreeBuilder:
 
 
 def read_bounded(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
-    """The bytes of a file, refused when it is missing or unreasonably large."""
+    """Read a file; refuse it if it is missing or too large."""
     try:
         size = path.stat().st_size
         if size > max_bytes:
-            raise FileFormatError(path, f"{size} bytes; at most {max_bytes} are read")
+            raise FileFormatError(
+                path, f"{size} bytes; at most {max_bytes} are allowed"
+            )
         return path.read_bytes()
     except OSError as error:
         raise FileFormatError(path, f"cannot be read: {error.strerror}") from error
 
 
 def parse_xml(path: Path, text: bytes | None = None) -> XmlNode:
-    """Parse a file (or ``text`` said to be that file) into nodes with lines.
+    """Parse a file (or ``text`` as its content) into nodes with lines.
 
     Raises:
-        FileFormatError: not XML, hostile (entities, document types), or too large.
+        FileFormatError: invalid XML, entities, document types, or too large.
     """
     builder = _TreeBuilder(path)
     parser = DefusedXMLParser(target=builder, forbid_dtd=True)

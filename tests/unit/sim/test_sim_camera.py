@@ -12,7 +12,7 @@ def _image(world: World, yaw: float = 0.0, x: float = 0.0) -> Image:
     return Simulator(scene, start=Pose2(x, 0, yaw)).image()
 
 
-def test_sky_is_above_floor_below_and_things_between() -> None:
+def test_sky_is_above_the_floor_with_objects_between() -> None:
     red = (0.9, 0.1, 0.1, 1.0)
     image = _image(World().add_box((6.0, 0.0), (1.0, 1.5), height=1.8, colour=red))
     assert image.shape == (240, 320, 3)
@@ -31,7 +31,7 @@ def test_left_is_left() -> None:
     assert columns.max() < 160
 
 
-def test_motion_over_the_floor_shows() -> None:
+def test_motion_over_the_floor_is_visible() -> None:
     assert np.any(_image(World()) != _image(World(), x=0.5))
 
 

@@ -1,4 +1,4 @@
-"""URDF text for viewers is read back by the URDF reader."""
+"""URDF for viewers, read back by the URDF reader."""
 
 from pathlib import Path
 

@@ -40,7 +40,7 @@ def test_reverse_has_its_own_limit() -> None:
     assert _run(ramp, 2.0)[-1].linear == -0.2
 
 
-def test_an_old_command_stops_the_robot() -> None:
+def test_a_command_timeout_stops_the_robot() -> None:
     ramp = SpeedRamp(SimParams(command_timeout_s=0.5, max_accel_mps2=10.0))
     ramp.command(0.5, 0.0, 0)
     speeds = _run(ramp, 1.0)
@@ -49,7 +49,7 @@ def test_an_old_command_stops_the_robot() -> None:
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_commands_that_are_not_finite_change_nothing(bad: float) -> None:
+def test_non_finite_commands_have_no_effect(bad: float) -> None:
     ramp = SpeedRamp(SimParams(command_timeout_s=0.0))
     ramp.command(0.3, 0.1, 0)
     assert not ramp.command(bad, 0.0, 0)

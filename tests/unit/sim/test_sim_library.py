@@ -34,12 +34,12 @@ def test_unknown_names_list_the_known(load: object) -> None:
         load("nowhere")
 
 
-def test_unknown_kinds_of_file(tmp_path: Path) -> None:
+def test_unknown_file_extensions_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "x.stl"
     path.write_text("")
-    with pytest.raises(FileFormatError, match="not a kind of world"):
+    with pytest.raises(FileFormatError, match="unknown extension of a world file"):
         load_world(path)
-    with pytest.raises(FileFormatError, match="not a kind of robot"):
+    with pytest.raises(FileFormatError, match="unknown extension of a robot file"):
         load_robot(path)
 
 
@@ -73,7 +73,7 @@ def test_parameter_files_fit_the_robot(name: str) -> None:
     assert told.inscribed_radius == pytest.approx(shape.inscribed_radius, abs=0.02)
 
 
-def test_a_copy_of_a_known_robot_is_identified() -> None:
+def test_a_copy_of_a_built_in_robot_is_identified() -> None:
     model = load_robot("course").model
     found = identify_robot(replace(model, links=model.links))
     assert found is not None
@@ -82,7 +82,7 @@ def test_a_copy_of_a_known_robot_is_identified() -> None:
     assert identify_robot(replace(model, name="other")) is None
 
 
-def test_another_robot_takes_the_place_of_the_worlds_own() -> None:
+def test_another_robot_replaces_the_worlds_own() -> None:
     own = load_world("course").with_robot(load_robot("course").model)
     scene = own.with_robot(load_robot("jackal").model)
     assert scene.robot is not None
@@ -106,8 +106,8 @@ def test_start_inside_an_obstacle_is_refused() -> None:
 
 @pytest.mark.parametrize("robot", ["course", "husky", "jackal", "turtlebot3_burger"])
 @pytest.mark.parametrize("world", ["arena", "course", "pillar"])
-def test_every_robots_lidar_meets_every_obstacle(robot: str, world: str) -> None:
-    """A beam that passes above an obstacle lets the robot drive into it."""
+def test_every_robots_lidar_hits_every_obstacle(robot: str, world: str) -> None:
+    """A beam above an obstacle would let the robot drive into it."""
     scene = load_world(world).with_robot(load_robot(robot).model)
     simulator = Simulator(scene)
     simulator.step(400)  # the course robot falls to the floor first

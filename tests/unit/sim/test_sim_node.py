@@ -20,7 +20,7 @@ SECOND = 10**9
 
 @dataclass
 class Run:
-    """A SimNode with ears."""
+    """A SimNode with subscriptions."""
 
     sim: SimNode
     ears: Node
@@ -113,8 +113,8 @@ def test_the_course_profile_has_the_public_frames() -> None:
     assert parents[optical] == "robot/chassis/camera"
 
 
-def test_odometry_of_the_lidar_leads_to_the_base() -> None:
-    """The velocity of a point ahead of the axle, in its own axes."""
+def test_odometry_of_the_lidar_frame_gives_the_base_pose() -> None:
+    """Checks the velocity of a point ahead of the axle, in its own frame."""
     run = _run(World().scene(), start=Pose2(0, 0, 0.4))
     run.listen("/odom/filtered")
     tracker = PoseTracker(run.ears, "robot", "sim_world")
@@ -141,7 +141,7 @@ def test_other_robots_have_map_odom_and_base_link() -> None:
     assert run.heard["/lidar"][-1].header.frame_id == "chassis/lidar"
 
 
-def test_camera_comes_with_its_geometry() -> None:
+def test_camera_has_its_camera_info() -> None:
     run = _run()
     run.listen("/camera", "/camera_info")
     run.spin(0.11)
@@ -153,7 +153,7 @@ def test_camera_comes_with_its_geometry() -> None:
     assert image.header.frame_id == "robot/chassis/camera/optical"
 
 
-def test_a_sensor_without_listeners_is_never_read(
+def test_a_sensor_without_subscribers_is_never_read(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     run = _run()
@@ -164,10 +164,10 @@ def test_a_sensor_without_listeners_is_never_read(
     for name in ("scan", "image", "imu"):
         monkeypatch.setattr(run.sim.simulator, name, fail)
     run.spin(0.5)
-    assert run.sim.simulator.now_ns == SECOND // 2  # yet time went on
+    assert run.sim.simulator.now_ns == SECOND // 2  # time advanced
 
 
-def test_descriptions_are_there_for_late_listeners() -> None:
+def test_descriptions_reach_late_subscribers() -> None:
     run = _run()
     run.spin(1.0)
     run.listen("/robot_description", "/world_description", "/tf_static")
@@ -177,7 +177,7 @@ def test_descriptions_are_there_for_late_listeners() -> None:
     assert run.heard["/tf_static"]
 
 
-def test_a_robot_that_sees_nothing_is_said_so(
+def test_a_robot_without_a_lidar_is_logged(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
     model = load_robot("jackal").model
@@ -211,7 +211,7 @@ def test_bad_commands_are_refused_and_logged() -> None:
     assert abs(run.sim.simulator.motion().linear[0]) < 1e-3
 
 
-def test_contacts_are_told() -> None:
+def test_contacts_are_reported() -> None:
     run = _run(World().add_box((3.0, 0.0), (1.0, 4.0)).scene())
     run.listen("/contacts")
     run.drive(0.8, 0.0)
@@ -266,7 +266,7 @@ def test_the_same_run_twice_gives_the_same_messages() -> None:
     assert record() == record()
 
 
-def test_reset_starts_over() -> None:
+def test_reset_restores_the_start() -> None:
     run = _run()
     run.drive(0.5, 0.0)
     run.spin(2.0)
@@ -277,4 +277,4 @@ def test_reset_starts_over() -> None:
     run.listen("/odom/filtered")
     run.spin(0.1)
     stamp = run.heard["/odom/filtered"][-1].header.stamp
-    assert stamp.sec == 2  # the clock goes on
+    assert stamp.sec == 2  # the clock continues

@@ -94,8 +94,8 @@ def test_urdf_links_without_joints_are_named(
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("<robot name='r'/>", "without links"),
-        ("<sdf/>", "starts with <robot>"),
+        ("<robot name='r'/>", "has no links"),
+        ("<sdf/>", "must be <robot>"),
         (
             "<robot name='r'><link name='a'/><link name='b'/>"
             "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>"
@@ -124,7 +124,7 @@ def test_broken_urdf(tmp_path: Path, text: str, reason: str) -> None:
 
 def _map_file(tmp_path: Path, extra: str = "") -> Path:
     pixels = np.full((4, 6), 254, dtype=np.uint8)
-    pixels[0, :] = 0  # the top row of the picture is the far (+y) side
+    pixels[0, :] = 0  # the top row of the image is the far (+y) side
     pixels[1:3, 2] = 0
     pixels[3, 5] = 205  # unknown
     Image.fromarray(pixels).save(tmp_path / "m.pgm")
@@ -184,10 +184,10 @@ def test_mjcf_world_takes_a_robot(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("<robot/>", "starts with <mujoco>"),
+        ("<robot/>", "must be <mujoco>"),
         (
             "<mujoco><asset><mesh file='../../x.stl'/></asset></mujoco>",
-            "leaves the file's folder",
+            "is outside the file's folder",
         ),
         ("<mujoco><extension/></mujoco>", "plugins"),
         ("<mujoco><include file='room.xml'/></mujoco>", "included twice"),

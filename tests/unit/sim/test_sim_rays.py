@@ -36,7 +36,7 @@ def _random_shape(rng: np.random.Generator) -> Shape:
 
 
 def _random_scene(seed: int) -> Scene:
-    """Shapes of all kinds, tilted any way, near and around the origin."""
+    """Shapes of all kinds with random poses around the origin."""
     rng = np.random.default_rng(seed)
     models = []
     for i in range(40):
@@ -54,7 +54,7 @@ def _random_scene(seed: int) -> Scene:
 
 
 def _tilted(rng: np.random.Generator) -> Mount:
-    """A view from somewhere in the middle, tilted a little."""
+    """A slightly tilted view from near the centre."""
     x, y, z = rng.uniform(-1, 1, 3)
     roll, pitch, yaw = rng.uniform((-0.3, -0.3, -3), (0.3, 0.3, 3)).tolist()
     pose = Transform3((x, y, z + 1.5), quaternion_from_rpy(roll, pitch, yaw))
@@ -114,7 +114,7 @@ MESH_WORLD = """<mujoco><asset><mesh name='tetra'
  rgba='0.9 0.1 0.1 1'/></worldbody></mujoco>"""
 
 
-def test_meshes_are_seen_too(tmp_path: Path) -> None:
+def test_meshes_are_visible(tmp_path: Path) -> None:
     path = tmp_path / "mesh.xml"
     path.write_text(MESH_WORLD)
     scene = load_world(path).with_robot(load_robot("turtlebot3_burger").model)
@@ -125,11 +125,11 @@ def test_meshes_are_seen_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_opengl_is_used_where_it_works_and_refused_elsewhere() -> None:
+def test_opengl_is_used_if_available_and_refused_otherwise() -> None:
     scene = World().add_box((6.0, 2.5), (0.5, 1.0), height=0.4).scene()
     scene = scene.with_robot(load_robot("turtlebot3_burger").model)
     if probe() is None:
-        with pytest.raises(ValueError, match="'gl' does not work here"):
+        with pytest.raises(ValueError, match="'gl' is not available"):
             Simulator(scene, SimParams(camera_renderer="gl"))
         Simulator(scene, SimParams(camera_renderer="auto")).image()
         return

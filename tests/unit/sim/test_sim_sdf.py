@@ -1,4 +1,4 @@
-"""SDF: poses, joints, shapes, sensors, drives; what is skipped and what is refused."""
+"""SDF: poses, joints, shapes, sensors, drives; ignored and refused content."""
 
 import logging
 import math
@@ -35,7 +35,7 @@ def _model(links: str, attributes: str = "name='m'") -> str:
 BOX = "<geometry><box><size>1 2 3</size></box></geometry>"
 
 
-def test_poses_follow_the_frames_they_are_given_in(tmp_path: Path) -> None:
+def test_poses_are_relative_to_their_frames(tmp_path: Path) -> None:
     scene = _read(
         tmp_path,
         """<model name='m'><pose>10 0 0 0 0 0</pose>
@@ -70,7 +70,7 @@ def test_degrees_and_quaternions(tmp_path: Path) -> None:
         assert link.model_T_link.rotation == pytest.approx((0, 0, half, half))
 
 
-def test_frames_in_a_circle_and_unknown_frames_are_errors(tmp_path: Path) -> None:
+def test_frame_cycles_and_unknown_frames_are_errors(tmp_path: Path) -> None:
     with pytest.raises(FileFormatError, match="circle"):
         _read(
             tmp_path,
@@ -217,7 +217,7 @@ def test_drive_plugins(
     assert drive.left_joints[0] == "l"
 
 
-def test_what_is_skipped_is_named_once_a_kind(
+def test_unsupported_elements_are_logged_once_per_kind(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     mesh = "<geometry><mesh><uri>x.dae</uri></mesh></geometry>"
@@ -321,11 +321,11 @@ def test_broken_files_are_clear_errors(tmp_path: Path, body: str, reason: str) -
 def test_not_an_sdf_file(tmp_path: Path) -> None:
     path = tmp_path / "x.sdf"
     path.write_text("<robot name='r'/>")
-    with pytest.raises(FileFormatError, match="starts with <sdf>"):
+    with pytest.raises(FileFormatError, match="must be <sdf>"):
         read_sdf(path)
 
 
-def test_sizes_beyond_what_physics_can_hold_are_refused(tmp_path: Path) -> None:
+def test_too_large_sizes_are_refused(tmp_path: Path) -> None:
     for shape in (
         "<box><size>1e30 1 1</size></box>",
         "<cylinder><radius>1</radius><length>1e6</length></cylinder>",

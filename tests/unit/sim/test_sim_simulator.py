@@ -54,7 +54,7 @@ def _with_blind_zone(robot: Model, metres: float) -> Model:
 def _settled(
     simulator: Simulator, linear: float, angular: float
 ) -> tuple[float, float]:
-    """Mean speed and yaw rate after two seconds of a command."""
+    """Return mean speed and yaw rate after two seconds of a command."""
     simulator.command(linear, angular)
     simulator.step(1000)
     motions = []
@@ -66,7 +66,7 @@ def _settled(
     return float(v), float(w)
 
 
-def test_the_course_robot_falls_a_metre_and_stands() -> None:
+def test_the_course_robot_falls_1_m_and_comes_to_rest() -> None:
     scene = load_world("course")
     high = scene.start.translation[:2]
     robot = COURSE.at(scene.start @ COURSE.world_T_model)
@@ -84,7 +84,7 @@ def test_the_course_robot_falls_a_metre_and_stands() -> None:
     ("linear", "angular"),
     [(1.0, 0.0), (-0.5, 0.0), (0.0, 1.0), (0.8, 0.6), (0.3, -1.2)],
 )
-def test_the_course_robot_does_as_told(linear: float, angular: float) -> None:
+def test_the_course_robot_follows_commands(linear: float, angular: float) -> None:
     simulator = Simulator(_scene(World()), FREE, start=Pose2(0, 0, 0))
     v, w = _settled(simulator, linear, angular)
     assert v == pytest.approx(linear, rel=0.02, abs=0.02)
@@ -104,7 +104,7 @@ def test_the_course_robot_does_as_told(linear: float, angular: float) -> None:
         ("husky", 0.5, 0.5, 0.08),
     ],
 )
-def test_other_robots_do_nearly_as_told(
+def test_other_robots_follow_commands_closely(
     robot: str, linear: float, angular: float, within: float
 ) -> None:
     simulator = Simulator(_scene(World(), robot), _fast(robot), start=Pose2(0, 0, 0))
@@ -152,7 +152,7 @@ def test_the_same_run_twice_is_equal_bit_for_bit() -> None:
 
 
 @pytest.mark.slow
-def test_looking_changes_nothing() -> None:
+def test_reading_sensors_does_not_change_the_state() -> None:
     scene = load_world("arena").with_robot(COURSE)
     plain, watched = Simulator(scene, FREE), Simulator(scene, FREE)
     end = _drive_about(plain, 100)
@@ -168,7 +168,7 @@ def test_looking_changes_nothing() -> None:
     assert _drive_about(watched, 25) == end
 
 
-def test_noise_depends_on_the_seed_alone() -> None:
+def test_noise_depends_only_on_the_seed() -> None:
     def ranges(seed: int) -> bytes:
         params = SimParams(seed=seed, lidar_noise_m=0.02, lidar_dropout=0.1)
         simulator = Simulator(load_world("course").with_robot(COURSE), params)
@@ -210,7 +210,7 @@ def test_clearance_is_exact() -> None:
     assert turned.clearance().distance == pytest.approx(2.5 - 0.7, abs=1e-3)
 
 
-def test_contacts_are_told_apart_and_counted_once() -> None:
+def test_contacts_are_distinguished_and_counted_once() -> None:
     world = World().add_box((3.0, 0.0), (1.0, 4.0), height=1.0)
     simulator = Simulator(_scene(world), FREE, start=Pose2(0, 0, 0))
     simulator.command(0.8, 0.0)
@@ -225,7 +225,7 @@ def test_contacts_are_told_apart_and_counted_once() -> None:
     assert simulator.contacts.count == 0
 
 
-def test_imu_feels_gravity_turning_and_speeding_up() -> None:
+def test_imu_measures_gravity_turning_and_acceleration() -> None:
     simulator = Simulator(_scene(World()), FREE, start=Pose2(0, 0, 0))
     simulator.step(500)
     still = simulator.imu()
@@ -276,7 +276,7 @@ def test_steps_that_do_not_fit_the_motor_cycle_are_refused(step: float) -> None:
         SimParams(timestep_s=step)
 
 
-def test_limits_can_change_on_the_way() -> None:
+def test_limits_can_change_while_driving() -> None:
     simulator = Simulator(_scene(World()), FREE, start=Pose2(0, 0, 0))
     simulator.change_params(SimParams(max_speed_mps=0.2, command_timeout_s=0.0))
     v, _ = _settled(simulator, 1.0, 0.0)
@@ -288,7 +288,7 @@ def test_a_world_without_a_robot_is_refused() -> None:
         Simulator(World("lonely").scene())
 
 
-def test_many_static_shapes_do_not_meet_each_other() -> None:
+def test_many_static_shapes_do_not_collide() -> None:
     world = World()
     for i in range(300):
         world.add_cylinder((3 + 0.1 * (i % 20), 0.1 * (i // 20)), 0.075)
@@ -312,7 +312,7 @@ CRATE = """<sdf version='1.9'><world name='w'><model name='crate'>
 </link></model></world></sdf>"""
 
 
-def test_what_is_not_static_can_be_pushed_and_is_seen(tmp_path: Path) -> None:
+def test_movable_models_can_be_pushed_and_are_visible(tmp_path: Path) -> None:
     path = tmp_path / "crate.sdf"
     path.write_text(CRATE)
     scene = load_world(path).with_robot(load_robot("jackal").model)
@@ -327,15 +327,15 @@ def test_what_is_not_static_can_be_pushed_and_is_seen(tmp_path: Path) -> None:
     assert simulator.scan().ranges[360] == pytest.approx(0.2, abs=0.03)
 
 
-def test_a_start_in_an_obstacle_is_refused_the_worlds_own_too() -> None:
+def test_a_start_in_an_obstacle_is_refused_also_the_worlds_own() -> None:
     world = World().add_cylinder((0.0, 0.0), 1.5)
     with pytest.raises(InvalidValueError, match=r"start \(0.1, 0, 90°\): .*cylinder"):
         Simulator(_scene(world), start=Pose2(0.1, 0, math.pi / 2))
-    with pytest.raises(InvalidValueError, match=r"the world's; give another.*cylinder"):
+    with pytest.raises(InvalidValueError, match=r"pass another start.*cylinder"):
         Simulator(_scene(world))
 
 
-def test_physics_that_blows_up_ends_with_an_error(
+def test_diverging_physics_raises_an_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -344,4 +344,4 @@ def test_physics_that_blows_up_ends_with_an_error(
     simulator._data.qvel[0] = math.inf
     with pytest.raises(InvalidValueError, match="physics became unstable"):
         simulator.step(100)
-    assert not list(tmp_path.iterdir())  # MuJoCo would leave a log here
+    assert not list(tmp_path.iterdir())  # MuJoCo would write its log here

@@ -1,4 +1,4 @@
-"""Wheel odometry: what it says it knows is what it knows."""
+"""Wheel odometry: the stated covariances match the errors."""
 
 import math
 from typing import Any
@@ -60,8 +60,8 @@ def test_the_twist_covariance_is_that_of_the_encoders() -> None:
 
 
 @pytest.mark.parametrize(("left", "right"), [(2.0, 3.0), (-0.6, 0.6), (-1.0, -2.0)])
-def test_covariances_against_many_drives(left: float, right: float) -> None:
-    """Each drive states its own; their mean is what the drives' ends scatter by."""
+def test_covariances_match_the_scatter_of_drives(left: float, right: float) -> None:
+    """The mean of the stated covariances equals the scatter of the end poses."""
     poses, motions, stated_poses, stated_motions = [], [], [], []
     for seed in range(300):
         wheels = odometry(0.01)
@@ -78,8 +78,8 @@ def test_covariances_against_many_drives(left: float, right: float) -> None:
         np.testing.assert_allclose(correlation(claimed), correlation(found), atol=0.12)
 
 
-def test_a_filter_that_knows_the_turning_finds_the_speed_unbiased() -> None:
-    """Were they made of the measured travel, the speed would be low by s / 2 dt."""
+def test_a_filter_with_known_yaw_rate_estimates_speed_without_bias() -> None:
+    """Variances of the measured travel would bias the speed by s / 2 dt."""
     noise, dt, drives = 0.02, STEP_NS * 1e-9, 1600
     off = []
     for seed in range(drives):
@@ -91,7 +91,7 @@ def test_a_filter_that_knows_the_turning_finds_the_speed_unbiased() -> None:
     assert abs(np.mean(off)) < noise**2 / (2 * dt) / 2
 
 
-def test_it_says_as_much_however_often_it_is_asked() -> None:
+def test_covariances_do_not_depend_on_the_update_rate() -> None:
     seldom, often = odometry(0.05), odometry(0.05)
     drive(seldom, 1.0, 1.4, 1, seed=1)
     drive(often, 1.0, 1.4, 100, seed=1)
@@ -100,7 +100,7 @@ def test_it_says_as_much_however_often_it_is_asked() -> None:
     )
 
 
-def test_a_wheel_that_stands_is_not_known_perfectly() -> None:
+def test_a_stationary_wheel_has_a_variance() -> None:
     wheels = odometry(0.05)
     told = wheels.motion()
     assert (told.speed, told.yaw_rate) == (0.0, 0.0)
@@ -110,14 +110,14 @@ def test_a_wheel_that_stands_is_not_known_perfectly() -> None:
     np.testing.assert_allclose(wheels.pose_covariance, least)
 
 
-def test_the_motion_is_the_mean_since_it_was_told() -> None:
+def test_the_motion_is_the_mean_since_the_last_call() -> None:
     wheels, rng = odometry(0.0), np.random.default_rng(0)
     wheels.update((1.0, 1.0), 100_000_000, rng)
     assert wheels.motion().speed == pytest.approx(1.0)
     wheels.update((3.0, 3.0), 150_000_000, rng)
     wheels.update((4.0, 4.0), 200_000_000, rng)
     assert wheels.motion().speed == pytest.approx(3.0)
-    assert wheels.motion().speed == pytest.approx(3.0)  # asked again at that time
+    assert wheels.motion().speed == pytest.approx(3.0)  # called again at the same time
 
 
 def test_a_child_ahead_of_the_axle_swings_with_the_heading() -> None:
@@ -132,7 +132,7 @@ def test_a_child_ahead_of_the_axle_swings_with_the_heading() -> None:
     )
     pose = np.reshape(message.pose.covariance, (6, 6))
     twist = np.reshape(message.twist.covariance, (6, 6))
-    # The nose is 2 m to the north of the axle and looks west.
+    # The front is 2 m north of the axle and faces west.
     assert message.pose.pose.position.y == pytest.approx(4.0)
     np.testing.assert_allclose(np.diag(pose), [0.04, 0, 0, 0, 0, 0.01], atol=1e-12)
     assert pose[0, 5] == pytest.approx(-0.02)

@@ -1,4 +1,4 @@
-"""XML is parsed safely and every error names file and line."""
+"""Safe XML parsing; every error names file and line."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ def _write(tmp_path: Path, text: str) -> Path:
     return path
 
 
-def test_nodes_know_their_lines(tmp_path: Path) -> None:
+def test_nodes_have_their_lines(tmp_path: Path) -> None:
     root = parse_xml(_write(tmp_path, "<a>\n <b/>\n\n <c x='1'>2 3</c>\n</a>"))
     assert [child.line for child in root.children] == [2, 4]
     assert root.need("c").numbers(2) == (2.0, 3.0)
@@ -39,7 +39,7 @@ def test_broken_xml_names_the_line(tmp_path: Path) -> None:
         parse_xml(_write(tmp_path, "<a>\n<b>\n</a>"))
 
 
-def test_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_limits_are_enforced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(FileFormatError, match="nested deeper"):
         parse_xml(_write(tmp_path, "<a>" * 100 + "</a>" * 100))
     monkeypatch.setattr(xml_tree, "MAX_ELEMENTS", 10)
