@@ -71,7 +71,7 @@ def test_degrees_and_quaternions(tmp_path: Path) -> None:
 
 
 def test_frame_cycles_and_unknown_frames_are_errors(tmp_path: Path) -> None:
-    with pytest.raises(FileFormatError, match="circle"):
+    with pytest.raises(FileFormatError, match="cycle"):
         _read(
             tmp_path,
             "<model name='m'><link name='a'><pose relative_to='b'/></link>"
