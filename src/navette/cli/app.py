@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from typer.core import TyperGroup
-from typer.main import get_group
 
 from navette import __version__
 from navette.cli.arguments import (
@@ -204,17 +202,6 @@ def _run(options: "RunOptions", *, as_json: bool) -> None:
     raise typer.Exit(run_simulation(options, as_json=as_json))
 
 
-#: Built beforehand; children of a zygote inherit it.
-_built: list[TyperGroup] = []
-
-
-def build(verb: str) -> None:
-    """Build the commands and that verb now, not when :func:`main` is called."""
-    group = get_group(app)
-    group.resolve_command(typer.Context(group), [verb])
-    _built[:] = [group]
-
-
 def main() -> None:
     """Entry point of the ``navette`` command."""
     if is_completing():
@@ -223,7 +210,7 @@ def main() -> None:
     if arguments[:1] != ["run"]:
         arguments = without_daemon(fill_values(spread_lists(join_pairs(arguments))))
     try:
-        (_built[0] if _built else app)(args=arguments, prog_name="navette")
+        app(args=arguments, prog_name="navette")
     except NavetteError as error:
         complain(str(error))
         raise SystemExit(USAGE_ERROR) from None

@@ -1,7 +1,5 @@
-"""``navette launch``: ROS 2 launch files on Navette."""
+"""``navette launch``: run ROS 2 launch files on Navette."""
 
-from contextlib import closing
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -18,16 +16,16 @@ Words = Annotated[
 ]
 ShowArgs = Annotated[
     bool,
-    typer.Option("--show-args", "-s", help="List the file's arguments and end."),
+    typer.Option("--show-args", "-s", help="List the file's arguments and exit."),
 ]
 Processes = Annotated[
     bool,
-    typer.Option("--processes", help="A process for each node."),
+    typer.Option("--processes", help="Run each node in its own process."),
 ]
-Debug = Annotated[bool, typer.Option("--debug", "-d", help="Log what happens inside.")]
+Debug = Annotated[bool, typer.Option("--debug", "-d", help="Print debug messages.")]
 OnNavette = Annotated[
     bool,
-    typer.Option("--navette", help="On Navette even where ROS 2 is installed."),
+    typer.Option("--navette", help="Use Navette even if ROS 2 is installed."),
 ]
 
 
@@ -38,28 +36,20 @@ def launch(
     debug: Debug = False,
     on_navette: OnNavette = False,
 ) -> None:
-    """Run a launch file: all its nodes in this process, or one process each.
+    """Run a launch file: all its nodes in this process, or each in its own process.
 
-    Ctrl-C ends everything it started. Exit code 1: the launch failed or a process
-    died.
+    Ctrl-C ends everything that the launch started. Exit code 1: the launch or one of
+    its processes failed.
     """
-    from navette.supervisor import Keeper
+    from navette.ros2.launch import launch as run_launch
+    from navette.ros2.launch import parse_launch_arguments, show_arguments
+    from navette.ros2.launch.session import find_launch_file
+    from navette.ros2.names import install
 
-    with closing(Keeper()) as keeper:
-        if processes and not show_args and Path(words[0]).is_file():
-            keeper.prepare()  # imports there what is imported here meanwhile
-        from navette.ros2.launch import launch as run_launch
-        from navette.ros2.launch import parse_launch_arguments, show_arguments
-        from navette.ros2.launch.session import find_launch_file
-        from navette.ros2.names import install
-
-        install(instead_of_ros=on_navette)
-        path, rest = find_launch_file(words)
-        if show_args:
-            typer.echo(show_arguments(path))
-            return
-        arguments = parse_launch_arguments(rest)
-        code = run_launch(
-            path, arguments, processes=processes, debug=debug, keeper=keeper
-        )
-    raise typer.Exit(code)
+    install(instead_of_ros=on_navette)
+    path, rest = find_launch_file(words)
+    if show_args:
+        typer.echo(show_arguments(path))
+        return
+    arguments = parse_launch_arguments(rest)
+    raise typer.Exit(run_launch(path, arguments, processes=processes, debug=debug))

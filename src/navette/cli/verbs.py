@@ -18,8 +18,8 @@ def _launch(app: typer.Typer) -> None:
     app.command()(launch)
 
 
-def _modules(app: typer.Typer) -> None:
-    from navette.cli.modules import down, logs, ps, restart, up
+def _up(app: typer.Typer) -> None:
+    from navette.cli.up.verbs import down, logs, ps, restart, up
 
     for command in (up, down, restart, ps, logs):
         app.command()(command)
@@ -113,25 +113,21 @@ def _completion(app: typer.Typer) -> None:
 VERBS = {
     "run": Later("Run ROS 2 programs as they are, without ROS 2.", _run),
     "launch": Later(
-        "Run a launch file: all its nodes in this process, or one process each.",
+        "Run a launch file: all its nodes in this process, or each in its own process.",
         _launch,
     ),
-    "up": Later(
-        "Start modules, each of its nodes a process that is kept running.", _modules
-    ),
-    "down": Later(
-        "End modules: those that need others first, all if none is named.", _modules
-    ),
+    "up": Later("Start services; each of their nodes is a supervised process.", _up),
+    "down": Later("Stop services, dependents first.", _up),
     "restart": Later(
-        "End modules and start them anew, as the project's file says now.", _modules
+        "Stop services and start them again, with the present content of the file.",
+        _up,
     ),
     "ps": Later(
-        "List the modules' processes: state, pid, since when, use, restarts, reason.",
-        _modules,
+        "List the processes of services: state, pid, time, CPU, memory, restarts.", _up
     ),
     "logs": Later(
-        "Print what the modules' processes wrote: all in one, in the order of writing.",
-        _modules,
+        "Print the output of the services' processes, interleaved in order of time.",
+        _up,
     ),
     "teleop": Later("Drive a robot with the keys of this terminal.", _teleop),
     "topic": Later(

@@ -1,36 +1,49 @@
-"""Start, watch and end child processes; keep the services of ``navette up`` running."""
+"""Start, watch, restart and end child processes; ``navette up`` and ``navette launch``.
+
+One mechanism for both: :class:`ProcessManager` starts child processes and guards them,
+:class:`ManagedProcess` restarts and terminates one of them.
+"""
 
 from navette.supervisor.child import (
     INTERRUPT,
     KILL,
     TERMINATE,
     ChildProcess,
-    Listener,
+    ProcessHandle,
+    ProcessListener,
 )
-from navette.supervisor.ending import SIGNAL_NAMES, Ending, Patience
-from navette.supervisor.guard import sweep, without_marks
-from navette.supervisor.keeper import Keeper, ProcessError, StartOptions
-from navette.supervisor.lines import LineCutter
-from navette.supervisor.outcome import describe_exit
-from navette.supervisor.specs import ModuleSpec, ProcessSpec, RestartPolicy
+from navette.supervisor.exit_code import describe_exit
+from navette.supervisor.lines import LineSplitter
+from navette.supervisor.managed_process import ManagedProcess
+from navette.supervisor.process_manager import (
+    ProcessError,
+    ProcessManager,
+    StartOptions,
+)
+from navette.supervisor.specs import (
+    ProcessSpec,
+    ProcessState,
+    RestartPolicy,
+    ServiceSpec,
+)
+from navette.supervisor.terminator import GracePeriods
 
 __all__ = [
     "ChildProcess",
-    "Ending",
+    "GracePeriods",
     "INTERRUPT",
     "KILL",
-    "Keeper",
-    "LineCutter",
-    "Listener",
-    "ModuleSpec",
-    "Patience",
+    "LineSplitter",
+    "ManagedProcess",
     "ProcessError",
+    "ProcessHandle",
+    "ProcessListener",
+    "ProcessManager",
     "ProcessSpec",
+    "ProcessState",
     "RestartPolicy",
-    "SIGNAL_NAMES",
+    "ServiceSpec",
     "StartOptions",
     "TERMINATE",
     "describe_exit",
-    "sweep",
-    "without_marks",
 ]

@@ -1,4 +1,4 @@
-"""Talks to a project's supervisor, and starts it where there is none."""
+"""Client of a project's supervisor; starts the supervisor if necessary."""
 
 import json
 import os
@@ -11,78 +11,78 @@ from pathlib import Path
 from typing import Any
 
 from navette.errors import NavetteError
-from navette.supervisor import without_marks
+from navette.supervisor.guard import without_tokens
 from navette.supervisor.project import (
-    WHO_NAME,
+    INFO_NAME,
     Project,
     is_locked,
     make_private,
-    read_who,
+    read_info,
     socket_path,
     state_root,
 )
-from navette.supervisor.specs import ModuleSpec
+from navette.supervisor.specs import ServiceSpec
 
-_PATIENCE_S = 15.0
-_START_S = 30.0
+_TIMEOUT_S = 15.0
+_START_TIMEOUT_S = 30.0
 LOG_NAME = "supervisor.log"
 
 
 class SupervisorError(NavetteError):
-    """The supervisor is not there, or refused."""
+    """The supervisor is unreachable, or refused a request."""
 
 
-class Client:
-    """A project's supervisor, from outside."""
+class SupervisorClient:
+    """Sends requests to the supervisor of a project."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
         self._socket = socket_path(project.state)
 
-    def is_there(self) -> bool:
-        """Whether a supervisor answers."""
-        return answers(self._socket)
+    def is_reachable(self) -> bool:
+        """Return whether a supervisor accepts connections."""
+        return accepts_connections(self._socket)
 
     def status(self) -> list[dict[str, Any]]:
-        """All modules that are up; none where there is no supervisor."""
+        """Return the services that are up; empty without a supervisor."""
         try:
-            return _modules(self._ask({"do": "status"}))
+            return _services(self._request({"command": "status"}))
         except ConnectionError:
             return []
 
     def arguments(self) -> dict[str, str]:
-        """Those with which modules were last started; they hold until all are down."""
+        """Return the arguments of the last ``up``; they hold until all is down."""
         try:
-            found: dict[str, str] = self._ask({"do": "status"})["arguments"]
+            found: dict[str, str] = self._request({"command": "status"})["arguments"]
         except ConnectionError:
             return {}
         return found
 
     def up(
-        self, modules: Iterable[ModuleSpec], arguments: Mapping[str, str]
+        self, services: Iterable[ServiceSpec], arguments: Mapping[str, str]
     ) -> list[dict[str, Any]]:
-        """Start modules, and the supervisor first if need be.
+        """Start services, and the supervisor if necessary.
 
         Args:
-            arguments: with which the project's file was read.
+            arguments: the arguments that the project's file was read with.
         """
-        return self._send("up", modules, arguments)
+        return self._send("up", services, arguments)
 
     def restart(
-        self, modules: Iterable[ModuleSpec], arguments: Mapping[str, str]
+        self, services: Iterable[ServiceSpec], arguments: Mapping[str, str]
     ) -> list[dict[str, Any]]:
-        """End modules and start them again."""
-        return self._send("restart", modules, arguments)
+        """Stop services and start them again."""
+        return self._send("restart", services, arguments)
 
-    def down(self, modules: Iterable[str] | None) -> list[dict[str, Any]]:
-        """End modules (None: all).
+    def down(self, services: Iterable[str] | None) -> list[dict[str, Any]]:
+        """Stop services (None: all).
 
         Raises:
             SupervisorError: one of them is not up.
         """
-        names = None if modules is None else list(modules)
+        names = None if services is None else list(services)
         try:
-            return _modules(self._ask({"do": "down", "modules": names}))
+            return _services(self._request({"command": "down", "services": names}))
         except ConnectionError:
             if names:
                 raise SupervisorError(
@@ -91,28 +91,31 @@ class Client:
             return []
 
     def _send(
-        self, wish: str, modules: Iterable[ModuleSpec], arguments: Mapping[str, str]
+        self,
+        command: str,
+        services: Iterable[ServiceSpec],
+        arguments: Mapping[str, str],
     ) -> list[dict[str, Any]]:
         request = {
-            "do": wish,
-            "modules": [each.to_json() for each in modules],
+            "command": command,
+            "services": [each.to_json() for each in services],
             "arguments": dict(arguments),
-            "environ": without_marks(os.environ),
+            "environ": without_tokens(os.environ),
         }
         try:
-            return _modules(self._ask(request))
+            return _services(self._request(request))
         except ConnectionError:
             start_supervisor(self.project, self._socket)
         try:
-            return _modules(self._ask(request))
+            return _services(self._request(request))
         except ConnectionError as error:
             raise SupervisorError(
-                f"the supervisor of {self.project.folder} does not answer: {error}"
+                f"the supervisor of {self.project.folder} does not respond: {error}"
             ) from error
 
-    def _ask(self, request: dict[str, Any]) -> dict[str, Any]:
+    def _request(self, request: dict[str, Any]) -> dict[str, Any]:
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
-            connection.settimeout(_PATIENCE_S)
+            connection.settimeout(_TIMEOUT_S)
             try:
                 connection.connect(str(self._socket))
             except FileNotFoundError:
@@ -124,25 +127,26 @@ class Client:
                     line = file.readline()
             except TimeoutError:
                 raise SupervisorError(
-                    f"the supervisor of {self.project.folder} does not answer"
+                    f"the supervisor of {self.project.folder} does not respond within "
+                    f"{_TIMEOUT_S:g} s"
                 ) from None
         if not line:
             raise ConnectionResetError
-        answer: dict[str, Any] = json.loads(line)
-        if "error" in answer:
-            raise SupervisorError(answer["error"])
-        return answer
+        response: dict[str, Any] = json.loads(line)
+        if "error" in response:
+            raise SupervisorError(response["error"])
+        return response
 
 
-def _modules(answer: dict[str, Any]) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = answer["modules"]
+def _services(response: dict[str, Any]) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = response["services"]
     return found
 
 
-def answers(path: Path) -> bool:
-    """Whether somebody listens on a socket."""
+def accepts_connections(path: Path) -> bool:
+    """Return whether a process listens on a socket."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
-        connection.settimeout(_PATIENCE_S)
+        connection.settimeout(_TIMEOUT_S)
         try:
             connection.connect(str(path))
         except OSError:
@@ -151,28 +155,28 @@ def answers(path: Path) -> bool:
 
 
 def known_projects() -> list[Project]:
-    """Every project of this user that has a supervisor."""
+    """Return the projects of this user that have a supervisor."""
     found = []
-    for who in sorted(state_root().glob(f"*/{WHO_NAME}")):
-        told = read_who(who.parent)
-        if told is not None and is_locked(who.parent):
-            found.append(Project(Path(told["folder"])))
+    for file in sorted(state_root().glob(f"*/{INFO_NAME}")):
+        info = read_info(file.parent)
+        if info is not None and is_locked(file.parent):
+            found.append(Project(Path(info["folder"])))
     return found
 
 
-def died(project: Project) -> int | None:
-    """The process id of a supervisor that was killed; None if none was."""
-    told = read_who(project.state)
-    if told is None or is_locked(project.state):
+def killed_supervisor(project: Project) -> int | None:
+    """Return the process id of a supervisor that was killed, if there is one."""
+    info = read_info(project.state)
+    if info is None or is_locked(project.state):
         return None
-    return int(told["pid"])
+    return int(info["pid"])
 
 
 def start_supervisor(project: Project, path: Path) -> None:
-    """Start one, detached, and wait until it listens.
+    """Start a detached supervisor and wait until it listens.
 
     Raises:
-        SupervisorError: it does not come up; says what it said.
+        SupervisorError: it did not start; includes its output.
     """
     make_private(project.state)
     reading, writing = os.pipe()
@@ -187,15 +191,15 @@ def start_supervisor(project: Project, path: Path) -> None:
             stdout=output,
             stderr=output,
             cwd="/",
-            env=without_marks(os.environ),
+            env=without_tokens(os.environ),
             start_new_session=True,
             pass_fds=(writing,),
             check=False,
         )
     os.close(writing)
     with os.fdopen(reading, "rb") as pipe:
-        there, _, _ = select.select([pipe], [], [], _START_S)
-        word = pipe.read(5) if there else b""
-    if word not in (b"ready", b"taken"):
-        said = log.read_text(encoding="utf-8", errors="replace").strip()
-        raise SupervisorError(f"the supervisor did not start: {said or 'no word'}")
+        ready, _, _ = select.select([pipe], [], [], _START_TIMEOUT_S)
+        result = pipe.read(5) if ready else b""
+    if result not in (b"ready", b"taken"):
+        text = log.read_text(encoding="utf-8", errors="replace").strip()
+        raise SupervisorError(f"the supervisor did not start: {text or 'no output'}")

@@ -1,7 +1,7 @@
-"""The supervisor process: one per project, detached from the process that started it.
+"""Supervisor process: one per project, detached from the command that started it.
 
 Started as ``python -m navette.supervisor.daemon FOLDER SOCKET READY_FD``. It exits when
-no module is left; every process that it started ends with it, however it ends.
+no service is left; all its processes end with it, whatever ends it.
 """
 
 import json
@@ -16,35 +16,36 @@ from typing import Any
 from navette.runtime import SystemClock
 from navette.runtime.events import Call
 from navette.runtime.loop import EventLoop
-from navette.supervisor import Keeper, sweep
-from navette.supervisor.client import answers
-from navette.supervisor.log_book import LogBook
+from navette.supervisor.client import accepts_connections
+from navette.supervisor.guard import end_processes_with
+from navette.supervisor.log_store import LogStore
+from navette.supervisor.process_manager import ProcessManager
 from navette.supervisor.project import (
-    WHO_NAME,
+    INFO_NAME,
     Project,
-    lock_of,
+    lock_path,
     make_private,
-    read_who,
+    read_info,
     try_lock,
 )
-from navette.supervisor.server import Server
-from navette.supervisor.specs import ModuleSpec
+from navette.supervisor.server import RequestServer
+from navette.supervisor.specs import ServiceSpec
 from navette.supervisor.supervisor import Supervisor
 
-# A guard that ends what a killed supervisor left holds the lock meanwhile.
-_LOCK_S = 15.0
-_LOOK_S = 0.05
-# So long it waits for more to do: who said "down" still asks how it went.
+# The guard of a killed supervisor holds the lock until it has ended all processes.
+_LOCK_TIMEOUT_S = 15.0
+_POLL_S = 0.05
+# An idle supervisor stays this long: after "down", the client requests the status.
 _LINGER_S = 0.5
 
 
 def main(folder: Path, socket: Path, ready: int) -> None:
-    """Supervise the project of a folder until no module is left."""
+    """Supervise the project of a folder until no service is left."""
     state = Project(folder).state
     make_private(state)
-    lock = os.open(lock_of(state), os.O_RDWR | os.O_CREAT, 0o600)
+    lock = os.open(lock_path(state), os.O_RDWR | os.O_CREAT, 0o600)
     if not _locked(lock, socket):
-        os.write(ready, b"taken")  # somebody else was faster; all is well
+        os.write(ready, b"taken")  # another supervisor was faster
         return
     daemon = _Daemon(folder, socket, lock)
     os.write(ready, b"ready")
@@ -53,89 +54,87 @@ def main(folder: Path, socket: Path, ready: int) -> None:
 
 
 def _locked(lock: int, socket: Path) -> bool:
-    """Take the lock; False once another supervisor answers, or it takes too long."""
-    pause, left_s = threading.Event(), _LOCK_S
+    """Take the lock; return False if another supervisor runs, or on timeout."""
+    pause, left_s = threading.Event(), _LOCK_TIMEOUT_S
     while not try_lock(lock):
-        if answers(socket) or left_s <= 0:
+        if accepts_connections(socket) or left_s <= 0:
             return False
-        pause.wait(_LOOK_S)
-        left_s -= _LOOK_S
+        pause.wait(_POLL_S)
+        left_s -= _POLL_S
     return True
 
 
-def _end_leftovers(state: Path) -> None:
-    """Of a supervisor that was killed together with its guard."""
-    before = read_who(state)
-    if before is not None and before.get("token"):
-        sweep(before["token"])
-
-
 class _Daemon:
-    """A supervisor with its loop, log and socket."""
+    """Supervisor with its loop, log and socket."""
 
     def __init__(self, folder: Path, socket: Path, lock: int) -> None:
         state = Project(folder).state
-        self._who = state / WHO_NAME
-        _end_leftovers(state)
+        previous = read_info(state)
+        if previous is not None and previous.get("token"):
+            # A supervisor that was killed together with its guard.
+            end_processes_with(previous["token"])
         self._loop = EventLoop(SystemClock())
-        self._log = LogBook(state, lambda: self._loop.clock.now_ns)
-        self._keeper = Keeper(hold=[lock])
+        self._log = LogStore(state, lambda: self._loop.clock.now_ns)
+        self._manager = ProcessManager(hold=[lock])
         self._arguments: dict[str, str] = {}
         self._over = False
-        self._farewell: Call | None = None
+        self._linger: Call | None = None
         self._supervisor = Supervisor(
-            self._keeper, self._loop, self._log, self._become_idle
+            self._manager, self._loop, self._log, self._exit_when_idle
         )
-        self._server = Server(socket, self._loop, self._handle)
-        told = {
-            "pid": os.getpid(),
-            "folder": str(folder),
-            "token": self._keeper.token,
-        }
-        self._who.write_text(json.dumps(told), encoding="utf-8")
+        self._server = RequestServer(socket, self._loop, self._handle)
+        guard = self._manager.guard()
+        assert guard is not None, "supervisors run on POSIX systems only"
+        info = {"pid": os.getpid(), "folder": str(folder), "token": guard.token}
+        self._info = state / INFO_NAME
+        self._info.write_text(json.dumps(info), encoding="utf-8")
 
     def run(self) -> None:
-        self._listen_to_signals()
-        self._become_idle()
+        self._install_signal_handlers()
+        self._exit_when_idle()
         try:
             self._loop.run(done=lambda: self._over)
         finally:
             self._server.close()
-            self._keeper.close()
+            self._manager.close()
             self._log.close()
-            self._who.unlink(missing_ok=True)
+            self._info.unlink(missing_ok=True)
 
     def _handle(self, request: dict[str, Any]) -> dict[str, Any]:
-        wish = request.get("do")
-        if wish in ("up", "restart"):
-            specs = [ModuleSpec.from_json(each) for each in request["modules"]]
+        command = request.get("command")
+        if command in ("up", "restart"):
+            specs = [ServiceSpec.from_json(each) for each in request["services"]]
             environ = _texts(request["environ"])
             self._arguments = _texts(request["arguments"])
-            act = self._supervisor.up if wish == "up" else self._supervisor.restart
-            act(specs, environ)
-        elif wish == "down":
-            self._supervisor.down(request.get("modules"))
-        elif wish != "status":
-            raise ValueError(f"do: {wish!r}; wanted up, restart, down or status")
+            if command == "up":
+                self._supervisor.up(specs, environ)
+            else:
+                self._supervisor.restart(specs, environ)
+        elif command == "down":
+            self._supervisor.down(request.get("services"))
+        elif command != "status":
+            raise ValueError(
+                f"command {command!r}: expected up, restart, down or status"
+            )
         return {
             "pid": os.getpid(),
-            "modules": self._supervisor.status(),
+            "services": self._supervisor.status(),
             "arguments": self._arguments,
         }
 
-    def _become_idle(self) -> None:
-        if self._farewell is None:
+    def _exit_when_idle(self) -> None:
+        if self._linger is None:
             at_ns = self._loop.clock.now_ns + round(_LINGER_S * 1e9)
-            self._farewell = self._loop.call_at(at_ns, self._leave, "farewell")
+            self._linger = self._loop.call_at(at_ns, self._exit_if_idle, "linger")
 
-    def _leave(self) -> None:
-        self._farewell = None
+    def _exit_if_idle(self) -> None:
+        self._linger = None
         self._over = self._supervisor.is_idle
 
-    def _listen_to_signals(self) -> None:
-        """SIGINT and SIGTERM end all modules, and then the supervisor.
+    def _install_signal_handlers(self) -> None:
+        """Stop all services, then the supervisor, on SIGINT and SIGTERM.
 
-        A handler only queues: it may interrupt whoever holds the loop's locks.
+        A handler only queues: it may interrupt a holder of the loop's locks.
         """
         received: queue.SimpleQueue[int] = queue.SimpleQueue()
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -155,6 +154,6 @@ def _texts(values: dict[Any, Any]) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    if os.fork() != 0:  # so that whoever started it need not wait for its end
+    if os.fork() != 0:  # the command does not wait for the daemon's end
         os._exit(0)
     main(Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3]))

@@ -1,4 +1,4 @@
-"""The guard of a process that keeps others: ends them if it dies before them."""
+"""Guard: ends child processes if this process dies before them."""
 
 import contextlib
 import os
@@ -10,18 +10,20 @@ from pathlib import Path
 
 from navette.supervisor.guard_program import GRACE_S, VARIABLE
 
-_PROGRAM = Path(__file__).parent / "guard_program.py"
+# -P: the script's folder is not a place to import from.
+_COMMAND = [sys.executable, "-P", str(Path(__file__).parent / "guard_program.py")]
 
 
 class Guard:
-    """A small process that is told of every process group.
+    """Helper process that holds a list of process groups.
 
-    It notices by the end of a pipe that this process is gone, whatever killed it. One
-    that is killed itself is replaced at once. Only where there are process groups.
+    A pipe to the helper closes when this process ends, even by SIGKILL; the helper then
+    ends the listed groups. A helper that is killed is replaced. POSIX only.
 
     Args:
-        hold: file descriptors it keeps open (a lock is then held until it is done).
-        grace_s: seconds from SIGINT to SIGTERM, and from there to SIGKILL.
+        hold: file descriptors that the helper keeps open; a lock is then held until
+            the helper has finished.
+        grace_s: seconds from SIGINT to SIGTERM, and from SIGTERM to SIGKILL.
     """
 
     def __init__(self, hold: Sequence[int] = (), grace_s: float = GRACE_S) -> None:
@@ -38,36 +40,36 @@ class Guard:
         return self._process.pid
 
     def add(self, group: int) -> None:
-        """From now on: end this group, should this process die."""
+        """Guard a process group."""
         with self._lock:
             self._groups.add(group)
-            self._tell(f"+{group}")
+            self._send(f"+{group}")
 
     def discard(self, group: int) -> None:
-        """It has ended."""
+        """Stop guarding a process group that has ended."""
         with self._lock:
             self._groups.discard(group)
-            self._tell(f"-{group}")
+            self._send(f"-{group}")
 
     def close(self) -> None:
-        """Let it end what there still is, and wait for that."""
+        """End the remaining processes and wait for the helper."""
         with self._lock:
             self._closed = True
             process = self._process
-            assert process.stdin is not None, "it was given a pipe"
+            assert process.stdin is not None, "started with a pipe"
             with contextlib.suppress(BrokenPipeError):
                 process.stdin.close()
         process.wait()
 
     def _start(self) -> "subprocess.Popen[bytes]":
-        # Nothing but its pipe: whoever waits for the end of this process's output
-        # must not wait for the guard's; and no outer guard may take it for a child.
+        # The helper inherits no output: a reader of this process's output must not
+        # wait for it. Without tokens: another guard must not take it for a child.
         process = subprocess.Popen(
-            [sys.executable, "-I", "-S", str(_PROGRAM), self.token, str(self._grace_s)],
+            [*_COMMAND, self.token, str(self._grace_s)],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            env=without_marks(os.environ),
+            env=without_tokens(os.environ),
             cwd="/",
             start_new_session=True,
             pass_fds=self._hold,
@@ -80,40 +82,40 @@ class Guard:
         with self._lock:
             if self._closed:
                 return
-            assert process.stdin is not None, "it was given a pipe"
+            assert process.stdin is not None, "started with a pipe"
             with contextlib.suppress(BrokenPipeError):
                 process.stdin.close()
             self._process = self._start()
             for group in self._groups:
-                self._tell(f"+{group}")
+                self._send(f"+{group}")
 
-    def _tell(self, line: str) -> None:
+    def _send(self, line: str) -> None:
         stdin = self._process.stdin
-        assert stdin is not None, "it was given a pipe"
-        # A guard that has just been killed is told by the one that takes its place.
+        assert stdin is not None, "started with a pipe"
+        # If the helper was just killed, its replacement gets the whole list.
         with contextlib.suppress(BrokenPipeError, ValueError):
             stdin.write(f"{line}\n".encode())
             stdin.flush()
 
 
-def sweep(token: str) -> None:
-    """End what carries a token whose guard is gone, too (on Linux)."""
+def end_processes_with(token: str) -> None:
+    """End the processes of a guard that was killed together with its parent."""
     subprocess.run(
-        [sys.executable, "-I", "-S", str(_PROGRAM), token],
+        [*_COMMAND, token],
         stdin=subprocess.DEVNULL,
-        env=without_marks(os.environ),
+        env=without_tokens(os.environ),
         check=False,
     )
 
 
-def marked(env: Mapping[str, str], token: str) -> dict[str, str]:
-    """The environment of a process that is kept under ``token`` as well."""
+def with_token(env: Mapping[str, str], token: str) -> dict[str, str]:
+    """Return the environment of a process that this guard watches as well."""
     tokens = [each for each in env.get(VARIABLE, "").split(":") if each]
     if token not in tokens:
         tokens.append(token)
     return {**env, VARIABLE: ":".join(tokens)}
 
 
-def without_marks(env: Mapping[str, str]) -> dict[str, str]:
-    """The environment of a process that nobody keeps."""
+def without_tokens(env: Mapping[str, str]) -> dict[str, str]:
+    """Return the environment of a process that no guard watches."""
     return {name: value for name, value in env.items() if name != VARIABLE}

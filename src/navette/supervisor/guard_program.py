@@ -1,30 +1,30 @@
-"""A process of its own that ends what a dead parent left; run as a bare script.
+"""Program that ends the processes left behind by a dead parent; run as a script.
 
 ``guard_program.py TOKEN [GRACE_S]`` reads ``+<group>`` and ``-<group>`` lines from its
-standard input. When that closes (the parent ended, or was killed), every process of
-the groups still listed, and every one whose environment carries the token, gets
-SIGINT, then SIGTERM, then SIGKILL. It imports nothing of Navette: it must start fast
-and outlive everything.
+standard input. When the input closes, because the parent ended or was killed, every
+process of the remaining groups and every process whose environment carries the token
+gets SIGINT, then SIGTERM, then SIGKILL. The program imports nothing of Navette: it must
+start fast and survive changes of the installation.
 """
 
+import contextlib
 import os
-import select
 import signal
 import sys
-from collections.abc import Callable, Iterable
+import threading
+from collections.abc import Callable, Collection
 
-VARIABLE = "NAVETTE_KEPT_BY"
-"""Lists, separated by colons, the tokens of all who keep a process."""
+import psutil
+
+VARIABLE = "NAVETTE_GUARD_TOKENS"
+"""Environment variable with the tokens of all guards of a process, colon-separated."""
 
 GRACE_S = 2.0
-_STEP_S = 0.05
-_PROC = "/proc"
-_DEAD = "ZX"
-_STEPS = ("SIGINT", "SIGTERM", "SIGKILL")
+_POLL_S = 0.05
 
 
 def main() -> None:
-    """Listen until the end, then clean up."""
+    """Read process groups until the input closes, then end what is left of them."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     grace_s = float(sys.argv[2]) if len(sys.argv) > 2 else GRACE_S
@@ -34,72 +34,38 @@ def main() -> None:
             groups.add(int(line[1:]))
         else:
             groups.discard(int(line[1:]))
-    find = _find_by_proc if os.path.isdir(f"{_PROC}/self") else _find_groups  # noqa: PTH112
-    end_all(lambda: find(groups, sys.argv[1]), grace_s)
+    end_all(lambda: guarded_processes(groups, sys.argv[1]), grace_s)
 
 
-def end_all(find: Callable[[], Iterable[int]], grace_s: float) -> None:
-    """Signal whatever ``find`` finds, with more force each time, until it is nothing.
-
-    ``find`` gives process ids, and process groups as negative numbers.
-    """
-    for name in _STEPS:
+def end_all(find: Callable[[], Collection[psutil.Process]], grace_s: float) -> None:
+    """Signal the processes that ``find`` returns, with more force after each grace."""
+    pause = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+        for process in find():
+            with contextlib.suppress(psutil.Error):  # ended meanwhile
+                process.send_signal(number)
         left_s = grace_s
-        for target in find():
-            _send(target, getattr(signal, name))
         while left_s > 0 and find():
-            select.select([], [], [], _STEP_S)
-            left_s -= _STEP_S
+            pause.wait(_POLL_S)
+            left_s -= _POLL_S
 
 
-def _find_groups(groups: Iterable[int], token: str) -> list[int]:
-    return [-group for group in groups if _send(-group, 0)]
+def guarded_processes(groups: Collection[int], token: str) -> list[psutil.Process]:
+    """Return the running processes of the groups or with the token."""
+    return [each for each in psutil.process_iter() if _is_guarded(each, groups, token)]
 
 
-def _find_by_proc(groups: Iterable[int], token: str) -> list[int]:
-    """Linux tells more: a zombie is over, and a process that left its group is not."""
-    wanted, own = set(groups), os.getpid()
-    found = []
-    for name in os.listdir(_PROC):  # noqa: PTH208 - pathlib would double the start
-        if name.isdigit() and int(name) != own and _is_kept(name, wanted, token):
-            found.append(int(name))
-    return found
-
-
-def _is_kept(name: str, groups: set[int], token: str) -> bool:
+def _is_guarded(process: psutil.Process, groups: Collection[int], token: str) -> bool:
+    if process.pid == os.getpid():
+        return False
     try:
-        with open(f"{_PROC}/{name}/stat", "rb") as file:  # noqa: PTH123
-            fields = file.read().rpartition(b")")[2].split()
-        if fields[0].decode() in _DEAD:
+        if process.status() == psutil.STATUS_ZOMBIE:
             return False
-        if int(fields[2]) in groups:
+        if os.getpgid(process.pid) in groups:
             return True
-        with open(f"{_PROC}/{name}/environ", "rb") as file:  # noqa: PTH123
-            return carries(file.read(), token)
-    except OSError:  # it has just ended, or is somebody else's
+        return token in process.environ().get(VARIABLE, "").split(":")
+    except (psutil.Error, OSError):  # ended meanwhile, or of another user
         return False
-
-
-def carries(environ: bytes, token: str) -> bool:
-    """Whether an environment (as ``/proc/<pid>/environ`` gives it) has the token."""
-    start = f"{VARIABLE}=".encode()
-    return any(
-        token.encode() in entry[len(start) :].split(b":")
-        for entry in environ.split(b"\0")
-        if entry.startswith(start)
-    )
-
-
-def _send(target: int, number: int) -> bool:
-    """Whether it is still there."""
-    try:
-        if target < 0:
-            os.killpg(-target, number)
-        else:
-            os.kill(target, number)
-    except (ProcessLookupError, PermissionError):
-        return False
-    return True
 
 
 if __name__ == "__main__":

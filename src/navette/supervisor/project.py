@@ -1,6 +1,6 @@
-"""Which project one stands in, and where its supervisor keeps what it knows.
+"""Project of a folder, and where its supervisor stores its state.
 
-A project is a folder: that of the ``navette.yaml`` found in this folder or above.
+A project is the folder of the nearest ``navette.yaml``, in this folder or above.
 """
 
 import fcntl
@@ -15,39 +15,39 @@ from typing import Any
 from navette.errors import FileFormatError
 
 FILE_NAME = "navette.yaml"
-WHO_NAME = "supervisor.json"
+INFO_NAME = "supervisor.json"
 STATE_VARIABLE = "NAVETTE_STATE_DIR"
 _PRIVATE = 0o700
-_LONGEST_SOCKET = 100  # bytes; the least that any system takes is 104
+_MAX_SOCKET_PATH = 100  # bytes; the smallest limit of any system is 104
 
 
 @dataclass(frozen=True)
 class Project:
-    """A folder with modules; ``file`` None: the built-in ones."""
+    """A folder with services; ``file`` is None for the built-in ones."""
 
     folder: Path
     file: Path | None = None
 
     @property
     def state(self) -> Path:
-        """The folder of its supervisor: log, lock, who it is."""
+        """State folder of its supervisor: log, lock, info file."""
         digest = hashlib.sha256(str(self.folder).encode()).hexdigest()[:10]
         return state_root() / f"{self.folder.name or 'root'}-{digest}"
 
     @property
     def is_supervised(self) -> bool:
-        """Whether a supervisor lives, or its guard still ends what it left."""
+        """Whether a supervisor runs, or its guard still ends its processes."""
         return is_locked(self.state)
 
 
 def find_project(start: Path, file: Path | None = None) -> Project:
-    """The project of a folder.
+    """Return the project of a folder.
 
-    Without any ``navette.yaml``: the nearest folder above whose built-in modules run,
-    or this one.
+    Without a ``navette.yaml``: the nearest folder above whose built-in services run,
+    else ``start``.
 
     Raises:
-        FileFormatError: the file that was asked for is not there.
+        FileFormatError: ``file`` does not exist.
     """
     if file is not None:
         if not file.is_file():
@@ -64,7 +64,7 @@ def find_project(start: Path, file: Path | None = None) -> Project:
 
 
 def state_root() -> Path:
-    """``NAVETTE_STATE_DIR``, or navette's folder where programs keep their state."""
+    """Return ``NAVETTE_STATE_DIR``, or Navette's folder for state of the user."""
     given = os.environ.get(STATE_VARIABLE)
     if given:
         return Path(given).expanduser()
@@ -73,45 +73,49 @@ def state_root() -> Path:
 
 
 def socket_path(state: Path) -> Path:
-    """The supervisor's socket. Not in ``state``: its path could be too long for one.
+    """Return the path of the supervisor's socket, outside ``state``.
+
+    Paths of sockets are limited in length.
 
     Raises:
-        FileFormatError: the folder for it belongs to somebody else.
+        FileFormatError: other users have access to its folder.
     """
     digest = hashlib.sha256(str(state).encode()).hexdigest()[:20]
     bases = (os.environ.get("XDG_RUNTIME_DIR") or "", tempfile.gettempdir(), "/tmp")
     folders = [Path(base) / f"navette-{os.getuid()}" for base in bases if base]
-    fitting = (f for f in folders if len(f"{f}/{digest}.sock") <= _LONGEST_SOCKET)
+    fitting = (f for f in folders if len(f"{f}/{digest}.sock") <= _MAX_SOCKET_PATH)
     folder = next(fitting, folders[-1])
     folder.mkdir(mode=_PRIVATE, exist_ok=True)
     found = folder.lstat()
     if found.st_uid != os.getuid() or found.st_mode & 0o077:
-        raise FileFormatError(folder, "not this user's alone; remove it")
+        raise FileFormatError(
+            folder, "accessible to other users; remove it or set its mode to 700"
+        )
     return folder / f"{digest}.sock"
 
 
 def make_private(folder: Path) -> None:
-    """Make a folder that only this user can look into."""
+    """Create a folder that only this user can access."""
     folder.mkdir(mode=_PRIVATE, parents=True, exist_ok=True)
 
 
-def read_who(state: Path) -> dict[str, Any] | None:
-    """What a supervisor said of itself: its ``pid``, ``folder`` and ``token``."""
+def read_info(state: Path) -> dict[str, Any] | None:
+    """Return the ``pid``, ``folder`` and ``token`` that a supervisor stored."""
     try:
-        told = json.loads((state / WHO_NAME).read_text(encoding="utf-8"))
+        info = json.loads((state / INFO_NAME).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return told if isinstance(told, dict) and {"pid", "folder"} <= told.keys() else None
+    return info if isinstance(info, dict) and {"pid", "folder"} <= info.keys() else None
 
 
-def lock_of(state: Path) -> Path:
+def lock_path(state: Path) -> Path:
     return state / "lock"
 
 
 def is_locked(state: Path) -> bool:
-    """Whether somebody holds the lock; the kernel lets it go with the last holder."""
+    """Return whether a process holds the lock; the kernel releases it at its end."""
     try:
-        descriptor = os.open(lock_of(state), os.O_RDWR)
+        descriptor = os.open(lock_path(state), os.O_RDWR)
     except FileNotFoundError:
         return False
     try:
@@ -121,7 +125,7 @@ def is_locked(state: Path) -> bool:
 
 
 def try_lock(descriptor: int) -> bool:
-    """Take the lock if nobody has it."""
+    """Take the lock if it is free."""
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -1,7 +1,6 @@
-"""The supervisor's socket: a line of JSON asks, a line of JSON answers."""
+"""Server of the supervisor's socket: JSON requests and responses, one per line."""
 
 import json
-import os
 import socket
 import threading
 from collections.abc import Callable
@@ -11,34 +10,33 @@ from typing import Any
 from navette.errors import NavetteError
 from navette.runtime.loop import EventLoop
 
-MOST_BYTES = 16 << 20
-_PATIENCE_S = 10.0
+_MAX_BYTES = 16 << 20
+_TIMEOUT_S = 10.0
 
-Handler = Callable[[dict[str, Any]], dict[str, Any]]
+RequestHandler = Callable[[dict[str, Any]], dict[str, Any]]
 
 
-class Server:
-    """Answers on a Unix socket, which only this user's folder leads to.
+class RequestServer:
+    """Serves requests on a Unix socket that only this user can access.
 
     Args:
-        path: of the socket; one that is left over is replaced.
-        handler: called on the loop with each request; what it raises of Navette's
-            own errors is told to the asker.
+        path: of the socket; an existing one is replaced.
+        handler: called on the loop with each request; Navette's own exceptions become
+            error responses.
     """
 
-    def __init__(self, path: Path, loop: EventLoop, handler: Handler) -> None:
+    def __init__(self, path: Path, loop: EventLoop, handler: RequestHandler) -> None:
         self._path = path
         self._loop = loop
         self._handler = handler
         path.unlink(missing_ok=True)
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._socket.bind(str(path))
-        os.chmod(path, 0o600)  # noqa: PTH101
+        path.chmod(0o600)
         self._socket.listen(16)
         threading.Thread(target=self._accept, daemon=True).start()
 
     def close(self) -> None:
-        """Answer no more."""
         self._path.unlink(missing_ok=True)
         self._socket.close()
 
@@ -46,7 +44,7 @@ class Server:
         while True:
             try:
                 connection, _ = self._socket.accept()
-            except OSError:  # it was closed
+            except OSError:  # closed
                 return
             threading.Thread(
                 target=self._serve, args=(connection,), daemon=True
@@ -54,32 +52,33 @@ class Server:
 
     def _serve(self, connection: socket.socket) -> None:
         with connection, connection.makefile("rwb") as file:
-            connection.settimeout(_PATIENCE_S)
+            connection.settimeout(_TIMEOUT_S)
             try:
-                line = file.readline(MOST_BYTES)
-                file.write(json.dumps(self._answer(line)).encode() + b"\n")
+                line = file.readline(_MAX_BYTES)
+                file.write(json.dumps(self._respond(line)).encode() + b"\n")
                 file.flush()
             except OSError:
-                return  # whoever asked is gone, or too slow
+                return  # the client has left, or is too slow
 
-    def _answer(self, line: bytes) -> dict[str, Any]:
+    def _respond(self, line: bytes) -> dict[str, Any]:
         try:
             request = json.loads(line)
         except ValueError:
-            return {"error": "not JSON"}
+            return {"error": "malformed request: not JSON"}
         if not isinstance(request, dict):
-            return {"error": "wanted an object"}
-        answer: dict[str, Any] = {}
+            return {"error": "malformed request: expected an object"}
+        response: dict[str, Any] = {}
         done = threading.Event()
 
-        def work() -> None:
+        def handle() -> None:
             try:
-                answer.update(self._handler(request))
+                response.update(self._handler(request))
             except NavetteError as error:
-                answer["error"] = str(error)
+                response["error"] = str(error)
             except (KeyError, TypeError, ValueError) as error:
-                answer["error"] = f"malformed request: {error!r}"
+                response["error"] = f"malformed request: {error!r}"
             done.set()
 
-        self._loop.call_soon_threadsafe(work, "request")
-        return answer if done.wait(_PATIENCE_S) else {"error": "no answer in time"}
+        self._loop.call_soon_threadsafe(handle, "request")
+        timed_out = {"error": f"no response within {_TIMEOUT_S:g} s"}
+        return response if done.wait(_TIMEOUT_S) else timed_out

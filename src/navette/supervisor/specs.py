@@ -1,6 +1,6 @@
-"""What is to run: modules and their processes, with everything worked out.
+"""Services and their processes, fully resolved.
 
-Made from ``navette.yaml`` by the command, sent to the supervisor as JSON.
+``navette up`` creates them from ``navette.yaml`` and sends them to the supervisor.
 """
 
 from collections.abc import Mapping
@@ -8,83 +8,95 @@ from dataclasses import asdict, dataclass, field
 from enum import Enum
 from typing import Any
 
-POLICIES = ("no", "on-failure", "always")
+RESTART_CONDITIONS = ("no", "on-failure", "always")
 
 
-class State(Enum):
-    """Of a process; the values are what people and programs read."""
+class ProcessState(Enum):
+    """State of a managed process; the values appear in ``navette ps``."""
 
-    WAITING = "waiting"  # for the modules it needs
-    STARTING = "starting"
+    WAITING = "waiting"  # for the services it depends on
+    STARTING = "starting"  # not ready yet
     RUNNING = "running"
-    PAUSING = "restarting"  # before its next restart
+    RESTARTING = "restarting"  # waits for its next start
     STOPPING = "stopping"
-    STOPPED = "stopped"  # because it was asked to
+    STOPPED = "stopped"  # on request
     ENDED = "ended"  # by itself, with exit code 0
     FAILED = "failed"
 
 
-ALIVE = (State.STARTING, State.RUNNING, State.STOPPING)
+ALIVE = (ProcessState.STARTING, ProcessState.RUNNING, ProcessState.STOPPING)
 
 
 @dataclass(frozen=True, kw_only=True)
 class RestartPolicy:
-    """Whether a process that ended by itself is started again.
+    """When a process that ended by itself is started again.
 
-    The first time after ``delay_s``, then after twice that, and so on up to
-    ``longest_delay_s``; after ``limit`` restarts in a row it is given up. A process
-    that ran for ``good_s`` begins anew.
+    The delay doubles with each restart in a row, from ``delay_s`` to ``max_delay_s``.
+
+    Attributes:
+        condition: ``no``, ``on-failure`` or ``always``.
+        max_attempts: restarts in a row before the process counts as failed.
+        window_s: a run of at least this length resets the count and the delay.
     """
 
-    when: str = "on-failure"
+    condition: str = "on-failure"
     delay_s: float = 0.5
-    longest_delay_s: float = 30.0
-    limit: int = 5
-    good_s: float = 10.0
+    max_delay_s: float = 30.0
+    max_attempts: int = 5
+    window_s: float = 10.0
 
-    def wants(self, code: int) -> bool:
-        """Whether an end with this exit code calls for a restart."""
-        return self.when == "always" or (self.when == "on-failure" and code != 0)
+    def applies_to(self, code: int) -> bool:
+        """Return whether an exit with this code requires a restart."""
+        return self.condition == "always" or (
+            self.condition == "on-failure" and code != 0
+        )
 
-    def delay_before(self, restart: int) -> float:
-        """Seconds before the restart of that number in a row, from 0."""
-        return min(self.delay_s * 2.0 ** min(restart, 32), self.longest_delay_s)
+    def delay_before(self, attempt: int) -> float:
+        """Return the delay before a restart, in seconds; ``attempt`` counts from 0."""
+        return min(self.delay_s * 2.0 ** min(attempt, 32), self.max_delay_s)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ProcessSpec:
-    """A process of a module.
+    """A process of a service.
 
-    ``env`` is what it finds beside the environment of whoever said ``navette up``.
-    ``tells_ready``: it says by itself when its nodes are up; another is ready at once.
+    Attributes:
+        env: added to the environment of the ``navette up`` command.
+        reports_ready: the process reports when its nodes spin; another process is
+            ready as soon as it has started.
     """
 
-    module: str
+    service: str
     name: str
-    words: tuple[str, ...]
+    argv: tuple[str, ...]
     cwd: str
     env: Mapping[str, str] = field(default_factory=dict)
     shell: bool = False
-    tells_ready: bool = False
+    reports_ready: bool = False
     stop_timeout_s: float = 5.0
     restart: RestartPolicy = RestartPolicy()
 
     @property
     def label(self) -> str:
-        """``robot/planner``; the module's name alone where both are the same."""
-        return self.name if self.name == self.module else f"{self.module}/{self.name}"
+        """``robot/planner``; the service's name alone if the process has the same."""
+        return process_label(self.service, self.name)
+
+
+def process_label(service: str, name: str) -> str:
+    return name if name == service else f"{service}/{name}"
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModuleSpec:
-    """Processes that are started and ended together.
+class ServiceSpec:
+    """Processes that are started and stopped together.
 
-    It starts once the modules it ``needs`` are ready. ``watched``: files and folders
-    whose change means a restart where that is asked for.
+    Attributes:
+        depends_on: services that must be ready first.
+        watched: files and folders whose change restarts the service under ``--watch``.
     """
 
     name: str
-    needs: tuple[str, ...] = ()
+    depends_on: tuple[str, ...] = ()
     processes: tuple[ProcessSpec, ...] = ()
     watched: tuple[str, ...] = ()
 
@@ -92,13 +104,13 @@ class ModuleSpec:
         return asdict(self)
 
     @classmethod
-    def from_json(cls, data: dict[str, Any]) -> "ModuleSpec":
-        """What :meth:`to_json` gave, after it was JSON."""
+    def from_json(cls, data: dict[str, Any]) -> "ServiceSpec":
+        """Restore what :meth:`to_json` returned, after it was JSON."""
         processes = tuple(
             ProcessSpec(
                 **{
                     **each,
-                    "words": tuple(each["words"]),
+                    "argv": tuple(each["argv"]),
                     "restart": RestartPolicy(**each["restart"]),
                 }
             )
@@ -106,7 +118,7 @@ class ModuleSpec:
         )
         return cls(
             name=data["name"],
-            needs=tuple(data["needs"]),
+            depends_on=tuple(data["depends_on"]),
             processes=processes,
             watched=tuple(data["watched"]),
         )

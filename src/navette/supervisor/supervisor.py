@@ -1,29 +1,31 @@
-"""Keeps modules running: starts them in order, ends them in the opposite one."""
+"""Supervisor: starts services in order of dependency, stops them in reverse order."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from navette.errors import UnknownNameError
 from navette.runtime.loop import EventLoop
-from navette.supervisor import Keeper
-from navette.supervisor.log_book import LogBook
-from navette.supervisor.specs import ModuleSpec, State
-from navette.supervisor.supervised import Supervised
+from navette.supervisor.log_store import LogStore
+from navette.supervisor.process_manager import ProcessManager
+from navette.supervisor.service_process import ServiceProcess
+from navette.supervisor.specs import ProcessState, ServiceSpec
+
+_OVER = (ProcessState.STOPPED, ProcessState.ENDED, ProcessState.FAILED)
 
 
-class Module:
-    """A module that is up, comes up or goes down."""
+class ManagedService:
+    """A service that is up, starting or stopping."""
 
-    def __init__(self, spec: ModuleSpec, environ: Mapping[str, str]) -> None:
+    def __init__(self, spec: ServiceSpec, environ: Mapping[str, str]) -> None:
         self.spec = spec
         self.environ = environ
-        self.is_wanted = True
-        self.has_begun = False
-        self.processes: list[Supervised] = []
+        self.should_run = True
+        self.is_started = False
+        self.processes: list[ServiceProcess] = []
 
     @property
     def is_ready(self) -> bool:
-        return self.has_begun and all(each.is_ready for each in self.processes)
+        return self.is_started and all(each.is_ready for each in self.processes)
 
     @property
     def is_alive(self) -> bool:
@@ -31,154 +33,142 @@ class Module:
 
 
 class Supervisor:
-    """All modules of a project; everything here happens on the loop.
+    """All services of a project; all methods run on the loop.
 
     Args:
-        on_idle: called whenever no module is left.
+        on_idle: called whenever no service is left.
     """
 
     def __init__(
         self,
-        keeper: Keeper,
+        manager: ProcessManager,
         loop: EventLoop,
-        log: LogBook,
+        log: LogStore,
         on_idle: Callable[[], None],
     ) -> None:
-        self._keeper = keeper
+        self._manager = manager
         self._loop = loop
         self._log = log
         self._on_idle = on_idle
-        self._modules: dict[str, Module] = {}
-        self._looks = False
+        self._services: dict[str, ManagedService] = {}
+        self._reconcile_pending = False
 
     @property
     def is_idle(self) -> bool:
-        return not self._modules
+        return not self._services
 
-    def up(self, specs: Iterable[ModuleSpec], environ: Mapping[str, str]) -> None:
-        """Start modules. Of those that run, what ended starts again; one that is now
-        to be something else is restarted.
+    def up(self, specs: Iterable[ServiceSpec], environ: Mapping[str, str]) -> None:
+        """Start services.
+
+        Ended processes of a running service start again; a service whose spec has
+        changed is restarted.
         """
         for spec in specs:
-            module = self._modules.get(spec.name)
-            if module is None:
-                self._add(spec, environ)
-            elif module.spec != spec or not module.is_wanted:
-                self._replace(module, spec, environ)
-            else:
-                for each in module.processes:
-                    if each.state in (State.STOPPED, State.ENDED, State.FAILED):
-                        each.start()
-        self._look()
+            service = self._services.get(spec.name)
+            if service is None or service.spec != spec or not service.should_run:
+                self._replace(spec, environ)
+                continue
+            for process in service.processes:
+                if process.state in _OVER:
+                    process.start()
+        self._reconcile()
 
-    def restart(self, specs: Iterable[ModuleSpec], environ: Mapping[str, str]) -> None:
-        """End modules that run, and start them, perhaps as something else."""
+    def restart(self, specs: Iterable[ServiceSpec], environ: Mapping[str, str]) -> None:
+        """Stop services that run and start them with the given specs."""
         for spec in specs:
-            module = self._modules.get(spec.name)
-            if module is None:
-                self._add(spec, environ)
-            else:
-                self._replace(module, spec, environ)
-        self._look()
+            self._replace(spec, environ)
+        self._reconcile()
 
     def down(self, names: Iterable[str] | None = None) -> None:
-        """End modules (all, if None), those that need others first.
+        """Stop services (all, if None), dependents first.
 
         Raises:
-            UnknownNameError: one that is not up; lists those that are.
+            UnknownNameError: a service that is not up; lists those that are.
         """
-        wanted = list(self._modules) if names is None else list(names)
-        for name in wanted:
-            if name not in self._modules:
-                up = ", ".join(self._modules) or "nothing"
+        chosen = list(self._services) if names is None else list(names)
+        for name in chosen:
+            if name not in self._services:
+                up = ", ".join(self._services) or "nothing"
                 raise UnknownNameError(f"{name!r} is not up (up: {up})")
-        for name in wanted:
-            self._modules[name].is_wanted = False
-        self._look()
+        for name in chosen:
+            self._services[name].should_run = False
+        self._reconcile()
 
     def status(self) -> list[dict[str, Any]]:
-        """All modules with their processes; plain values."""
-        return [self._status(module) for module in self._modules.values()]
+        """Return all services with their processes as JSON values."""
+        return [self._status(service) for service in self._services.values()]
 
-    # -- inside --------------------------------------------------------------------
-
-    def _status(self, module: Module) -> dict[str, Any]:
-        processes = [each.status() for each in module.processes]
-        missing = [name for name in module.spec.needs if not self._is_ready(name)]
+    def _status(self, service: ManagedService) -> dict[str, Any]:
+        processes = [each.status() for each in service.processes]
+        missing = [name for name in service.spec.depends_on if self._blocks(name)]
         for process in processes:
-            if process["state"] == State.WAITING.value and missing:
+            if process["state"] == ProcessState.WAITING.value and missing:
                 process["reason"] = f"for {', '.join(missing)}"
-        return {
-            "module": module.spec.name,
-            "wanted": module.is_wanted,
-            "processes": processes,
-        }
+        return {"service": service.spec.name, "processes": processes}
 
-    def _add(self, spec: ModuleSpec, environ: Mapping[str, str]) -> None:
-        module = self._modules[spec.name] = Module(spec, environ)
-        self._fill(module)
+    def _replace(self, spec: ServiceSpec, environ: Mapping[str, str]) -> None:
+        """Set what a service is to run; its present processes stop."""
+        service = self._services.get(spec.name)
+        if service is None:
+            service = self._services[spec.name] = ManagedService(spec, environ)
+            self._create_processes(service)
+            return
+        service.spec, service.environ = spec, environ
+        service.should_run = True
+        service.is_started = False
+        for process in service.processes:
+            process.stop()
 
-    def _fill(self, module: Module) -> None:
-        module.has_begun = False
-        module.processes = [
-            Supervised(
+    def _create_processes(self, service: ManagedService) -> None:
+        service.processes = [
+            ServiceProcess(
                 spec,
-                module.environ,
-                self._keeper,
+                service.environ,
+                self._manager,
                 self._loop,
                 self._log,
-                self._look_soon,
+                self._reconcile_soon,
             )
-            for spec in module.spec.processes
+            for spec in service.spec.processes
         ]
 
-    def _replace(
-        self, module: Module, spec: ModuleSpec, environ: Mapping[str, str]
-    ) -> None:
-        """End what runs of it; what is there then starts."""
-        module.spec, module.environ = spec, environ
-        module.is_wanted = True
-        module.has_begun = False
-        for each in module.processes:
-            each.stop()
+    def _reconcile_soon(self) -> None:
+        if not self._reconcile_pending:
+            self._reconcile_pending = True
+            self._loop.call_soon(self._reconcile, "supervisor")
 
-    def _look_soon(self) -> None:
-        if not self._looks:
-            self._looks = True
-            self._loop.call_soon(self._look, "supervisor")
-
-    def _look(self) -> None:
-        """Do what can be done now."""
-        self._looks = False
-        for module in tuple(self._modules.values()):
-            if module.is_wanted:
-                self._begin_if_ready(module)
+    def _reconcile(self) -> None:
+        """Start and stop the services that can be started and stopped now."""
+        self._reconcile_pending = False
+        for service in tuple(self._services.values()):
+            if service.should_run:
+                self._start_if_possible(service)
             else:
-                self._end_if_free(module)
-        if not self._modules:
+                self._stop_if_possible(service)
+        if not self._services:
             self._on_idle()
 
-    def _begin_if_ready(self, module: Module) -> None:
-        if module.has_begun or module.is_alive:
+    def _start_if_possible(self, service: ManagedService) -> None:
+        if service.is_started or service.is_alive:
             return
-        if all(map(self._is_ready, module.spec.needs)):
-            self._fill(module)
-            module.has_begun = True
-            for each in module.processes:
-                each.start()
+        if not any(map(self._blocks, service.spec.depends_on)):
+            self._create_processes(service)
+            service.is_started = True
+            for process in service.processes:
+                process.start()
 
-    def _is_ready(self, name: str) -> bool:
-        """Whether a module need not be waited for (as one that is not to be up)."""
-        module = self._modules.get(name)
-        return module is None or not module.is_wanted or module.is_ready
+    def _blocks(self, name: str) -> bool:
+        """Return whether dependents of a service must wait for it."""
+        service = self._services.get(name)
+        return service is not None and service.should_run and not service.is_ready
 
-    def _end_if_free(self, module: Module) -> None:
-        name = module.spec.name
-        others = self._modules.values()
-        if any(name in o.spec.needs and not o.is_wanted for o in others):
+    def _stop_if_possible(self, service: ManagedService) -> None:
+        name = service.spec.name
+        others = self._services.values()
+        if any(name in o.spec.depends_on and not o.should_run for o in others):
             return
-        for each in module.processes:
-            each.stop()
-        if not module.is_alive:
-            del self._modules[name]
-            self._look_soon()
+        for process in service.processes:
+            process.stop()
+        if not service.is_alive:
+            del self._services[name]
+            self._reconcile_soon()

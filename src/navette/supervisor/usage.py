@@ -1,43 +1,40 @@
-"""Processor time and memory of processes with all that they started (Linux)."""
+"""Processor time and memory of process groups."""
 
 import os
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 
-_PROC = Path("/proc")
+import psutil
 
 
 @dataclass(frozen=True)
 class Usage:
-    """``cpu_s``: processor time so far; ``memory_bytes``: resident."""
+    """Resources used by a process group.
+
+    Attributes:
+        cpu_s: processor time so far.
+        memory_bytes: resident memory.
+    """
 
     cpu_s: float = 0.0
     memory_bytes: int = 0
 
 
 def usage_of(groups: Iterable[int]) -> dict[int, Usage]:
-    """Process group → what its processes use; empty where there is no /proc."""
-    wanted = set(groups)
+    """Return the usage of each process group that has processes."""
+    chosen = set(groups)
     found: dict[int, Usage] = {}
-    if not _PROC.joinpath("self", "stat").is_file():
-        return found
-    for folder in _PROC.iterdir():
-        if folder.name.isdigit():
-            _add(folder, wanted, found)
+    for process in psutil.process_iter():
+        # A process may end meanwhile; those of other users are not accessible.
+        with suppress(psutil.Error, OSError):
+            group = os.getpgid(process.pid)
+            if group in chosen:
+                with process.oneshot():
+                    times, memory = process.cpu_times(), process.memory_info()
+                so_far = found.get(group, Usage())
+                found[group] = Usage(
+                    so_far.cpu_s + times.user + times.system,
+                    so_far.memory_bytes + memory.rss,
+                )
     return found
-
-
-def _add(folder: Path, wanted: set[int], found: dict[int, Usage]) -> None:
-    try:
-        fields = (folder / "stat").read_bytes().rpartition(b")")[2].split()
-    except OSError:
-        return  # it has just ended
-    group = int(fields[2])
-    if group in wanted:
-        before = found.get(group, Usage())
-        ticks = int(fields[11]) + int(fields[12])
-        found[group] = Usage(
-            before.cpu_s + ticks / os.sysconf("SC_CLK_TCK"),
-            before.memory_bytes + int(fields[21]) * os.sysconf("SC_PAGE_SIZE"),
-        )

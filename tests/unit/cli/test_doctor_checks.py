@@ -9,12 +9,12 @@ from navette.cli.doctor.doors import Refusal
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.graph_checks import check_nodes, check_services, check_topics
 from navette.cli.doctor.machine import is_navette, left_running, stopped
-from navette.cli.doctor.module_checks import check_modules
 from navette.cli.doctor.network import Network, Router, check_network
 from navette.cli.doctor.ports import Knock, Process
 from navette.cli.doctor.report import report_lines, summary
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
 from navette.cli.doctor.state_checks import check_stages, check_time
+from navette.cli.doctor.up_checks import check_supervised
 from navette.transports import (
     DurabilityPolicy,
     Endpoint,
@@ -339,21 +339,21 @@ def test_settings_that_keep_one_alone() -> None:
     assert "rmw_zenoh_cpp" in of(findings, "ROS 2").advice
 
 
-def test_modules() -> None:
+def test_supervised_services() -> None:
     calm = {"label": "sim", "state": "running", "restarts": 0, "reason": ""}
     restless = {**calm, "label": "planner", "restarts": 3, "reason": "exit code 1"}
     dead = {**calm, "label": "control", "state": "failed", "reason": "no such file"}
-    modules = [
-        {"module": "sim", "processes": [calm]},
-        {"module": "robot", "processes": [restless, dead]},
+    services = [
+        {"service": "sim", "processes": [calm]},
+        {"service": "robot", "processes": [restless, dead]},
     ]
-    assert list(check_modules([])) == []
-    (finding,) = check_modules(modules[:1])
-    assert (finding.level, finding.text) == (Level.GOOD, "1 module up: sim")
-    found = list(check_modules(modules))
+    assert list(check_supervised([])) == []
+    (finding,) = check_supervised(services[:1])
+    assert (finding.level, finding.text) == (Level.GOOD, "1 service up: sim")
+    found = list(check_supervised(services))
     assert [(each.what, each.level, each.text) for each in found] == [
-        ("planner", Level.WARNING, "was started again 3 times: exit code 1"),
-        ("control", Level.PROBLEM, "does not run: no such file"),
+        ("planner", Level.WARNING, "restarted 3 times: exit code 1"),
+        ("control", Level.PROBLEM, "not running: no such file"),
     ]
     assert found[0].advice == "navette logs robot"
 

@@ -10,4 +10,4 @@ from process_bench import Bench
 def bench() -> Iterator[Bench]:
     made = Bench()
     yield made
-    made.keeper.close()
+    made.manager.close()

@@ -3,7 +3,7 @@
 import sys
 import threading
 
-from navette.supervisor import ChildProcess, Keeper, StartOptions
+from navette.supervisor import ChildProcess, ProcessManager, StartOptions
 
 WAIT_S = 60.0
 
@@ -38,10 +38,10 @@ class Heard:
 
 
 class Bench:
-    """A keeper, and Python programs for it."""
+    """A process manager, and Python programs to start."""
 
     def __init__(self) -> None:
-        self.keeper = Keeper(grace_s=0.1)
+        self.manager = ProcessManager(grace_s=0.1)
 
     def start(
         self, code: str, *args: str, **options: object
@@ -49,4 +49,6 @@ class Bench:
         heard = Heard()
         words = [sys.executable, "-u", "-c", code, *args]
         made = StartOptions(**options)  # type: ignore[arg-type]
-        return self.keeper.start(words, heard, made), heard
+        child = self.manager.start(words, made)
+        child.watch(heard)
+        return child, heard

@@ -47,9 +47,9 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
     """``joined`` holds what is to be left in the end."""
     from navette.cli.doctor.look import look
     from navette.cli.doctor.machine import check_machine, stopped
-    from navette.cli.doctor.module_checks import check_modules, modules_here
     from navette.cli.doctor.network import NETWORK, check_network, look_at_network
     from navette.cli.doctor.ports import processes
+    from navette.cli.doctor.up_checks import check_supervised, services_here
     from navette.errors import NetworkError
 
     joined.enter_context(_quiet())
@@ -75,7 +75,7 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
         yield from check_network(network, domain)
         yield from stopped(processes(), os.getpid())
         yield from _check_running(seen)
-    yield from check_modules(modules_here())
+    yield from check_supervised(services_here())
     yield from check_machine()
 
 

@@ -5,7 +5,7 @@ import queue
 import signal
 import threading
 from collections.abc import Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 
 from navette.errors import FileFormatError
@@ -26,7 +26,6 @@ from navette.ros2.packages.launch.logging import console, get_logger
 from navette.ros2.packages.launch.subprocesses import SubprocessRunner
 from navette.ros2.workspace import activate, find_package
 from navette.ros2.workspace.finding import PATH_VARIABLE
-from navette.supervisor import Keeper
 
 _INTERRUPTED = 130
 _log = get_logger("launch")
@@ -78,7 +77,6 @@ def launch(
     *,
     processes: bool = False,
     debug: bool = False,
-    keeper: Keeper | None = None,
 ) -> int:
     """Run a launch file until everything that it started has ended.
 
@@ -87,7 +85,6 @@ def launch(
         arguments: its launch arguments.
         processes: a process for each node, instead of all in this one.
         debug: log what happens inside.
-        keeper: starts those processes; closed at the end. It may be prepared already.
 
     Returns:
         0; 1 if the launch failed or a process died by itself; 130 after Ctrl-C.
@@ -95,10 +92,7 @@ def launch(
     Raises:
         NavetteError: the file or an argument is wrong.
     """
-    own = SubprocessRunner(keeper)
-    with _workspace_of(path), console(debug=debug), closing(own):
-        if processes:
-            own.keeper.prepare()
+    with _workspace_of(path), console(debug=debug):
         activate()
         source = _source(path)
         description = _load(source)
@@ -108,7 +102,7 @@ def launch(
             raise unknown_argument_error(unknown[0], known)
         service = LaunchService(
             argv=[f"{name}:={value}" for name, value in arguments.items()],
-            runner=own if processes else InProcessRunner(),
+            runner=SubprocessRunner() if processes else InProcessRunner(),
         )
         if unknown:
             service.check_after_start(lambda: _check_again(service, arguments))

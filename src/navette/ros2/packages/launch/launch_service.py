@@ -9,12 +9,12 @@ from navette.errors import CallbackError
 from navette.ros2.packages.launch.errors import LaunchError
 from navette.ros2.packages.launch.event import Event
 from navette.ros2.packages.launch.events import Shutdown
-from navette.ros2.packages.launch.execution import Execution
 from navette.ros2.packages.launch.launch_context import LaunchContext, VisitEvent
 from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
+from navette.ros2.packages.launch.launched_process import LaunchedProcess
 from navette.ros2.packages.launch.logging import console, get_logger
 from navette.ros2.packages.launch.running import Runner
 from navette.ros2.packages.launch.subprocesses import SubprocessRunner
@@ -114,8 +114,8 @@ class LaunchService:
 
     def _hurry(self) -> None:
         for item in tuple(self.context.busy):
-            if isinstance(item, Execution):
-                item.end()
+            if isinstance(item, LaunchedProcess):
+                item.escalate()
 
     # -- inside ------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from typing import IO
 
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.logging import launch_config
-from navette.supervisor import LineCutter
+from navette.supervisor import LineSplitter
 
 STREAMS = ("stdout", "stderr")
 _COLOURS = (36, 32, 35, 33, 34, 96)  # cyan, green, magenta, yellow, blue, bright cyan
@@ -72,7 +72,7 @@ class LabelledOutput:
         self._label = label
         self._places = places
         self._format = line_format or (lambda line: f"{_shown(label)} {line}")
-        self._cutters = {stream: LineCutter() for stream in STREAMS}
+        self._cutters = {stream: LineSplitter() for stream in STREAMS}
         self._log: IO[str] | None = None
 
     def write(self, stream: str, data: bytes) -> None:

@@ -1,4 +1,4 @@
-"""The seam between actions and whatever runs their commands."""
+"""Interface between actions and the runner that starts their commands."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,40 +6,35 @@ from pathlib import Path
 from typing import Protocol
 
 from navette.runtime.graph import Graph
-from navette.supervisor import INTERRUPT, KILL, TERMINATE, Listener
-
-__all__ = [
-    "INTERRUPT",
-    "KILL",
-    "TERMINATE",
-    "Command",
-    "Listener",
-    "PythonProgram",
-    "Runner",
-    "Running",
-]
+from navette.supervisor import ProcessHandle
 
 
 @dataclass(frozen=True)
 class PythonProgram:
-    """Python code that can run in this process as well as in one of its own.
+    """Python code that can run in this process or in one of its own.
 
-    Either ``module`` and ``function``, or ``file`` to be run as ``__main__``.
+    Attributes:
+        module, function: what to call; or
+        file: what to run as ``__main__``.
+        search: folders that precede the import path.
     """
 
     module: str = ""
     function: str = ""
     file: Path | None = None
-    #: Folders to look for modules in, before all others.
     search: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command line with everything worked out.
+    """A command with all substitutions performed.
 
-    ``env`` None means the launch's own environment. With ``program``, ``argv`` is what
-    that finds in ``sys.argv``; it may run in this process unless ``own_process``.
+    Attributes:
+        label: unique name, as ``talker-1``.
+        env: its whole environment; None: that of the launch.
+        program: Python code to run instead of ``argv[0]``; it gets ``argv`` as
+            ``sys.argv``.
+        own_process: the program cannot run in this process.
     """
 
     label: str
@@ -54,38 +49,26 @@ class Command:
 
     @property
     def words(self) -> list[str]:
-        """The command line, as a person would type it."""
+        """The command line as typed in a terminal."""
         return [*self.prefix, *self.argv]
-
-
-class Running(Protocol):
-    """A command under way."""
-
-    @property
-    def pid(self) -> int: ...
-
-    def signal(self, number: int) -> None:
-        """Send a signal to it and all that it started; after its end: nothing."""
-
-    def write(self, data: bytes) -> None:
-        """To its standard input."""
 
 
 class Runner(Protocol):
     """Starts commands.
 
-    ``graph``: where nodes that it starts in this process meet; None: it starts none.
+    ``graph`` connects the nodes that the runner starts in this process; None if it
+    starts processes only.
     """
 
     @property
     def graph(self) -> Graph | None: ...
 
-    def start(self, command: Command, listener: Listener) -> Running:
-        """Start one.
+    def start(self, command: Command) -> ProcessHandle:
+        """Start a command.
 
         Raises:
-            LaunchError: it cannot be started; says why.
+            LaunchError: it cannot be started.
         """
 
     def close(self) -> None:
-        """After everything ended."""
+        """Release resources, after all commands have ended."""

@@ -1,4 +1,4 @@
-"""Commands as processes, each in a group of its own; none outlives the launch."""
+"""Runner that starts a process for each command."""
 
 import sys
 
@@ -6,41 +6,39 @@ from navette.ros2.packages.launch.errors import LaunchError
 from navette.ros2.packages.launch.running import Command, PythonProgram
 from navette.supervisor import (
     ChildProcess,
-    Keeper,
-    Listener,
     ProcessError,
+    ProcessManager,
     StartOptions,
 )
 
 
 class SubprocessRunner:
-    """Starts a process for each command."""
+    """Starts a process for each command; none outlives the launch."""
 
     graph = None
 
-    def __init__(self, keeper: Keeper | None = None) -> None:
-        self.keeper = keeper or Keeper()
+    def __init__(self) -> None:
+        self.manager = ProcessManager()
 
-    def start(self, command: Command, listener: Listener) -> ChildProcess:
-        words = command.words
+    def start(self, command: Command) -> ChildProcess:
+        argv = command.words
         if command.program is not None:
-            inside = program_words(command.program)
-            words = [*command.prefix, *inside, *command.argv[1:]]
+            program = program_argv(command.program)
+            argv = [*command.prefix, *program, *command.argv[1:]]
         options = StartOptions(cwd=command.cwd, env=command.env, shell=command.shell)
         try:
-            return self.keeper.start(words, listener, options)
+            return self.manager.start(argv, options)
         except ProcessError as error:
             raise LaunchError(f"{command.label}: {error}") from error
 
     def close(self) -> None:
-        """End what there still is."""
-        self.keeper.close()
+        self.manager.close()
 
 
-def program_words(program: PythonProgram) -> list[str]:
-    """The command line that runs a Python program in a process of its own.
+def program_argv(program: PythonProgram) -> list[str]:
+    """Return the command line of a Python program in a process of its own.
 
-    ``navette run`` gives it ROS 2's module names.
+    ``navette run`` provides ROS 2's module names.
     """
     target = (
         str(program.file)
@@ -48,5 +46,5 @@ def program_words(program: PythonProgram) -> list[str]:
         else f"{program.module}:{program.function}"
     )
     search = [word for folder in program.search for word in ("--path", str(folder))]
-    # -u: what a program prints is seen when it prints it.
+    # -u: output appears when it is printed.
     return [sys.executable, "-u", "-m", "navette", "run", *search, target]

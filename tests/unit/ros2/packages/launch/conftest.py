@@ -7,9 +7,10 @@ import pytest
 
 from navette.ros2.packages.launch import LaunchDescription, LaunchService
 from navette.ros2.packages.launch.logging import get_logger
-from navette.ros2.packages.launch.running import INTERRUPT, Command, Listener
+from navette.ros2.packages.launch.running import Command
 from navette.runtime import VirtualClock
 from navette.runtime.loop import EventLoop
+from navette.supervisor import INTERRUPT, ProcessListener
 
 
 @dataclass
@@ -17,13 +18,17 @@ class FakeProcess:
     """A command that ends when it is interrupted, unless it is stubborn."""
 
     command: Command
-    listener: Listener
     pid: int
     at_s: float
     stubborn: bool = False
     signals: list[tuple[float, int]] = field(default_factory=list)
     written: bytes = b""
     now_s: Callable[[], float] = lambda: 0.0
+    behaviour: Callable[["FakeProcess"], None] = lambda process: None
+
+    def watch(self, listener: ProcessListener) -> None:
+        self.listener = listener
+        self.behaviour(self)
 
     def signal(self, number: int) -> None:
         self.signals.append((self.now_s(), number))
@@ -51,11 +56,11 @@ class FakeRunner:
     def now_s(self) -> float:
         return self.loop.clock.now_ns / 1e9
 
-    def start(self, command: Command, listener: Listener) -> FakeProcess:
+    def start(self, command: Command) -> FakeProcess:
         pid = 100 + len(self.started)
-        process = FakeProcess(command, listener, pid, self.now_s(), now_s=self.now_s)
+        process = FakeProcess(command, pid, self.now_s(), now_s=self.now_s)
+        process.behaviour = self.behaviour
         self.started.append(process)
-        self.behaviour(process)
         return process
 
     def exit_after(self, process: FakeProcess, seconds: float, code: int) -> None:

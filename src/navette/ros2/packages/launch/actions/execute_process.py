@@ -1,7 +1,9 @@
-"""Actions that run a command: once, or again whenever it has ended."""
+"""Actions that run a command, once or with respawn."""
 
+import math
+import sys
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.descriptions import Executable
@@ -15,10 +17,11 @@ from navette.ros2.packages.launch.events.process import (
     ProcessTargetedEvent,
     SignalProcess,
 )
-from navette.ros2.packages.launch.execution import Execution
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
+from navette.ros2.packages.launch.launched_process import LaunchedProcess
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.output import LabelledOutput, output_places
 from navette.ros2.packages.launch.running import Command
@@ -29,10 +32,7 @@ from navette.ros2.packages.launch.substitution import (
 )
 from navette.ros2.packages.launch.substitutions import LaunchConfiguration
 from navette.ros2.packages.launch.typed import perform_bool, perform_seconds
-from navette.supervisor import Patience
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
+from navette.supervisor import GracePeriods, RestartPolicy
 
 _SECONDS = LaunchConfiguration("sigterm_timeout", default="5")
 _LAST_SECONDS = LaunchConfiguration("sigkill_timeout", default="5")
@@ -43,18 +43,18 @@ class ExecuteLocal(Action):
 
     Args:
         process_description: the command line.
-        shell: a shell reads it.
-        sigterm_timeout: seconds from SIGINT to SIGTERM when it is to end.
-        sigkill_timeout: seconds from there to SIGKILL.
-        emulate_tty: accepted; Python programs are told not to buffer their output.
+        shell: run the command line in a shell.
+        sigterm_timeout: seconds from SIGINT to SIGTERM.
+        sigkill_timeout: seconds from SIGTERM to SIGKILL.
+        emulate_tty: accepted without effect; Python programs do not buffer output.
         output: ``screen`` (default), ``log``, ``both``, ``own_log``, or a dict.
         output_format: accepted where it is ROS 2's default.
-        log_cmd: print the command line before it starts.
-        on_exit: entities, or ``on_exit(event, context)``, for when it has ended.
-        respawn: run it again when it has ended by itself.
-        respawn_delay: seconds before that.
-        respawn_max_retries: at most so many times; -1: without limit.
-        required: the launch ends with it (as ``on_exit=Shutdown()`` does).
+        log_cmd: log the command line.
+        on_exit: entities, or ``on_exit(event, context)``, for the exit.
+        respawn: restart the command when it ends by itself.
+        respawn_delay: seconds before a restart.
+        respawn_max_retries: maximum number of restarts; -1: no limit.
+        required: shut the launch down at the exit (as ``on_exit=Shutdown()`` does).
     """
 
     def __init__(
@@ -91,10 +91,7 @@ class ExecuteLocal(Action):
         self.respawn_max_retries = respawn_max_retries
         self.required = required
         self._on_exit = on_exit
-        self._handlers: list[AnsweringHandler] = []
-        self._retries = 0
-        self._respawns = False
-        self._execution: Execution | None = None
+        self._process: LaunchedProcess | None = None
 
     def describe(self) -> str:
         return f"{type(self).__name__}({self.process_description.describe()})"
@@ -105,145 +102,104 @@ class ExecuteLocal(Action):
             return []
         return OnProcessExit(on_exit=on_exit).entities
 
-    # -- what others ask -----------------------------------------------------------
-
     @property
     def process_details(self) -> dict[str, Any] | None:
-        """Name, command line and pid, once it was started."""
-        return None if self._execution is None else self._execution.details
+        """Name, command line and pid; None before the start."""
+        if self._process is None or self._process.command is None:
+            return None
+        return self._process.details
 
     @property
     def name(self) -> str | None:
-        """Its label (``talker-1``), once it was started."""
-        return None if self._execution is None else self._execution.command.label
+        """Label (``talker-1``); None before the start."""
+        return None if self._process is None else self._process.label or None
 
     @property
     def return_code(self) -> int | None:
-        """How it ended; None before."""
-        return None if self._execution is None else self._execution.return_code
+        """Exit code; None before the exit."""
+        return None if self._process is None else self._process.exit_code
 
     def write(self, data: bytes) -> None:
-        """Write to its standard input, while it runs."""
-        if self._execution is not None:
-            self._execution.write(data)
+        """Write to the standard input while the process runs."""
+        if self._process is not None:
+            self._process.write(data)
 
-    # -- running -------------------------------------------------------------------
-
-    def make_command(self, context: "LaunchContext") -> Command:
-        """The command with everything worked out."""
+    def make_command(self, context: LaunchContext) -> Command:
+        """Return the command with all substitutions performed."""
         return self.process_description.command(
             context, shell=self.shell, tty=perform_bool(context, self.emulate_tty)
         )
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+    def make_output(self, context: LaunchContext, label: str) -> LabelledOutput:
+        """Return where the output of the process goes."""
+        output = self.output
+        if isinstance(output, (str, Substitution, list, tuple)):
+            parts = normalize_to_list_of_substitutions(output)
+            output = perform_substitutions(context, parts)
+        return LabelledOutput(label, output_places(output))
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         if context.is_shutdown:
             return None
-        if self._execution is not None:
+        if self._process is not None:
             raise InvalidLaunchValueError(
                 f"{self.name} was started already: an action can be executed once"
             )
-        self._register(context)
-        self._start(context)
+        grace = GracePeriods(
+            perform_seconds(context, self.sigterm_timeout, "sigterm_timeout"),
+            perform_seconds(context, self.sigkill_timeout, "sigkill_timeout"),
+        )
+        self._process = LaunchedProcess(self, context, self._policy(context), grace)
+        self._register_handlers(context)
+        self._process.start()
         return None
 
-    def _start(self, context: "LaunchContext") -> None:
-        command = self.make_command(context)
-        if self.log_cmd:
-            get_logger(command.label).info("%s", " ".join(command.words))
-        self._execution = Execution(
-            self,
-            context,
-            command,
-            LabelledOutput(command.label, output_places(self._output(context))),
-            Patience(
-                perform_seconds(context, self.sigterm_timeout, "sigterm_timeout"),
-                perform_seconds(context, self.sigkill_timeout, "sigkill_timeout"),
-            ),
-            lambda execution: self._ended(execution, context),
-        )
-        self._respawns = perform_bool(context, self.respawn)
-        self._execution.start()
-
-    def _output(self, context: "LaunchContext") -> Any:
-        output = self.output
-        if isinstance(output, dict):
-            return output
-        if not isinstance(output, (str, Substitution, list, tuple)):
-            return output
-        return perform_substitutions(
-            context, normalize_to_list_of_substitutions(output)
+    def _policy(self, context: LaunchContext) -> RestartPolicy:
+        retries, delay_s = self.respawn_max_retries, self.respawn_delay or 0.0
+        return RestartPolicy(
+            condition="always" if perform_bool(context, self.respawn) else "no",
+            delay_s=delay_s,
+            max_delay_s=delay_s,
+            max_attempts=sys.maxsize if retries < 0 else retries,
+            window_s=math.inf,
         )
 
-    def _register(self, context: "LaunchContext") -> None:
-        self._handlers = [
-            AnsweringHandler(matcher=self._concerns, answer=self._obey),
-        ]
+    def _register_handlers(self, context: LaunchContext) -> None:
+        handlers = [AnsweringHandler(matcher=self._is_target, answer=self._obey)]
         if self.required:
-            self._handlers.append(
-                OnProcessExit(target_action=self, on_exit=self._end_launch)
+            handlers.append(
+                OnProcessExit(target_action=self, on_exit=self._shut_down_launch)
             )
         if self._on_exit is not None:
-            self._handlers.append(
-                OnProcessExit(target_action=self, on_exit=self._on_exit)
-            )
-        for handler in self._handlers:
+            handlers.append(OnProcessExit(target_action=self, on_exit=self._on_exit))
+        for handler in handlers:
             context.register_event_handler(handler)
 
-    def _end_launch(self, event: Any, context: "LaunchContext") -> None:
+    def _shut_down_launch(self, event: Any, context: LaunchContext) -> None:
         if not context.is_shutdown:
             get_logger("launch").info(
                 "process[%s] was required: shutting down launched system", self.name
             )
             context.emit_event(ShutdownEvent(reason=f"{self.name} ended"))
 
-    def _concerns(self, event: Event) -> bool:
+    def _is_target(self, event: Event) -> bool:
         if isinstance(event, ProcessTargetedEvent):
             return bool(event.process_matcher(self))
         return isinstance(event, ShutdownEvent)
 
-    def _obey(self, event: Event, context: "LaunchContext") -> None:
-        execution = self._execution
-        if execution is None:
-            return
+    def _obey(self, event: Event, context: LaunchContext) -> None:
+        process = self._process
+        assert process is not None, "registered by execute"
         if isinstance(event, SignalProcess):
-            execution.signal(int(event.signal))
+            process.signal(int(event.signal))
         elif isinstance(event, ProcessStdin):
-            execution.write(event.text)
-        elif not execution.was_asked_to_end:
-            execution.end()
-
-    def _ended(self, execution: Execution, context: "LaunchContext") -> None:
-        left = self.respawn_max_retries < 0 or self._retries < self.respawn_max_retries
-        asked = execution.was_asked_to_end or context.is_shutdown
-        if not (self._respawns and left) or asked:
-            return
-        self._retries += 1
-        delay_s = self.respawn_delay or 0.0
-        pause = object()
-        context.busy.add(pause)
-
-        def again() -> None:
-            context.busy.discard(pause)
-            if not context.is_shutdown:
-                self._start(context)
-
-        call = context.call_after(delay_s, again, f"respawn of {self.name}")
-
-        def give_up(event: Event, context: "LaunchContext") -> None:
-            call.cancel()
-            context.busy.discard(pause)
-
-        context.register_event_handler(
-            AnsweringHandler(
-                matcher=lambda event: isinstance(event, ShutdownEvent),
-                answer=give_up,
-                handle_once=True,
-            )
-        )
+            process.write(event.text)
+        else:
+            process.stop()
 
 
 class ExecuteProcess(ExecuteLocal):
-    """Runs a command line, given by its words.
+    """Runs a command line given as a list of words.
 
     Args:
         cmd: the words; each may be a list of substitutions.

@@ -1,0 +1,1 @@
+"""``navette up`` and its companions: services described in ``navette.yaml``."""

@@ -1,0 +1,135 @@
+"""Log of a project: the output of all its processes in one file, in order.
+
+Each line is a JSON object: ``t`` (nanoseconds), ``service``, ``name``, ``text``, and
+``event: true`` for a line of the supervisor itself.
+"""
+
+import json
+import os
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import IO
+
+from navette.supervisor.specs import process_label
+
+FILE_NAME = "log.jsonl"
+_OLD_NAME = "log.1.jsonl"
+_MAX_BYTES = 8 << 20
+_MAX_TEXT = 1 << 16
+
+
+@dataclass(frozen=True)
+class LogLine:
+    """A line of output, or an event of the supervisor."""
+
+    t: int
+    service: str
+    name: str
+    text: str
+    event: bool = False
+
+    @property
+    def label(self) -> str:
+        return process_label(self.service, self.name)
+
+
+class LogStore:
+    """Writer of the log, for any thread; keeps the last 8 to 16 MB."""
+
+    def __init__(self, folder: Path, now_ns: Callable[[], int]) -> None:
+        self._folder = folder
+        self._now_ns = now_ns
+        self._lock = threading.Lock()
+        self._file = self._open()
+
+    def write(
+        self, service: str, name: str, texts: Iterable[str], *, event: bool = False
+    ) -> None:
+        """Append lines with the current time."""
+        now_ns = self._now_ns()
+        lines = [
+            LogLine(now_ns, service, name, text[:_MAX_TEXT], event) for text in texts
+        ]
+        data = "".join(f"{json.dumps(asdict(line))}\n" for line in lines)
+        # A full disk loses log lines; it must not stop the processes.
+        with self._lock, suppress(OSError):
+            if not self._file.closed:
+                self._file.write(data.encode())
+                self._rotate()
+
+    def _rotate(self) -> None:
+        if self._file.tell() > _MAX_BYTES:
+            self._file.close()
+            (self._folder / FILE_NAME).replace(self._folder / _OLD_NAME)
+            self._file = self._open()
+
+    def close(self) -> None:
+        with self._lock:
+            self._file.close()
+
+    def _open(self) -> IO[bytes]:
+        path = self._folder / FILE_NAME
+        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        return os.fdopen(descriptor, "ab", buffering=0)
+
+
+class LogReader:
+    """Reader of the log, also while it is written.
+
+    Args:
+        folder: of the log; it may not exist yet.
+        accept: which lines to return.
+    """
+
+    def __init__(self, folder: Path, accept: Callable[[LogLine], bool]) -> None:
+        self._folder = folder
+        self._accept = accept
+        self._file: IO[bytes] | None = None
+        self._rest = b""
+
+    def last(self, count: int | None) -> list[LogLine]:
+        """Return the last lines (None: all); :meth:`new` continues after them."""
+        old = self._folder / _OLD_NAME
+        found = list(self._parse(old.read_bytes())) if old.is_file() else []
+        found += self.new()
+        return found if count is None else found[-count:] if count else []
+
+    def new(self) -> list[LogLine]:
+        """Return the lines written since the last call."""
+        found = list(self._read_on())
+        if self._was_rotated():
+            self.close()
+            found += self._read_on()
+        return found
+
+    def close(self) -> None:
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _read_on(self) -> Iterator[LogLine]:
+        path = self._folder / FILE_NAME
+        if self._file is None:
+            if not path.is_file():
+                return
+            self._file = path.open("rb")
+        *lines, self._rest = (self._rest + self._file.read()).split(b"\n")
+        for line in lines:
+            yield from self._parse(line)
+
+    def _was_rotated(self) -> bool:
+        path = self._folder / FILE_NAME
+        if self._file is None or not path.is_file():
+            return False
+        return path.stat().st_ino != os.fstat(self._file.fileno()).st_ino
+
+    def _parse(self, data: bytes) -> Iterator[LogLine]:
+        for text in data.splitlines():
+            # A power failure leaves an incomplete line.
+            with suppress(ValueError, TypeError):
+                line = LogLine(**json.loads(text))
+                if self._accept(line):
+                    yield line

@@ -1,0 +1,115 @@
+"""Real processes: their output, input, end, and signals to their groups."""
+
+import os
+import signal
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+from process_bench import WAIT_S, Heard
+
+from navette.supervisor import ProcessError, ProcessManager, StartOptions, child
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's"),
+]
+
+# A pipe that a process holds open ends when the process does, and no sooner: reading
+# it to its end is how these tests wait for one that is not their child.
+PARENT = """
+import os, subprocess, sys
+child = subprocess.Popen([sys.executable, '-c', 'import signal; signal.pause()'],
+                         pass_fds=[int(sys.argv[1])])
+print(child.pid, 'ready')
+if sys.argv[2] == 'stay':
+    child.wait()
+"""
+
+
+def test_output_code_environment_and_input(bench: Any, tmp_path: Path) -> None:
+    code = (
+        "import os, sys; print(os.environ['A'], os.getcwd(), 'ready');"
+        "sys.stderr.write(input()); sys.exit(3)"
+    )
+    env = {**os.environ, "A": "b"}
+    running, heard = bench.start(code, env=env, cwd=str(tmp_path))
+    running.write(b"hello\n")
+    assert heard.wait_over() == 3
+    assert heard.wait_ready() == ["b", str(tmp_path), "ready"]
+    assert heard.text["stderr"] == b"hello"
+    running.signal(signal.SIGINT)  # it is over: nothing happens
+    running.write(b"too late")
+
+
+def test_errors_may_come_with_the_output(bench: Any) -> None:
+    code = "import sys; print(1); sys.stderr.write('2\\n'); print('ready')"
+    _, heard = bench.start(code, merge_streams=True)
+    assert heard.wait_over() == 0
+    assert heard.text == {"stdout": b"1\n2\nready\n", "stderr": b""}
+
+
+def test_the_end_is_told_after_all_output_however_long_that_takes(
+    bench: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(child, "_LAST_OUTPUT_S", 0.0)
+    go_on = threading.Event()
+
+    class Slow(Heard):
+        def output(self, stream: str, data: bytes) -> None:
+            assert go_on.wait(WAIT_S)
+            super().output(stream, data)
+
+    heard = Slow()
+    words = [sys.executable, "-c", "print('ready')"]
+    running = bench.manager.start(words, StartOptions())
+    running.watch(heard)
+    assert running._process.wait() == 0
+    assert not heard.over.wait(0.1)
+    go_on.set()
+    assert heard.wait_over() == 0
+    assert heard.text["stdout"] == b"ready\n"
+
+
+def test_a_shell_line(bench: Any) -> None:
+    heard = bench.start("")[1].__class__()
+    words = ("echo", "ready", "&&", "exit", "2")
+    bench.manager.start(words, StartOptions(shell=True)).watch(heard)
+    assert heard.wait_over() == 2
+    assert heard.text["stdout"] == b"ready\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "cwd", "reason"),
+    [
+        (["/no/such/tool"], None, "cannot start '/no/such/tool': No such file"),
+        (["ls", "a\0b"], None, "cannot start 'ls': embedded null byte"),
+        (["ls"], "/no/such", "cannot start 'ls' in '/no/such': no such folder"),
+    ],
+)
+def test_what_cannot_be_started_says_why(
+    words: list[str], cwd: str | None, reason: str
+) -> None:
+    manager = ProcessManager()
+    with pytest.raises(ProcessError, match=reason):
+        manager.start(words, StartOptions(cwd=cwd))
+    manager.close()
+
+
+@pytest.mark.parametrize("how", ["signal", "end"])
+def test_its_children_go_with_it(bench: Any, how: str) -> None:
+    reading, writing = os.pipe()
+    running, heard = bench.start(
+        PARENT, str(writing), "stay" if how == "signal" else "go", pass_fds=(writing,)
+    )
+    os.close(writing)
+    heard.wait_ready()
+    if how == "signal":
+        running.signal(signal.SIGTERM)
+        assert heard.wait_over() == -signal.SIGTERM
+    else:
+        assert heard.wait_over() == 0
+    with os.fdopen(reading, "rb") as pipe:
+        assert pipe.read() == b""

@@ -1,0 +1,124 @@
+"""The log, and requests to a supervisor."""
+
+import socket
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from navette.supervisor import log_store
+from navette.supervisor.client import SupervisorClient, SupervisorError
+from navette.supervisor.log_store import LogLine, LogReader, LogStore
+from navette.supervisor.project import Project, socket_path
+from navette.supervisor.status import projects_in_same_domain
+
+
+def everything(line: LogLine) -> bool:
+    return True
+
+
+def texts(lines: list[LogLine]) -> list[str]:
+    return [line.text for line in lines]
+
+
+def test_lines_are_read_in_their_order_and_as_they_come(tmp_path: Path) -> None:
+    reader = LogReader(tmp_path, lambda line: line.service == "a")
+    assert reader.last(None) == []
+    book = LogStore(tmp_path, lambda: 7)
+    book.write("a", "x", ["one", "two"])
+    book.write("b", "b", ["other"])
+    assert texts(reader.last(1)) == ["two"]
+    book.write("a", "x", ["three"], event=True)
+    assert reader.new() == [LogLine(7, "a", "x", "three", True)]
+    assert reader.new() == []
+    assert reader.last(0) == []
+    reader.close()
+    book.close()
+    book.write("a", "x", ["after the end"])
+    assert LogLine(0, "b", "b", "").label == "b"
+
+
+def test_old_lines_are_let_go_and_none_is_missed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(log_store, "_MAX_BYTES", 1000)
+    book, reader = LogStore(tmp_path, lambda: 0), LogReader(tmp_path, everything)
+    found = []
+    for number in range(100):
+        book.write("a", "x", [str(number)])
+        found += texts(reader.new())
+    assert found == [str(number) for number in range(100)]
+    assert sum(file.stat().st_size for file in tmp_path.iterdir()) < 2500
+    late = LogReader(tmp_path, everything)
+    assert texts(late.last(3)) == ["97", "98", "99"]
+    late.close()
+    reader.close()
+    book.close()
+
+
+def test_half_a_line_is_no_line(tmp_path: Path) -> None:
+    (tmp_path / log_store.FILE_NAME).write_bytes(b'{"t": 1, "mod\n[1]\n\xff\n')
+    reader = LogReader(tmp_path, everything)
+    assert reader.last(None) == []
+    reader.close()
+
+
+def test_a_full_disk_costs_lines_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    book = LogStore(tmp_path, lambda: 0)
+
+    class Full:
+        closed = False
+
+        def write(self, data: bytes) -> None:
+            raise OSError(28, "No space left on device")
+
+        def close(self) -> None:
+            pass
+
+    book._file.close()
+    monkeypatch.setattr(book, "_file", Full())
+    book.write("a", "x", ["lost"])
+    book.close()
+
+
+def test_a_supervisor_that_hangs_is_not_waited_for_long(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NAVETTE_STATE_DIR", str(tmp_path))
+    client = SupervisorClient(Project(tmp_path))
+    monkeypatch.setattr("navette.supervisor.client._TIMEOUT_S", 0.05)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as deaf:
+        deaf.bind(str(socket_path(client.project.state)))
+        deaf.listen()
+        with pytest.raises(SupervisorError, match="does not respond"):
+            client.down(None)
+        Path(deaf.getsockname()).unlink()
+
+
+class FakeClient(SupervisorClient):
+    """What is up in a folder: a process in each of some domains."""
+
+    def __init__(self, folder: str, *domains: str) -> None:
+        super().__init__(Project(Path(folder)))
+        self._domains = domains
+
+    def status(self) -> list[dict[str, Any]]:
+        process = {
+            "name": "p",
+            "label": "p",
+            "state": "running",
+            "pid": 1,
+            "seconds": 0.0,
+            "restarts": 0,
+            "reason": "",
+        }
+        found = [{**process, "domain": domain} for domain in self._domains]
+        return [{"service": "p", "processes": found}]
+
+
+def test_who_is_up_in_the_same_domain_is_a_neighbour() -> None:
+    own = FakeClient("/a", "0", "7")
+    others = [own, FakeClient("/b", "7", "7", "8"), FakeClient("/c", "9")]
+    assert projects_in_same_domain(own, others) == [("7", Project(Path("/b")))]

@@ -1,0 +1,132 @@
+"""What outlives a keeper that was killed: nothing."""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import navette
+from navette.supervisor.guard import with_token, without_tokens
+from navette.supervisor.guard_program import VARIABLE, end_all
+
+linux = pytest.mark.skipif(
+    not Path("/proc/self").is_dir(), reason="needs Linux's /proc"
+)
+slow = pytest.mark.slow
+WAIT_S = 60.0
+
+# Each process of the tests holds the writing end of a pipe.
+STUBBORN = """
+import os, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+os.write(int(sys.argv[1]), b'x')
+signal.pause()
+"""
+RUNAWAY = f"""
+import os, subprocess, sys
+code = {STUBBORN!r}
+subprocess.Popen([sys.executable, '-c', code, sys.argv[1]], start_new_session=True,
+                 pass_fds=[int(sys.argv[1])])
+"""
+KEEPER = """
+import sys
+from navette.supervisor import ProcessManager, StartOptions
+
+class Deaf:
+    def output(self, stream, data): sys.stderr.write(data.decode())
+    def exited(self, code): pass
+
+manager = ProcessManager(grace_s=0.1)
+fd = int(sys.argv[2])
+manager.start([sys.executable, "-c", sys.argv[1], str(fd)],
+              StartOptions(pass_fds=(fd,))).watch(Deaf())
+sys.stdin.read()
+"""
+
+
+def start_keeper(program: str) -> tuple["subprocess.Popen[bytes]", int]:
+    """A process that keeps another; and a pipe's end that tells when that has ended."""
+    reading, writing = os.pipe()
+    source = str(Path(navette.__file__).parent.parent)
+    process = subprocess.Popen(
+        [sys.executable, "-c", KEEPER, program, str(writing)],
+        stdin=subprocess.PIPE,
+        pass_fds=(writing,),
+        env={**os.environ, "PYTHONPATH": source},
+    )
+    os.close(writing)
+    return process, reading
+
+
+def read(pipe: int) -> bytes:
+    """What comes next, or the end; bounded."""
+    ready, _, _ = select.select([pipe], [], [], WAIT_S)
+    assert ready, "nothing came, and it did not end"
+    return os.read(pipe, 1)
+
+
+@slow
+@pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's")
+@pytest.mark.parametrize(
+    "program", [STUBBORN, pytest.param(RUNAWAY, marks=linux)], ids=["child", "runaway"]
+)
+def test_nothing_outlives_a_keeper_that_was_killed(program: str) -> None:
+    keeper, pipe = start_keeper(program)
+    with keeper:
+        assert read(pipe) == b"x"
+        keeper.kill()
+    assert read(pipe) == b""
+    os.close(pipe)
+
+
+@slow
+@linux
+def test_what_left_its_group_ends_with_the_keeper(bench: Any) -> None:
+    reading, writing = os.pipe()
+    _, heard = bench.start(RUNAWAY, str(writing), pass_fds=(writing,))
+    os.close(writing)
+    assert heard.wait_over() == 0
+    assert read(reading) == b"x"
+    bench.manager.close()
+    assert read(reading) == b""
+    os.close(reading)
+
+
+@slow
+@pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's")
+def test_a_guard_that_was_killed_is_replaced(bench: Any) -> None:
+    bench.start("import signal; print('ready'); signal.pause()")[1].wait_ready()
+    guard = bench.manager.guard()
+    first = guard.pid
+    os.kill(first, signal.SIGKILL)
+    waiting = select.poll()
+    # The new one is there when the old one's place is taken.
+    left = int(WAIT_S / 0.01)
+    while guard.pid == first and left:
+        waiting.poll(10)
+        left -= 1
+    assert guard.pid != first
+    _, heard = bench.start("print('ready')")
+    assert heard.wait_over() == 0
+
+
+def test_tokens_nest_and_are_removed() -> None:
+    inner = with_token(with_token({"A": "1"}, "outer"), "inner")
+    assert inner == {"A": "1", VARIABLE: "outer:inner"}
+    assert without_tokens(inner) == {"A": "1"}
+
+
+def test_it_asks_thrice_and_no_more() -> None:
+    looks: list[int] = []
+
+    def find() -> list[int]:
+        looks.append(1)
+        return []
+
+    end_all(find, 0.0)
+    assert len(looks) == 3
