@@ -1,0 +1,348 @@
+"""Plain technical English, unique class names, and units in parameter names.
+
+To fix a failure, use the field's standard term, name the subject and say what it does.
+A true use of a banned phrase goes into ``ALLOWED``, with the words around it.
+"""
+
+import ast
+import dataclasses
+import re
+import typing
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from navette.bags.params import RecorderParams
+from navette.navigation.stack.stack import NODE_CLASSES
+from navette.params import Params, info_of
+from navette.viewer.params import ViewerParams
+
+ROOT = Path(__file__).parent.parent
+SOURCE = ROOT / "src" / "navette"
+
+#: Regular expression (whole words, any case) → what to write instead.
+BANNED = {
+    r"nobody": "name the subject: no node, no subscriber, no process",
+    r"anew": "again, or restart",
+    r"those (that|who|whom|which)": "name the noun",
+    r"strangers?": "other process, other domain, unknown peer",
+    r"whoever|whom": "name the role",
+    r"hears?|heard|hearing": "receives, received",
+    r"tells|told": "reports, publishes, states",
+    r"says|said": "reports, publishes, states",
+    r"knows": "stores, has, depends on",
+    r"wants": "requires, requests",
+    r"asks": "requests, requires, queries",
+    r"complains?|complained": "warns, logs",
+    r"dies|died": "exits, crashes, fails",
+    r"(falls?|fell|goes|went) silent": "stops publishing, stops responding",
+    r"stands still": "is stationary, stops",
+    r"go(es)? on": "continues",
+    r"no way": "no path, cannot",
+    r"as the crow flies": "in a straight line",
+    r"to and fro|by fits and starts": "back and forth, intermittently",
+    r"letters?": "message, or the character class in ALLOWED",
+    r"farewells?|goodbye|forsake|errands?|mailbox|witness(es)?|kin": "see the glossary",
+    r"(?<!there )(is|are|was|were) no (?!(longer|more|less|other|such|\w+er)\b)\w+": (
+        "is not a …, or has no …"
+    ),
+}
+
+#: True uses: a banned phrase within one of these is no fault.
+ALLOWED = (
+    r"letters,? (and )?digits",
+    r"(capital|lower-?case|upper-?case|small|drive|ASCII) letters?",
+    r"letters, (numbers|underscores)",
+)
+
+#: Folders and files that are still to be cleaned; only ever made shorter.
+PENDING: tuple[str, ...] = (
+    "CONTRIBUTING.md",
+    "benchmarks/bench_dispatch.py",
+    "benchmarks/bench_network.py",
+    "benchmarks/bench_recording.py",
+    "benchmarks/check_distance.py",
+    "benchmarks/distance_drive.py",
+    "benchmarks/harness.py",
+    "benchmarks/page.py",
+    "benchmarks/soak_network.py",
+    "docs/contributing",
+    "docs/decisions",
+    "docs/design.md",
+    "docs/glossary.md",
+    "docs/howto",
+    "docs/performance.md",
+    "docs/picture.py",
+    "docs/reference",
+    "examples/01_talker_listener.py",
+    "examples/03_publish_and_react.py",
+    "examples/07_own_parameters.py",
+    "examples/11_names.py",
+    "examples/12_logging.py",
+    "examples/13_service.py",
+    "examples/19_drive_to_the_pillar.py",
+    "examples/20_producer_transformer_aggregator.py",
+    "examples/22_change_while_running.py",
+    "examples/30_distance.py",
+    "examples/31_filter_a_drive.py",
+    "src/navette/bags",
+    "src/navette/cli",
+    "src/navette/errors.py",
+    "src/navette/geometry",
+    "src/navette/msgs",
+    "src/navette/navigation/control",
+    "src/navette/navigation/costmap",
+    "src/navette/navigation/localization/distance",
+    "src/navette/navigation/localization/ekf",
+    "src/navette/navigation/mapping",
+    "src/navette/navigation/missions",
+    "src/navette/navigation/planning",
+    "src/navette/navigation/stack",
+    "src/navette/ros2/launch",
+    "src/navette/ros2/names",
+    "src/navette/ros2/packages/ament_index_python",
+    "src/navette/ros2/packages/cv_bridge",
+    "src/navette/ros2/packages/diagnostic_updater",
+    "src/navette/ros2/packages/laser_geometry",
+    "src/navette/ros2/packages/launch",
+    "src/navette/ros2/packages/launch_ros",
+    "src/navette/ros2/packages/message_filters",
+    "src/navette/ros2/packages/rosidl_runtime_py",
+    "src/navette/ros2/packages/sensor_msgs_py",
+    "src/navette/ros2/packages/tf2_ros",
+    "src/navette/ros2/packages/tf2_sensor_msgs",
+    "src/navette/ros2/packages/tf_transformations",
+    "src/navette/ros2/workspace",
+    "src/navette/runtime",
+    "src/navette/sim",
+    "src/navette/supervisor",
+    "src/navette/testing",
+    "src/navette/transports",
+    "src/navette/viewer",
+    "tests/bag_samples.py",
+    "tests/conformance",
+    "tests/conftest.py",
+    "tests/free_ports.py",
+    "tests/property",
+    "tests/replay",
+    "tests/scenarios",
+    "tests/test_console_docs.py",
+    "tests/transports",
+    "tests/unit/bags",
+    "tests/unit/cli",
+    "tests/unit/msgs",
+    "tests/unit/navigation",
+    "tests/unit/ros2",
+    "tests/unit/runtime",
+    "tests/unit/sim",
+    "tests/unit/supervisor",
+    "tests/unit/testing",
+    "tests/unit/transports",
+    "tests/unit/viewer",
+)
+
+#: Class names that ROS 2's API needs twice, with the reason.
+SHARED_NAMES: dict[str, str] = {
+    "Shutdown": "launch has an action and an event of this name",
+    "IncludeLaunchDescription": "launch has an action and an event of this name",
+    "EventHandler": "launch's handler of events, and rclpy's of QoS events",
+    "LifecycleNode": "launch_ros's action, and rclpy's node",
+    "Node": "launch_ros's action, and rclpy's node",
+    "Parameter": "launch_ros's description and substitution, and rclpy's value",
+    "TimeoutException": "rclpy's and tf2's",
+}
+
+#: Duplicate class names that are still to be renamed; only ever made shorter.
+PENDING_NAMES: frozenset[str] = frozenset(
+    {
+        "Answer",
+        "Choice",
+        "Client",
+        "Command",
+        "Entity",
+        "Entry",
+        "Executable",
+        "Finding",
+        "Graph",
+        "Heartbeat",
+        "ImuSensor",
+        "Level",
+        "LifecycleTransition",
+        "Link",
+        "Listed",
+        "Motion",
+        "NodeWithParameters",
+        "PathProgress",
+        "Patience",
+        "Playback",
+        "Process",
+        "Progress",
+        "Report",
+        "Request",
+        "RobotState",
+        "Scan",
+        "Scene",
+        "Sensor",
+        "Session",
+        "Snapshot",
+        "State",
+        "Topic",
+        "Wanted",
+    }
+)
+
+#: Unit of a parameter → the end of its name.
+SUFFIXES = {
+    "m": "_m",
+    "m/s": "_mps",
+    "m/s²": "_mps2",
+    "rad": "_rad",
+    "rad/s": "_radps",
+    "rad/s²": "_radps2",
+    "deg": "_deg",
+    "s": "_s",
+    "Hz": "_hz",
+    "B": "_bytes",
+    "1/m": "_per_m",
+    "1/m²": "_per_m2",
+    "1/m³": "_per_m3",
+    "m/rad": "_m_per_rad",
+}
+
+#: Parameters without a unit although they are real numbers.
+DIMENSIONLESS = (
+    r".*_rejection_threshold",  # Mahalanobis distances
+    r"(process_noise|initial_estimate)_covariance|initial_state",  # mixed units
+    r"\w+_probability|belief_limit|occupied_threshold|lidar_dropout",
+    r"(clearance|map_cost)_weight|unknown_cost|reverse_factor|switch_gain",
+)
+
+
+def texts() -> Iterator[tuple[Path, str]]:
+    """Path relative to the repository and text of every file that people read."""
+    patterns = ("src/navette/**/*.py", "tests/**/*.py", "docs/**/*.py", "docs/**/*.md")
+    more = ("examples/**/*.py", "benchmarks/**/*.py", "*.md", "src/navette/**/*.html")
+    for pattern in (*patterns, *more):
+        for path in sorted(ROOT.glob(pattern)):
+            relative = path.relative_to(ROOT)
+            generated = relative.parts[:2] in (("docs", "api"), ("docs", "site"))
+            if path != Path(__file__) and not generated:
+                yield relative, path.read_text(encoding="utf-8")
+
+
+def is_pending(relative: Path) -> bool:
+    name = relative.as_posix()
+    return any(name == each or name.startswith(f"{each}/") for each in PENDING)
+
+
+def faults(relative: Path, text: str) -> Iterator[str]:
+    """``file:line: phrase → what to write instead``."""
+    banned = re.compile(
+        "|".join(
+            rf"(?P<p{number}>\b(?:{phrase})\b)" for number, phrase in enumerate(BANNED)
+        ),
+        re.IGNORECASE,
+    )
+    allowed = [
+        span for each in ALLOWED for span in re.finditer(each, text, re.IGNORECASE)
+    ]
+    instead = list(BANNED.values())
+    for found in banned.finditer(text):
+        if any(a.start() <= found.start() and found.end() <= a.end() for a in allowed):
+            continue
+        line = text.count("\n", 0, found.start()) + 1
+        assert found.lastgroup is not None
+        advice = next(
+            instead[number]
+            for number in range(len(instead))
+            if found[f"p{number}"] is not None
+        )
+        yield f"{relative}:{line}: {found[0]!r}; instead: {advice}"
+
+
+def test_the_text_is_free_of_banned_phrases() -> None:
+    found = [
+        fault
+        for relative, text in texts()
+        if not is_pending(relative)
+        for fault in faults(relative, text)
+    ]
+    assert not found, "\n".join(found)
+
+
+def test_pending_places_exist_and_are_not_clean_yet() -> None:
+    """A clean folder leaves the list, so that it stays clean."""
+    dirty = [relative for relative, text in texts() if any(faults(relative, text))]
+    for place in PENDING:
+        inside = [f for f in dirty if f.as_posix().startswith(place)]
+        assert inside, f"{place} is clean: take it out of PENDING"
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["nobody listens", "The node\nsays so", "a car is no boat", "it starts anew"],
+)
+def test_a_banned_phrase_is_found(text: str) -> None:
+    assert list(faults(Path("any.md"), text))
+
+
+@pytest.mark.parametrize(
+    "text", ["letters and digits", "There is no path", "is no longer valid", "renew"]
+)
+def test_plain_english_is_accepted(text: str) -> None:
+    assert not list(faults(Path("any.md"), text))
+
+
+def public_classes() -> dict[str, list[str]]:
+    """Name of each public class of a module's top level → files that define it."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for path in sorted(SOURCE.rglob("*.py")):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                found[node.name].append(path.relative_to(SOURCE).as_posix())
+    return found
+
+
+def test_a_public_class_name_occurs_once() -> None:
+    several = {name: at for name, at in public_classes().items() if len(at) > 1}
+    known = PENDING_NAMES | SHARED_NAMES.keys()
+    found = {name: at for name, at in several.items() if name not in known}
+    assert not found, found
+    settled = known - several.keys()
+    assert not settled, f"occur once now: take {sorted(settled)} out of the lists"
+
+
+RECORDS: tuple[type[Params], ...] = (
+    *(node_class.PARAMS for _, node_class in NODE_CLASSES),
+    RecorderParams,
+    ViewerParams,
+)
+
+
+def test_every_parameter_record_is_checked() -> None:
+    declared = {each.__module__.replace(".", "/") + ".py" for each in RECORDS}
+    found = {
+        path.relative_to(SOURCE.parent).as_posix()
+        for path in SOURCE.rglob("params.py")
+        if "param(" in path.read_text(encoding="utf-8")
+    }
+    assert found - declared == {"navette/params.py"}
+
+
+@pytest.mark.parametrize("record", RECORDS, ids=lambda each: each.__name__)
+def test_a_parameter_carries_its_unit_in_its_name(record: type[Params]) -> None:
+    hints = typing.get_type_hints(record)
+    for field in dataclasses.fields(record):
+        unit, name = info_of(field).unit, field.name
+        where = f"{record.__name__}.{name}"
+        if unit:
+            assert unit in SUFFIXES, f"{where}: unit {unit!r} is not in SUFFIXES"
+            assert name.endswith(SUFFIXES[unit]), f"{where}: wanted {SUFFIXES[unit]!r}"
+        elif hints[name] in (float, tuple[float, ...]):
+            known = any(re.fullmatch(each, name) for each in DIMENSIONLESS)
+            assert known, f"{where}: declare its unit, or add it to DIMENSIONLESS"
+        else:
+            ends = [suffix for suffix in SUFFIXES.values() if name.endswith(suffix)]
+            assert not ends, f"{where}: declare the unit that its name ends in"
