@@ -1,19 +1,19 @@
-"""Every exception Navette raises on purpose.
+"""Exceptions of Navette.
 
 NavetteError
 ├── InvalidValueError (ValueError)      a value is out of range or malformed
 │   ├── ParameterError                  a parameter: unknown, mistyped, out of range
 │   ├── InvalidNameError                a node, topic or frame name
 │   └── MessageError                    a message field: type, range, length
-├── UnknownNameError (LookupError)      a type, frame, robot or world not there
-├── FileFormatError (ValueError)        a file: carries path and line
-├── DecodeError (ValueError)            bytes that are not what they claim to be
-├── TransformError                      a transform that cannot be given
+├── UnknownNameError (LookupError)      no such type, frame, robot or world
+├── FileFormatError (ValueError)        a malformed file: carries path and line
+├── DecodeError (ValueError)            malformed bytes
+├── TransformError                      a transform is not available
 ├── NetworkError (ConnectionError)      the network cannot be joined or reached
-├── LockStepError                   a process of a lock-step is gone or silent
+├── LockStepError                       a lock-step process is lost or does not respond
 ├── MissingPartError (ImportError)      an optional package is not installed
-└── CallbackError (RuntimeError)        a callback raised: node, topic, stamp; also of
-                                        the original's class
+└── CallbackError (RuntimeError)        a callback raised: node, topic, stamp; also an
+                                        instance of the original class
 """
 
 from pathlib import Path
@@ -21,11 +21,11 @@ from typing import Any
 
 
 class NavetteError(Exception):
-    """Base of the package; catch this to catch them all."""
+    """Base class of all exceptions of Navette."""
 
 
 class InvalidValueError(NavetteError, ValueError):
-    """A value is not allowed; the text names thing, value and what is allowed."""
+    """A value is out of range or malformed; names the value and what is allowed."""
 
 
 class ParameterError(InvalidValueError):
@@ -37,15 +37,15 @@ class InvalidNameError(InvalidValueError):
 
 
 class MessageError(InvalidValueError, TypeError, AssertionError):
-    """A message field got a value of the wrong type, range or length.
+    """A message field was assigned a value of the wrong type, range or length.
 
-    Also a ``TypeError`` and an ``AssertionError``: with rclpy, publishing a message of
-    another type raises the one, a field's value of another type the other.
+    Also a ``TypeError`` and an ``AssertionError``: rclpy raises the former for
+    publishing a message of another type, the latter for a field value of another type.
     """
 
 
 class UnknownNameError(NavetteError, LookupError):
-    """Something was asked for by a name that nobody has; the text lists those known."""
+    """There is nothing of this name; the message lists the known names."""
 
     @classmethod
     def of(cls, kind: str, name: str, known: list[str]) -> "UnknownNameError":
@@ -54,7 +54,7 @@ class UnknownNameError(NavetteError, LookupError):
 
 
 class FileFormatError(NavetteError, ValueError):
-    """A file cannot be read as what it should be."""
+    """A file does not have the expected format."""
 
     def __init__(self, path: Path | str, reason: str, line: int | None = None) -> None:
         where = f"{path}:{line}" if line is not None else f"{path}"
@@ -65,35 +65,35 @@ class FileFormatError(NavetteError, ValueError):
 
 
 class DecodeError(NavetteError, ValueError):
-    """Bytes do not decode as the type they are said to be."""
+    """Bytes cannot be decoded as the given type."""
 
 
 class TransformError(NavetteError):
-    """A transform is unknown, not connected or outside the buffered time."""
+    """A transform is unknown, disconnected or outside the buffered time."""
 
 
 class NetworkError(NavetteError, ConnectionError):
-    """The network cannot be joined, or what was there is gone."""
+    """The network cannot be joined, or a connection was lost."""
 
 
 class LockStepError(NavetteError):
-    """A run in lock-step cannot go on: a process is gone, or does not answer."""
+    """A lock-step run cannot continue: a process is lost or does not respond."""
 
 
 class MissingPartError(NavetteError, ImportError):
-    """An optional package is not installed; says how to."""
+    """An optional package is not installed; the message names the command."""
 
 
 class CallbackError(NavetteError, RuntimeError):
-    """A callback raised; the original exception is ``original`` and the ``__cause__``.
+    """A callback raised; the original exception is ``original`` and ``__cause__``.
 
-    The one that a spin raises is an instance of the original's class as well, and has
-    its attributes: around a spin, a program's own ``except ValueError`` catches what
-    its callback raised, as it does on ROS 2.
+    The error that a spin raises is also an instance of the original class, with its
+    attributes: ``except ValueError`` around a spin catches a callback's ValueError, as
+    in ROS 2.
     """
 
     def __init__(self, node: str, source: str, stamp_ns: int, cause: object) -> None:
-        # Not super(): in a joint class that may be one that wants other arguments.
+        # Not super(): the next class of a joint class may take other arguments.
         Exception.__init__(
             self,
             f"node {node}: callback of {source} raised at "
@@ -108,13 +108,13 @@ class CallbackError(NavetteError, RuntimeError):
     def of(
         cls, node: str, source: str, stamp_ns: int, cause: Exception
     ) -> "CallbackError":
-        """One that is of the class of ``cause`` too, where Python allows it."""
+        """Make an error that is also an instance of ``cause``'s class, if possible."""
         error = _blank(_joint_class(type(cause)))
         CallbackError.__init__(error, node, source, stamp_ns, cause)
         return error
 
     def __str__(self) -> str:
-        # Not the original class's: a KeyError would show it in quotes.
+        # Not that of the original class: KeyError would quote the text.
         return str(self.args[0])
 
     def __getattr__(self, name: str) -> Any:
@@ -128,19 +128,19 @@ def _joint_class(kind: type[Exception]) -> type[CallbackError]:
         return CallbackError
     try:
         return type(CallbackError.__name__, (CallbackError, kind), {})
-    except TypeError:  # it may not be derived from
+    except TypeError:  # the class forbids subclasses
         return CallbackError
 
 
 def _blank(kind: type[CallbackError]) -> CallbackError:
-    """An instance without ``__init__``: the original's class may want arguments."""
+    """Make an instance without ``__init__``, which may require arguments."""
     for base in kind.__mro__:
         if base.__module__ == "builtins":
             make: Any = base.__new__
             try:
                 blank: CallbackError = make(kind)
-            except TypeError:  # of another layout
+            except TypeError:  # another memory layout
                 continue
             return blank
-    # An exception group wants its parts to be made.
+    # An exception group cannot be made without its parts.
     return CallbackError.__new__(CallbackError)

@@ -1,13 +1,13 @@
-"""Parameters of a stage as a frozen dataclass: value, unit, range, meaning.
+"""Parameters of a stage as a frozen dataclass: default, unit, range, meaning.
 
-A stage writes::
+A stage declares::
 
     @dataclass(frozen=True, kw_only=True)
     class CostmapParams(Params):
-        resolution: float = param(0.1, "edge of a cell", unit="m", above=0.0)
+        resolution_m: float = param(0.1, "edge of a cell", unit="m", above=0.0)
 
-and gets validation on construction. The runtime declares the fields as ROS 2
-parameters with the same text and range, so they are written once.
+The values are validated on construction. The runtime declares the fields as ROS 2
+parameters with the same description and range.
 """
 
 import dataclasses
@@ -23,7 +23,7 @@ from navette.errors import ParameterError
 
 @dataclass(frozen=True)
 class ParamInfo:
-    """What a parameter means and which values it takes (bounds in its unit)."""
+    """Meaning and allowed values of a parameter; bounds are in its unit."""
 
     meaning: str
     unit: str = ""
@@ -34,7 +34,7 @@ class ParamInfo:
     choices: tuple[str, ...] = ()
 
     def allowed(self) -> str:
-        """The allowed values in words, for messages and the docs table."""
+        """Describe the allowed values, for error messages and the reference."""
         if self.choices:
             return "one of " + ", ".join(self.choices)
         bounds = [
@@ -64,20 +64,20 @@ def param(
     below: float | None = None,
     choices: Sequence[str] = (),
 ) -> Any:
-    """A dataclass field that carries its :class:`ParamInfo`."""
+    """Make a dataclass field with a :class:`ParamInfo`."""
     info = ParamInfo(meaning, unit, at_least, at_most, above, below, tuple(choices))
     return dataclasses.field(default=default, metadata={_KEY: info})
 
 
 @dataclass(frozen=True, kw_only=True)
 class Params:
-    """Base of every stage's parameters: checks each field on construction.
+    """Base class of the parameters of a stage; checks each field on construction.
 
-    Allowed field types: bool, int, float, str and tuples of these (ROS 2 arrays).
-    An int given for a float is converted; everything else of a wrong type raises.
+    Field types: bool, int, float, str and tuples of these (ROS 2 arrays). An int for a
+    float is converted; any other value of a wrong type raises.
 
     Raises:
-        ParameterError: names the field, the value and what is allowed.
+        ParameterError: names the field, the value and the allowed values.
     """
 
     def __post_init__(self) -> None:
@@ -90,11 +90,16 @@ class Params:
         self.check()
 
     def check(self) -> None:
-        """Override to test conditions between fields."""
+        """Check conditions between fields; override in derived classes."""
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> typing.Self:
-        """Build from plain values; an unknown key raises and lists the known ones."""
+        """Make parameters from plain values.
+
+        Raises:
+            ParameterError: an unknown key (the error lists the known ones), or a wrong
+                value.
+        """
         known = [field.name for field in dataclasses.fields(cls)]
         for key in values:
             if key not in known:
@@ -105,7 +110,7 @@ class Params:
 
 
 def info_of(field: "dataclasses.Field[Any]") -> ParamInfo:
-    """The :class:`ParamInfo` of a dataclass field made by :func:`param`."""
+    """Return the :class:`ParamInfo` of a field made by :func:`param`."""
     info = field.metadata.get(_KEY)
     return info if isinstance(info, ParamInfo) else ParamInfo(field.name)
 
@@ -125,9 +130,9 @@ def _convert(name: str, value: Any, hint: Any) -> Any:
 
 
 def _wrong_type(name: str, value: Any, hint: Any) -> ParameterError:
-    wanted = getattr(hint, "__name__", str(hint))
+    expected = getattr(hint, "__name__", str(hint))
     return ParameterError(
-        f"parameter {name!r}: {value!r} is {type(value).__name__}, wanted {wanted}"
+        f"parameter {name!r}: {value!r} is {type(value).__name__}, expected {expected}"
     )
 
 
@@ -136,7 +141,7 @@ def _check_range(name: str, value: Any, info: ParamInfo) -> None:
         if not _in_range(item, info):
             raise ParameterError(
                 f"parameter {name!r}: {item!r} is not allowed; "
-                f"wanted {info.allowed()}{' ' + info.unit if info.unit else ''}"
+                f"must be {info.allowed()}{' ' + info.unit if info.unit else ''}"
             )
 
 

@@ -1,4 +1,4 @@
-"""What a callback raised comes out named, and is still of its own class."""
+"""CallbackError: names node, topic and time, keeps the original class."""
 
 import pytest
 
@@ -6,7 +6,7 @@ from navette.errors import CallbackError
 
 
 class DemandingError(LookupError):
-    """Cannot be made of one text."""
+    """Takes two arguments."""
 
     def __init__(self, thing: str, place: int) -> None:
         super().__init__(f"{thing} at {place}")
@@ -14,10 +14,10 @@ class DemandingError(LookupError):
 
 
 class SealedError(Exception):
-    """Does not like heirs."""
+    """Forbids subclasses."""
 
     def __init_subclass__(cls) -> None:
-        raise TypeError("no heirs")
+        raise TypeError("no subclasses")
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ class SealedError(Exception):
     ],
     ids=lambda cause: type(cause).__name__,
 )
-def test_it_names_node_source_and_time_whatever_was_raised(cause: Exception) -> None:
+def test_the_message_names_node_source_and_time(cause: Exception) -> None:
     error = CallbackError.of("/node", "/topic", 1_500_000_000, cause)
     assert "node /node: callback of /topic raised at 1.500 s" in str(error)
     assert type(cause).__name__ in str(error)
@@ -45,7 +45,7 @@ def test_it_names_node_source_and_time_whatever_was_raised(cause: Exception) -> 
         assert isinstance(error, type(cause))
 
 
-def test_what_the_original_knows_is_known() -> None:
+def test_attributes_of_the_original_are_available() -> None:
     error = CallbackError.of("/node", "/topic", 0, DemandingError("spoon", 4))
     assert isinstance(error, DemandingError)
     assert error.thing == "spoon"

@@ -16,7 +16,7 @@ class DemoParams(Params):
     enabled: bool = param(True, "whether at all")
 
 
-def test_an_integer_serves_as_a_float() -> None:
+def test_an_integer_is_converted_to_a_float() -> None:
     params = DemoParams(speed=1, outline=[1, 2])
     assert params.speed == 1.0
     assert isinstance(params.speed, float)
@@ -29,16 +29,16 @@ def test_an_integer_serves_as_a_float() -> None:
         ({"speed": 0.0}, ["speed", "0.0", "> 0", "m/s"]),
         ({"speed": 2.5}, ["speed", "2.5", "<= 2"]),
         ({"speed": math.nan}, ["speed", "nan"]),
-        ({"speed": "fast"}, ["speed", "'fast'", "wanted float"]),
-        ({"count": True}, ["count", "True", "wanted int"]),
-        ({"count": 1.0}, ["count", "1.0", "wanted int"]),
+        ({"speed": "fast"}, ["speed", "'fast'", "expected float"]),
+        ({"count": True}, ["count", "True", "expected int"]),
+        ({"count": 1.0}, ["count", "1.0", "expected int"]),
         ({"method": "slow"}, ["method", "slow", "fast, safe"]),
         ({"outline": "12"}, ["outline", "'12'"]),
-        ({"enabled": 1}, ["enabled", "wanted bool"]),
+        ({"enabled": 1}, ["enabled", "expected bool"]),
         ({"sped": 1.0}, ["unknown parameter 'sped'", "speed", "outline"]),
     ],
 )
-def test_a_wrong_value_is_named_with_what_is_allowed(
+def test_errors_name_the_value_and_the_allowed_values(
     values: dict[str, object], words: list[str]
 ) -> None:
     with pytest.raises(ParameterError) as caught:

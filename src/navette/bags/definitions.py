@@ -1,7 +1,7 @@
 """Definitions in a file's own form, as ``ros2msg`` text."""
 
 from navette.errors import FileFormatError
-from navette.msgs.definition_sections import MOST_CHARACTERS
+from navette.msgs.definition_sections import MAX_CHARACTERS
 
 _IDL_SEPARATOR = "=" * 80 + "\nIDL: "
 
@@ -20,7 +20,7 @@ def idl_to_msg(name: str, text: str) -> str:
     """
     from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_typestore
 
-    if len(text) > MOST_CHARACTERS:
+    if len(text) > MAX_CHARACTERS:
         raise FileFormatError(name, f"definition of {len(text)} characters")
     store = get_typestore(Stores.EMPTY)
     try:

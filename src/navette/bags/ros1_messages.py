@@ -10,7 +10,7 @@ from typing import Any
 
 from navette.errors import DecodeError
 from navette.msgs import definition_text, ros1_definition
-from navette.msgs.foreign import load_private_definition
+from navette.msgs.registration import load_private_definition
 
 
 class Ros1Type:

@@ -174,7 +174,7 @@ def is_installed(topic: BagTopic) -> bool:
 
 
 def _same_fields(topic: BagTopic) -> bool:
-    from navette.msgs.foreign import differs
+    from navette.msgs.registration import differs
 
     specs = read_definition(topic.type_name, topic.definition)
     return not any(differs(spec) for spec in specs)

@@ -1,8 +1,7 @@
-"""Poses, angles, footprints: the shared words about where things are."""
+"""Angles, poses, transforms and footprints."""
 
-from navette.geometry.angles import angle_difference, wrap_angle
 from navette.geometry.footprint import Footprint
-from navette.geometry.se2 import Pose2
+from navette.geometry.se2 import Pose2, angle_difference, wrap_angle
 from navette.geometry.se3 import (
     Quaternion,
     Transform3,

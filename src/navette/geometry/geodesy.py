@@ -1,8 +1,8 @@
-"""Places on the WGS 84 ellipsoid: how far apart, and where on a plane around one.
+"""WGS 84 coordinates: geodesic distance and a local tangent plane.
 
-Geodesics are those of geographiclib (Karney 2013, "Algorithms for geodesics", J.
-Geodesy 87, 43-55), exact to nanometres. Not re-exported by :mod:`navette.geometry`:
-few need it.
+Geodesics are computed by geographiclib (Karney 2013, "Algorithms for geodesics", J.
+Geodesy 87, 43-55), exact to nanometres. Not re-exported by :mod:`navette.geometry`, so
+that geographiclib is loaded only by its users.
 """
 
 import math
@@ -17,7 +17,7 @@ _MASK_WITH_AZIMUTH = Geodesic.DISTANCE | Geodesic.AZIMUTH
 
 
 class GeoPoint(NamedTuple):
-    """Degrees north and east, metres above the ellipsoid (NaN = not known)."""
+    """Degrees north and east, metres above the ellipsoid (NaN = unknown)."""
 
     latitude_deg: float
     longitude_deg: float
@@ -25,7 +25,7 @@ class GeoPoint(NamedTuple):
 
     @property
     def is_valid(self) -> bool:
-        """Finite, and the latitude one there is; the altitude may be unknown."""
+        """Whether the coordinates are valid; the altitude may be NaN."""
         return (
             abs(self.latitude_deg) <= 90.0
             and math.isfinite(self.longitude_deg)
@@ -34,10 +34,9 @@ class GeoPoint(NamedTuple):
 
 
 def geodesic_distance(a: GeoPoint, b: GeoPoint) -> float:
-    """Metres from ``a`` to ``b``: along the ellipsoid, and up or down.
+    """Distance from ``a`` to ``b`` in metres, for points near each other.
 
-    √(geodesic² + altitude difference²); the geodesic alone where an altitude is not
-    known. For points near each other, as two fixes of a drive are.
+    √(geodesic² + altitude difference²); the geodesic alone if an altitude is unknown.
     """
     along: float = Geodesic.WGS84.Inverse(
         a.latitude_deg, a.longitude_deg, b.latitude_deg, b.longitude_deg, _MASK
@@ -50,17 +49,17 @@ class LocalPlane:
     """East and north in metres around an origin (azimuthal equidistant projection).
 
     Distance and direction from the origin are exact; between two points at ``d`` from
-    it they are wrong by about (d / Earth's radius)² / 6: 4 mm per km at 1 km, 0.4 m
-    per km at 10 km.
+    it the relative error is about (d / Earth's radius)² / 6: 4 µm per km at 1 km,
+    0.4 mm per km at 10 km.
 
     Raises:
-        InvalidValueError: an origin that is no place.
+        InvalidValueError: the origin's coordinates are invalid.
     """
 
     def __init__(self, origin: GeoPoint) -> None:
         if not origin.is_valid:
             raise InvalidValueError(
-                f"{origin}: wanted a latitude within ±90° and a finite longitude"
+                f"{origin}: latitude must be within ±90° and longitude finite"
             )
         self.origin = origin
 

@@ -1,4 +1,4 @@
-"""Poses in the plane: SE(2).
+"""Angles and poses in the plane: SE(2).
 
 A pose named ``map_T_base`` takes points given in ``base`` to ``map``:
 ``p_map = map_T_base.apply(p_base)``; inner names match when multiplied:
@@ -11,7 +11,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry.angles import angle_difference, wrap_angle
+
+def wrap_angle(angle: float) -> float:
+    """Return the same angle in (−π, π], rad."""
+    wrapped = math.remainder(angle, math.tau)
+    return math.pi if wrapped == -math.pi else wrapped
+
+
+def angle_difference(a: float, b: float) -> float:
+    """Return ``a − b`` in (−π, π], rad."""
+    return wrap_angle(a - b)
 
 
 class Pose2(NamedTuple):
@@ -36,7 +45,7 @@ class Pose2(NamedTuple):
         )
 
     def apply(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points (N, 2) in the inner frame → (N, 2) in the outer frame, metres."""
+        """Transform points (N, 2) from the inner to the outer frame, metres."""
         c, s = math.cos(self.yaw), math.sin(self.yaw)
         rotation = np.array([[c, s], [-s, c]])
         moved: NDArray[np.float64] = points @ rotation + (self.x, self.y)
@@ -47,7 +56,7 @@ class Pose2(NamedTuple):
         return math.hypot(other.x - self.x, other.y - self.y)
 
     def interpolate(self, other: "Pose2", fraction: float) -> "Pose2":
-        """Between ``self`` (0) and ``other`` (1): straight line, short way round."""
+        """Interpolate between ``self`` (0) and ``other`` (1), by the shorter turn."""
         return Pose2(
             self.x + fraction * (other.x - self.x),
             self.y + fraction * (other.y - self.y),

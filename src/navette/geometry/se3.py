@@ -10,7 +10,7 @@ Vector3 = tuple[float, float, float]
 
 
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """Rotation about fixed x, then y, then z (radians), as SDF, URDF and REP 103."""
+    """Rotation about fixed x, then y, then z (radians), as in SDF, URDF, REP 103."""
     cr, sr = math.cos(roll / 2), math.sin(roll / 2)
     cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
     cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
@@ -46,7 +46,7 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def rotate(q: Quaternion, v: Vector3) -> Vector3:
-    """The vector ``v`` turned by the unit quaternion ``q``."""
+    """Rotate the vector ``v`` by the unit quaternion ``q``."""
     x, y, z, w = q
     vx, vy, vz = v
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
@@ -58,7 +58,7 @@ def rotate(q: Quaternion, v: Vector3) -> Vector3:
 
 
 def slerp(a: Quaternion, b: Quaternion, fraction: float) -> Quaternion:
-    """Spherical interpolation, the short way (Shoemake 1985)."""
+    """Spherical interpolation along the shorter arc (Shoemake 1985)."""
     dot = sum(p * q for p, q in zip(a, b, strict=True))
     sign = -1.0 if dot < 0 else 1.0
     dot = min(abs(dot), 1.0)
@@ -92,7 +92,7 @@ class Transform3(NamedTuple):
         return Pose2(self.translation[0], self.translation[1], yaw_of(self.rotation))
 
     def apply(self, p: Vector3) -> Vector3:
-        """A point (m) in the inner frame → the outer frame."""
+        """Transform a point (m) from the inner to the outer frame."""
         x, y, z = rotate(self.rotation, p)
         tx, ty, tz = self.translation
         return (x + tx, y + ty, z + tz)
@@ -109,7 +109,7 @@ class Transform3(NamedTuple):
         return Transform3((-tx, -ty, -tz), inverse)
 
     def interpolate(self, other: "Transform3", fraction: float) -> "Transform3":
-        """Between ``self`` (0) and ``other`` (1): straight line and slerp."""
+        """Interpolate between ``self`` (0) and ``other`` (1): straight line, slerp."""
         a, b = self.translation, other.translation
         x, y, z = (p + fraction * (q - p) for p, q in zip(a, b, strict=True))
         return Transform3((x, y, z), slerp(self.rotation, other.rotation, fraction))

@@ -1,9 +1,9 @@
-"""ROS 2 message, service and action types: classes, CDR, definitions; no logic."""
+"""ROS 2 message, service and action types: classes, CDR, definitions."""
 
 from typing import TYPE_CHECKING, Any
 
 from navette.msgs.definition_text import definition_text, interface_text
-from navette.msgs.foreign import load_definition_text
+from navette.msgs.registration import load_definition_text
 from navette.msgs.registry import (
     add_interface_path,
     interface_names,
@@ -56,7 +56,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Fetch what needs numpy only when it is asked for (see ``api``)."""
+    """Import the functions of ``api`` on first use."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from navette.msgs import api

@@ -1,4 +1,4 @@
-"""What all message classes share."""
+"""Base class of all message classes."""
 
 from array import array
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from navette.msgs.interface import Field, FieldType, MessageSpec, short_name
 
 
 class _Default:
-    """Stands for "not given" in generated constructors."""
+    """Default of the arguments of generated constructors."""
 
     def __repr__(self) -> str:
         return "<default>"
@@ -24,8 +24,8 @@ class Message:
     """Base of every generated message class.
 
     A class has a slot ``_name`` and a checked property ``name`` for each field, its
-    constants as attributes, and the definition it was made from as ``_spec_``. That
-    name and its like end in an underscore because no field's name may.
+    constants as attributes, and its definition as ``_spec_``. Names such as ``_spec_``
+    end in an underscore because field names cannot.
     """
 
     __slots__ = ()
@@ -40,7 +40,7 @@ class Message:
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Names of the fields and their types, spelt as rclpy spells them."""
+        """Types by field name, spelled as in rclpy."""
         return dict(cls._field_types_)
 
     def __eq__(self, other: object) -> bool:
@@ -62,10 +62,10 @@ class Message:
 
 
 def fields(interface: "type[Message] | Message") -> tuple[Field, ...]:
-    """The fields of a message class: names, types, defaults, in order.
+    """Return the fields of a message class in order: names, types, defaults.
 
     Raises:
-        MessageError: it is no message and no message class (but a service, say).
+        MessageError: ``interface`` is neither a message nor a message class.
     """
     spec = getattr(interface, "_spec_", None)
     if not isinstance(spec, MessageSpec):
@@ -73,8 +73,24 @@ def fields(interface: "type[Message] | Message") -> tuple[Field, ...]:
     return spec.fields
 
 
+def validate(msg: Message) -> None:
+    """Check every field, nested ones too, such as lists that were changed in place.
+
+    Raises:
+        MessageError: names the first field with an invalid value.
+    """
+    if not isinstance(msg, Message):
+        raise MessageError(f"{msg!r} is {type(msg).__name__}, expected a message")
+    for name in msg._field_types_:
+        value: Any = getattr(msg, name)
+        setattr(msg, name, value)
+        for item in value if isinstance(value, list) else (value,):
+            if isinstance(item, Message):
+                validate(item)
+
+
 def refuse_keywords(cls: type[Message], unknown: dict[str, Any]) -> Never:
-    """Raise for constructor keywords that are no fields."""
+    """Raise MessageError for constructor keywords that are not fields."""
     listed = ", ".join(cls._field_types_) or "none"
     named = ", ".join(repr(name) for name in unknown)
     raise MessageError(f"{cls._type_name_} has no field {named}; its fields: {listed}")
@@ -87,7 +103,7 @@ def _equal(mine: Any, other: Any) -> bool:
 
 
 def _show(value: Any) -> str:
-    """As rclpy prints it: a sequence of numbers like a list, whole."""
+    """Format a value as rclpy does: a sequence of numbers as a whole list."""
     return repr(value.tolist() if isinstance(value, array) else value)
 
 
@@ -96,7 +112,7 @@ _IDL_NAMES |= {"byte": "octet", "char": "uint8"}
 
 
 def idl_type(type_: FieldType) -> str:
-    """``sequence<double, 3>``, ``geometry_msgs/Point``: rclpy's spelling of a type."""
+    """Spell a type as rclpy does: ``sequence<double, 3>``, ``geometry_msgs/Point``."""
     base = short_name(type_.base) if type_.is_message else type_.base
     base = _IDL_NAMES.get(base, base)
     if type_.string_bound is not None:

@@ -1,6 +1,6 @@
-"""Source of constructors and setters, written out per field.
+"""Source of constructors and setters of message classes, written out per field.
 
-Names of ours start with an underscore: no field's name may, so none can clash.
+Generated names start with an underscore, which field names cannot, so none clash.
 """
 
 import keyword
@@ -21,9 +21,9 @@ from navette.msgs.values import DTYPES, FLOAT32_MAX, TYPECODES, make_checker
 
 
 def generate(spec: MessageSpec, nested: list[type[Message] | None]) -> dict[str, Any]:
-    """Functions ``__init__``, ``_set_<i>`` and ``_make_default`` of a message.
+    """Compile ``__init__``, ``_set_<i>`` and ``_make_default`` of a message.
 
-    The caller puts the finished class into the returned scope as ``_cls``.
+    Returns their scope; the caller stores the finished class in it as ``_cls``.
     """
     scope: dict[str, Any] = {
         "_DEFAULT": DEFAULT,
@@ -70,7 +70,7 @@ def _setters(spec: MessageSpec) -> list[str]:
     lines = []
     for index, field in enumerate(spec.fields):
         lines.append(f"def _set_{index}(_self, _value):")
-        lines.append(f" if not ({_known_right(index, field)}):")
+        lines.append(f" if not ({_quick_test(index, field)}):")
         lines.append(f"  _value = _check_{index}(_value)")
         lines.append(f" _self._{field.name} = _value")
     return lines
@@ -85,13 +85,13 @@ def _maker(spec: MessageSpec) -> list[str]:
     return [*lines, " return _m"]
 
 
-def _known_right(index: int, field: Field) -> str:
-    """An expression that is true for the usual right value, and never for a wrong."""
+def _quick_test(index: int, field: Field) -> str:
+    """Expression that is true for common valid values and false for invalid ones."""
     type_ = field.type
     if not type_.is_scalar:
         if not type_.is_numeric:
             return "False"
-        return _known_numbers(index, type_)
+        return _quick_array_test(index, type_)
     if type_.is_message:
         return f"_value.__class__ is _class_{index}"
     if type_.is_string:
@@ -112,7 +112,7 @@ def _known_right(index: int, field: Field) -> str:
     }[type_.base]
 
 
-def _known_numbers(index: int, type_: FieldType) -> str:
+def _quick_array_test(index: int, type_: FieldType) -> str:
     if type_.container == "array":
         return (
             f"_value.__class__ is _ndarray and _value.dtype is _dtype_{index}"
@@ -125,10 +125,10 @@ def _known_numbers(index: int, type_: FieldType) -> str:
 
 
 def _default_value(field: Field, nested: type[Message] | None) -> Any:
-    """What ``_default_<i>`` holds: a value, or a function that makes one."""
+    """Value of ``_default_<i>``: the default, or a function that makes it."""
     type_, default = field.type, field.default
     if nested is not None:
-        # A list holds its elements' maker, too: a fixed array starts filled.
+        # Lists need the function as well: a fixed array starts filled.
         return nested._make_default_
     if type_.is_scalar:
         return default if default is not None else _zero(type_.base)

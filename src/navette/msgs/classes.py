@@ -1,7 +1,7 @@
-"""Makes the Python class of an interface when it is first asked for.
+"""Python classes of interfaces, made on first use.
 
 Each message class is compiled from generated source, because setters and constructors
-written out per field are several times faster than ones that look the field up.
+written out per field are several times faster than generic ones.
 """
 
 from operator import attrgetter
@@ -11,41 +11,70 @@ from navette.errors import UnknownNameError
 from navette.msgs.base import Message, idl_type
 from navette.msgs.class_source import generate
 from navette.msgs.interface import ActionSpec, MessageSpec, ServiceSpec, Spec
+from navette.msgs.registration import (
+    load_definition_text,
+    load_private_definition,
+)
 from navette.msgs.registry import full_name, get_message_spec, get_spec
 
 _classes: dict[str, type] = {}
 
 
 def get_interface(name: str) -> type:
-    """The class of ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``.
+    """Return the class of ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``.
 
-    ``pkg/Name`` means a message. The same name gives the same class every time.
+    ``pkg/Name`` means a message. The same name always returns the same class.
 
     Raises:
         InvalidNameError: the name has the wrong form.
-        UnknownNameError: nobody defines it; lists what the package has.
+        UnknownNameError: no such interface; lists those of the package.
     """
     name = full_name(name)
     found = _classes.get(name)
     if found is None:
-        # setdefault: when two threads come here at once, both get the same class.
+        # setdefault: two threads that make the class at once get the same one.
         found = _classes.setdefault(name, _make(get_spec(name)))
     return found
 
 
 def get_message_class(name: str) -> type[Message]:
-    """As :func:`get_interface`, for messages only."""
+    """Return the class of a message; raises as :func:`get_interface`."""
     get_message_spec(name)
     cls = get_interface(name)
-    assert issubclass(cls, Message), "a message's definition makes a message class"
+    assert issubclass(cls, Message), "a message spec makes a message class"
     return cls
 
 
-def type_name(interface: object) -> str:
-    """``geometry_msgs/msg/Twist`` of a class or a message of it.
+def register_definition(type_name: str, text: str, *, private: bool = False) -> type:
+    """Register a type from its definition and return its class.
+
+    A registered type with the same fields (with the same RIHS01 hash) is kept, and its
+    class is returned.
+
+    Args:
+        type_name: ``pkg/msg/Name`` (or ``pkg/Name``), ``pkg/srv/Name``,
+            ``pkg/action/Name``.
+        text: ``ros2msg`` text, with a section ``MSG: pkg/Name`` below a line of 80
+            ``=`` for each contained type that is not registered.
+        private: register a type that conflicts with a registered one under another
+            name instead of raising: a bag may be older than the installed type.
 
     Raises:
-        UnknownNameError: it is neither.
+        FileFormatError: the text is malformed or too large, refers to an unknown type,
+            or conflicts with a registered type.
+        InvalidNameError: ``type_name`` has the wrong form.
+    """
+    if private:
+        return get_interface(load_private_definition(type_name, text))
+    load_definition_text(type_name, text)
+    return get_interface(type_name)
+
+
+def type_name(interface: object) -> str:
+    """Return the full name, ``geometry_msgs/msg/Twist``, of a class or a message.
+
+    Raises:
+        UnknownNameError: ``interface`` is neither.
     """
     name = getattr(interface, "_type_name_", None)
     if not isinstance(name, str):
@@ -96,7 +125,7 @@ def _make_action(spec: ActionSpec) -> type:
 def _namespace_class(name: str, **members: type) -> type:
     def refuse(cls: type, *_: object, **__: object) -> Any:
         raise NotImplementedError(
-            f"{name} is no message: use its {', '.join(members)} classes"
+            f"{name} is not a message: use its {', '.join(members)} classes"
         )
 
     body = {"_type_name_": name, "__module__": _module_of(name), "__new__": refuse}
@@ -137,7 +166,7 @@ def _make_message(spec: MessageSpec) -> type[Message]:
 
 
 def _reduce(message: Message) -> tuple[Any, ...]:
-    """Pickle by type name: the class exists only once somebody asks for it."""
+    """Pickle by type name: the class exists only after its first use."""
     values = tuple(getattr(message, name) for name in message._field_types_)
     return _restore, (message._type_name_, values)
 

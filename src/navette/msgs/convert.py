@@ -1,4 +1,4 @@
-"""Messages as plain dicts: for JSON, YAML and the command line."""
+"""Conversion of messages from and to plain dicts: JSON, YAML, the command line."""
 
 from array import array
 from collections.abc import Mapping
@@ -16,22 +16,22 @@ M = TypeVar("M", bound=Message)
 
 
 def to_dict(msg: Message) -> dict[str, Any]:
-    """Fields by name, all the way down; arrays as lists, a byte as an integer."""
+    """Return nested dicts of fields; arrays become lists, a byte an integer."""
     return {name: _plain(getattr(msg, name)) for name in msg._field_types_}
 
 
 def from_dict(cls: type[M], values: Mapping[str, Any]) -> M:
-    """A message with the given fields set and the rest at their defaults.
+    """Make a message from the given fields; the others keep their defaults.
 
-    Nested messages are dicts again (partial too) or messages.
+    Nested messages are dicts, which may be partial, or messages.
 
     Raises:
-        MessageError: an unknown field (the known ones are listed) or a wrong value.
+        MessageError: an unknown field (the error lists the fields) or a wrong value.
     """
     if not isinstance(values, Mapping) or not all(isinstance(k, str) for k in values):
         raise MessageError(
             f"{cls._type_name_}: {shortened(values)} is {type(values).__name__}, "
-            "wanted fields by name"
+            "expected a dict of fields"
         )
     fields = {field.name: field for field in cls._spec_.fields}
     converted = {

@@ -1,9 +1,9 @@
 """Deep copies of messages, by code generated per class.
 
-A message handed to a subscriber is a copy, so this runs once per delivery: nested
-messages are copied inline, without a call for each. A copy is what would have come
-over a wire: float32 fields are rounded to what 32 bits hold, so that a run in one
-process and one in several are the same.
+Each subscriber receives a copy, so this runs once per delivery: nested messages are
+copied inline, without a call for each. A copy equals a serialised and deserialised
+message: float32 fields are rounded to 32 bits, so that a run in one process and one in
+several processes give the same results.
 """
 
 import struct
@@ -11,11 +11,10 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from navette.errors import MessageError
-from navette.msgs.base import Message
+from navette.msgs.base import Message, validate
 from navette.msgs.classes import get_message_class
 from navette.msgs.interface import Field, MessageSpec
 from navette.msgs.registry import get_message_spec
-from navette.msgs.validation import validate
 
 M = TypeVar("M", bound=Message)
 Copier = Callable[[Any], Any]
@@ -24,10 +23,10 @@ _copiers: dict[type, Copier] = {}
 
 
 def copy_message(msg: M) -> M:
-    """A copy that shares nothing with the original.
+    """Return a copy that shares nothing with the original.
 
     Raises:
-        MessageError: a list inside was changed in place to hold something wrong.
+        MessageError: a list that was changed in place contains an invalid element.
     """
     copier = _copiers.get(msg.__class__) or copier_of(msg.__class__)
     try:
@@ -39,11 +38,11 @@ def copy_message(msg: M) -> M:
 
 
 def copier_of(cls: type[M]) -> Callable[[M], M]:
-    """The function that copies messages of a class, for callers that copy many."""
+    """Return the function that copies messages of a class."""
     found = _copiers.get(cls)
     if found is None:
         if not issubclass(cls, Message):
-            raise MessageError(f"{cls!r} is no message class")
+            raise MessageError(f"{cls!r} is not a message class")
         found = _copiers[cls] = _make(cls)
     return found
 
@@ -58,7 +57,7 @@ def _make(cls: type[Message]) -> Copier:
 
 
 class _Emitter:
-    """Collects the lines of one copy function and the objects they refer to."""
+    """Source lines of one copy function and the objects they refer to."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
@@ -67,7 +66,7 @@ class _Emitter:
         self._count = 0
 
     def message(self, spec: MessageSpec, source: str, cls: type) -> str:
-        """Emit the copy of the message in variable ``source``; returns its variable."""
+        """Emit the copy of the message in variable ``source``; return its variable."""
         self._count += 1
         number = self._count
         target = f"t{number}"

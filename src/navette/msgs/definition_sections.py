@@ -1,82 +1,77 @@
-"""Reads definitions that travel with data: a text and, below it, what it contains.
+"""Parser of ``ros2msg`` text: a type's definition, then those of contained types.
 
-The form is that of MCAP's ``ros2msg`` schemas: the type's own text, then for each type
-that it refers to a line of ``=``, ``MSG: package/Name`` and that type's text. Such text
-comes from files and from the network, so everything about it is bounded.
+The format is that of MCAP schemas: the type's own text, then for each type that it
+refers to a line of ``=``, ``MSG: package/Name`` and that type's text. The text comes
+from files and from the network, so its size and nesting are limited.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from navette.errors import FileFormatError, UnknownNameError
 from navette.msgs.interface import MessageSpec, Spec
 from navette.msgs.parser import (
     INTERFACE_NAME,
     PACKAGE_NAME,
-    parse_action,
+    PARSERS,
     parse_message,
-    parse_service,
 )
 from navette.msgs.registry import full_name, get_message_spec
 
-MOST_CHARACTERS = 1 << 20
-MOST_SECTIONS = 500
-MOST_LINES = 4096  # of one section
-MOST_FIELDS = 1 << 16  # of the type with everything it contains, arrays filled
-MOST_BYTES = 1 << 26  # of the fixed arrays of numbers in it
-MOST_DEPTH = 32
+MAX_CHARACTERS = 1 << 20
+MAX_SECTIONS = 500
+MAX_LINES = 4096  # of a section
+MAX_FIELDS = 1 << 16  # of the type and all contained types, arrays expanded
+MAX_BYTES = 1 << 26  # of its fixed-size arrays of numbers
+MAX_DEPTH = 32
 
-SECTION = re.compile(r"^={80,}[ \t]*\r?\n", re.MULTILINE)
-_PARSERS: dict[str, Callable[[str, str, str], Spec]] = {
-    "msg": parse_message,
-    "srv": parse_service,
-    "action": parse_action,
-}
-# Parts of services and actions that are messages of their own, as in recordings.
+_MARK = "MSG: "
+_SECTION = re.compile(r"^={80,}[ \t]*\r?\n", re.MULTILINE)
+# Part of a service or action, which recordings treat as a message.
 _PART = re.compile(r"[A-Z][A-Za-z0-9]*(?:_[A-Z][A-Za-z0-9]*)+")
 
 
-def split_sections(
-    name: str, text: str, source: str, *, mark: str = "MSG: "
-) -> list[tuple[str, str]]:
-    """Name and text of the type itself, then of each that it contains.
+def split_sections(name: str, text: str, source: str) -> list[tuple[str, str]]:
+    """Return name and text of the type itself, then of each contained type.
 
     Raises:
-        FileFormatError: a section without a name, or more text than a definition has.
+        FileFormatError: a section without a name, or too much text.
     """
-    if len(text) > MOST_CHARACTERS:
+    if len(text) > MAX_CHARACTERS:
         raise FileFormatError(
-            source, f"{len(text)} characters; at most {MOST_CHARACTERS} are read"
+            source, f"{len(text)} characters; at most {MAX_CHARACTERS} allowed"
         )
-    top, *contained = SECTION.split(text)
-    if len(contained) > MOST_SECTIONS:
+    top, *contained = _SECTION.split(text)
+    if len(contained) > MAX_SECTIONS:
         raise FileFormatError(
-            source, f"{len(contained)} types; at most {MOST_SECTIONS} are read"
+            source, f"{len(contained)} types; at most {MAX_SECTIONS} allowed"
         )
     sections = [(name, top)]
     for section in contained:
         head, _, body = section.partition("\n")
-        if not head.startswith(mark):
-            raise FileFormatError(source, f"{head[:80]!r}, wanted '{mark}package/Name'")
-        sections.append((head.removeprefix(mark).strip(), body))
+        if not head.startswith(_MARK):
+            raise FileFormatError(
+                source, f"{head[:80]!r}, expected '{_MARK}package/Name'"
+            )
+        sections.append((head.removeprefix(_MARK).strip(), body))
     for section_name, body in sections:
-        if body.count("\n") > MOST_LINES:
+        if body.count("\n") > MAX_LINES:
             raise FileFormatError(
                 source,
-                f"{section_name[:80]}: over {MOST_LINES} lines; no more are read",
+                f"{section_name[:80]}: more than {MAX_LINES} lines",
             )
     return sections
 
 
 def read_definition(name: str, text: str, source: str = "") -> list[Spec]:
-    """What the text defines: the type called ``name`` first, each type once.
+    """Parse a text; return the type called ``name`` first, each type once.
 
-    A name under ``srv`` or ``action`` takes the parts, separated by ``---``, above the
-    first section; a part (``pkg/srv/Name_Event``) is a message.
+    For a name under ``srv`` or ``action`` the text above the first section contains the
+    parts, separated by ``---``; a part (``pkg/srv/Name_Event``) is a message.
 
     Raises:
-        FileFormatError: the text is broken, contradicts itself, or describes
-            something larger than a message can be.
+        FileFormatError: the text is malformed, defines a type twice, or describes a
+            message that is too large or contains itself.
         InvalidNameError: a name has the wrong form.
     """
     source = source or f"definition of {name}"
@@ -84,13 +79,13 @@ def read_definition(name: str, text: str, source: str = "") -> list[Spec]:
     for short, body in split_sections(name, text, source):
         spec = _parse(full_name(short), body, source)
         if found.setdefault(spec.name, spec) != spec:
-            raise FileFormatError(source, f"{spec.name} is defined twice, differently")
+            raise FileFormatError(source, f"{spec.name} has two different definitions")
     _refuse_too_large(found, source)
     return list(found.values())
 
 
 def messages_of(spec: Spec) -> Sequence[MessageSpec]:
-    """The messages that a definition consists of: itself, or a service's parts."""
+    """Return the message itself, or the parts of a service or action."""
     return [spec] if isinstance(spec, MessageSpec) else list(spec.parts())
 
 
@@ -101,14 +96,15 @@ def _parse(name: str, text: str, source: str) -> Spec:
         is_part or INTERFACE_NAME.fullmatch(rest)
     ):
         raise FileFormatError(
-            source, f"{name[:80]!r} is no type name: wanted package/{kind}/CamelCase"
+            source,
+            f"{name[:80]!r} is not a type name (package/{kind}/CamelCase)",
         )
-    parse = parse_message if is_part else _PARSERS[kind]
+    parse = parse_message if is_part else PARSERS[kind]
     try:
         return parse(name, text, source)
     except FileFormatError:
         raise
-    except ValueError as error:  # such as a number of thousands of digits
+    except ValueError as error:  # such as an integer of thousands of digits
         raise FileFormatError(source, f"{name}: {error}") from error
 
 
@@ -120,11 +116,11 @@ def _refuse_too_large(specs: dict[str, Spec], source: str) -> None:
     for spec in specs.values():
         for part in messages_of(spec):
             fields, octets = _size(part, messages, sizes, (), source)
-            if fields > MOST_FIELDS or octets > MOST_BYTES:
+            if fields > MAX_FIELDS or octets > MAX_BYTES:
                 raise FileFormatError(
                     source,
                     f"{part.name} would hold {fields} fields and {octets} bytes of "
-                    f"arrays; at most {MOST_FIELDS} and {MOST_BYTES} are read",
+                    f"arrays; at most {MAX_FIELDS} and {MAX_BYTES} allowed",
                 )
 
 
@@ -135,10 +131,11 @@ def _size(
     above: tuple[str, ...],
     source: str,
 ) -> tuple[int, int]:
-    """Fields and bytes of fixed arrays of one message, all that it holds included."""
-    if spec.name in above or len(above) >= MOST_DEPTH:
+    """Number of fields, and bytes of fixed-size arrays, nested messages included."""
+    if spec.name in above or len(above) >= MAX_DEPTH:
         raise FileFormatError(
-            source, f"{spec.name} contains itself, or is over {MOST_DEPTH} types deep"
+            source,
+            f"{spec.name} contains itself, or is more than {MAX_DEPTH} types deep",
         )
     if spec.name in sizes:
         return sizes[spec.name]
@@ -161,7 +158,7 @@ def _size(
 
 
 def _known(name: str) -> MessageSpec | None:
-    """Types that the text does not hold; whether somebody has them is asked later."""
+    """A registered type; unknown ones are reported later, by the registration."""
     try:
         return get_message_spec(name)
     except UnknownNameError:

@@ -1,4 +1,4 @@
-"""Definitions as text: the ``ros2msg`` schema that MCAP files and Foxglove carry."""
+"""Definitions as ``ros2msg`` text, the schema encoding of MCAP files and Foxglove."""
 
 import json
 
@@ -17,9 +17,9 @@ _SEPARATOR = "=" * 80
 
 
 def definition_text(name: str) -> str:
-    """The definition and those of all messages it contains, each under its ``MSG:``.
+    """Return the definition and those of all contained messages, each under ``MSG:``.
 
-    Services and actions give their parts separated by ``---``, as their files do.
+    The parts of services and actions are separated by ``---``, as in their files.
     """
     tops = _tops(get_spec(name))
     contained: dict[str, MessageSpec] = {}
@@ -33,9 +33,9 @@ def definition_text(name: str) -> str:
 
 
 def interface_text(name: str) -> str | None:
-    """What stands in the interface's own file; None for a part of a service or action.
+    """Return the text of the interface's file, without comments.
 
-    Without comments, which are not kept.
+    None for a part of a service or action, which has no file.
     """
     spec = get_spec(name)
     kinds = {MessageSpec: "msg", ServiceSpec: "srv", ActionSpec: "action"}
@@ -44,7 +44,7 @@ def interface_text(name: str) -> str | None:
 
 
 def _tops(spec: Spec) -> list[MessageSpec]:
-    """The message itself, or the parts that a service's or action's file has."""
+    """The message itself, or the parts in the file of a service or action."""
     if isinstance(spec, MessageSpec):
         return [spec]
     if isinstance(spec, ServiceSpec):
@@ -57,7 +57,7 @@ def _joined(parts: list[MessageSpec]) -> str:
 
 
 def message_text(spec: MessageSpec) -> str:
-    """Constants, then fields, one a line, as in a ``.msg`` file."""
+    """Return constants, then fields, one per line, as in a ``.msg`` file."""
     lines = [_constant_line(constant) for constant in spec.constants]
     lines += [_field_line(field) for field in spec.fields]
     return "".join(line + "\n" for line in lines)

@@ -1,4 +1,4 @@
-"""What an interface definition says: fields, constants, three kinds of interface."""
+"""Interface definitions: fields, constants, messages, services and actions."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ FLOATS = ("float32", "float64")
 STRINGS = ("string", "wstring")
 PRIMITIVES = (*INTEGER_RANGES, *FLOATS, *STRINGS, "bool", "byte")
 
-# The one member that an empty definition gets on the wire (C has no empty struct).
+# The member of a message without fields when serialised (C has no empty struct).
 PLACEHOLDER = "structure_needs_at_least_one_member"
 
 Default = bool | int | float | str | bytes | list[bool | int | float | str]
@@ -40,7 +40,7 @@ class FieldType:
 
     @property
     def is_message(self) -> bool:
-        """Whether the base is another message."""
+        """Whether the base is a message."""
         return "/" in self.base
 
     @property
@@ -50,7 +50,7 @@ class FieldType:
 
     @property
     def is_numeric(self) -> bool:
-        """Whether the base is a number (a char is one, bool and byte are none).
+        """Whether the base is a number; a char is one, bool and byte are not.
 
         Fixed-size arrays of numbers are numpy arrays, sequences ``array.array``.
         """
@@ -58,11 +58,11 @@ class FieldType:
 
     @property
     def is_scalar(self) -> bool:
-        """Whether the field holds one value, no array."""
+        """Whether the field is a single value."""
         return self.container == "scalar"
 
     def __str__(self) -> str:
-        """As written in a definition file; messages as ``pkg/Name``."""
+        """The type as in a definition file; messages as ``pkg/Name``."""
         base = short_name(self.base) if self.is_message else self.base
         if self.string_bound is not None:
             base += f"<={self.string_bound}"
@@ -75,7 +75,7 @@ class FieldType:
 
 @dataclass(frozen=True)
 class Field:
-    """A field; ``default`` is None where the definition gives none."""
+    """A field; ``default`` is None if the definition gives none."""
 
     name: str
     type: FieldType
@@ -93,7 +93,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class MessageSpec:
-    """A message, also each part of a service or an action."""
+    """A message, or a part of a service or action."""
 
     name: str
     fields: tuple[Field, ...] = ()
@@ -101,13 +101,13 @@ class MessageSpec:
 
     @property
     def wire_fields(self) -> tuple[Field, ...]:
-        """The fields that are serialised and hashed: never none."""
+        """The fields that are serialised and hashed; at least one."""
         return self.fields or (Field(PLACEHOLDER, FieldType("uint8")),)
 
 
 @dataclass(frozen=True)
 class ServiceSpec:
-    """A service: request and response (the event is made from the two)."""
+    """A service: request, response, and the event message for introspection."""
 
     name: str
     request: MessageSpec
@@ -115,13 +115,13 @@ class ServiceSpec:
     event: MessageSpec
 
     def parts(self) -> Iterator[MessageSpec]:
-        """Every message that belongs to the service."""
+        """All messages of the service."""
         yield from (self.request, self.response, self.event)
 
 
 @dataclass(frozen=True)
 class ActionSpec:
-    """An action: goal, result, feedback and what its protocol sends."""
+    """An action: goal, result, feedback, and the services and messages around them."""
 
     name: str
     goal: MessageSpec
@@ -132,7 +132,7 @@ class ActionSpec:
     feedback_message: MessageSpec
 
     def parts(self) -> Iterator[MessageSpec]:
-        """Every message that belongs to the action."""
+        """All messages of the action."""
         yield from (self.goal, self.result, self.feedback)
         yield from self.send_goal.parts()
         yield from self.get_result.parts()
@@ -140,6 +140,59 @@ class ActionSpec:
 
 
 Spec = MessageSpec | ServiceSpec | ActionSpec
+
+
+_TIME = FieldType("builtin_interfaces/msg/Time")
+_GOAL_ID = Field("goal_id", FieldType("unique_identifier_msgs/msg/UUID"))
+_EVENT_INFO = Field("info", FieldType("service_msgs/msg/ServiceEventInfo"))
+
+
+def make_service(name: str, request: MessageSpec, response: MessageSpec) -> ServiceSpec:
+    """Return the service with its event message, as rosidl expands it."""
+    event = MessageSpec(
+        f"{name}_Event",
+        (
+            _EVENT_INFO,
+            Field("request", FieldType(request.name, "sequence", 1)),
+            Field("response", FieldType(response.name, "sequence", 1)),
+        ),
+    )
+    return ServiceSpec(name, request, response, event)
+
+
+def make_action(
+    name: str, goal: MessageSpec, result: MessageSpec, feedback: MessageSpec
+) -> ActionSpec:
+    """Return the action with its services and messages, as rosidl expands it."""
+    send_goal = make_service(
+        f"{name}_SendGoal",
+        MessageSpec(
+            f"{name}_SendGoal_Request",
+            (_GOAL_ID, Field("goal", FieldType(goal.name))),
+        ),
+        MessageSpec(
+            f"{name}_SendGoal_Response",
+            (Field("accepted", FieldType("bool")), Field("stamp", _TIME)),
+        ),
+    )
+    get_result = make_service(
+        f"{name}_GetResult",
+        MessageSpec(f"{name}_GetResult_Request", (_GOAL_ID,)),
+        MessageSpec(
+            f"{name}_GetResult_Response",
+            (
+                Field("status", FieldType("int8")),
+                Field("result", FieldType(result.name)),
+            ),
+        ),
+    )
+    feedback_message = MessageSpec(
+        f"{name}_FeedbackMessage",
+        (_GOAL_ID, Field("feedback", FieldType(feedback.name))),
+    )
+    return ActionSpec(
+        name, goal, result, feedback, send_goal, get_result, feedback_message
+    )
 
 
 def short_name(name: str) -> str:

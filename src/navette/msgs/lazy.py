@@ -9,17 +9,17 @@ from navette.msgs.registry import interface_names
 def module_contents(
     namespace: dict[str, Any],
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
-    """``__getattr__``, ``__dir__`` and ``__all__`` of the module with these globals.
+    """Return ``__getattr__``, ``__dir__`` and ``__all__`` of a module.
 
-    A class is put among the globals once it is made, so that ``__getattr__`` is called
-    once for each.
+    ``namespace`` are its globals. Classes are stored there, so that ``__getattr__`` is
+    called once for each.
     """
     module = namespace["__name__"]
     package, kind = module.split(".")[-2:]
     names = interface_names(package, kind)
 
     def get(name: str) -> Any:
-        # A service's parts are found under their own names too, as in ROS 2.
+        # The parts of services and actions are module members, too, as in ROS 2.
         if name.partition("_")[0] not in names:
             raise AttributeError(
                 f"module {module!r} has no {name!r}; it has {', '.join(names)}"

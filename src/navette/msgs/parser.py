@@ -1,12 +1,12 @@
-"""Reads .msg, .srv and .action text.
+"""Parser of .msg, .srv and .action files.
 
-The language is that of the ROS 2 interface definition documents ("About ROS
-Interfaces"): one field or constant a line, ``#`` starts a comment, ``---`` separates
-the parts of services and actions.
+The format is that of the ROS 2 documentation ("Interfaces"): one field or constant per
+line, ``#`` starts a comment, ``---`` separates the parts of services and actions.
 """
 
 import ast
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 from navette.errors import FileFormatError
@@ -22,8 +22,10 @@ from navette.msgs.interface import (
     FieldType,
     MessageSpec,
     ServiceSpec,
+    Spec,
+    make_action,
+    make_service,
 )
-from navette.msgs.protocol import make_action, make_service
 
 _PACKAGE = r"(?!.*__)[a-z][a-z0-9_]*(?<!_)"
 _NAME = r"[A-Z][A-Za-z0-9]*"
@@ -41,29 +43,37 @@ _REFERENCE = re.compile(rf"(?:(?P<package>{_PACKAGE})/(?:msg/)?)?(?P<name>{_NAME
 
 
 class _LineError(ValueError):
-    """What is wrong with the line at hand; gets its file and number further out."""
+    """An error in a line; the caller adds file and line number."""
 
 
 def parse_message(name: str, text: str, source: Path | str = "") -> MessageSpec:
-    """Read a ``.msg`` text; ``name`` is the full name, ``pkg/msg/Name``.
+    """Parse a ``.msg`` text; ``name`` is the full name, ``pkg/msg/Name``.
 
     Raises:
-        FileFormatError: names the file (``source``) and the line.
+        FileFormatError: a syntax error; names the file (``source``) and the line.
     """
     (part,) = _parse(name, (name,), text, source)
     return part
 
 
 def parse_service(name: str, text: str, source: Path | str = "") -> ServiceSpec:
-    """Read a ``.srv`` text; raises as :func:`parse_message` does."""
+    """Parse a ``.srv`` text; raises as :func:`parse_message` does."""
     names = (f"{name}_Request", f"{name}_Response")
     return make_service(name, *_parse(name, names, text, source))
 
 
 def parse_action(name: str, text: str, source: Path | str = "") -> ActionSpec:
-    """Read an ``.action`` text; raises as :func:`parse_message` does."""
+    """Parse an ``.action`` text; raises as :func:`parse_message` does."""
     names = (f"{name}_Goal", f"{name}_Result", f"{name}_Feedback")
     return make_action(name, *_parse(name, names, text, source))
+
+
+PARSERS: dict[str, Callable[[str, str, Path | str], Spec]] = {
+    "msg": parse_message,
+    "srv": parse_service,
+    "action": parse_action,
+}
+"""Parser by kind of interface."""
 
 
 def _parse(
@@ -97,7 +107,7 @@ def _parse(
 
 
 def without_comment(line: str) -> str:
-    """The line up to its ``#``, if that stands in no text."""
+    """Return the line up to the first ``#`` outside quotes."""
     quote = ""
     for index, character in enumerate(line):
         if quote:
@@ -107,7 +117,7 @@ def without_comment(line: str) -> str:
             quote = character
         elif character == "#":
             return line[:index]
-    # An apostrophe in a comment opens no string: no quote is closed, so cut at the #.
+    # An unclosed quote is an apostrophe in a comment: cut at the first #.
     return line.split("#", 1)[0] if quote else line
 
 
@@ -121,14 +131,14 @@ def _refuse_duplicate(
 def _parse_line(line: str, package: str) -> Field | Constant:
     match = _LINE.fullmatch(line)
     if match is None:
-        raise _LineError(f"{line!r}: wanted 'type name', with '=value' for a constant")
+        raise _LineError(f"{line!r}: expected 'type name' or 'type NAME=value'")
     type_ = _parse_type(match["type"], package)
     name, value = match["name"], match["value"]
     if match["equals"]:
         return _parse_constant(name, type_, value)
     if not _FIELD_NAME.fullmatch(name):
         raise _LineError(
-            f"field name {name!r}: wanted lower case letters, digits and single "
+            f"field name {name!r}: expected lower case letters, digits and single "
             "underscores, starting with a letter"
         )
     if not value:
@@ -139,16 +149,16 @@ def _parse_line(line: str, package: str) -> Field | Constant:
 def _parse_type(text: str, package: str) -> FieldType:
     match = _TYPE.fullmatch(text)
     if match is None:
-        raise _LineError(f"type {text!r}: wanted base, base[], base[N] or base[<=N]")
+        raise _LineError(f"type {text!r}: expected base, base[], base[N] or base[<=N]")
     base = _resolve(match["base"], package)
     bound = int(match["bound"]) if match["bound"] else None
     if bound is not None and (base not in STRINGS or bound < 1):
-        raise _LineError(f"type {text!r}: only a string takes a bound, from 1 up")
+        raise _LineError(f"type {text!r}: only strings take a bound, at least 1")
     size = int(match["size"]) if match["size"] else None
     if not match["array"]:
         return FieldType(base, string_bound=bound)
     if size == 0 or (match["at_most"] and size is None):
-        raise _LineError(f"type {text!r}: an array's size starts at 1")
+        raise _LineError(f"type {text!r}: the size of an array is at least 1")
     is_array = size is not None and not match["at_most"]
     return FieldType(base, "array" if is_array else "sequence", size, bound)
 
@@ -160,7 +170,7 @@ def _resolve(base: str, package: str) -> str:
     if match is None:
         known = ", ".join(sorted(PRIMITIVES))
         raise _LineError(
-            f"unknown type {base!r}: wanted a message as 'pkg/Name' or one of {known}"
+            f"unknown type {base!r}: expected a message as 'pkg/Name' or one of {known}"
         )
     return f"{match['package'] or package}/msg/{match['name']}"
 
@@ -169,7 +179,7 @@ def _parse_constant(name: str, type_: FieldType, text: str) -> Constant:
     if not type_.is_scalar or type_.is_message:
         raise _LineError(f"constant {name!r}: type {type_} is not a primitive")
     if not _CONSTANT_NAME.fullmatch(name):
-        raise _LineError(f"constant name {name!r}: wanted upper case")
+        raise _LineError(f"constant name {name!r}: expected upper case")
     if not text and not type_.is_string:
         raise _LineError(f"constant {name!r} has no value")
     value = _parse_primitive(name, type_, text)
@@ -181,7 +191,7 @@ def _parse_constant(name: str, type_: FieldType, text: str) -> Constant:
 
 def _parse_default(name: str, type_: FieldType, text: str) -> Default:
     if type_.is_message:
-        raise _LineError(f"field {name!r}: a message takes no default")
+        raise _LineError(f"field {name!r}: a message cannot have a default")
     if not type_.is_scalar:
         return _parse_array(name, type_, text)
     value = _parse_primitive(name, type_, text)
@@ -195,7 +205,7 @@ def _parse_array(
     name: str, type_: FieldType, text: str
 ) -> list[bool | int | float | str]:
     if not (text.startswith("[") and text.endswith("]")):
-        raise _LineError(f"default of {name!r}: {text!r}, wanted [value, …]")
+        raise _LineError(f"default of {name!r}: {text!r}, expected [value, …]")
     items = _split_items(text[1:-1])
     size = type_.size
     fits = size is None or (
@@ -232,7 +242,9 @@ def _parse_primitive(
         if not low <= number <= high:
             raise ValueError
     except (KeyError, ValueError):
-        raise _LineError(f"value of {name!r}: {text!r} is no {type_}") from None
+        raise _LineError(
+            f"value of {name!r}: {text!r} is not of type {type_}"
+        ) from None
     return number
 
 

@@ -1,34 +1,26 @@
-"""Where interface definitions are found, by name.
+"""Registry of interface definitions, by name.
 
-Packages come with Navette (``definitions/``) or are added by :func:`load_interfaces`.
-A file is read when its type is first asked for.
+Packages are part of Navette (``definitions/``), found on the search path, or added by
+:func:`load_interfaces`. A file is read on the first use of its type.
 """
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 from navette.errors import FileFormatError, InvalidNameError, UnknownNameError
 from navette.msgs.interface import ActionSpec, MessageSpec, Spec
 from navette.msgs.parser import (
     INTERFACE_NAME,
     PACKAGE_NAME,
-    parse_action,
-    parse_message,
-    parse_service,
+    PARSERS,
 )
 
 DEFINITIONS = Path(__file__).parent / "definitions"
 KINDS = ("msg", "srv", "action")
-_PARSERS: dict[str, Callable[[str, str, Path], Any]] = {
-    "msg": parse_message,
-    "srv": parse_service,
-    "action": parse_action,
-}
 
-# Folders of packages, as PATH holds folders of programs; for processes that call no
-# add_interface_path of their own.
+# A list of folders of packages, as PATH is one of programs, for processes that do not
+# call add_interface_path.
 PATH_VARIABLE = "NAVETTE_INTERFACE_PATH"
 
 _folders: dict[str, Path] = {}
@@ -37,14 +29,14 @@ _specs: dict[str, Spec] = {}
 
 
 def packages() -> list[str]:
-    """Names of all packages that are known, sorted."""
+    """Return the names of all packages, sorted."""
     built_in = (path.name for path in DEFINITIONS.iterdir() if path.is_dir())
     searched = (name for root in _roots() for name in _found_packages(root))
     return sorted({*built_in, *_folders, *searched})
 
 
 def interface_names(package: str, kind: str) -> list[str]:
-    """Names of the interfaces of one kind (``msg``, ``srv``, ``action``), sorted.
+    """Return the names of a package's ``msg``, ``srv`` or ``action`` types, sorted.
 
     Raises:
         UnknownNameError: no such package.
@@ -54,7 +46,7 @@ def interface_names(package: str, kind: str) -> list[str]:
 
 
 def full_name(name: str) -> str:
-    """``pkg/Name`` → ``pkg/msg/Name``; full names stay.
+    """Expand ``pkg/Name`` to ``pkg/msg/Name``; full names are returned unchanged.
 
     Raises:
         InvalidNameError: neither of the two forms.
@@ -66,17 +58,17 @@ def full_name(name: str) -> str:
         if len(parts) == 3 and parts[1] in KINDS:
             return name
     raise InvalidNameError(
-        f"interface name {name!r}: wanted 'package/msg/Name' (or srv, action)"
+        f"interface name {name!r}: expected 'package/msg/Name' (or srv, action)"
     )
 
 
 def get_spec(name: str) -> Spec:
-    """The definition of an interface, or of a part such as ``pkg/srv/Name_Request``.
+    """Return the definition of an interface or a part (``pkg/srv/Name_Request``).
 
     Raises:
         InvalidNameError: the name has the wrong form.
-        UnknownNameError: nobody defines it; lists what the package has.
-        FileFormatError: its file is broken; names file and line.
+        UnknownNameError: no such interface; lists those of the package.
+        FileFormatError: a syntax error in its file; names file and line.
     """
     name = full_name(name)
     if name not in _specs:
@@ -85,38 +77,38 @@ def get_spec(name: str) -> Spec:
 
 
 def get_message_spec(name: str) -> MessageSpec:
-    """As :func:`get_spec`, for messages only."""
+    """Return the definition of a message; raises as :func:`get_spec`."""
     spec = get_spec(name)
     if not isinstance(spec, MessageSpec):
-        raise InvalidNameError(f"{name} is a service or an action; wanted a message")
+        raise InvalidNameError(f"{name} is a service or an action, expected a message")
     return spec
 
 
 def add_spec(spec: Spec) -> None:
-    """Make a definition known under its own name and those of its parts."""
+    """Register a definition under its own name and those of its parts."""
     for part in _parts_of(spec):
         _specs[part.name] = part
 
 
 def load_interfaces(package: str, folder: Path | str) -> list[str]:
-    """Make the ``.msg``, ``.srv`` and ``.action`` files of a package usable.
+    """Register the ``.msg``, ``.srv`` and ``.action`` files of a package.
 
-    ``folder`` holds ``msg/``, ``srv/``, ``action/`` (any of them). Every file is read
-    at once, so that a broken one shows here. Returns the full names, sorted.
+    ``folder`` contains ``msg/``, ``srv/`` or ``action/``. All files are read at once,
+    so that errors are raised here. Returns the full names, sorted.
 
     Raises:
-        InvalidNameError: not a package name, or one that Navette itself has.
-        FileFormatError: no definitions there, a broken one, or one that refers to a
-            type nobody defines.
+        InvalidNameError: not a package name, or a package of Navette.
+        FileFormatError: no definitions in the folder, a syntax error, or a reference
+            to an unknown type.
     """
     folder = Path(folder)
     if not PACKAGE_NAME.fullmatch(package):
         raise InvalidNameError(
-            f"package name {package!r}: wanted lower case letters, digits and single "
+            f"package name {package!r}: expected lower case letters, digits and single "
             "underscores, starting with a letter"
         )
     if (DEFINITIONS / package).is_dir():
-        raise InvalidNameError(f"package {package!r} is one of Navette's own")
+        raise InvalidNameError(f"package {package!r} is part of Navette")
     files = _definition_files(folder)
     specs = [_parse_file(package, path) for path in files]
     known_before = _folders.get(package)
@@ -132,16 +124,16 @@ def load_interfaces(package: str, folder: Path | str) -> list[str]:
 
 
 def add_specs(specs: Sequence[Spec], sources: Sequence[Path | str]) -> None:
-    """Make definitions known, all of them or, if one is wrong, none.
+    """Register definitions: all, or none if one is invalid.
 
     Raises:
-        FileFormatError: names the source of a definition that was known before with
-            other content, refers to a type nobody defines, or contains itself.
+        FileFormatError: a definition is registered with other content, refers to an
+            unknown type, or contains itself; names its source.
     """
     for spec, source in zip(specs, sources, strict=True):
         if _specs.get(spec.name, spec) != spec:
             raise FileFormatError(
-                source, f"{spec.name} was loaded before with another definition"
+                source, f"{spec.name} is already registered with another definition"
             )
     added = [spec for spec in specs if spec.name not in _specs]
     for spec in added:
@@ -155,17 +147,17 @@ def add_specs(specs: Sequence[Spec], sources: Sequence[Path | str]) -> None:
 
 
 def add_interface_path(folder: Path | str) -> None:
-    """Let packages be found as ``folder/<package>/{msg,srv,action}`` when asked for.
+    """Search for packages in ``folder/<package>/{msg,srv,action}``, too.
 
-    The environment variable ``NAVETTE_INTERFACE_PATH`` adds such folders, too. Own
-    packages of Navette come first, then folders in the order they were added.
+    The environment variable ``NAVETTE_INTERFACE_PATH`` adds such folders as well. The
+    packages of Navette come first, then folders in the order in which they were added.
 
     Raises:
         FileFormatError: no such folder.
     """
     folder = Path(folder)
     if not folder.is_dir():
-        raise FileFormatError(folder, "no such folder to search interfaces in")
+        raise FileFormatError(folder, "no such folder; cannot search interfaces in it")
     if folder not in _search_path:
         _search_path.append(folder)
 
@@ -213,13 +205,12 @@ def _load(name: str) -> None:
 def _parse_file(package: str, path: Path) -> Spec:
     kind = path.suffix[1:]
     if not INTERFACE_NAME.fullmatch(path.stem):
-        raise FileFormatError(path, "the file's name is no type name: wanted CamelCase")
+        raise FileFormatError(path, "the file name is not a CamelCase type name")
     try:
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise FileFormatError(path, f"not UTF-8: {error}") from None
-    spec: Spec = _PARSERS[kind](f"{package}/{kind}/{path.stem}", text, path)
-    return spec
+    return PARSERS[kind](f"{package}/{kind}/{path.stem}", text, path)
 
 
 def _definition_files(folder: Path) -> list[Path]:
@@ -228,7 +219,7 @@ def _definition_files(folder: Path) -> list[Path]:
     ]
     if not files:
         raise FileFormatError(
-            folder, "no interface definitions; wanted msg/*.msg, srv/*.srv, …"
+            folder, "no interface definitions; expected msg/*.msg, srv/*.srv, …"
         )
     return files
 
@@ -254,7 +245,7 @@ def _refuse_cycle(name: str, above: tuple[str, ...]) -> None:
 
 
 def _parts_of(spec: Spec) -> Iterator[Spec]:
-    """The definition and all that is defined with it."""
+    """The definition and its parts."""
     yield spec
     if isinstance(spec, ActionSpec):
         yield from (spec.send_goal, spec.get_result)

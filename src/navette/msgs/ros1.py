@@ -1,8 +1,8 @@
-"""ROS 1 definitions in ROS 2's words, so that ROS 1 recordings can be read.
+"""Conversion of ROS 1 definitions to ROS 2, to read ROS 1 recordings.
 
-Source: wiki.ros.org/msg (the language), docs.ros.org "Changes between ROS 1 and ROS 2"
-(names, ``time``, ``duration``, ``Header`` without ``seq``). What lies on the wire keeps
-its order: each field of the result is a field of the original, but for ``seq``.
+Source: wiki.ros.org/msg (the format), docs.ros.org "Changes between ROS 1 and ROS 2"
+(names, ``time``, ``duration``, ``Header`` without ``seq``). Serialised data keeps its
+order: the result has the fields of the original, except ``seq``.
 """
 
 import json
@@ -18,7 +18,7 @@ _BUILTIN = {
     "duration": "builtin_interfaces/Duration",
     "Header": "std_msgs/Header",
 }
-# What is called otherwise in ROS 2 and is the same.
+# Same type, another name in ROS 2.
 _RENAMED = {"tf/tfMessage": "tf2_msgs/TFMessage"}
 _SECTIONS = {
     "std_msgs/Header": "builtin_interfaces/Time stamp\nstring frame_id\n",
@@ -31,19 +31,18 @@ _CONSTANT_NAME = re.compile(r"[A-Z](?:[A-Z0-9_]?[A-Z0-9]+)*")
 
 
 def ros1_definition(type_name: str, text: str) -> tuple[str, str]:
-    """Name and ``ros2msg`` text of a ROS 1 type.
+    """Return the ROS 2 name and ``ros2msg`` text of a ROS 1 type.
 
     Args:
         type_name: ``pkg/Type``.
-        text: as in a ROS 1 bag: the type's own text, then each type that it contains
-            under ``MSG: pkg/Type``.
+        text: as in a ROS 1 bag: the type's own text, then each contained type under
+            ``MSG: pkg/Type``.
 
-    Names that ROS 2 does not allow become ones that it does (``D`` → ``d``,
-    ``tf/tfMessage`` → ``tf2_msgs/msg/TFMessage``); constants with such names are left
-    out.
+    Names that are invalid in ROS 2 are converted (``D`` → ``d``, ``tf/tfMessage`` →
+    ``tf2_msgs/msg/TFMessage``); constants with invalid names are dropped.
 
     Raises:
-        FileFormatError: the text is broken or larger than definitions are.
+        FileFormatError: the text is malformed or too large.
     """
     source = f"ROS 1 definition of {type_name}"
     sections: dict[str, str] = {}
@@ -51,7 +50,7 @@ def ros1_definition(type_name: str, text: str) -> tuple[str, str]:
         name = _type_name(short, source)
         if name not in sections:
             sections[name] = _SECTIONS.get(name) or _message_text(short, body, source)
-    for name, body in _SECTIONS.items():  # the header first: it refers to the time
+    for name, body in _SECTIONS.items():  # Header first: it contains a Time
         if any(f"{name} " in f" {each}" for each in sections.values()):
             sections[name] = body
     top, *contained = sections
@@ -75,7 +74,7 @@ def _message_text(short: str, text: str, source: str) -> str:
             continue
         field = _FIELD.fullmatch(line)
         if field is None:
-            reason = f"{line[:80]!r}: wanted 'type name' or 'type NAME=value'"
+            reason = f"{line[:80]!r}: expected 'type name' or 'type NAME=value'"
             raise FileFormatError(f"{source}: {short}", reason, number)
         base = _base(field["base"], package, source)
         name = _field_name(field["name"], taken)
@@ -87,7 +86,7 @@ def _constant_line(constant: re.Match[str]) -> list[str]:
     type_, name, value = constant.group("type", "name", "value")
     if type_ not in PRIMITIVES or not _CONSTANT_NAME.fullmatch(name):
         return []
-    if type_ == "string":  # all that follows belongs to it, a # as well
+    if type_ == "string":  # extends to the end of the line, including any #
         return [f"string {name}={json.dumps(value.strip(), ensure_ascii=False)}"]
     value = value.partition("#")[0].strip()
     return [f"{type_} {name}={value}"]
@@ -102,26 +101,26 @@ def _base(base: str, package: str, source: str) -> str:
 
 
 def _type_name(short: str, source: str) -> str:
-    """``pkg/Type`` as ROS 2 allows it."""
+    """Convert ``pkg/Type`` to a valid ROS 2 name."""
     if short in _RENAMED:
         return _RENAMED[short]
     package, slash, name = short.partition("/")
     if not slash or not re.fullmatch(r"\w+", package) or not re.fullmatch(r"\w+", name):
         raise FileFormatError(
-            source, f"{short[:80]!r} is no type name: wanted pkg/Type"
+            source, f"{short[:80]!r} is not a type name: expected pkg/Type"
         )
     words = [word[0].upper() + word[1:] for word in name.split("_") if word]
     return f"{re.sub('_+', '_', package).strip('_').lower()}/{''.join(words)}"
 
 
 def _field_name(name: str, taken: set[str]) -> str:
-    """In lower case, words separated by single underscores, as nobody else's."""
+    """Convert to a valid ROS 2 field name that is not in ``taken``; add it there."""
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
-    wanted = re.sub("_+", "_", words).strip("_") or "field"
-    if not wanted[0].isalpha():
-        wanted = f"field_{wanted}"
-    found, number = wanted, 2
+    base = re.sub("_+", "_", words).strip("_") or "field"
+    if not base[0].isalpha():
+        base = f"field_{base}"
+    found, number = base, 2
     while found in taken:
-        found, number = f"{wanted}{number}", number + 1
+        found, number = f"{base}{number}", number + 1
     taken.add(found)
     return found

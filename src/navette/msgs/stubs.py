@@ -1,4 +1,4 @@
-"""Text of the modules and typed stubs of ``navette.msgs.<package>``."""
+"""Text of the generated modules and type stubs of ``navette.msgs.<package>``."""
 
 import keyword
 
@@ -22,12 +22,12 @@ _NUMPY = {
 
 
 def package_text(package: str) -> str:
-    """``__init__.py`` of a package."""
+    """Return the text of a package's ``__init__.py``."""
     return f'"""Interfaces of {package}."""\n'
 
 
 def module_text(package: str, kind: str) -> str:
-    """``msg.py``, ``srv.py`` or ``action.py``: contents come on first use."""
+    """Return the text of ``msg.py``, ``srv.py`` or ``action.py``."""
     return (
         f'"""{_WHAT[kind]} of {package}, made on first use."""\n\n'
         f"{_GENERATED}"
@@ -37,7 +37,7 @@ def module_text(package: str, kind: str) -> str:
 
 
 def stub_text(package: str, kind: str, names: list[str]) -> str:
-    """The ``.pyi`` beside the module: every class with its fields and constants."""
+    """Return the text of the ``.pyi``: all classes, their fields and constants."""
     writer = _StubWriter(f"navette.msgs.{package}.{kind}")
     for name in names:
         writer.add(f"{package}/{kind}/{name}")
@@ -51,7 +51,7 @@ class _StubWriter:
         self._blocks: list[str] = []
 
     def add(self, name: str) -> None:
-        """Append the class of an interface and the classes of its parts."""
+        """Add the class of an interface and the classes of its parts."""
         spec = get_spec(name)
         if isinstance(spec, MessageSpec):
             self._message(spec)
@@ -61,7 +61,7 @@ class _StubWriter:
             self._action(spec)
 
     def text(self) -> str:
-        """The whole stub."""
+        """Return the stub."""
         lines = [_GENERATED]
         body = "\n\n".join(self._blocks)
         if "array[" in body:
@@ -122,7 +122,7 @@ class _StubWriter:
     def _attribute(self, field: Field) -> list[str]:
         if field.type.is_scalar or not field.type.is_numeric:
             return [f"    {field.name}: {self._read_type(field.type)}"]
-        # Reads give an array; any numbers may be assigned.
+        # Reading returns an array; any sequence of numbers can be assigned.
         return [
             "    @property",
             f"    def {field.name}(self) -> {self._read_type(field.type)}: ...",

@@ -1,7 +1,7 @@
-"""RIHS01: the hash by which two ROS 2 programs know that they mean the same type.
+"""RIHS01 type hashes, by which ROS 2 programs compare their definitions of a type.
 
-REP 2011 and rosidl's type description: SHA-256 over a fixed JSON form of the type and
-all it refers to. Names of fields and types count; defaults and constants do not.
+REP 2011 and rosidl's type description: SHA-256 of a fixed JSON form of the type and all
+types that it refers to. Names of fields and types count; defaults and constants do not.
 """
 
 import hashlib
@@ -12,7 +12,7 @@ from navette.msgs.interface import ActionSpec, Field, FieldType, MessageSpec, Sp
 from navette.msgs.registry import get_spec
 
 # Values of type_description_interfaces/msg/FieldType; arrays add to the scalar's value.
-# ``char`` of a .msg file is an unsigned byte: its id is uint8's, not 13 (CHAR).
+# ``char`` in a .msg file is an unsigned byte: its id is that of uint8, not 13 (CHAR).
 _IDS = {
     "message": 1,
     "int8": 2,
@@ -37,12 +37,12 @@ _ARRAY, _BOUNDED_SEQUENCE, _SEQUENCE = 48, 96, 144
 
 Description = dict[str, Any]
 
-#: Of each type the hash, and the definition that it is of.
+# The definition of each type and its hash.
 _hashes: dict[str, tuple[Spec, str]] = {}
 
 
 def type_hash(name: str) -> str:
-    """``RIHS01_`` and 64 hex digits, as ROS 2 computes it for this interface."""
+    """Return ``RIHS01_`` and 64 hex digits, as ROS 2 computes them."""
     spec = get_spec(name)
     known, found = _hashes.get(name, (None, ""))
     if known is not spec:
@@ -53,7 +53,7 @@ def type_hash(name: str) -> str:
 
 
 def type_description(name: str) -> Description:
-    """The type and all that it refers to, in the form that is hashed.
+    """Return the type and all types that it refers to, in the form that is hashed.
 
     Keys and their order are those of type_description_interfaces/msg/TypeDescription,
     without default values.

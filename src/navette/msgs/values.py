@@ -1,8 +1,7 @@
 """Checks and conversions of field values.
 
-A checker takes what a user assigns and returns what the message stores, or raises
-:class:`MessageError`. The generated setters call one only when their quick inline test
-did not already know the value to be right.
+A checker takes an assigned value and returns the value to store, or raises
+:class:`MessageError`. Generated setters call it only if their quick inline test fails.
 """
 
 import math
@@ -32,7 +31,7 @@ DTYPES: dict[str, np.dtype[Any]] = {
     "float32": np.dtype("<f4"),
     "float64": np.dtype("<f8"),
 }
-# Type codes of ``array.array``, as rclpy has them.
+# Type codes of ``array.array``, as in rclpy.
 TYPECODES: dict[str, str] = {
     "char": "B",
     "int8": "b",
@@ -50,7 +49,7 @@ FLOAT32_MAX = float(np.finfo(np.float32).max)
 
 
 def make_checker(owner: str, field: Field, message_class: type | None) -> Checker:
-    """The checker of a field; ``message_class`` is the class of a message's base."""
+    """Return the checker of a field; ``message_class`` is the class of its base."""
     type_ = field.type
     where = f"{owner}.{field.name}"
     if not type_.is_scalar:
@@ -75,14 +74,14 @@ def make_checker(owner: str, field: Field, message_class: type | None) -> Checke
 
 
 def shortened(value: object, limit: int = 60) -> str:
-    """``repr`` cut to a length that fits in an error's line."""
+    """Return ``repr(value)``, cut for error messages."""
     text = repr(value)
     return text if len(text) <= limit else text[:limit] + "…"
 
 
 def _refuse(where: str, value: object, allowed: str) -> MessageError:
     kind = type(value).__name__
-    return MessageError(f"{where}: {shortened(value)} is {kind}, wanted {allowed}")
+    return MessageError(f"{where}: {shortened(value)} is {kind}, expected {allowed}")
 
 
 def _item_of(type_: FieldType) -> FieldType:
@@ -94,8 +93,8 @@ def _message_checker(where: str, message_class: type) -> Checker:
 
     def check(value: Any) -> Any:
         if not isinstance(value, message_class):
-            # Clocks' times and durations are the ones mistaken for their messages.
-            use = " (its to_msg() is one)" if hasattr(value, "to_msg") else ""
+            # Often a time or duration of the clock instead of its message.
+            use = " (use its to_msg())" if hasattr(value, "to_msg") else ""
             raise _refuse(where, value, allowed + use)
         return value
 
@@ -111,7 +110,7 @@ def _string_checker(where: str, type_: FieldType) -> Checker:
         if bound is not None and len(value) > bound:
             raise MessageError(
                 f"{where}: {shortened(value)} has {len(value)} characters, "
-                f"wanted at most {bound}"
+                f"expected at most {bound}"
             )
         return str(value)
 
@@ -123,12 +122,12 @@ def _integer_checker(where: str, base: str) -> Checker:
     allowed = f"an integer from {low} to {high} ({base})"
 
     def check(value: Any) -> int:
-        # A bool is an int to Python and to rclpy: `image.is_bigendian = False`.
+        # A bool is an int in Python and rclpy: `image.is_bigendian = False`.
         if not isinstance(value, (int, np.integer)):
             raise _refuse(where, value, allowed)
         number = int(value)
         if not low <= number <= high:
-            raise MessageError(f"{where}: {number} is out of range, wanted {allowed}")
+            raise MessageError(f"{where}: {number} is out of range, expected {allowed}")
         return number
 
     return check
@@ -166,7 +165,7 @@ def _float64_checker(where: str) -> Checker:
             return float(value)
         except OverflowError:
             raise MessageError(
-                f"{where}: {shortened(value)} is out of range, wanted a float64"
+                f"{where}: {shortened(value)} is out of range, expected a float64"
             ) from None
 
     return check
@@ -179,7 +178,7 @@ def _float32_checker(where: str) -> Checker:
         number: float = as_float(value)
         if abs(number) > FLOAT32_MAX and not math.isinf(number):
             raise MessageError(
-                f"{where}: {number!r} is out of range, wanted a float32, "
+                f"{where}: {number!r} is out of range, expected a float32, "
                 f"at most {FLOAT32_MAX:.9g} in magnitude, or inf or nan"
             )
         return number
@@ -191,13 +190,13 @@ def _check_length(where: str, type_: FieldType, length: int) -> None:
     if type_.size is None:
         return
     if type_.container == "array" and length != type_.size:
-        raise MessageError(f"{where}: {length} elements, wanted exactly {type_.size}")
+        raise MessageError(f"{where}: {length} elements, expected exactly {type_.size}")
     if length > type_.size:
-        raise MessageError(f"{where}: {length} elements, wanted at most {type_.size}")
+        raise MessageError(f"{where}: {length} elements, expected at most {type_.size}")
 
 
 def _list_checker(where: str, type_: FieldType, check_item: Checker) -> Checker:
-    """Strings, messages and bools: a list (the same one if nothing is converted)."""
+    """Strings, messages, bools: a list, the given one if no element is converted."""
 
     def check(value: Any) -> list[Any]:
         is_text = isinstance(value, (str, bytes, Mapping))
@@ -218,7 +217,7 @@ def _list_checker(where: str, type_: FieldType, check_item: Checker) -> Checker:
 
 
 def _bytes_checker(where: str, type_: FieldType, check_item: Checker) -> Checker:
-    """``byte[]``: a list of single bytes, as in rclpy; also from a bytes object."""
+    """``byte[]``: a list of single bytes, as in rclpy; takes bytes, too."""
     check_list = _list_checker(where, type_, check_item)
 
     def check(value: Any) -> list[Any]:
@@ -231,7 +230,7 @@ def _bytes_checker(where: str, type_: FieldType, check_item: Checker) -> Checker
 
 
 def _array_checker(where: str, type_: FieldType) -> Checker:
-    """Numbers: a numpy array where the size is fixed, else an ``array.array``."""
+    """Numbers: a numpy array if the size is fixed, else an ``array.array``."""
     to_ndarray = _ndarray_checker(where, type_)
     if type_.container == "array":
         return to_ndarray
@@ -261,7 +260,7 @@ def _ndarray_checker(where: str, type_: FieldType) -> Checker:
         found = _as_array(where, value, dtype, allowed)
         if found.ndim != 1:
             raise MessageError(
-                f"{where}: an array of shape {found.shape}, wanted one dimension "
+                f"{where}: an array of shape {found.shape}, expected one dimension "
                 "(flatten it row by row with .ravel())"
             )
         _check_length(where, type_, len(found))
@@ -280,7 +279,7 @@ def _as_array(
     if isinstance(value, (bytes, bytearray)):
         if dtype.itemsize != 1 or dtype.kind not in "iu":
             raise _refuse(where, value, allowed)
-        # A copy: the message must be writable, and must not change with a bytearray.
+        # A copy: writable, and independent of a bytearray.
         return np.frombuffer(value, dtype).copy()
     if isinstance(value, (array, memoryview)):
         return np.array(value)
@@ -292,8 +291,8 @@ def _as_array(
         return np.zeros(0, dtype)
     try:
         found = np.array(value)
-        # Among integers, numpy makes floats or objects of those around 2**63 and up,
-        # and bools of bools, which are integers to Python.
+        # numpy converts integers from about 2**63 to floats or objects, and keeps
+        # bools, which are integers in Python.
         if dtype.kind in "iu" and found.dtype.kind in "fOb" and _all_integers(value):
             found = np.array(value, dtype)
     except (ValueError, OverflowError):
@@ -308,12 +307,12 @@ def _all_integers(values: Iterable[Any]) -> bool:
 def _cast(
     where: str, found: NDArray[Any], dtype: np.dtype[Any], base: str
 ) -> NDArray[Any]:
-    """To the wanted dtype where every value fits; a fraction never fits an integer."""
+    """Convert to ``dtype`` if every value fits; floats never fit an integer."""
     kinds = {"i": "iu", "u": "iu", "f": "fiu"}[dtype.kind]
     if found.dtype.kind not in kinds:
         raise MessageError(
             f"{where}: elements of {found.dtype} ({shortened(found[:8].tolist())}), "
-            f"wanted {base}"
+            f"expected {base}"
         )
     if not found.size:
         return np.zeros(0, dtype)
@@ -324,7 +323,7 @@ def _cast(
     else:
         return found.astype(dtype)
     finite = found[np.isfinite(found)] if found.dtype.kind == "f" else found
-    # As Python numbers: numpy would round the bounds of 64 bits to floats.
+    # As Python numbers: numpy would round the 64-bit bounds to floats.
     if finite.size and not (low <= finite.min().item() and finite.max().item() <= high):
         raise MessageError(
             f"{where}: values from {finite.min()} to {finite.max()} do not fit {base} "

@@ -143,7 +143,7 @@ def test_call_at_a_rate(here: World, adder: Node) -> None:
         (["/add", "{c: 1}"], "has no field 'c'; its fields: a, b"),
         (["/add", "{a: 1"], "is not YAML"),
         (["/add", "[1, 2]"], "is expected to be a dictionary"),
-        (["/add", "{a: one}"], "Request.a: 'one' is str, wanted an integer"),
+        (["/add", "{a: one}"], "Request.a: 'one' is str, expected an integer"),
         (["/add", ADD, "{a: 1}", "{b: 1}"], "quote the YAML"),
         (["/add", "-r", "0"], "--rate 0: wanted more than 0 Hz"),
     ],

@@ -56,7 +56,9 @@ def test_a_known_type_is_kept() -> None:
 def test_another_definition_of_a_known_name() -> None:
     old = f"std_msgs/Header header\ngeometry_msgs/Point p\n{LINE}\n"
     old += "MSG: geometry_msgs/Point\nfloat32 x\nfloat32 y\n"
-    with pytest.raises(FileFormatError, match="geometry_msgs/msg/Point is known with"):
+    with pytest.raises(
+        FileFormatError, match="geometry_msgs/msg/Point is registered with"
+    ):
         register_definition("registration_p/msg/Mark", old)
     mark: Any = register_definition("registration_p/msg/Mark", old, private=True)
     assert type_name(mark).startswith("registration_p__")
@@ -74,16 +76,16 @@ def test_another_definition_of_a_known_name() -> None:
     ("text", "reason"),
     [
         ("x" * (1 << 21), "characters; at most"),
-        ("int32 x\n" * 5000, "over 4096 lines"),
+        ("int32 x\n" * 5000, "more than 4096 lines"),
         (f"int32 x\n{LINE}\nMSG: a_b/C\nint8 x\n" * 600, "types; at most 500"),
         ("uint8[99999999999] x\n", "bytes of arrays; at most"),
         (f"uint8[{'9' * 5000}] x\n", "digits"),
         ("registration_b/Big b\n", "contains itself"),
-        (f"int32 x\n{LINE}\nMSG: ../x/msg/Y\nint8 x\n", "wanted 'package/msg/Name'"),
-        (f"int32 x\n{LINE}\nMSG: A/msg/Y\nint8 x\n", "no type name"),
+        (f"int32 x\n{LINE}\nMSG: ../x/msg/Y\nint8 x\n", "expected 'package/msg/Name'"),
+        (f"int32 x\n{LINE}\nMSG: A/msg/Y\nint8 x\n", "not a type name"),
         (
             f"int32 x\n{LINE}\nMSG: a_b/C\nint8 x\n{LINE}\nMSG: a_b/C\nint8 y\n",
-            "defined twice, differently",
+            "two different definitions",
         ),
     ],
 )

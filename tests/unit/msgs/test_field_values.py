@@ -58,42 +58,48 @@ def test_a_byte_is_bytes_as_in_rclpy_and_takes_integers() -> None:
 @pytest.mark.parametrize(
     ("make", "text"),
     [
-        (lambda: Float64(data="1"), "Float64.data: '1' is str, wanted a float"),
-        (lambda: Float64(data=True), "is bool, wanted a float"),
+        (lambda: Float64(data="1"), "Float64.data: '1' is str, expected a float"),
+        (lambda: Float64(data=True), "is bool, expected a float"),
         (lambda: Float64(data=None), "None is NoneType"),
         (lambda: Float64(data=10**400), "out of range"),
-        (lambda: Float32(data=1e39), r"1e\+39 is out of range, wanted a float32"),
-        (lambda: Int8(data=128), "128 is out of range, wanted an integer from -128"),
-        (lambda: Int8(data=1.0), "1.0 is float, wanted an integer"),
+        (lambda: Float32(data=1e39), r"1e\+39 is out of range, expected a float32"),
+        (lambda: Int8(data=128), "128 is out of range, expected an integer from -128"),
+        (lambda: Int8(data=1.0), "1.0 is float, expected an integer"),
         (lambda: UInt64(data=-1), "-1 is out of range"),
-        (lambda: Bool(data=1), "1 is int, wanted a bool"),
-        (lambda: String(data=b"x"), "b'x' is bytes, wanted a str"),
-        (lambda: DiagnosticStatus(level=256), "wanted one byte"),
-        (lambda: DiagnosticStatus(level=b""), "wanted one byte"),
-        (lambda: DiagnosticStatus(level=True), "wanted one byte"),
-        (lambda: Path(header=Point()), "wanted a std_msgs/msg/Header"),
+        (lambda: Bool(data=1), "1 is int, expected a bool"),
+        (lambda: String(data=b"x"), "b'x' is bytes, expected a str"),
+        (lambda: DiagnosticStatus(level=256), "expected one byte"),
+        (lambda: DiagnosticStatus(level=b""), "expected one byte"),
+        (lambda: DiagnosticStatus(level=True), "expected one byte"),
+        (lambda: Path(header=Point()), "expected a std_msgs/msg/Header"),
         (
             lambda: Polygon(points=[Point()]),
             r"points\[0\]: .* a geometry_msgs/msg/Point32",
         ),
-        (lambda: Polygon(points=3), "3 is int, wanted a list"),
-        (lambda: JointState(name="abc"), "'abc' is str, wanted a list"),
-        (lambda: JointState(name=["a", 1]), r"name\[1\]: 1 is int, wanted a str"),
-        (lambda: LaserScan(ranges="abc"), "'abc' is str, wanted a sequence"),
-        (lambda: LaserScan(ranges=1.0), "is float, wanted a sequence"),
-        (lambda: LaserScan(ranges=["1"]), "wanted float32"),
-        (lambda: LaserScan(ranges=[None]), "wanted float32"),
-        (lambda: LaserScan(ranges=[[1], [1, 2]]), "wanted a sequence"),
-        (lambda: LaserScan(ranges=np.zeros((2, 2))), r"shape \(2, 2\), wanted one dim"),
+        (lambda: Polygon(points=3), "3 is int, expected a list"),
+        (lambda: JointState(name="abc"), "'abc' is str, expected a list"),
+        (lambda: JointState(name=["a", 1]), r"name\[1\]: 1 is int, expected a str"),
+        (lambda: LaserScan(ranges="abc"), "'abc' is str, expected a sequence"),
+        (lambda: LaserScan(ranges=1.0), "is float, expected a sequence"),
+        (lambda: LaserScan(ranges=["1"]), "expected float32"),
+        (lambda: LaserScan(ranges=[None]), "expected float32"),
+        (lambda: LaserScan(ranges=[[1], [1, 2]]), "expected a sequence"),
+        (
+            lambda: LaserScan(ranges=np.zeros((2, 2))),
+            r"shape \(2, 2\), expected one dim",
+        ),
         (lambda: LaserScan(ranges=[1e39]), "do not fit float32"),
-        (lambda: LaserScan(ranges={1.0: 2.0}), "is dict, wanted a sequence"),
-        (lambda: LaserScan(ranges=b"1234"), "is bytes, wanted a sequence"),
+        (lambda: LaserScan(ranges={1.0: 2.0}), "is dict, expected a sequence"),
+        (lambda: LaserScan(ranges=b"1234"), "is bytes, expected a sequence"),
         (lambda: OccupancyGrid(data=[128]), "128 to 128 do not fit int8"),
         (lambda: OccupancyGrid(data=[0.5]), "elements of float64"),
         (lambda: OccupancyGrid(data=np.zeros(2, bool)), "elements of bool"),
         (lambda: UInt64MultiArray(data=[-1]), "do not fit uint64"),
-        (lambda: UInt64MultiArray(data=[2**64]), "wanted a sequence of uint64"),
-        (lambda: PoseWithCovariance(covariance=[0.0]), "1 elements, wanted exactly 36"),
+        (lambda: UInt64MultiArray(data=[2**64]), "expected a sequence of uint64"),
+        (
+            lambda: PoseWithCovariance(covariance=[0.0]),
+            "1 elements, expected exactly 36",
+        ),
         (
             lambda: ParameterValue(bool_array_value=[1]),
             r"value\[0\]: 1 is int",
@@ -189,10 +195,10 @@ def test_bounds_of_sequences() -> None:
 
     one = IntegerRange(from_value=0, to_value=5)
     assert ParameterDescriptor(integer_range=[one]).integer_range == [one]
-    with pytest.raises(MessageError, match="2 elements, wanted at most 1"):
+    with pytest.raises(MessageError, match="2 elements, expected at most 1"):
         ParameterDescriptor(integer_range=[one, one])
     for wrong in ([0.0] * 4, array("d", [0.0] * 4), np.zeros(4)):
-        with pytest.raises(MessageError, match="4 elements, wanted at most 3"):
+        with pytest.raises(MessageError, match="4 elements, expected at most 3"):
             SolidPrimitive(dimensions=wrong)
 
 

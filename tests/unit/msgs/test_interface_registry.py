@@ -67,7 +67,7 @@ def test_load_interfaces(tmp_path: Path) -> None:
         ({"Foo__msg": "nowhere_msgs/Bar bar\n"}, r"'bar': unknown interface package"),
         ({"Foo__msg": "Foo foo\n"}, r"Foo\.msg: field 'foo': .* contains itself"),
         ({"Foo__msg": "Bar b\n", "Bar__msg": "Foo[] f\n"}, r"\.msg: .*contains itself"),
-        ({"foo__msg": "int32 x\n"}, r"foo\.msg: the file's name is no type name"),
+        ({"foo__msg": "int32 x\n"}, r"foo\.msg: the file name is not a CamelCase"),
         ({"Foo__srv": "int32 x\n"}, r"Foo\.srv: 1 parts"),
         ({}, r"no interface definitions"),
     ],
@@ -92,7 +92,7 @@ def test_a_loaded_type_does_not_change(tmp_path: Path) -> None:
     write(tmp_path, Foo__msg="int32 x\n")
     load_interfaces("registry_fixed", tmp_path)
     write(tmp_path, Foo__msg="int32 y\n")
-    with pytest.raises(FileFormatError, match="loaded before with another definition"):
+    with pytest.raises(FileFormatError, match="registered with another definition"):
         load_interfaces("registry_fixed", tmp_path)
     assert interface_names("registry_fixed", "msg") == ["Foo"]
 
@@ -140,8 +140,11 @@ def test_types_from_their_text() -> None:
     [
         ("int32 x y z\n", r"definition of .*:1: "),
         ("registry_lost/Inner inner\n", "unknown interface package 'registry_lost'"),
-        ("=" * 80 + "\nint32 x\n", "wanted 'MSG: package/Name'"),
-        ("=" * 80 + "\nMSG: std_msgs/String\nint32 x\n", "known with other fields"),
+        ("=" * 80 + "\nint32 x\n", "expected 'MSG: package/Name'"),
+        (
+            "=" * 80 + "\nMSG: std_msgs/String\nint32 x\n",
+            "registered with other fields",
+        ),
     ],
 )
 def test_broken_texts(text: str, reason: str) -> None:

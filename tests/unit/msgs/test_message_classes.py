@@ -173,7 +173,7 @@ def test_action_classes() -> None:
     "name", ["Twist", "a/b/C/d", "geometry_msgs/foo/Twist", "a/msg/B c", ""]
 )
 def test_malformed_names(name: str) -> None:
-    with pytest.raises(InvalidNameError, match="wanted 'package/msg/Name'"):
+    with pytest.raises(InvalidNameError, match="expected 'package/msg/Name'"):
         get_interface(name)
 
 

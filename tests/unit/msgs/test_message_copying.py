@@ -62,7 +62,7 @@ def test_a_wrong_element_put_into_a_list_is_named() -> None:
 
 
 def test_only_messages_are_copied() -> None:
-    with pytest.raises(MessageError, match="no message class"):
+    with pytest.raises(MessageError, match="not a message class"):
         copy_message(3)  # type: ignore[type-var]
 
 

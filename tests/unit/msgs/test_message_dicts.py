@@ -44,8 +44,8 @@ def test_from_dict_keeps_defaults_of_what_is_not_named() -> None:
         ({"linear": {"w": 1}}, "Vector3 has no field 'w'"),
         ({"linear": 3}, "Twist.linear: 3 is int"),
         ({"linear": {"x": "fast"}}, "Vector3.x: 'fast' is str"),
-        ([1, 2], "wanted fields by name"),
-        ({3: 1}, "wanted fields by name"),
+        ([1, 2], "expected a dict of fields"),
+        ({3: 1}, "expected a dict of fields"),
     ],
 )
 def test_wrong_dicts_are_refused(values: object, text: str) -> None:

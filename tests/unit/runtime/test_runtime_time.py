@@ -260,5 +260,7 @@ def test_forward_jumps_are_reported_from_the_threshold_on(
 
 
 def test_a_time_in_a_message_is_told_how_to_become_one() -> None:
-    with pytest.raises(AssertionError, match=r"is Time, wanted .* \(its to_msg\(\) is"):
+    with pytest.raises(
+        AssertionError, match=r"is Time, expected .* \(use its to_msg\(\)"
+    ):
         Header(stamp=Time(seconds=1))

@@ -1,19 +1,18 @@
-"""serialize and deserialize: headers, byte order, errors."""
+"""CDR serialisation and deserialisation: header, byte order, errors."""
 
 import struct
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 from navette.errors import DecodeError, MessageError
-from navette.msgs.base import Message
+from navette.msgs.base import Message, validate
 from navette.msgs.cdr.reader import HEADER_SIZE, Reader, make_reader
 from navette.msgs.cdr.writer import make_writer
-from navette.msgs.validation import validate
 
 _BIG, _LITTLE = b"\x00\x00", b"\x00\x01"
 M = TypeVar("M", bound=Message)
 
-_SLACK = 3  # writers may pad the end to a multiple of four
+_MAX_PADDING = 3  # bytes; writers may pad the end to a multiple of four
 
 _writers: dict[type, Callable[[Any], bytes]] = {}
 _readers: dict[type, Reader] = {}
@@ -21,27 +20,27 @@ _big_endian_readers: dict[type, Reader] = {}
 
 
 def serialize(msg: Message) -> bytes:
-    """The message as CDR, little-endian, behind the 4-byte encapsulation header.
+    """Serialise a message to CDR, little-endian, with the 4-byte header.
 
     Raises:
-        MessageError: a list inside was changed in place to hold something wrong, or a
-            string holds half a surrogate pair.
+        MessageError: a list that was changed in place contains an invalid element, or
+            a string contains half a surrogate pair.
     """
     writer = _writers.get(msg.__class__) or _writer_of(msg.__class__)
     try:
         return writer(msg)
     except UnicodeEncodeError as error:
         name = type(msg).__name__
-        raise MessageError(f"{name}: a string is not text: {error}") from error
+        raise MessageError(f"{name}: a string is not valid Unicode: {error}") from error
     except (AttributeError, TypeError, struct.error):
         validate(msg)
         raise
 
 
 def deserialize(data: bytes | bytearray | memoryview, cls: type[M]) -> M:
-    """The message in CDR bytes with their header, either byte order.
+    """Deserialise a message from CDR with its header, in either byte order.
 
-    Arrays are copies: they can be written to and do not keep ``data`` alive.
+    Arrays are writable copies, independent of ``data``.
 
     Raises:
         DecodeError: the bytes are not a message of this class.
@@ -59,11 +58,11 @@ def deserialize(data: bytes | bytearray | memoryview, cls: type[M]) -> M:
         raise
     except (struct.error, ValueError) as error:
         raise DecodeError(
-            f"{length} bytes are no {cls._type_name_}: {error}"
+            f"{length} bytes are not a {cls._type_name_}: {error}"
         ) from error
-    if length - end > _SLACK:
+    if length - end > _MAX_PADDING:
         raise DecodeError(
-            f"{cls._type_name_}: {length - end} of {length} bytes are left over"
+            f"{cls._type_name_}: {length - end} of {length} bytes are unread"
         )
     decoded: M = message
     return decoded
@@ -71,7 +70,7 @@ def deserialize(data: bytes | bytearray | memoryview, cls: type[M]) -> M:
 
 def _message_class(cls: type) -> type[Message]:
     if not (isinstance(cls, type) and issubclass(cls, Message)) or cls is Message:
-        raise MessageError(f"{cls!r} is no message class")
+        raise MessageError(f"{cls!r} is not a message class")
     return cls
 
 
@@ -91,7 +90,7 @@ def _big_endian_reader(
     if data[:2] != _BIG or len(data) < HEADER_SIZE:
         raise DecodeError(
             f"{cls.__name__}: header {bytes(data[:4]).hex(' ') or 'missing'}, "
-            "wanted plain CDR: 00 00 or 00 01 and two more bytes"
+            "expected plain CDR: 00 00 or 00 01 and two more bytes"
         )
     found = _big_endian_readers.get(cls)
     if found is None:

@@ -1,10 +1,10 @@
-"""How values lie in a CDR stream.
+"""Layout of values in a CDR stream.
 
 Plain CDR (OMG CORBA 3.4 part 2, section 9.3; DDS-XTypes 1.3, "XCDR1"): every primitive
 is aligned to its size, counted from the end of the 4-byte header. Consecutive
-primitives form a *run*, packed by one ``struct`` call. Where a run starts at an offset
-that is only known at run time, its padding depends on that offset modulo 8: a table
-holds the eight cases.
+primitives form a *run*, packed by one ``struct`` call. If the offset of a run is known
+only at run time, its padding depends on that offset modulo 8 (the *phase*): a table
+contains the eight cases.
 """
 
 from dataclasses import dataclass, field
@@ -12,23 +12,11 @@ from struct import Struct
 
 from navette.msgs.interface import FieldType, MessageSpec
 from navette.msgs.registry import get_message_spec
+from navette.msgs.values import DTYPES, TYPECODES
 
-# struct code and size; a bool is read as a byte, so that 2 can be told from True.
-CODES = {
-    "bool": ("B", 1),
-    "byte": ("c", 1),
-    "char": ("B", 1),
-    "int8": ("b", 1),
-    "uint8": ("B", 1),
-    "int16": ("h", 2),
-    "uint16": ("H", 2),
-    "int32": ("i", 4),
-    "uint32": ("I", 4),
-    "int64": ("q", 8),
-    "uint64": ("Q", 8),
-    "float32": ("f", 4),
-    "float64": ("d", 8),
-}
+# struct code and size; a bool is read as an integer, to detect values other than 0, 1.
+CODES = {"bool": ("B", 1), "byte": ("c", 1)}
+CODES |= {base: (code, DTYPES[base].itemsize) for base, code in TYPECODES.items()}
 PHASES = 8
 
 
@@ -39,12 +27,11 @@ class Run:
     items: list[tuple[int, str, int, str]] = field(default_factory=list)
 
     def add(self, alignment: int, code: str, size: int, expression: str) -> None:
-        """Append a value."""
         self.items.append((alignment, code, size, expression))
 
     @property
     def expressions(self) -> list[str]:
-        """What is packed, or the variables to unpack into."""
+        """Expressions to pack, or variables to unpack into."""
         return [item[3] for item in self.items]
 
     @property
@@ -53,7 +40,7 @@ class Run:
         return max((item[0] for item in self.items), default=1)
 
     def layout(self, phase: int) -> tuple[str, int]:
-        """struct format (no byte order) and length in bytes from offset ``phase``."""
+        """struct format (without byte order) and length in bytes at ``phase``."""
         offset = phase
         codes = []
         for alignment, code, size, _ in self.items:
@@ -64,12 +51,12 @@ class Run:
         return "".join(codes), offset - phase
 
     def table(self, order: str, prefix: str = "") -> list[tuple[Struct, int]]:
-        """The struct and the length for each phase 0…7."""
+        """Struct and length in bytes for each phase 0…7."""
         layouts = [self.layout(phase) for phase in range(PHASES)]
         return [(Struct(order + prefix + codes), length) for codes, length in layouts]
 
     def end_phase(self, phase: int | None) -> int | None:
-        """Offset modulo 8 after the run; known for every start if it aligns to 8."""
+        """Phase after the run; None if it depends on an unknown phase before."""
         if phase is None:
             ends = {(p + self.layout(p)[1]) % PHASES for p in range(PHASES)}
             return ends.pop() if len(ends) == 1 else None
@@ -85,11 +72,11 @@ class Leaf:
 
 
 def uniform_leaves(spec: MessageSpec) -> list[Leaf] | None:
-    """The primitives of a message whose every element in a list lies alike.
+    """Primitives of a message whose elements in a list all have the same layout.
 
-    None if it holds strings, arrays or bools (those are checked one by one), or if
-    padding differs from element to element: CDR aligns primitives, not structures, so
-    the first must have the greatest alignment and the length must be a multiple of it.
+    None if it contains strings, arrays or bools (which are checked one by one), or if
+    padding differs between elements: CDR aligns primitives, not structures, so the
+    first must have the greatest alignment and the length must be a multiple of it.
     """
     leaves: list[Leaf] = []
     for each in spec.fields:
@@ -103,16 +90,15 @@ def uniform_leaves(spec: MessageSpec) -> list[Leaf] | None:
             return None
         leaves += [Leaf((each.name, *leaf.path), leaf.base) for leaf in inner]
     run = leaf_run(leaves)
-    is_alike = (
+    is_uniform = (
         bool(leaves)
         and run.items[0][0] == run.alignment
         and run.layout(0)[1] % run.alignment == 0
     )
-    return leaves if is_alike else None
+    return leaves if is_uniform else None
 
 
 def leaf_run(leaves: list[Leaf]) -> Run:
-    """The leaves as a run, without expressions."""
     run = Run()
     for leaf in leaves:
         code, size = CODES[leaf.base]
@@ -121,7 +107,7 @@ def leaf_run(leaves: list[Leaf]) -> Run:
 
 
 def item_size(type_: FieldType) -> int:
-    """Fewest bytes that one element of the type takes, without padding."""
+    """Smallest size of one element of the type in bytes, without padding."""
     if type_.is_message:
         return least_size(get_message_spec(type_.base))
     if type_.is_string:
@@ -130,7 +116,7 @@ def item_size(type_: FieldType) -> int:
 
 
 def least_size(spec: MessageSpec) -> int:
-    """Fewest bytes that a message takes: bounds what a length in bad data may claim."""
+    """Smallest size of a message in bytes, to check lengths in untrusted data."""
     total = 0
     for each in spec.wire_fields:
         if each.type.container == "sequence":

@@ -1,6 +1,6 @@
 """Generated deserialisation: CDR → message, either byte order.
 
-Lengths in the data are compared with what is left before anything is allocated.
+Lengths in the data are compared with the remaining bytes before any allocation.
 """
 
 import sys
@@ -12,6 +12,7 @@ import numpy as np
 
 from navette.errors import DecodeError
 from navette.msgs.base import Message
+from navette.msgs.cdr.elements import UNPACK, WIDE_UNIT, decode_wide
 from navette.msgs.cdr.layout import (
     CODES,
     PHASES,
@@ -21,8 +22,6 @@ from navette.msgs.cdr.layout import (
     leaf_run,
     uniform_leaves,
 )
-from navette.msgs.cdr.octets import UNPACK
-from navette.msgs.cdr.wide import WIDE_UNIT, decode_wide
 from navette.msgs.classes import get_message_class
 from navette.msgs.interface import PLACEHOLDER, Field, FieldType, MessageSpec
 from navette.msgs.registry import get_message_spec
@@ -38,9 +37,9 @@ _element_readers: dict[tuple[str, Order], Reader] = {}
 
 
 def make_reader(cls: type[Message], order: Order) -> Reader:
-    """A function (data, HEADER_SIZE, length) → (message, offset of its end).
+    """Return a function (data, HEADER_SIZE, length) → (message, offset of its end).
 
-    ``order`` is ``<`` or ``>``. It raises DecodeError, struct.error or ValueError.
+    The function raises DecodeError, struct.error or ValueError.
     """
     return _make(cls, order, phase=HEADER_SIZE % PHASES)
 
@@ -65,15 +64,15 @@ def _make(cls: type[Message], order: Order, phase: int | None) -> Reader:
 
 
 def _refuse_bool(field: str, value: int) -> None:
-    raise DecodeError(f"{field}: {value} is no bool")
+    raise DecodeError(f"{field}: {value} is not a bool (0 or 1)")
 
 
 def _refuse_length(field: str, length: int) -> None:
-    raise DecodeError(f"{field}: length {length} is more than the field or data holds")
+    raise DecodeError(f"{field}: length {length} exceeds the field's bound or the data")
 
 
 def _read_string(field: str, b: bytes | memoryview, p: int, end: int) -> str:
-    """The string in ``b[p:end]``, which includes the terminating zero (or is empty)."""
+    """Decode the string in ``b[p:end]``, empty or with its terminating zero."""
     if p == end:
         return ""
     if b[end - 1]:
@@ -82,11 +81,11 @@ def _read_string(field: str, b: bytes | memoryview, p: int, end: int) -> str:
 
 
 class _Emitter:
-    """Collects the lines of one function.
+    """Source lines of one function and the objects they refer to.
 
     Values are read into variables first; ``builders`` then make the messages. ``p`` is
-    the offset in the data, header included; ``phase`` is what is known of it modulo 8.
-    Alignment counts from behind the header, four bytes on.
+    the offset in the data, header included; ``phase`` is ``p`` modulo 8, or None if
+    unknown. Alignment is relative to the end of the header, four bytes further.
     """
 
     def __init__(self, order: Order, phase: int | None) -> None:
@@ -108,7 +107,7 @@ class _Emitter:
         self._count = 0
 
     def message(self, spec: MessageSpec, cls: type[Message]) -> str:
-        """Emit all fields; returns the variable that will hold the message."""
+        """Emit all fields; return the variable of the message."""
         name = self._new_name("m")
         self.scope[f"C{name}"] = cls
         stores = []
@@ -182,7 +181,7 @@ class _Emitter:
         self._run.add(size, f"{total}s", total, raw)
         if type_.base in UNPACK:
             return self._octets(type_, path, raw)
-        # astype: the message's own, native and writable.
+        # astype makes a writable copy in native byte order.
         dtype, name = DTYPES[type_.base], f"D{type_.base}"
         self.scope[name] = dtype.newbyteorder(self._order)
         self.scope[f"N{name}"] = dtype
@@ -199,7 +198,7 @@ class _Emitter:
         self.finish_run()
         size = item_size(type_)
         if type_.is_numeric and size == PHASES:
-            # Offsets count the header: a multiple of 8 behind it is 4 more here.
+            # p includes the header: multiples of 8 after the header are 4 more.
             self.lines.append(f" if {length} and not p & 4: p += 4")
         limit = f"{length} * {size} > end - p"
         if type_.size is not None:
@@ -216,7 +215,7 @@ class _Emitter:
         return self._loop(type_, path, length)
 
     def _numeric_sequence(self, type_: FieldType, length: str, size: int) -> str:
-        """One copy from the data into an array, by a view that copies nothing."""
+        """Emit one copy from the data into an array, through a memoryview."""
         value = self._new_name("a")
         self.lines += [
             f" {value} = array({TYPECODES[type_.base]!r})",
@@ -258,7 +257,7 @@ class _Emitter:
     def _uniform_loop(
         self, name: str, leaves: list[Leaf], items: str, length: str
     ) -> None:
-        """All elements by one iter_unpack, built without a call of ours for each."""
+        """Emit one iter_unpack over all elements, without a Python call for each."""
         run = leaf_run(leaves)
         ((packer, size), *_) = run.table(self._order)
         unpack = self._new_name("U")
@@ -280,7 +279,7 @@ class _Emitter:
     def _build(
         self, name: str, variables: dict[tuple[str, ...], str], path: tuple[str, ...]
     ) -> str:
-        """Emit the making of a message in a loop from its leaves' variables."""
+        """Emit the construction of a message from its leaves' variables."""
         target = self._new_name("m")
         self.scope[f"C{target}"] = get_message_class(name)
         self.lines.append(f"  {target} = new(C{target})")
@@ -293,7 +292,7 @@ class _Emitter:
         return target
 
     def finish_run(self) -> None:
-        """Emit the unpacking of the collected primitives, then what checks them."""
+        """Emit the unpacking of the collected primitives, then their checks."""
         run, self._run = self._run, Run()
         if run.items:
             name = self._new_name("U")

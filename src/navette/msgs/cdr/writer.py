@@ -4,9 +4,8 @@ from collections.abc import Callable
 from typing import Any
 
 from navette.msgs.base import Message
+from navette.msgs.cdr.elements import PACK, WIDE_UNIT, encode_wide
 from navette.msgs.cdr.layout import CODES, PHASES, Leaf, Run, leaf_run, uniform_leaves
-from navette.msgs.cdr.octets import PACK
-from navette.msgs.cdr.wide import WIDE_UNIT, encode_wide
 from navette.msgs.interface import PLACEHOLDER, Field, FieldType, MessageSpec
 from navette.msgs.registry import get_message_spec
 from navette.msgs.values import DTYPES
@@ -17,11 +16,11 @@ _element_writers: dict[str, Callable[..., int]] = {}
 
 
 def make_writer(spec: MessageSpec) -> Callable[[Message], bytes]:
-    """A function that gives the message's bytes with the 4-byte header."""
+    """Return a function from a message to its bytes with the 4-byte header."""
     emitter = _Emitter(phase=0)
     emitter.message(spec, "m")
     emitter.finish_run()
-    # Nothing but one run: the whole message is a single pack.
+    # A message that is one run takes a single pack.
     if emitter.is_single_run:
         (expression,) = emitter.parts
         hoisted = [line for line in emitter.lines if not line.startswith(" p +=")]
@@ -35,7 +34,7 @@ def make_writer(spec: MessageSpec) -> Callable[[Message], bytes]:
 
 
 def _element_writer(spec: MessageSpec) -> Callable[..., int]:
-    """A function (message, parts, offset) → offset that appends to ``parts``."""
+    """Return a function (message, parts, offset) → offset, appending to ``parts``."""
     found = _element_writers.get(spec.name)
     if found is None:
         emitter = _Emitter(phase=None)
@@ -49,10 +48,10 @@ def _element_writer(spec: MessageSpec) -> Callable[..., int]:
 
 
 class _Emitter:
-    """Collects the lines of one function.
+    """Source lines of one function and the objects they refer to.
 
-    ``p`` in the generated code is the offset behind the header; ``phase`` is what is
-    known of it modulo 8 when the code is generated.
+    ``p`` in the generated code is the offset after the header; ``phase`` is ``p``
+    modulo 8, or None if unknown.
     """
 
     def __init__(self, phase: int | None) -> None:
@@ -72,7 +71,7 @@ class _Emitter:
         self._count = 0
 
     def compile(self, lines: list[str], spec: MessageSpec, name: str) -> Any:
-        """Compile the collected lines; returns the function of that name."""
+        """Compile the lines and return the function ``name``."""
         source = "\n".join(lines)
         exec(compile(source, f"<serialize {spec.name}>", "exec"), self.scope)
         return self.scope[name]
@@ -153,7 +152,7 @@ class _Emitter:
         elif type_.is_numeric:
             self.finish_run()
             size = DTYPES[type_.base].itemsize
-            if size == PHASES:  # what needs 8 may not follow the length at once
+            if size == PHASES:  # padding between the length and 8-byte elements
                 self.lines.append(f" if p & 4 and len({items}):")
                 pad = self._new_name("z")
                 self.lines.append(f"  {pad} = PAD4")
@@ -168,7 +167,7 @@ class _Emitter:
             self._loop(type_, items)
 
     def _check_count(self, field: Field, items: str, wrong: str) -> None:
-        # Only what was changed in place can fail this; the caller finds the field.
+        # Fails only for a list changed in place; the caller finds the field.
         self.lines.append(f" if len({items}) {wrong} {field.type.size}:")
         self.lines.append("  raise TypeError('length')")
 
@@ -200,7 +199,7 @@ class _Emitter:
         self.lines.append("  p += q + 4 + len(t)")
 
     def _uniform_loop(self, items: str, leaves: list[Leaf]) -> None:
-        """One pack an element, without a call of ours for each."""
+        """Emit one pack per element, without another Python call for each."""
         run = leaf_run(leaves)
         ((packer, length), *_) = run.table("<")
         name = self._new_name("U")
@@ -219,7 +218,7 @@ class _Emitter:
         self.lines.append(f" p += {length} * len({items})")
 
     def finish_run(self) -> None:
-        """Emit the pack of the collected primitives."""
+        """Emit the packing of the collected primitives."""
         run, self._run = self._run, Run()
         if not run.items:
             if self._needs_header:
@@ -249,7 +248,7 @@ class _Emitter:
         self._phase = run.end_phase(self._phase)
 
     def flush_parts(self) -> None:
-        """Emit the hand-over of the collected parts."""
+        """Emit the appending of the collected parts."""
         if self.parts:
             self.lines.append(f" parts += ({', '.join(self.parts)},)")
             self.parts = []

@@ -17,8 +17,8 @@ def test_defaults_are_those_documented() -> None:
 @pytest.mark.parametrize(
     ("values", "text"),
     [
-        ({"resolution_m": 0.0}, "'resolution_m': 0.0 is not allowed; wanted > 0"),
-        ({"inflation_method": "cubic"}, "wanted one of linear, exponential"),
+        ({"resolution_m": 0.0}, "'resolution_m': 0.0 is not allowed; must be > 0"),
+        ({"inflation_method": "cubic"}, "must be one of linear, exponential"),
         ({"max_cost": 101}, "'max_cost': 101"),
         ({"size_m": 100.0, "resolution_m": 0.01}, "'size_m': 100.0 m .* 10000 cells"),
         ({"size_m": 0.01, "inflation_radius_m": 0.0}, "'size_m': 0.01 m"),

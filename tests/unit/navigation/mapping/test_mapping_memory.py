@@ -196,7 +196,7 @@ def test_what_is_handed_out_is_a_copy() -> None:
 @pytest.mark.parametrize(
     ("values", "text"),
     [
-        ({"fusion": "mean"}, "wanted one of overwrite, max, log_odds"),
+        ({"fusion": "mean"}, "must be one of overwrite, max, log_odds"),
         ({"max_size_m": 5.0}, "'max_size_m': 5.0 m; wanted at least size_m, 10.0 m"),
         ({"max_size_m": 1e6}, "at most 20000 cells"),
         ({"update_period_s": 0.0}, "'update_period_s'"),

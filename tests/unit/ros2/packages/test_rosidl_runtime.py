@@ -202,7 +202,7 @@ def test_classes_by_name() -> None:
         utilities.get_message("std_srvs/srv/SetBool")
     with pytest.raises(AttributeError, match=r"known: .*std_msgs/msg/String"):
         utilities.get_message("std_msgs/msg/Strin")
-    with pytest.raises(ValueError, match="wanted"):
+    with pytest.raises(ValueError, match="expected"):
         utilities.get_interface("String")
 
 
