@@ -10,7 +10,7 @@ import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "transports"))
 
-from transport_benches import LIMIT_S, zenoh_environment
+from transport_pairs import LIMIT_S, zenoh_environment
 
 from free_ports import free_endpoint
 from navette.bags import BagWriter, OfferedQos, qos_text

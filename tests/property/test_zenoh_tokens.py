@@ -1,4 +1,4 @@
-"""Tokens and QoS survive the way to text and back; no text is worse than refused."""
+"""Tokens and QoS survive encoding; invalid text raises DecodeError only."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -65,12 +65,12 @@ endpoint_tokens = st.builds(
 
 
 @given(node_tokens | endpoint_tokens)
-def test_tokens_come_back(token: NodeToken | EndpointToken) -> None:
+def test_tokens_survive_encoding(token: NodeToken | EndpointToken) -> None:
     assert parse_token(token.key()) == token
 
 
 @given(qualities)
-def test_qos_comes_back(qos: EndpointQos) -> None:
+def test_qos_survives_encoding(qos: EndpointQos) -> None:
     assert parse_qos(format_qos(qos)) == qos
 
 
@@ -79,13 +79,15 @@ def test_qos_comes_back(qos: EndpointQos) -> None:
     st.integers(-(2**63), 2**63 - 1),
     st.binary(min_size=16, max_size=16),
 )
-def test_attachments_come_back(sequence: int, source_ns: int, gid: bytes) -> None:
+def test_attachments_survive_encoding(
+    sequence: int, source_ns: int, gid: bytes
+) -> None:
     attachment = Attachment(sequence, source_ns, gid)
     assert decode_attachment(attachment.encode()) == attachment
 
 
 @given(endpoint_tokens, st.data())
-def test_a_garbled_token_is_refused_or_is_a_token(
+def test_a_damaged_token_is_refused_or_valid(
     token: EndpointToken, data: st.DataObject
 ) -> None:
     key = token.key()
@@ -99,7 +101,7 @@ def test_a_garbled_token_is_refused_or_is_a_token(
 
 
 @given(st.text() | st.lists(st.text(max_size=9), max_size=15).map("/".join))
-def test_any_text_is_refused_at_worst(text: str) -> None:
+def test_any_text_is_refused_or_valid(text: str) -> None:
     for parse in (parse_token, parse_qos):
         try:
             parse(text)

@@ -1,11 +1,11 @@
-"""Lifespans, deadlines and leases, the same in process and between processes."""
+"""Lifespans, deadlines and leases, in process and between processes."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
 from typing import Any
 
 import pytest
-from transport_benches import until
+from transport_pairs import until
 
 from free_ports import free_endpoint
 from navette import Context, DurabilityPolicy, Node, QoSProfile
@@ -30,7 +30,7 @@ STEP_NS = 10_000_000
 
 
 class Ends:
-    """Two nodes on one virtual time: of one process, or met over a network."""
+    """Two nodes on one virtual time, in one process or over a network."""
 
     def __init__(self, stack: ExitStack, *, over_zenoh: bool) -> None:
         self.clock = VirtualClock()
@@ -67,7 +67,7 @@ def ends(request: pytest.FixtureRequest, monkeypatch: Any) -> Iterator[Ends]:
 
 
 def arrived(subscription: Subscription[Any], count: int) -> None:
-    """Wait until so many samples are in the queue, before any of them is taken."""
+    """Wait until ``count`` samples are queued, before any of them is taken."""
     until(lambda: len(subscription._queue) == count, f"{count} samples")
 
 
@@ -79,11 +79,11 @@ def news(latched: bool) -> QoSProfile:
 
 
 @pytest.mark.parametrize("latched", [False, True])
-def test_what_expires_in_the_queue_is_dropped(ends: Ends, latched: bool) -> None:
-    heard: list[str] = []
+def test_samples_that_expire_in_a_queue_are_dropped(ends: Ends, latched: bool) -> None:
+    received: list[str] = []
     publisher = ends.near.create_publisher(String, "/news", news(latched))
     subscription = ends.far.create_subscription(
-        String, "/news", lambda m: heard.append(m.data), 10
+        String, "/news", lambda m: received.append(m.data), 10
     )
     until(lambda: publisher.get_subscription_count() == 1, "the match")
     until(lambda: subscription.get_publisher_count() == 1, "the match")
@@ -94,7 +94,7 @@ def test_what_expires_in_the_queue_is_dropped(ends: Ends, latched: bool) -> None
     arrived(subscription, 2)
     ends.clock.now_ns += 200_000_000
     ends.pass_time(0.01)
-    assert heard == ["young"]
+    assert received == ["young"]
 
 
 def test_late_joiners_get_no_expired_samples(ends: Ends) -> None:
@@ -103,35 +103,35 @@ def test_late_joiners_get_no_expired_samples(ends: Ends) -> None:
     ends.pass_time(0.6)
     publisher.publish(String(data="young"))
     ends.pass_time(0.6)
-    heard: list[str] = []
+    received: list[str] = []
     subscription = ends.far.create_subscription(
-        String, "/news", lambda m: heard.append(m.data), news(latched=True)
+        String, "/news", lambda m: received.append(m.data), news(latched=True)
     )
     arrived(subscription, 2)
     until(lambda: subscription.get_publisher_count() == 1, "the match")
     ends.pass_time(0.01)
-    assert heard == ["young"]
+    assert received == ["young"]
 
 
-def test_a_publisher_that_is_not_known_yet_has_a_lifespan_all_the_same(
+def test_the_lifespan_applies_before_the_publisher_is_known(
     ends: Ends,
 ) -> None:
-    """Made after the subscription: its samples may be faster than its token."""
-    heard: list[str] = []
+    """The samples of a new publisher may be faster than its token."""
+    received: list[str] = []
     subscription = ends.far.create_subscription(
-        String, "/news", lambda m: heard.append(m.data), news(latched=True)
+        String, "/news", lambda m: received.append(m.data), news(latched=True)
     )
     publisher = ends.near.create_publisher(String, "/news", news(latched=True))
     publisher.publish(String(data="old"))
     arrived(subscription, 1)
     until(lambda: subscription.get_publisher_count() == 1, "the match")
     ends.pass_time(1.0)
-    assert heard == ["old"]
+    assert received == ["old"]
     publisher.publish(String(data="older"))
     arrived(subscription, 1)
     ends.clock.now_ns += 1_000_000_000
     ends.pass_time(0.01)
-    assert heard == ["old"]
+    assert received == ["old"]
 
 
 def test_deadlines_of_both_ends(ends: Ends) -> None:
@@ -153,7 +153,7 @@ def test_deadlines_of_both_ends(ends: Ends) -> None:
     )
     until(lambda: publisher.get_subscription_count() == 1, "the match")
     ends.pass_time(2.0)
-    assert offered == requested == []  # they begin with the first message
+    assert offered == requested == []  # deadlines begin with the first message
     for _ in range(2):
         publisher.publish(String())
         arrived(subscription, 1)
@@ -171,7 +171,7 @@ def test_deadlines_of_both_ends(ends: Ends) -> None:
 
 
 class Manual:
-    """A publisher that asserts itself, and what a subscription is told of it."""
+    """A MANUAL_BY_TOPIC publisher and the liveliness events of a subscription."""
 
     def __init__(self, ends: Ends, lease_s: float = 1.0, **qos: Any) -> None:
         self.ends = ends
@@ -186,9 +186,9 @@ class Manual:
         self.publisher = ends.near.create_publisher(
             String, "/t", self.qos, event_callbacks=callbacks
         )
-        self.subscription, self.changes = self.listen()
+        self.subscription, self.changes = self.subscribe()
 
-    def listen(self) -> tuple[Subscription[Any], list[Changed]]:
+    def subscribe(self) -> tuple[Subscription[Any], list[Changed]]:
         changes: list[Changed] = []
         subscription = self.ends.far.create_subscription(
             String,
@@ -206,15 +206,15 @@ class Manual:
         arrived(self.subscription, 1)
 
 
-def test_a_publisher_that_asserts_itself_lives_by_its_messages(ends: Ends) -> None:
+def test_messages_keep_a_manual_publisher_alive(ends: Ends) -> None:
     manual = Manual(ends)
     ends.pass_time(3.0)
-    assert manual.changes == []  # it has not said anything yet
+    assert manual.changes == []  # no message yet
     for _ in range(3):
         manual.publish()
         ends.pass_time(0.9)
     assert manual.changes == [Changed(1, 0, 1, 0)]
-    _, late = manual.listen()
+    _, late = manual.subscribe()
     ends.pass_time(0.09)
     assert late == [Changed(1, 0, 1, 0)]  # known to be alive
     ends.pass_time(0.1)
@@ -225,50 +225,52 @@ def test_a_publisher_that_asserts_itself_lives_by_its_messages(ends: Ends) -> No
     ends.pass_time(0.1)
     assert manual.changes[2:] == [Changed(1, 0, 1, -1)]
     manual.publisher.destroy()
-    until(lambda: manual.subscription.get_publisher_count() == 0, "the parting")
+    until(lambda: manual.subscription.get_publisher_count() == 0, "the unmatch")
     ends.pass_time(3.0)
     assert manual.changes[3:] == [Changed(0, 0, -1, 0)]
 
 
-def test_one_that_is_gone_while_it_was_silent_is_no_longer_counted(ends: Ends) -> None:
+def test_a_publisher_that_closes_while_not_alive_is_not_counted(
+    ends: Ends,
+) -> None:
     manual = Manual(ends)
     manual.publish()
     ends.pass_time(2.0)
     manual.publisher.destroy()
-    until(lambda: manual.subscription.get_publisher_count() == 0, "the parting")
+    until(lambda: manual.subscription.get_publisher_count() == 0, "the unmatch")
     ends.pass_time(0.1)
     assert manual.changes[-1] == Changed(0, 0, 0, -1)
 
 
-def test_a_history_is_no_sign_of_life(ends: Ends) -> None:
-    """What was kept for latecomers may be of a publisher that hangs by now."""
+def test_history_does_not_assert_liveliness(ends: Ends) -> None:
+    """The publisher of samples kept for late joiners may hang meanwhile."""
     manual = Manual(ends, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     manual.publish()
     ends.pass_time(2.0)
-    late, changes = manual.listen()
+    late, changes = manual.subscribe()
     arrived(late, 1)
     ends.pass_time(0.1)
     assert changes == []
 
 
-def test_assertions_without_messages_are_heard(ends: Ends) -> None:
+def test_assertions_without_messages_keep_a_publisher_alive(ends: Ends) -> None:
     manual = Manual(ends)
     ends.pass_time(0.1)
 
-    def is_told() -> bool:
+    def has_matched() -> bool:
         ends.pass_time(0.01)
         return bool(manual.matched)
 
-    until(is_told, "the match")
+    until(has_matched, "the match")
     until(lambda: manual.subscription.get_publisher_count() == 1, "the match")
     said: list[str] = []
     ends.near.context.log.sinks.append(lambda record: said.append(record.message))
-    heard: list[Any] = []
-    ends.far.context.graph.on_assertion(lambda *ends: heard.append(ends))
+    received: list[Any] = []
+    ends.far.context.graph.on_assertion(lambda *ends: received.append(ends))
     for count in (1, 2, 3):
         manual.publisher.assert_liveliness()
         if ends.over_zenoh:
-            until(lambda count=count: len(heard) == count, "its sign")  # type: ignore[misc]
+            until(lambda count=count: len(received) == count, "the assertion")  # type: ignore[misc]
         ends.pass_time(0.9)
     assert manual.changes == [Changed(1, 0, 1, 0)]
     ends.pass_time(0.2)

@@ -1,9 +1,9 @@
-"""What every transport must do for services; each implementation runs the suite."""
+"""Conformance suite for services, run with every transport."""
 
 from collections.abc import Iterator
 
 import pytest
-from transport_benches import PAIRS, InProcessPair, Pair
+from transport_pairs import PAIRS, InProcessPair, Pair
 
 from navette.errors import InvalidValueError
 from navette.msgs.example_interfaces.srv import AddTwoInts
@@ -23,7 +23,7 @@ TYPE = "example_interfaces/srv/AddTwoInts"
 
 
 class Bench:
-    """Opens servers at one end, clients at the other, notes what arrives."""
+    """Opens servers at one end and clients at the other, and records what arrives."""
 
     def __init__(self, pair: Pair) -> None:
         self.pair = pair
@@ -71,7 +71,7 @@ def local_bench() -> Iterator[Bench]:
     pair.close()
 
 
-def test_a_reply_goes_back_to_the_client_that_asked(bench: Bench) -> None:
+def test_a_reply_reaches_the_client_of_the_request(bench: Bench) -> None:
     requests, server = bench.server()
     first, port_1 = bench.client()
     second, port_2 = bench.client()
@@ -86,7 +86,7 @@ def test_a_reply_goes_back_to_the_client_that_asked(bench: Bench) -> None:
     assert [(r.message.sum, r.sequence) for r in second] == [(2, 7)]
 
 
-def test_what_is_edited_later_is_not_seen(bench: Bench) -> None:
+def test_later_changes_of_a_message_have_no_effect(bench: Bench) -> None:
     requests, server = bench.server()
     replies, client = bench.client()
     asked = AddTwoInts.Request(a=1)
@@ -100,7 +100,7 @@ def test_what_is_edited_later_is_not_seen(bench: Bench) -> None:
     assert replies[0].message.sum == 1
 
 
-def test_a_failure_is_told(bench: Bench) -> None:
+def test_a_failure_is_reported(bench: Bench) -> None:
     requests, server = bench.server()
     replies, client = bench.client()
     client.request(AddTwoInts.Request(), 0, 3)
@@ -110,10 +110,10 @@ def test_a_failure_is_told(bench: Bench) -> None:
     assert replies == [Reply(None, 3, "ValueError: no")]
 
 
-def test_servers_are_counted_as_they_come_and_go(bench: Bench) -> None:
+def test_servers_are_counted(bench: Bench) -> None:
     _, client = bench.client()
     assert client.server_count == 0
-    client.request(AddTwoInts.Request(), 0, 1)  # heard by nobody
+    client.request(AddTwoInts.Request(), 0, 1)  # no server yet
     requests, server = bench.server()
     bench.server("/other")
     bench.settle()
@@ -124,7 +124,7 @@ def test_servers_are_counted_as_they_come_and_go(bench: Bench) -> None:
     assert (client.server_count, requests) == (0, [])
 
 
-def test_a_client_that_left_is_no_error(bench: Bench) -> None:
+def test_a_reply_to_a_closed_client_is_dropped(bench: Bench) -> None:
     requests, server = bench.server()
     replies, client = bench.client()
     client.request(AddTwoInts.Request(), 0, 1)
@@ -141,7 +141,7 @@ def test_another_type_is_refused_and_leaves_nothing(local_bench: Bench) -> None:
     local_bench.server()
     with pytest.raises(InvalidValueError, match=r"AddTwoInts \(/n1\); node /n2 .*Se"):
         local_bench.client(type_name="std_srvs/srv/SetBool")
-    with pytest.raises(InvalidValueError, match=r"/n3 wants to serve it as std_srvs"):
+    with pytest.raises(InvalidValueError, match=r"/n3 cannot serve it as std_srvs"):
         local_bench.server(type_name="std_srvs/srv/SetBool")
     assert [e.node_name for e in local_bench.pair.service_endpoints()] == ["n1"]
 
@@ -152,7 +152,7 @@ def test_a_service_may_have_the_name_of_a_topic(bench: Bench) -> None:
     assert [e.kind for e in bench.pair.service_endpoints()] == [EndpointKind.SERVICE]
 
 
-def test_qos_that_falls_short_keeps_them_apart(bench: Bench) -> None:
+def test_endpoints_with_incompatible_qos_do_not_match(bench: Bench) -> None:
     best_effort = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
     requests, _ = bench.server()
     _, client = bench.client(qos=best_effort)

@@ -1,10 +1,10 @@
-"""What every transport must do; each implementation runs the same suite."""
+"""Conformance suite for topics, run with every transport."""
 
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import PAIRS, InProcessPair, Pair, message_of, until
+from transport_pairs import PAIRS, InProcessPair, Pair, message_of, until
 
 from navette.errors import InvalidValueError
 from navette.msgs.nav_msgs.msg import OccupancyGrid
@@ -28,7 +28,7 @@ BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class Bench:
-    """Opens publishers at one end, subscriptions at the other, notes what arrives."""
+    """Opens publishers at one end and subscriptions at the other; records samples."""
 
     def __init__(self, pair: Pair) -> None:
         self.pair = pair
@@ -101,7 +101,7 @@ def test_samples_arrive_in_order_with_stamp_and_sequence(bench: Bench) -> None:
     assert [(item[1], item[3]) for item in items] == [(100, 1), (200, 2), (300, 3)]
 
 
-def test_every_subscription_of_the_topic_gets_it_and_no_other(bench: Bench) -> None:
+def test_every_subscription_of_the_topic_receives_a_sample(bench: Bench) -> None:
     first, _ = bench.subscription()
     second, _ = bench.subscription()
     other, _ = bench.subscription("/other")
@@ -110,7 +110,7 @@ def test_every_subscription_of_the_topic_gets_it_and_no_other(bench: Bench) -> N
     assert (texts(first), texts(second), other) == (["x"], ["x"], [])
 
 
-def test_what_the_publisher_edits_later_is_not_seen(bench: Bench) -> None:
+def test_later_changes_by_the_publisher_have_no_effect(bench: Bench) -> None:
     copied, _ = bench.subscription()
     shared, _ = bench.subscription(shared=True)
     message = String(data="before")
@@ -120,7 +120,7 @@ def test_what_the_publisher_edits_later_is_not_seen(bench: Bench) -> None:
     assert (texts(copied), texts(shared)) == (["before"], ["before"])
 
 
-def test_what_a_subscriber_edits_is_not_seen_by_others(bench: Bench) -> None:
+def test_changes_by_a_subscriber_do_not_reach_others(bench: Bench) -> None:
     first, _ = bench.subscription()
     second, _ = bench.subscription()
     shared, _ = bench.subscription(shared=True)
@@ -145,7 +145,7 @@ def test_arrays_are_not_shared_between_copies(bench: Bench) -> None:
     assert list(message_of(second[0]).data) == [1, 2, 3]
 
 
-def test_late_joiner_gets_the_last_depth_samples(bench: Bench) -> None:
+def test_a_late_joiner_receives_the_last_depth_samples(bench: Bench) -> None:
     publisher = bench.publisher(qos=LATCHED)
     for number in range(1, 6):
         publisher.send(String(data=f"m{number}"), number, number)
@@ -154,7 +154,7 @@ def test_late_joiner_gets_the_last_depth_samples(bench: Bench) -> None:
     newest, _ = bench.subscription(qos=one_only)
     shared, _ = bench.subscription(qos=LATCHED, shared=True)
     volatile, _ = bench.subscription()
-    until(lambda: (len(all_kept), len(shared), len(newest)) == (3, 3, 1), "the past")
+    until(lambda: (len(all_kept), len(shared), len(newest)) == (3, 3, 1), "the history")
     bench.settle()
     assert texts(all_kept) == ["m3", "m4", "m5"]
     assert texts(shared) == ["m3", "m4", "m5"]
@@ -168,10 +168,10 @@ def test_latched_samples_are_copies(bench: Bench) -> None:
     publisher.send(message, 0, 1)
     message.data = "after"
     first, _ = bench.subscription(qos=LATCHED)
-    until(lambda: len(first) == 1, "the past")
+    until(lambda: len(first) == 1, "the history")
     message_of(first[0]).data = "mine"
     second, _ = bench.subscription(qos=LATCHED)
-    until(lambda: texts(second) == ["before"], "the past")
+    until(lambda: texts(second) == ["before"], "the history")
 
 
 def test_keep_all_keeps_all(bench: Bench) -> None:
@@ -182,7 +182,7 @@ def test_keep_all_keeps_all(bench: Bench) -> None:
     for number in range(100):
         publisher.send(String(data=str(number)), 0, number + 1)
     items, _ = bench.subscription(qos=qos)
-    until(lambda: len(items) >= 100, "the past")
+    until(lambda: len(items) >= 100, "the history")
     bench.settle()
     assert len(items) == 100
 
@@ -231,11 +231,11 @@ def test_another_type_on_the_topic_is_an_error_that_names_both(
     local_bench: Bench,
 ) -> None:
     local_bench.publisher()
-    with pytest.raises(InvalidValueError, match=r"/t carries std_msgs/msg/String.*n1"):
+    with pytest.raises(InvalidValueError, match=r"/t has the type std_msgs.*n1"):
         local_bench.subscription(cls=Float64, type_name="std_msgs/msg/Float64")
 
 
-def test_the_type_is_free_again_when_all_have_left(bench: Bench) -> None:
+def test_a_topic_without_endpoints_can_get_another_type(bench: Bench) -> None:
     bench.publisher().close()
     items, _ = bench.subscription(cls=Float64, type_name="std_msgs/msg/Float64")
     publisher = bench.publisher(cls=Float64, type_name="std_msgs/msg/Float64")
@@ -244,7 +244,7 @@ def test_the_type_is_free_again_when_all_have_left(bench: Bench) -> None:
     assert message_of(items[0]).data == 1.5
 
 
-def test_closed_ports_neither_give_nor_get(bench: Bench) -> None:
+def test_closed_ports_neither_send_nor_receive(bench: Bench) -> None:
     publisher = bench.publisher()
     gone, gone_port = bench.subscription()
     stays, stays_port = bench.subscription()
@@ -258,7 +258,7 @@ def test_closed_ports_neither_give_nor_get(bench: Bench) -> None:
     assert (publisher.matched_count, stays_port.matched_count) == (0, 0)
 
 
-def test_graph_lists_endpoints_and_tells_of_changes(local_bench: Bench) -> None:
+def test_the_graph_lists_endpoints_and_reports_changes(local_bench: Bench) -> None:
     events: list[str] = []
 
     class Observer(TransportObserver):
@@ -287,9 +287,9 @@ def test_graph_lists_endpoints_and_tells_of_changes(local_bench: Bench) -> None:
 
 # With retransmission every sample is serialised, for the publisher's cache.
 @pytest.mark.parametrize("bench", ["in-process", "zenoh"], indirect=True)
-def test_no_subscription_no_work(bench: Bench) -> None:
+def test_messages_without_a_subscription_are_not_serialised(bench: Bench) -> None:
     class Loud:
         def __getattr__(self, name: str) -> Any:
-            raise AssertionError("the message was looked at")
+            raise AssertionError("the message was serialised")
 
     bench.publisher().send(Loud(), 0, 1)

@@ -1,11 +1,11 @@
-"""Ports that are closed by one thread while another one uses them."""
+"""Ports that one thread closes while another uses them."""
 
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
 import zenoh
-from transport_benches import ZenohPair, until
+from transport_pairs import ZenohPair, until
 
 from navette.msgs.std_msgs.msg import String
 from navette.transports import Endpoint, EndpointKind, EndpointQos
@@ -26,7 +26,7 @@ def end(kind: EndpointKind) -> Endpoint:
 
 @pytest.fixture
 def port(pair: ZenohPair) -> Any:
-    """A publisher that somebody hears."""
+    """A publisher with a matched subscription."""
     pair.near.subscribe(
         end(EndpointKind.SUBSCRIPTION), String, lambda _: None, shared=False
     )
@@ -35,7 +35,7 @@ def port(pair: ZenohPair) -> Any:
     return port
 
 
-def test_a_message_under_way_when_its_publisher_closes_is_no_error(port: Any) -> None:
+def test_closing_during_a_send_is_not_an_error(port: Any) -> None:
     put, tried = port._put, []
 
     def interrupted(data: Any, attachment: bytes) -> None:
@@ -50,7 +50,7 @@ def test_a_message_under_way_when_its_publisher_closes_is_no_error(port: Any) ->
     assert len(tried) == 1
 
 
-def test_what_goes_wrong_while_it_is_open_is_told(port: Any) -> None:
+def test_errors_of_an_open_publisher_are_raised(port: Any) -> None:
     def broken(data: Any, attachment: bytes) -> None:
         raise zenoh.ZError("no")
 

@@ -1,4 +1,4 @@
-"""Nodes of contexts that share a network and no process's memory."""
+"""Nodes of contexts that share only the network."""
 
 import json
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from transport_benches import until
+from transport_pairs import until
 
 from free_ports import free_endpoint
 from navette import Context, DurabilityPolicy, HistoryPolicy, Node, QoSProfile
@@ -29,7 +29,7 @@ LATCHED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Network:
-    """Contexts, each with a session of its own, and what runs their nodes."""
+    """Contexts with their own sessions, and executors for their nodes."""
 
     def __init__(self, stack: ExitStack) -> None:
         self._stack = stack
@@ -66,7 +66,7 @@ def transport_of(node: Node) -> ZenohTransport:
     return transport
 
 
-def test_a_publisher_that_comes_later_is_heard_once(network: Network) -> None:
+def test_messages_of_a_late_publisher_arrive_once(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
     heard: list[str] = []
     here.create_subscription(String, "map", lambda m: heard.append(m.data), LATCHED)
@@ -112,7 +112,7 @@ def test_a_slow_subscription_keeps_the_newest(network: Network) -> None:
     assert heard == ["3", "4"]
 
 
-def test_a_payload_that_is_no_such_message_calls_nobody_and_stops_nothing(
+def test_an_invalid_payload_is_dropped(
     network: Network,
 ) -> None:
     here, there = network.node("here"), network.node("there")
@@ -131,10 +131,10 @@ def test_a_payload_that_is_no_such_message_calls_nobody_and_stops_nothing(
     publisher.publish(String(data="fine"))
     network.until(lambda: heard and with_info and len(raw) == 2, "the good one")
     assert ([m.data for m in heard], with_info) == (["fine"], ["fine"])
-    assert raw == [garbage, serialize(String(data="fine"))]  # as it came
+    assert raw == [garbage, serialize(String(data="fine"))]  # unchanged
 
 
-def test_servers_here_and_there_are_both_asked_once(network: Network) -> None:
+def test_local_and_remote_servers_are_each_called_once(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
     asked: list[str] = []
 
@@ -155,7 +155,7 @@ def test_servers_here_and_there_are_both_asked_once(network: Network) -> None:
     assert (future.result().sum, sorted(asked)) == (3, ["here", "there"])
 
 
-def test_an_awaited_service_may_await_one_of_the_group_that_asked(
+def test_an_awaited_service_may_call_back_into_the_waiting_group(
     network: Network,
 ) -> None:
     here, there = network.node("here"), network.node("there")
@@ -184,7 +184,7 @@ def test_an_awaited_service_may_await_one_of_the_group_that_asked(
     assert sums == [6]
 
 
-def test_events_tell_of_remote_endpoints(network: Network) -> None:
+def test_events_report_remote_endpoints(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
     alive: list[int] = []
     matched: list[int] = []
@@ -216,7 +216,7 @@ def test_events_tell_of_remote_endpoints(network: Network) -> None:
     network.until(lambda: types == [1] and other == [1], "the other type")
 
 
-def test_what_is_destroyed_leaves_nothing_behind(network: Network) -> None:
+def test_destroyed_endpoints_leave_nothing_behind(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
     for _ in range(3):
         guest = Node("guest", context=here.context)
@@ -229,7 +229,7 @@ def test_what_is_destroyed_leaves_nothing_behind(network: Network) -> None:
     transport = transport_of(here)
     assert not transport._ports
     assert not transport._tokens.nodes()
-    assert not transport._tokens._made
+    assert not transport._tokens._created
     assert not transport.own_gids
     assert not transport.session.graph._locals
     graph = transport_of(there).session.graph
@@ -250,7 +250,7 @@ def test_contexts_of_one_graph_share_the_session_and_the_domain(
     graph.close()
 
 
-def test_a_graph_with_nodes_cannot_join_any_more(network: Network) -> None:
+def test_a_graph_with_nodes_cannot_join_the_network(network: Network) -> None:
     graph = new_graph()
     with Context(graph=graph, transport="inprocess") as context:
         Node("early", context=context)
@@ -259,7 +259,7 @@ def test_a_graph_with_nodes_cannot_join_any_more(network: Network) -> None:
     graph.close()
 
 
-def test_a_configuration_file_as_for_rmw_zenoh(
+def test_rmw_zenohs_configuration_files_are_used(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     router = free_endpoint()

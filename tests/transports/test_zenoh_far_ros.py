@@ -1,9 +1,9 @@
-"""A peer set as rmw_zenoh sets it, on another machine: it cannot be called."""
+"""A peer with rmw_zenoh's configuration on another machine, which does not listen."""
 
 import json
 
 import zenoh
-from transport_benches import until
+from transport_pairs import until
 
 from free_ports import free_endpoint
 from navette.transports.zenoh import Settings, ZenohTransport
@@ -11,7 +11,7 @@ from navette.transports.zenoh import Settings, ZenohTransport
 STRATEGY = {"peer": {"to_router": "always", "to_peer": "greater-zid"}}
 
 
-def test_it_calls_navette() -> None:
+def test_the_peer_opens_the_link_to_navette() -> None:
     router = free_endpoint()
     near = ZenohTransport(7, lambda: 5, Settings(router=(router,)))
     config = zenoh.Config()

@@ -1,11 +1,11 @@
-"""Who asks is heard of by its tokens, which may be read later than what it asks."""
+"""A client's tokens may be read later than its request."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import pytest
-from transport_benches import ZenohPair, message_of, until
+from transport_pairs import ZenohPair, message_of, until
 
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import String
@@ -40,7 +40,7 @@ def endpoint(kind: EndpointKind, qos: EndpointQos | None = None) -> Endpoint:
 
 
 class Worker:
-    """Tells of its progress on a topic before it answers."""
+    """Publishes its progress on a topic before it replies."""
 
     def __init__(self, pair: ZenohPair, qos: EndpointQos | None = None) -> None:
         self._requests: list[Request] = []
@@ -54,48 +54,48 @@ class Worker:
         self._port.reply(request.id, AddTwoInts.Response(sum=request.message.a))
 
 
-class Asker:
-    """Listens to the progress, and asks."""
+class Requester:
+    """Subscribes to the progress and sends a request."""
 
     def __init__(self, pair: ZenohPair) -> None:
         self.replies: list[Reply] = []
         self.items: list[Item] = []
-        # The client comes first: no order of declarations is relied upon.
+        # The client comes first: the order of declarations does not matter.
         self.client = pair.far.connect(
             endpoint(EndpointKind.CLIENT), self.replies.append
         )
-        self._ears: Any = pair.far.subscribe(
+        self._subscription: Any = pair.far.subscribe(
             endpoint(EndpointKind.SUBSCRIPTION), String, self.items.append, shared=False
         )
 
-    def ask(self) -> None:
+    def call(self) -> None:
         self.client.request(AddTwoInts.Request(a=3), 0, 1)
         until(lambda: bool(self.replies), "the reply")
 
 
-def test_who_asks_hears_what_follows_though_its_tokens_are_still_unread(
+def test_messages_reach_a_requester_whose_tokens_are_unread(
     pair: ZenohPair,
 ) -> None:
     Worker(pair)
-    with pair.near_zenoh.session.graph._lock:  # nothing new is known at the server
-        asker = Asker(pair)
-        asker.ask()
+    with pair.near_zenoh.session.graph._lock:  # the server's graph cannot change
+        requester = Requester(pair)
+        requester.call()
         assert pair.near_zenoh.session.graph._endpoints == {}
-    assert asker.replies[0].message.sum == 3
-    until(lambda: len(asker.items) == 1, "the progress")
-    assert message_of(asker.items[0]).data == "working"
+    assert requester.replies[0].message.sum == 3
+    until(lambda: len(requester.items) == 1, "the progress")
+    assert message_of(requester.items[0]).data == "working"
 
 
-def test_an_offer_that_falls_short_is_still_not_heard(pair: ZenohPair) -> None:
+def test_a_publisher_with_incompatible_qos_is_not_received(pair: ZenohPair) -> None:
     Worker(pair, BEST_EFFORT)
-    asker = Asker(pair)
+    requester = Requester(pair)
     pair.settle()
-    asker.ask()
+    requester.call()
     pair.settle()
-    assert asker.items == []
+    assert requester.items == []
 
 
-def test_an_answer_by_topic_is_heard_too(pair: ZenohPair) -> None:
+def test_a_message_in_response_to_a_message_is_received(pair: ZenohPair) -> None:
     answering = pair.near.advertise(endpoint(EndpointKind.PUBLISHER), String)
     question = Endpoint(
         EndpointKind.SUBSCRIPTION,
@@ -114,16 +114,16 @@ def test_an_answer_by_topic_is_heard_too(pair: ZenohPair) -> None:
     )
     pair.settle()
     with pair.near_zenoh.session.graph._lock:
-        asker = Asker(pair)
+        requester = Requester(pair)
         offer = replace(question, kind=EndpointKind.PUBLISHER)
         pair.far.advertise(offer, String).send(String(data="?"), 0, 1)
-        until(lambda: len(asker.items) == 1, "the answer")
+        until(lambda: len(requester.items) == 1, "the answer")
 
 
-def test_who_has_heard_nothing_for_long_asks_nobody(pair: ZenohPair) -> None:
+def test_after_two_seconds_only_the_graph_counts(pair: ZenohPair) -> None:
     publisher = pair.near.advertise(endpoint(EndpointKind.PUBLISHER), String)
     with pair.near_zenoh.session.graph._lock:
-        asker = Asker(pair)
-        publisher.send(String(data="unheard"), 10_000_000_000, 1)
+        requester = Requester(pair)
+        publisher.send(String(data="not sent"), 10_000_000_000, 1)
     pair.settle()
-    assert asker.items == []
+    assert requester.items == []

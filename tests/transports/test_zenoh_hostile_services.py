@@ -1,4 +1,4 @@
-"""Servers and clients among those that err, pretend, flood or never end."""
+"""Servers and clients among peers that forge, flood or never reply."""
 
 import logging
 import queue
@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 import zenoh
-from transport_benches import LIMIT_S, ZenohPair, until
+from transport_pairs import LIMIT_S, ZenohPair, until
 
 from navette.msgs import deserialize, serialize, type_hash
 from navette.msgs.example_interfaces.srv import AddTwoInts
@@ -50,7 +50,7 @@ def connect(transport: Any, type_name: str) -> tuple[list[Reply], Any]:
 
 
 class FalseServer:
-    """Answers at once what others are asked, and has told nobody that it is there."""
+    """Replies at once to requests for another server, without a token in the graph."""
 
     def __init__(self, pair: ZenohPair, response: bytes, times: int) -> None:
         self._response, self._times = response, times
@@ -74,7 +74,7 @@ class FalseServer:
     [(b"\x00\x01\x00\x00", 1), (serialize(AddTwoInts.Response(sum=666)), 500)],
     ids=["malformed", "forged"],
 )
-def test_who_only_pretends_to_serve_does_not_outrun_the_server(
+def test_a_server_outside_the_graph_does_not_preempt_the_real_one(
     pair: ZenohPair, response: bytes, times: int
 ) -> None:
     requests, server = serve(pair.near, ADD)
@@ -83,8 +83,8 @@ def test_who_only_pretends_to_serve_does_not_outrun_the_server(
     false = FalseServer(pair, response, times)
     sent = 0
 
-    def both_were_asked() -> bool:
-        """One call; its link may take a while, so none is left waiting meanwhile."""
+    def both_were_called() -> bool:
+        """Make one call; the link of the false server may take a while."""
         nonlocal sent
         had_a_link = false.asked > 0
         sent += 1
@@ -96,7 +96,7 @@ def test_who_only_pretends_to_serve_does_not_outrun_the_server(
         until(lambda: len(replies) == sent, "the reply")
         return had_a_link
 
-    until(both_were_asked, "the false server's link")
+    until(both_were_called, "the false server's link")
     pair.settle()
     assert [(r.sequence, r.message.sum) for r in replies] == [
         (each, each) for each in range(1, sent + 1)
@@ -104,7 +104,7 @@ def test_who_only_pretends_to_serve_does_not_outrun_the_server(
     false.transport.close()
 
 
-def test_requests_that_wait_do_not_fill_the_memory(pair: ZenohPair) -> None:
+def test_waiting_requests_are_limited(pair: ZenohPair) -> None:
     requests, server = serve(pair.near, GET)
     replies, client = connect(pair.far, GET)
     pair.settle()
@@ -119,10 +119,10 @@ def test_requests_that_wait_do_not_fill_the_memory(pair: ZenohPair) -> None:
     until(lambda: len(requests) == 3, "the request that fits again")
 
 
-def ask(
+def send_request(
     pair: ZenohPair, like: Request, *, a: int, source_ns: int
 ) -> queue.Queue[zenoh.Reply]:
-    """A request under a client's own name and number, of whoever knows them."""
+    """Send a request with a client's gid and sequence number."""
     replies: queue.Queue[zenoh.Reply] = queue.Queue()
     pair.far_zenoh.session.zenoh.get(
         data_key(7, "/s", ADD, type_hash(ADD)),
@@ -140,7 +140,7 @@ def sum_of(replies: queue.Queue[zenoh.Reply]) -> int:
 
 
 @pytest.mark.parametrize("first", ["client", "stranger"])
-def test_who_uses_a_clients_name_and_number_does_not_stop_its_call(
+def test_a_forged_request_does_not_block_the_real_one(
     pair: ZenohPair, first: str
 ) -> None:
     requests, server = serve(pair.near, ADD)
@@ -151,10 +151,10 @@ def test_who_uses_a_clients_name_and_number_does_not_stop_its_call(
     guess = requests[0]._replace(id=requests[0].id._replace(sequence=2))
     if first == "client":
         client.request(AddTwoInts.Request(a=10), 5, 2)
-        until(lambda: len(requests) == 2, "the true request")
-    stranger = ask(pair, guess, a=666, source_ns=6)
+        until(lambda: len(requests) == 2, "the real request")
+    stranger = send_request(pair, guess, a=666, source_ns=6)
     if first == "stranger":
-        until(lambda: len(requests) == 2, "the stranger's request")
+        until(lambda: len(requests) == 2, "the forged request")
         client.request(AddTwoInts.Request(a=10), 5, 2)
     until(lambda: len(requests) == 3, "both requests")
     for request in reversed(requests):
@@ -165,7 +165,7 @@ def test_who_uses_a_clients_name_and_number_does_not_stop_its_call(
     assert len(server.waiting) == 0
 
 
-def test_a_request_that_comes_twice_is_done_once_and_both_are_told(
+def test_a_duplicate_request_is_served_once_and_both_queries_answered(
     pair: ZenohPair,
 ) -> None:
     requests, server = serve(pair.near, ADD)
@@ -173,14 +173,14 @@ def test_a_request_that_comes_twice_is_done_once_and_both_are_told(
     pair.settle()
     client.request(AddTwoInts.Request(a=1), 5, 1)
     until(lambda: len(requests) == 1, "the request")
-    twin = ask(pair, requests[0], a=1, source_ns=5)
-    until(lambda: len(server.waiting) == 2, "the other way's")
+    twin = send_request(pair, requests[0], a=1, source_ns=5)
+    until(lambda: len(server.waiting) == 2, "the duplicate")
     server.reply(requests[0].id, AddTwoInts.Response(sum=1))
     until(lambda: len(replies) == 1, "the reply")
     assert (replies[0].message.sum, sum_of(twin), len(requests)) == (1, 1, 1)
 
 
-def test_a_reply_to_who_uses_the_name_of_a_client_here_is_not_for_that_client() -> None:
+def test_a_reply_to_a_forged_gid_does_not_reach_the_local_client() -> None:
     transport = InProcessTransport()
     requests, server = serve(transport, ADD)
     end = Endpoint(EndpointKind.CLIENT, "/s", ADD, EndpointQos(), "n", "/", b"its")
@@ -196,13 +196,13 @@ def test_a_reply_to_who_uses_the_name_of_a_client_here_is_not_for_that_client() 
 
 
 def test_a_request_to_another_service_is_refused(pair: ZenohPair) -> None:
-    """As Zenoh delivers it when the two ends of a link mean different keys."""
+    """Zenoh delivers such queries when the ends of a link disagree on key numbers."""
     requests, _ = serve(pair.near, ADD)
     other = Endpoint(EndpointKind.CLIENT, "/other", ADD, EndpointQos(), "n", "/", b"")
     token, _ = pair.far_zenoh._tokens.take(other)
     keep = pair.far_zenoh._tokens.declare(token)
     pair.settle()
-    keep.undeclare()  # the link is lost, and back before its tokens are
+    keep.undeclare()  # the link is lost and renewed, its tokens are not yet
     pair.settle()
     (answer,) = pair.far_zenoh.session.zenoh.get(
         data_key(7, "/s", ADD, type_hash(ADD)),
@@ -214,7 +214,7 @@ def test_a_request_to_another_service_is_refused(pair: ZenohPair) -> None:
     assert requests == []
 
 
-def test_who_calls_itself_something_else_each_time_is_told_of_a_few_times(
+def test_warnings_about_one_topic_are_limited(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     log_once = LogOnce()
@@ -223,7 +223,7 @@ def test_who_calls_itself_something_else_each_time_is_told_of_a_few_times(
             log_once.warning(("sample", "/flooded", str(number)), "bad")
             log_once.warning(("sample", "/flooded", "the same"), "bad")
         log_once.warning(("sample", "/other", "somebody"), "bad elsewhere")
-    told = [record.getMessage() for record in caplog.records]
-    assert told[:4] == ["bad"] * 4
-    assert told[4].startswith("bad (further warnings")
-    assert told[5:] == ["bad elsewhere"]
+    logged = [record.getMessage() for record in caplog.records]
+    assert logged[:4] == ["bad"] * 4
+    assert logged[4].startswith("bad (further warnings")
+    assert logged[5:] == ["bad elsewhere"]

@@ -1,10 +1,10 @@
-"""Listeners among those who use others' names, and numbers as they like."""
+"""Subscriptions among peers that forge gids and sequence numbers."""
 
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import ZenohPair, message_of, until
+from transport_pairs import ZenohPair, message_of, until
 
 from navette.msgs import serialize, type_hash
 from navette.msgs.std_msgs.msg import String
@@ -37,14 +37,16 @@ def pair() -> Iterator[ZenohPair]:
 
 @pytest.mark.parametrize("qos", QOS.values(), ids=list(QOS))
 @pytest.mark.parametrize("number", [2**63 - 1, 2**62, FAR_AHEAD + 10])
-def test_a_number_in_anothers_name_does_not_shut_it_out(
+def test_a_forged_sequence_number_does_not_block_the_publisher(
     pair: ZenohPair, qos: EndpointQos, number: int
 ) -> None:
     items: list[Item] = []
-    ear = Endpoint(EndpointKind.SUBSCRIPTION, "/t", TYPE, qos, "ear", "/", b"")
-    pair.near.subscribe(ear, String, items.append, shared=False)
-    mouth = Endpoint(EndpointKind.PUBLISHER, "/t", TYPE, qos, "mouth", "/", b"")
-    publisher: Any = pair.far.advertise(mouth, String)
+    subscription = Endpoint(
+        EndpointKind.SUBSCRIPTION, "/t", TYPE, qos, "receiver", "/", b""
+    )
+    pair.near.subscribe(subscription, String, items.append, shared=False)
+    endpoint = Endpoint(EndpointKind.PUBLISHER, "/t", TYPE, qos, "sender", "/", b"")
+    publisher: Any = pair.far.advertise(endpoint, String)
     pair.settle()
     (seen,) = pair.near.endpoints()
     publisher.send(String(data="1"), 0, 1)
@@ -58,15 +60,17 @@ def test_a_number_in_anothers_name_does_not_shut_it_out(
         pair.settle()
         publisher.send(String(data=str(sequence)), 0, sequence)
     pair.settle()
-    heard = [message_of(item).data for item in items]
-    assert [text for text in heard if text != "forged"] == ["1", "2", "3"]
+    received = [message_of(item).data for item in items]
+    assert [text for text in received if text != "forged"] == ["1", "2", "3"]
 
 
-def test_what_is_far_too_long_is_not_even_put_together() -> None:
+def test_far_too_long_messages_are_not_assembled() -> None:
     pair = ZenohPair(max_message_bytes=1000)
     items: list[Item] = []
-    ear = Endpoint(EndpointKind.SUBSCRIPTION, "/t", TYPE, EndpointQos(), "e", "/", b"")
-    pair.near.subscribe(ear, String, items.append, shared=False)
+    subscription = Endpoint(
+        EndpointKind.SUBSCRIPTION, "/t", TYPE, EndpointQos(), "e", "/", b""
+    )
+    pair.near.subscribe(subscription, String, items.append, shared=False)
     sizes: list[int] = []
     pair.near_zenoh.session.zenoh.declare_subscriber(
         KEY, lambda sample: sizes.append(len(sample.payload))
@@ -76,7 +80,7 @@ def test_what_is_far_too_long_is_not_even_put_together() -> None:
     fine = serialize(String(data="fine"))
     for payload in (bytes(3_000_000), fine):
         publisher.put(payload, attachment=Attachment(1, 0, bytes(16)).encode())
-    until(lambda: len(items) == 1, "what is not too long")
-    until(lambda: len(sizes) == 1, "the same")
+    until(lambda: len(items) == 1, "the short message")
+    until(lambda: len(sizes) == 1, "the same message")
     assert sizes == [len(fine)]
     pair.close()

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 import zenoh
-from transport_benches import LIMIT_S, until
+from transport_pairs import LIMIT_S, until
 
 from free_ports import free_endpoint
 from navette import Context, DurabilityPolicy, Node, QoSProfile

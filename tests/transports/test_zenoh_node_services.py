@@ -1,4 +1,4 @@
-"""Services directly below a node's name share a queryable, and nobody notices."""
+"""Services directly below a node's name share a queryable."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 import zenoh
-from transport_benches import ZenohPair, until
+from transport_pairs import ZenohPair, until
 
 from navette.msgs import serialize, type_hash
 from navette.msgs.example_interfaces.srv import AddTwoInts
@@ -26,7 +26,7 @@ def pair() -> Iterator[ZenohPair]:
 
 
 class Server:
-    """Of the node ``/n``; answers at once, with its own number."""
+    """A server of the node ``/n`` that replies with its own number."""
 
     def __init__(self, transport: ZenohTransport, name: str, number: int) -> None:
         end = Endpoint(EndpointKind.SERVICE, name, ADD, EndpointQos(), "n", "/", b"")
@@ -37,8 +37,8 @@ class Server:
         self.port.reply(request.id, AddTwoInts.Response(sum=self.number))
 
 
-def ask(pair: ZenohPair, name: str) -> Reply:
-    """What comes for a request from the far end."""
+def call(pair: ZenohPair, name: str) -> Reply:
+    """Send a request from the far end; return the reply."""
     replies: list[Reply] = []
     end = Endpoint(EndpointKind.CLIENT, name, ADD, EndpointQos(), "m", "/", b"")
     client = pair.far.connect(end, replies.append)
@@ -54,19 +54,19 @@ def sum_of(reply: Reply) -> Any:
     return reply.message.sum
 
 
-def test_each_service_gets_its_own_requests(pair: ZenohPair) -> None:
+def test_each_service_receives_its_own_requests(pair: ZenohPair) -> None:
     near = pair.near_zenoh
     a, b = Server(near, "/n/a", 1), Server(near, "/n/b", 2)
     assert [*near._queryables._shared] == ["7/n"]
-    assert sum_of(ask(pair, "/n/a")) == 1
-    assert sum_of(ask(pair, "/n/b")) == 2
+    assert sum_of(call(pair, "/n/a")) == 1
+    assert sum_of(call(pair, "/n/b")) == 2
     a.port.close()
-    assert sum_of(ask(pair, "/n/b")) == 2
+    assert sum_of(call(pair, "/n/b")) == 2
     b.port.close()
     assert not near._queryables._shared
 
 
-def test_a_service_of_another_process_below_the_node_s_name_is_reached(
+def test_a_remote_service_below_the_same_node_name_is_called(
     pair: ZenohPair,
 ) -> None:
     Server(pair.near_zenoh, "/n/a", 1)
@@ -79,11 +79,11 @@ def test_a_service_of_another_process_below_the_node_s_name_is_reached(
 
     port = third.serve(end, answer)
     until(lambda: len(pair.far.service_endpoints()) == 2, "both servers' tokens")
-    assert sum_of(ask(pair, "/n/c")) == 3
+    assert sum_of(call(pair, "/n/c")) == 3
     third.close()
 
 
-def test_what_nobody_serves_is_not_answered(pair: ZenohPair) -> None:
+def test_queries_without_a_server_get_no_reply(pair: ZenohPair) -> None:
     server = Server(pair.near_zenoh, "/n/a", 1)
     pair.settle()
     gid = bytes(16)
@@ -95,20 +95,20 @@ def test_what_nobody_serves_is_not_answered(pair: ZenohPair) -> None:
             attachment=Attachment(1, 0, gid).encode(),
         )
         assert len(list(answers)) == count
-    # Nor is one who asks for all of the node's at once.
+    # A query for all services of the node gets no reply either.
     assert not list(pair.far_zenoh.session.zenoh.get("7/n/**"))
     server.port.close()
 
 
-def test_a_second_server_of_the_same_name_is_asked_too(pair: ZenohPair) -> None:
+def test_a_second_server_of_the_same_name_is_called_too(pair: ZenohPair) -> None:
     first, second = (Server(pair.near_zenoh, "/n/a", number) for number in (1, 2))
-    assert sum_of(ask(pair, "/n/a")) in (1, 2)
+    assert sum_of(call(pair, "/n/a")) in (1, 2)
     first.port.close()
-    assert sum_of(ask(pair, "/n/a")) == 2
+    assert sum_of(call(pair, "/n/a")) == 2
     second.port.close()
 
 
-def test_where_there_are_rules_each_service_has_its_own_key() -> None:
+def test_with_access_rules_each_service_has_its_own_queryable() -> None:
     assert not Settings().has_rules
     assert Settings(security=Path("keys")).has_rules
     assert Settings(session_file=Path("session.json5")).has_rules

@@ -1,4 +1,4 @@
-"""Several processes on one network: they meet, and outlive each other."""
+"""Several processes on one network: discovery, and the end of single processes."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ from contextlib import ExitStack
 from typing import Any
 
 import pytest
-from transport_benches import LIMIT_S, until, zenoh_environment
+from transport_pairs import LIMIT_S, until, zenoh_environment
 
 from free_ports import free_endpoint
 from navette import (
@@ -103,7 +103,7 @@ navette.spin(node)
 
 
 class Child:
-    """A process that says ``ready``; killed at the end, if it has not ended before."""
+    """A process that prints ``ready``; killed at the end of the test."""
 
     def __init__(
         self, program: str, router: str, *args: str, is_waited_for: bool = True
@@ -123,7 +123,7 @@ class Child:
             until(lambda: "ready" in self.lines, "the child's start")
 
     def end(self, signum: int = signal.SIGKILL) -> tuple[int, str]:
-        """Exit code and what it said on stderr."""
+        """Send a signal; return exit code and standard error."""
         if self._ended is None:
             self._process.send_signal(signum)
             code = self._process.wait(LIMIT_S)
@@ -140,7 +140,7 @@ class Child:
 
 
 class Network:
-    """A network of its own: children, and contexts of this process."""
+    """Child processes and contexts of this process on a private network."""
 
     def __init__(self, stack: ExitStack, monkeypatch: pytest.MonkeyPatch) -> None:
         self.router = free_endpoint()
@@ -168,7 +168,7 @@ def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
 
 def listen(node: Node) -> list[str]:
     heard: list[str] = []
-    # Nothing may be pushed out while the test waits for a process and does not spin.
+    # No message may be dropped while the test waits without spinning.
     node.create_subscription(String, "chatter", lambda m: heard.append(m.data), 10_000)
     return heard
 
@@ -181,10 +181,12 @@ def spin_until(executor: Executor, condition: Any, what: str) -> None:
     until(look, what)
 
 
-def test_two_processes_meet_with_nothing_prepared(network: Network) -> None:
+def test_two_processes_discover_each_other(
+    network: Network,
+) -> None:
     network.child(TALKER, "talker")
     node, executor = network.node("listener")
-    # The graph is complete at once: nobody waited for anything.
+    # The graph is complete at once, without a discovery wait.
     assert "talker" in node.get_node_names()
     assert ("/chatter", ["std_msgs/msg/String"]) in node.get_topic_names_and_types()
     heard = listen(node)
@@ -193,7 +195,7 @@ def test_two_processes_meet_with_nothing_prepared(network: Network) -> None:
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
-def test_another_takes_over_when_the_router_is_killed(network: Network) -> None:
+def test_another_process_takes_over_when_the_router_is_killed(network: Network) -> None:
     first = network.child(SILENT)
     network.child(TALKER, "talker")
     node, executor = network.node("listener")
@@ -205,11 +207,11 @@ def test_another_takes_over_when_the_router_is_killed(network: Network) -> None:
     spin_until(executor, lambda: any("late" in text for text in heard), "the newcomer")
     spin_until(executor, lambda: len(heard) >= 50, "more messages")
     numbers = [int(t.split()[1]) for t in heard if t.startswith("talker")]
-    # Those who live did not notice.
+    # The remaining processes are not affected.
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
-def test_a_service_of_another_process_answers_and_its_death_is_named(
+def test_a_remote_service_replies_and_its_end_is_reported(
     network: Network,
 ) -> None:
     server = network.child(SERVER)
@@ -225,7 +227,7 @@ def test_a_service_of_another_process_answers_and_its_death_is_named(
         future.result()
 
 
-def test_actions_parameters_logs_and_the_latest_map_of_another_process(
+def test_actions_parameters_logs_and_latched_maps_between_processes(
     network: Network,
 ) -> None:
     network.child(WORKER)
@@ -259,7 +261,7 @@ def test_actions_parameters_logs_and_the_latest_map_of_another_process(
     assert steps == [3, 4, 5, 6]
 
 
-def test_many_that_start_at_once_agree_on_a_router(network: Network) -> None:
+def test_processes_that_start_together_agree_on_a_router(network: Network) -> None:
     names = {f"racer{number}" for number in range(6)}
     racers = [
         network.child(TALKER, name, is_waited_for=False) for name in sorted(names)
@@ -275,9 +277,7 @@ def test_many_that_start_at_once_agree_on_a_router(network: Network) -> None:
 
 
 @pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
-def test_a_process_that_is_interrupted_ends_at_once(
-    network: Network, signum: int
-) -> None:
+def test_an_interrupted_process_ends_at_once(network: Network, signum: int) -> None:
     child = network.child(TALKER, "talker")
     code, errors = child.end(signum)
     # As Python ends on a Ctrl-C, and ROS 2 on SIGTERM; nothing hangs or crashes.

@@ -1,4 +1,4 @@
-"""Who gets in, and who does not: certificates, passwords, access rules."""
+"""Access control: certificates, passwords, access rules."""
 
 import datetime
 import json
@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from transport_benches import until
+from transport_pairs import until
 
 from free_ports import free_endpoint
 from navette.errors import FileFormatError, InvalidValueError
@@ -22,20 +22,20 @@ NOW = datetime.datetime.fromtimestamp(SystemClock().now_ns / 1e9, datetime.UTC)
 
 
 class Machine:
-    """A node that talks and listens on /chatter, on a network of its own settings."""
+    """A node that publishes and subscribes on /chatter, with its own settings."""
 
     def __init__(self, name: str) -> None:
         self.context = Context(transport="zenoh")
         self.context.init(args=[], initialize_logging=False)
         self.node = Node(name, context=self.context)
         self.publisher = self.node.create_publisher(String, "/chatter", 10)
-        self.heard: list[str] = []
-        self.node.create_subscription(String, "/chatter", self.hear, 10)
+        self.received: list[str] = []
+        self.node.create_subscription(String, "/chatter", self.receive, 10)
         self.executor = Executor(context=self.context)
         self.executor.add_node(self.node)
 
-    def hear(self, message: String) -> None:
-        self.heard.append(message.data)
+    def receive(self, message: String) -> None:
+        self.received.append(message.data)
 
     def sees(self, other: "Machine") -> bool:
         self.executor.spin_once(timeout_sec=0.0)
@@ -50,7 +50,7 @@ def network(monkeypatch: pytest.MonkeyPatch) -> Iterator["Network"]:
 
 
 class Network:
-    """Machines that look for their router at one free port."""
+    """Machines that expect their router at the same free port."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, stack: ExitStack) -> None:
         self._address = free_endpoint().partition("/")[2]
@@ -66,63 +66,61 @@ class Network:
         return machine
 
 
-def talk(speaker: Machine, listener: Machine) -> None:
-    """Until what one says is heard by the other."""
+def exchange(sender: Machine, receiver: Machine) -> None:
+    """Publish until a message of the sender reaches the receiver."""
 
     def check() -> bool:
-        speaker.publisher.publish(String(data=speaker.node.get_name()))
-        listener.executor.spin_once(timeout_sec=0.001)
-        return speaker.node.get_name() in listener.heard
+        sender.publisher.publish(String(data=sender.node.get_name()))
+        receiver.executor.spin_once(timeout_sec=0.001)
+        return sender.node.get_name() in receiver.received
 
-    until(check, f"{listener.node.get_name()} hears {speaker.node.get_name()}")
+    until(check, f"{receiver.node.get_name()} receives {sender.node.get_name()}")
 
 
 def assert_apart(outsider: Machine, insider: Machine, other: Machine) -> None:
-    """The outsider neither sees nor hears, while the other two go on talking."""
+    """Check that the outsider is isolated while the other two communicate."""
     outsider.publisher.publish(String(data=outsider.node.get_name()))
-    insider.heard.clear()
-    other.heard.clear()
-    talk(insider, other)
-    talk(other, insider)
+    insider.received.clear()
+    other.received.clear()
+    exchange(insider, other)
+    exchange(other, insider)
     outsider.executor.spin_once(timeout_sec=0.0)
     assert not outsider.sees(insider)
     assert not insider.sees(outsider)
-    assert set(outsider.heard) <= {outsider.node.get_name()}
-    assert outsider.node.get_name() not in insider.heard + other.heard
+    assert set(outsider.received) <= {outsider.node.get_name()}
+    assert outsider.node.get_name() not in insider.received + other.received
 
 
 @pytest.mark.slow
-def test_machines_with_certificates_of_one_authority_meet_and_no_others(
+def test_only_certificates_of_the_same_authority_are_accepted(
     network: Network, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     robot, laptop = create_keys(tmp_path / "ours", ["robot", "laptop"], now=NOW)
-    (stranger,) = create_keys(tmp_path / "theirs", ["robot"], now=NOW)
+    (foreign,) = create_keys(tmp_path / "theirs", ["robot"], now=NOW)
     a = network.join("robot", robot, protocol="tls")
     b = network.join("laptop", laptop, protocol="tls")
-    talk(a, b)
-    talk(b, a)
+    exchange(a, b)
+    exchange(b, a)
     with caplog.at_level(logging.WARNING, logger="navette"):
-        c = network.join("stranger", stranger, protocol="tls")
-    assert "does not let this process in" in caplog.text
+        c = network.join("foreign", foreign, protocol="tls")
+    assert "does not accept this process" in caplog.text
     assert_apart(c, a, b)
     caplog.clear()
     with caplog.at_level(logging.WARNING, logger="navette"):
         d = network.join("plain", None, protocol="tcp")
-    assert "does not let this process in" in caplog.text
+    assert "does not accept this process" in caplog.text
     assert_apart(d, a, b)
 
 
 @pytest.mark.slow
-def test_an_outdated_certificate_gets_in_nowhere(
-    network: Network, tmp_path: Path
-) -> None:
+def test_an_expired_certificate_is_refused(network: Network, tmp_path: Path) -> None:
     folder = tmp_path / "ours"
     robot, laptop = create_keys(folder, ["robot", "laptop"], now=NOW)
     long_ago = NOW - datetime.timedelta(days=30)
     (old,) = create_keys(folder, ["old"], now=long_ago, days=7)
     a = network.join("robot", robot, protocol="tls")
     b = network.join("laptop", laptop, protocol="tls")
-    talk(a, b)
+    exchange(a, b)
     assert_apart(network.join("old", old, protocol="tls"), a, b)
 
 
@@ -134,15 +132,15 @@ def login(folder: Path, name: str, password: str, users: str) -> Path:
 
 
 @pytest.mark.slow
-def test_a_wrong_password_gets_in_nowhere(network: Network, tmp_path: Path) -> None:
+def test_a_wrong_password_is_refused(network: Network, tmp_path: Path) -> None:
     users = "robot:steel\nlaptop:paper\n"
     robot = login(tmp_path / "a", "robot", "steel", users)
     laptop = login(tmp_path / "b", "laptop", "paper", users)
     guess = login(tmp_path / "c", "laptop", "glass", users)
     a = network.join("robot", robot, protocol="tcp")
     b = network.join("laptop", laptop, protocol="tcp")
-    talk(a, b)
-    talk(b, a)
+    exchange(a, b)
+    exchange(b, a)
     assert_apart(network.join("guess", guess, protocol="tcp"), a, b)
     assert_apart(network.join("nobody", None, protocol="tcp"), a, b)
 
@@ -182,15 +180,15 @@ def test_access_rules_keep_a_guest_from_publishing(
     a = network.join("robot", robot, protocol="tls")
     b = network.join("laptop", laptop, protocol="tls")
     c = network.join("guest", guest, protocol="tls")
-    talk(a, c)  # the guest may subscribe
+    exchange(a, c)  # the guest may subscribe
     for _ in range(20):
         c.publisher.publish(String(data="guest"))
-        a.heard.clear()
-        talk(b, a)
-        assert "guest" not in a.heard
+        a.received.clear()
+        exchange(b, a)
+        assert "guest" not in a.received
 
 
-def test_every_link_is_encrypted_or_it_is_an_error(tmp_path: Path) -> None:
+def test_certificates_change_the_default_endpoints_to_tls(tmp_path: Path) -> None:
     (robot,) = create_keys(tmp_path / "keys", ["robot"], now=NOW)
     settings = Settings.from_environment({"NAVETTE_SECURITY": str(robot)})
     assert settings.router == ("tls/127.0.0.1:7447",)
@@ -205,10 +203,10 @@ def test_a_plain_endpoint_beside_certificates_is_refused(
         network.join("robot", robot, protocol="tcp")
 
 
-def test_a_folder_that_lacks_something_is_refused_by_name(tmp_path: Path) -> None:
-    with pytest.raises(InvalidValueError, match="no folder"):
+def test_missing_files_are_named(tmp_path: Path) -> None:
+    with pytest.raises(InvalidValueError, match="is not a folder"):
         Security(tmp_path / "none")
-    with pytest.raises(InvalidValueError, match="nothing in"):
+    with pytest.raises(InvalidValueError, match="no credentials in"):
         Security(tmp_path)
     (robot,) = create_keys(tmp_path / "keys", ["robot"], now=NOW)
     (robot / "key.pem").unlink()
@@ -219,14 +217,14 @@ def test_a_folder_that_lacks_something_is_refused_by_name(tmp_path: Path) -> Non
         Security(tmp_path / "login").describe()
 
 
-def test_keys_are_made_once_and_for_their_owner_only(tmp_path: Path) -> None:
+def test_keys_are_created_once_and_readable_by_their_owner_only(tmp_path: Path) -> None:
     first = create_keys(tmp_path / "keys", ["robot"], now=NOW)[0]
     second = create_keys(tmp_path / "keys", ["laptop"], now=NOW)[0]
     assert (first / "ca.pem").read_bytes() == (second / "ca.pem").read_bytes()
     assert (first / "key.pem").stat().st_mode & 0o077 == 0
     assert (tmp_path / "keys" / "ca.key").stat().st_mode & 0o077 == 0
     assert Security(first).describe() == ["TLS with certificates on both sides"]
-    with pytest.raises(InvalidValueError, match="is there already"):
+    with pytest.raises(InvalidValueError, match="exists already"):
         create_keys(tmp_path / "keys", ["robot"], now=NOW)
-    with pytest.raises(InvalidValueError, match="wanted letters"):
+    with pytest.raises(InvalidValueError, match="at most 63 letters"):
         create_keys(tmp_path / "keys", ["../x"], now=NOW)

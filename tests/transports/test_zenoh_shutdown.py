@@ -1,17 +1,17 @@
-"""Processes whose session closes more slowly than they end."""
+"""Processes that end while their session still closes."""
 
 import subprocess
 import sys
 
 import pytest
-from transport_benches import zenoh_environment
+from transport_pairs import zenoh_environment
 
 from free_ports import free_endpoint
 
 pytestmark = pytest.mark.slow
 
-# As on a machine that is too busy: closing is not waited for, and the end of Python,
-# with threads that come back to it meanwhile, takes its time.
+# Simulates a busy machine: the session close exceeds its limit, and the end of the
+# interpreter takes long while threads return to it.
 BUSY = """
 import threading
 from navette import Context
@@ -28,12 +28,12 @@ context = Context(transport="zenoh")
 context.init()
 """
 
-LEAVES = """
+CLOSES = """
 context.shutdown()
 print("done")
 """
 
-# A command's end: here is a thread that never comes back.
+# The end of a command with a thread that never returns.
 STUCK = """
 from navette.transports.shutdown import end_with, wait_for_at_end
 
@@ -58,10 +58,10 @@ def end_of(program: str) -> tuple[int, str, str]:
     return ended.returncode, ended.stdout, ended.stderr
 
 
-def test_a_session_that_is_slow_to_close_is_waited_for() -> None:
-    """Else the process ends by SIGABRT, after all was done."""
-    assert end_of(BUSY + LEAVES) == (0, "done\n", "")
+def test_the_interpreter_waits_for_a_slow_session_close() -> None:
+    """Without this the process ends with SIGABRT after a successful run."""
+    assert end_of(BUSY + CLOSES) == (0, "done\n", "")
 
 
-def test_who_gives_an_exit_code_ends_with_it_at_once() -> None:
+def test_a_process_with_an_exit_code_ends_at_once() -> None:
     assert end_of(BUSY + STUCK) == (3, "done\n", "")

@@ -1,10 +1,10 @@
-"""Answers that do not come in time, and results that take longer than that."""
+"""Service timeouts, and action results that take longer."""
 
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import ZenohPair, until
+from transport_pairs import ZenohPair, until
 
 from free_ports import free_endpoint
 from navette import ActionClient, ActionServer, Context, Future, Node
@@ -26,7 +26,7 @@ def pair() -> Iterator[ZenohPair]:
     pair.close()
 
 
-def test_who_does_not_answer_in_time_is_named_by_the_clients_transport(
+def test_a_request_without_a_reply_times_out(
     pair: ZenohPair,
 ) -> None:
     requests: list[Request] = []
@@ -45,8 +45,8 @@ def test_who_does_not_answer_in_time_is_named_by_the_clients_transport(
     assert replies == [Reply(None, 1, reason, timed_out=True)]
     server.reply(requests[0].id, AddTwoInts.Response(sum=1))  # too late
 
-    def answers_in_time() -> bool:
-        """Where the machine is busy, the time of the next one may be over, too."""
+    def replies_in_time() -> bool:
+        """Call again; on a busy machine the next call may time out, too."""
         sent = len(replies) + 1
         client.request(AddTwoInts.Request(), 0, sent)
         until(lambda: len(requests) == sent, "the next request")
@@ -55,11 +55,11 @@ def test_who_does_not_answer_in_time_is_named_by_the_clients_transport(
         assert replies[-1].timed_out or replies[-1].message.sum == sent
         return not replies[-1].timed_out
 
-    until(answers_in_time, "an answer in time")
+    until(replies_in_time, "an answer in time")
 
 
 class Two:
-    """A node here and one there, with a network between them."""
+    """Two nodes with a network between them."""
 
     def __init__(self, here: Context, there: Context) -> None:
         self.here, self.there = Node("here", context=here), Node("there", context=there)
@@ -86,7 +86,7 @@ def two(monkeypatch: pytest.MonkeyPatch) -> Iterator[Two]:
         yield Two(here, there)
 
 
-def test_an_actions_result_may_take_longer(two: Two) -> None:
+def test_an_action_result_may_take_longer_than_the_timeout(two: Two) -> None:
     is_over: Future[None] = Future()
 
     async def execute(goal: Any) -> Any:
@@ -100,7 +100,7 @@ def test_an_actions_result_may_take_longer(two: Two) -> None:
     handles: list[Any] = []
 
     def accepts_in_time() -> bool:
-        """Where the machine is busy, the time may be over before the answer comes."""
+        """Send a goal; on a busy machine the call may time out."""
         sent = client.send_goal_async(Fibonacci.Goal(order=1))
         two.until(sent.done, "the goal's acceptance")
         if not isinstance(sent.exception(), ServiceTimeoutError):
@@ -118,7 +118,7 @@ def test_an_actions_result_may_take_longer(two: Two) -> None:
     assert len(waiting) == 0
 
 
-def test_a_caller_is_told_that_the_time_is_over(two: Two) -> None:
+def test_the_caller_gets_a_timeout_error(two: Two) -> None:
     gate: Future[None] = Future()
     ended: list[int] = []
 
@@ -140,11 +140,11 @@ def test_a_caller_is_told_that_the_time_is_over(two: Two) -> None:
 
 @pytest.mark.parametrize("text", ["x", "0", "-1", "nan", "inf", "0.01", "1e9"])
 def test_the_timeout_is_checked(text: str) -> None:
-    with pytest.raises(InvalidValueError, match=r"TIMEOUT '.*' *: wanted .*0\.1 to"):
+    with pytest.raises(InvalidValueError, match=r"TIMEOUT '.*' *: expected .*0\.1 to"):
         Settings.from_environment({"NAVETTE_SERVICE_TIMEOUT": text})
 
 
-def test_the_timeout_is_ten_minutes_unless_told_otherwise() -> None:
+def test_the_default_timeout_is_ten_minutes() -> None:
     assert Settings.from_environment({}).service_timeout_s == 600.0
     environment = {"NAVETTE_SERVICE_TIMEOUT": "2.5"}
     assert Settings.from_environment(environment).service_timeout_s == 2.5

@@ -1,10 +1,10 @@
-"""Endpoints that come after others of their kind take their names on the network."""
+"""New endpoints reuse the liveliness tokens of closed ones of the same kind."""
 
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import ZenohPair, message_of, until
+from transport_pairs import ZenohPair, message_of, until
 
 from free_ports import free_endpoint
 from navette import Context, Node
@@ -22,12 +22,12 @@ from navette.transports import (
 
 BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
 
-EAR = Endpoint(
+SUBSCRIPTION = Endpoint(
     EndpointKind.SUBSCRIPTION,
     "/t",
     "std_msgs/msg/String",
     EndpointQos(),
-    "ear",
+    "receiver",
     "/",
     b"",
 )
@@ -40,10 +40,10 @@ def pair() -> Iterator[ZenohPair]:
     pair.close()
 
 
-def mouth(
+def publisher(
     pair: ZenohPair, topic: str = "/t", qos: EndpointQos | None = None
 ) -> tuple[bytes, Any]:
-    """Gid and port."""
+    """Open a publisher; return its gid and port."""
     name = "std_msgs/msg/String"
     kind = EndpointKind.PUBLISHER
     end = Endpoint(kind, topic, name, qos or EndpointQos(), "n", "/", b"")
@@ -54,23 +54,25 @@ def mouth(
     )
 
 
-def test_the_name_is_that_of_one_of_the_very_same_kind(pair: ZenohPair) -> None:
-    first, port = mouth(pair)
-    second, _ = mouth(pair)
+def test_tokens_are_reused_for_the_same_topic_and_qos(
+    pair: ZenohPair,
+) -> None:
+    first, port = publisher(pair)
+    second, _ = publisher(pair)
     port.close()
-    elsewhere, _ = mouth(pair, "/u")
-    other, _ = mouth(pair, qos=BEST_EFFORT)
-    again, _ = mouth(pair)
-    more, _ = mouth(pair)
+    elsewhere, _ = publisher(pair, "/u")
+    other, _ = publisher(pair, qos=BEST_EFFORT)
+    again, _ = publisher(pair)
+    more, _ = publisher(pair)
     assert again == first
     assert len({first, second, elsewhere, other, more}) == 5
 
 
-def test_samples_are_numbered_on(pair: ZenohPair) -> None:
+def test_sequence_numbers_continue(pair: ZenohPair) -> None:
     items: list[Item] = []
-    pair.near.subscribe(EAR, String, items.append, shared=False)
+    pair.near.subscribe(SUBSCRIPTION, String, items.append, shared=False)
     for number, text in enumerate("abc"):
-        _, port = mouth(pair)
+        _, port = publisher(pair)
         assert port.initial_sequence == number
         pair.settle()
         port.send(String(data=text), 0, number + 1)
@@ -81,10 +83,10 @@ def test_samples_are_numbered_on(pair: ZenohPair) -> None:
     assert [message_of(item).data for item in items] == ["a", "b", "c"]
 
 
-def test_who_listens_from_now_on_misses_nothing_of_before(pair: ZenohPair) -> None:
-    _, port = mouth(pair)
+def test_a_new_subscription_reports_no_loss_of_earlier_samples(pair: ZenohPair) -> None:
+    _, port = publisher(pair)
     for number in (1, 2, 3):
-        port.send(String(data="unheard"), 0, number)
+        port.send(String(data="earlier"), 0, number)
     port.close()
     lost: list[int] = []
 
@@ -93,18 +95,18 @@ def test_who_listens_from_now_on_misses_nothing_of_before(pair: ZenohPair) -> No
             lost.append(count)
 
     pair.near.observe(Notes())
-    _, port = mouth(pair)
+    _, port = publisher(pair)
     items: list[Item] = []
-    pair.near.subscribe(EAR, String, items.append, shared=False)
+    pair.near.subscribe(SUBSCRIPTION, String, items.append, shared=False)
     pair.settle()
-    port.send(String(data="heard"), 0, port.initial_sequence + 1)
+    port.send(String(data="new"), 0, port.initial_sequence + 1)
     pair.settle()
-    assert [message_of(item).data for item in items] == ["heard"]
+    assert [message_of(item).data for item in items] == ["new"]
     assert lost == []
 
 
 class Station:
-    """A node on the network, and what runs it."""
+    """A node on the network and its executor."""
 
     def __init__(self, context: Context, name: str) -> None:
         self.node = Node(name, context=context)
@@ -122,12 +124,12 @@ def stations(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Station, Station
         yield Station(here, "here"), Station(there, "there")
 
 
-def test_publishers_and_clients_of_nodes_go_on(
+def test_recreated_publishers_and_clients_work(
     stations: tuple[Station, Station],
 ) -> None:
     here, there = stations
-    heard: list[str] = []
-    there.node.create_subscription(String, "t", lambda m: heard.append(m.data), 10)
+    received: list[str] = []
+    there.node.create_subscription(String, "t", lambda m: received.append(m.data), 10)
 
     def add(request: Any, response: Any) -> Any:
         response.sum = request.a + request.b
@@ -148,20 +150,20 @@ def test_publishers_and_clients_of_nodes_go_on(
         publisher = here.node.create_publisher(String, "t", 10)
         client = here.node.create_client(AddTwoInts, "add")
         names.add((publisher.endpoint.gid, client.endpoint.gid))
-        look(publisher.get_subscription_count, "the listener")
+        look(publisher.get_subscription_count, "the subscription")
         look(client.service_is_ready, "the server")
         publisher.publish(String(data=str(number)))
         future = client.call_async(AddTwoInts.Request(a=number))
-        look(lambda: len(heard) == number + 1, "the message")  # noqa: B023
-        look(future.done, "the answer")
+        look(lambda: len(received) == number + 1, "the message")  # noqa: B023
+        look(future.done, "the reply")
         assert future.result().sum == number
         here.node.destroy_client(client)
         here.node.destroy_publisher(publisher)
-    assert heard == ["0", "1", "2"]
+    assert received == ["0", "1", "2"]
     assert len(names) == 1
 
 
-def test_a_node_that_is_made_again_has_all_its_names_again(
+def test_a_recreated_node_reuses_its_tokens(
     stations: tuple[Station, Station],
 ) -> None:
     context = stations[0].node.context

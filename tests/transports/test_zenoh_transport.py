@@ -1,4 +1,4 @@
-"""What only the network has: others that err, come, go, or mean another type."""
+"""Remote peers that send invalid data, appear, disappear, or use another type."""
 
 import json
 import logging
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from transport_benches import LIMIT_S, ZenohPair, message_of, until
+from transport_pairs import LIMIT_S, ZenohPair, message_of, until
 
 from free_ports import free_endpoint
 from navette import Context, Node
@@ -73,29 +73,29 @@ def texts(items: list[Item]) -> list[str]:
 
 
 class Notes(TransportObserver):
-    """Writes down what it is told."""
+    """Records notifications."""
 
     def __init__(self) -> None:
-        self.told: list[tuple[str, str, str]] = []
+        self.events: list[tuple[str, str, str]] = []
 
     def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        self.told.append(("matched", publisher.node_name, subscription.node_name))
+        self.events.append(("matched", publisher.node_name, subscription.node_name))
 
     def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        self.told.append(("unmatched", publisher.node_name, subscription.node_name))
+        self.events.append(("unmatched", publisher.node_name, subscription.node_name))
 
     def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
-        self.told.append(("other type", local.node_name, remote.node_name))
+        self.events.append(("other type", local.node_name, remote.node_name))
 
 
-def test_a_gap_in_a_publishers_numbers_is_told(pair: ZenohPair) -> None:
+def test_a_gap_in_the_sequence_numbers_is_reported(pair: ZenohPair) -> None:
     lost: list[tuple[str, int]] = []
 
-    class Listening(TransportObserver):
+    class Counting(TransportObserver):
         def message_lost(self, subscription: Endpoint, count: int) -> None:
             lost.append((subscription.node_name, count))
 
-    pair.near.observe(Listening())
+    pair.near.observe(Counting())
     subscribe(pair.near_zenoh, node="ear")
     pair.settle()
     hello = serialize(String(data="hello"))
@@ -105,7 +105,7 @@ def test_a_gap_in_a_publishers_numbers_is_told(pair: ZenohPair) -> None:
     assert lost == [("ear", 2), ("ear", 1)]
 
 
-def test_nodes_and_endpoints_come_and_go_with_their_tokens(pair: ZenohPair) -> None:
+def test_nodes_and_endpoints_follow_their_tokens(pair: ZenohPair) -> None:
     notes = Notes()
     pair.near.observe(notes)
     node = NodeInfo("talker", "/ns", "/enclave")
@@ -127,10 +127,13 @@ def test_nodes_and_endpoints_come_and_go_with_their_tokens(pair: ZenohPair) -> N
     pair.settle()
     assert pair.near.endpoints() == []
     assert node not in pair.near.remote_nodes()
-    assert notes.told == [("matched", "talker", "ear"), ("unmatched", "talker", "ear")]
+    assert notes.events == [
+        ("matched", "talker", "ear"),
+        ("unmatched", "talker", "ear"),
+    ]
 
 
-def test_a_session_that_ends_takes_everything_along(pair: ZenohPair) -> None:
+def test_a_closed_session_removes_its_nodes_and_endpoints(pair: ZenohPair) -> None:
     notes = Notes()
     pair.near.observe(notes)
     pair.far.announce(NodeInfo("talker", "/"))
@@ -140,10 +143,10 @@ def test_a_session_that_ends_takes_everything_along(pair: ZenohPair) -> None:
     pair.far_zenoh.session.close()
     until(lambda: not pair.near.endpoints() and not pair.near.remote_nodes())
     assert port.matched_count == 0
-    assert notes.told[-1] == ("unmatched", "talker", "ear")
+    assert notes.events[-1] == ("unmatched", "talker", "ear")
 
 
-def test_gids_are_the_same_at_both_ends(pair: ZenohPair) -> None:
+def test_gids_are_equal_at_both_ends(pair: ZenohPair) -> None:
     made = endpoint(EndpointKind.PUBLISHER)
     gid = pair.far.gid_for(made)
     assert gid is not None
@@ -154,7 +157,7 @@ def test_gids_are_the_same_at_both_ends(pair: ZenohPair) -> None:
     assert [e.gid for e in pair.near.endpoints()] == [gid]
 
 
-def test_a_type_of_another_name_or_hash_is_told_and_does_not_meet(
+def test_endpoints_with_another_type_or_hash_do_not_match(
     pair: ZenohPair,
 ) -> None:
     notes = Notes()
@@ -170,14 +173,14 @@ def test_a_type_of_another_name_or_hash_is_told_and_does_not_meet(
     other = token.key().replace("RIHS01_df", "RIHS01_00")
     keep = far.session.zenoh.liveliness().declare_token(other)
     pair.settle()
-    # In no order: they may have come with the link between the two.
+    # In any order: the tokens may have arrived with the direct link.
     others = [("other type", "ear", "older"), ("other type", "ear", "wrong")]
-    assert sorted(notes.told) == others
+    assert sorted(notes.events) == others
     assert (items, port.matched_count) == ([], 0)
     assert keep
 
 
-def test_one_serialisation_a_message_and_none_for_nobody(
+def test_a_message_is_serialised_once_and_only_for_a_subscription(
     pair: ZenohPair, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     calls: list[Any] = []
@@ -219,7 +222,7 @@ def good(sequence: int, gid: bytes = bytes(16)) -> bytes:
     return Attachment(sequence, 0, gid).encode()
 
 
-def test_what_is_malformed_is_dropped_and_told_once(
+def test_malformed_samples_are_dropped_and_logged_once(
     pair: ZenohPair, caplog: pytest.LogCaptureFixture
 ) -> None:
     items, _ = subscribe(pair.near_zenoh)
@@ -240,16 +243,16 @@ def test_what_is_malformed_is_dropped_and_told_once(
     assert len([w for w in warnings if "message ignored" in w]) == 1
 
 
-def test_what_was_sent_on_another_topic_goes_to_nobody(
+def test_samples_of_a_publisher_of_another_topic_are_dropped(
     pair: ZenohPair, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """As Zenoh delivers it when the two ends of a link mean different keys."""
+    """Zenoh delivers such samples when the ends of a link disagree on key numbers."""
     items, _ = subscribe(pair.near_zenoh)
     stray = endpoint(EndpointKind.PUBLISHER, node="stray", topic="/elsewhere")
     token, _ = pair.far_zenoh._tokens.take(stray)
     keep = pair.far_zenoh._tokens.declare(token)
     pair.settle()
-    keep.undeclare()  # the link is lost, and back before its tokens are
+    keep.undeclare()  # the link is lost and renewed, its tokens are not yet
     pair.settle()
     attachment = Attachment(1, 0, gid_of(token.key())).encode()
     with caplog.at_level(logging.WARNING):
@@ -261,7 +264,7 @@ def test_what_was_sent_on_another_topic_goes_to_nobody(
     assert "sent on /elsewhere" in said
 
 
-def test_a_payload_of_another_shape_is_found_where_it_is_taken(
+def test_a_payload_of_another_type_is_detected_when_it_is_taken(
     pair: ZenohPair, caplog: pytest.LogCaptureFixture
 ) -> None:
     items, _ = subscribe(pair.near_zenoh)
@@ -274,7 +277,7 @@ def test_a_payload_of_another_shape_is_found_where_it_is_taken(
     assert len([r for r in caplog.records if "message ignored" in r.getMessage()]) == 1
 
 
-def test_nothing_is_delivered_twice_or_out_of_order(pair: ZenohPair) -> None:
+def test_duplicate_and_late_samples_are_dropped(pair: ZenohPair) -> None:
     items, _ = subscribe(pair.near_zenoh)
     pair.settle()
     one, other = bytes(16), bytes([1] * 16)
@@ -284,7 +287,7 @@ def test_nothing_is_delivered_twice_or_out_of_order(pair: ZenohPair) -> None:
     assert texts(items) == ["1", "2", "1", "5"]
 
 
-def test_a_publisher_whose_qos_falls_short_is_not_heard_by_the_back_door(
+def test_samples_of_a_publisher_with_incompatible_qos_are_dropped(
     pair: ZenohPair,
 ) -> None:
     latched = EndpointQos.latched()
@@ -297,7 +300,7 @@ def test_a_publisher_whose_qos_falls_short_is_not_heard_by_the_back_door(
     assert (items, port.matched_count) == ([], 0)
 
 
-def test_hostile_tokens_are_ignored_and_told_once(
+def test_hostile_tokens_are_ignored_and_logged_once(
     pair: ZenohPair, caplog: pytest.LogCaptureFixture
 ) -> None:
     liveliness = pair.far_zenoh.session.zenoh.liveliness()
@@ -333,7 +336,7 @@ def connect(transport: ZenohTransport) -> tuple[list[Reply], Any]:
     return replies, transport.connect(end, replies.append)
 
 
-def test_a_malformed_request_gets_an_error_and_not_to_the_server(
+def test_a_malformed_request_is_refused_before_the_server(
     pair: ZenohPair,
 ) -> None:
     requests, _ = serve(pair.near_zenoh)
@@ -354,7 +357,7 @@ def test_a_malformed_request_gets_an_error_and_not_to_the_server(
     assert requests == []
 
 
-def test_a_server_that_closes_says_so_to_those_who_wait(pair: ZenohPair) -> None:
+def test_a_closing_server_refuses_waiting_requests(pair: ZenohPair) -> None:
     requests, server = serve(pair.near_zenoh)
     replies, client = connect(pair.far_zenoh)
     pair.settle()
@@ -377,7 +380,7 @@ def test_domains_do_not_see_each_other(pair: ZenohPair) -> None:
     elsewhere.close()
 
 
-def test_closing_twice_is_harmless_and_leaves_no_thread(pair: ZenohPair) -> None:
+def test_closing_twice_leaves_no_thread(pair: ZenohPair) -> None:
     before = set(threading.enumerate())
     transport = ZenohTransport(7, lambda: 0, pair.near_zenoh.session.settings)
     transport.announce(NodeInfo("n", "/"))
@@ -385,18 +388,18 @@ def test_closing_twice_is_harmless_and_leaves_no_thread(pair: ZenohPair) -> None
     transport.close()
     port.close()
     transport.close()
-    # A thread of Zenoh's that came by Python is called a dummy, and stays.
+    # A thread of Zenoh that called Python remains as a dummy thread.
     made = set(threading.enumerate()) - before
     assert [t for t in made if not isinstance(t, threading._DummyThread)] == []
 
 
-def test_a_network_that_cannot_be_joined_is_a_named_error() -> None:
+def test_a_network_that_cannot_be_joined_is_an_error() -> None:
     with pytest.raises(NetworkError, match="cannot join the network"):
         ZenohTransport(0, lambda: 0, Settings(router=("nonsense/1:1",), listen=("x",)))
 
 
 def test_the_router_may_be_on_one_of_several_machines() -> None:
-    # The first address is of no machine (RFC 1122), the second is of this one.
+    # The first address belongs to no machine (RFC 1122), the second to this one.
     settings = Settings(router=("tcp/0.0.0.1:7447", free_endpoint()))
     first = ZenohTransport(0, lambda: 0, settings)
     second = ZenohTransport(0, lambda: 0, settings)
@@ -410,7 +413,7 @@ def test_the_router_may_be_on_one_of_several_machines() -> None:
 def test_the_environment_is_checked() -> None:
     with pytest.raises(InvalidValueError, match=r"NAVETTE_ROUTER: 'localhost'.*tcp/"):
         Settings.from_environment({"NAVETTE_ROUTER": "localhost"})
-    with pytest.raises(InvalidValueError, match="no file /nowhere"):
+    with pytest.raises(InvalidValueError, match="file /nowhere does not exist"):
         Settings.from_environment({"ZENOH_SESSION_CONFIG_URI": "/nowhere"})
     with pytest.raises(InvalidValueError, match="NAVETTE_MAX_MESSAGE_BYTES 'x'"):
         Settings.from_environment({"NAVETTE_MAX_MESSAGE_BYTES": "x"})
@@ -427,7 +430,7 @@ def test_the_environment_is_checked() -> None:
         ({"NAVETTE_ROUTER": "tcp/127.0.0.1:1,tcp/robot.local:1"}, True),
     ],
 )
-def test_links_between_machines_show_more_often_that_they_live(
+def test_links_between_machines_have_more_keep_alives(
     variables: dict[str, str], wanted: bool
 ) -> None:
     settings = Settings.from_environment(variables)
@@ -436,7 +439,7 @@ def test_links_between_machines_show_more_often_that_they_live(
         assert number == (20 if wanted else 4)
 
 
-def test_within_one_context_nothing_comes_back_over_the_network(
+def test_messages_of_one_context_do_not_return_over_the_network(
     pair: ZenohPair, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NAVETTE_ROUTER", pair.near_zenoh.session.settings.router[0])
@@ -448,7 +451,7 @@ def test_within_one_context_nothing_comes_back_over_the_network(
         node.create_subscription(String, "t", lambda m: heard.append(m.data), 10)
         publisher = node.create_publisher(String, "t", 10)
         remote, _ = subscribe(pair.near_zenoh)
-        # (a context of domain 0, the pair of domain 7: nobody remote listens)
+        # (a context of domain 0, the pair of domain 7: no remote subscription)
         assert publisher.get_subscription_count() == 1
         publisher.publish(String(data="once"))
         executor.spin_once(timeout_sec=0)
@@ -456,7 +459,7 @@ def test_within_one_context_nothing_comes_back_over_the_network(
         assert (heard, remote) == (["once"], [])
 
 
-def test_gids_of_the_graph_are_those_of_the_wire(
+def test_gids_of_the_graph_equal_those_on_the_wire(
     pair: ZenohPair, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NAVETTE_ROUTER", pair.near_zenoh.session.settings.router[0])
@@ -469,7 +472,7 @@ def test_gids_of_the_graph_are_those_of_the_wire(
         assert gid_of("") not in gids
 
 
-def test_latched_samples_of_the_same_session_do_not_come_by_the_network(
+def test_latched_samples_do_not_return_to_their_own_session(
     pair: ZenohPair,
 ) -> None:
     latched = EndpointQos.latched()

@@ -1,9 +1,9 @@
-"""The seam: a transport moves (topic, message) between endpoints; it knows no node.
+"""Interface of a transport: moves samples between endpoints of the same topic and type.
 
-The runtime opens a port per publisher and per subscription on every transport of
-its context, and one per server and client of a service. A transport that serialises
-does so inside its own ports, and only while someone remote listens. Actions are
-services and topics put together: the seam does not know them.
+The runtime opens a port for each publisher, subscription, server and client on every
+transport of its context. A transport that serialises does so inside its ports, and only
+while a remote endpoint is matched. Actions are services and topics; a transport has no
+notion of them, nor of nodes.
 """
 
 from abc import ABC, abstractmethod
@@ -23,8 +23,8 @@ from navette.transports.service_ports import (
 Item = tuple[Any, int, int, int]
 """One delivered sample: message, source stamp (ns), received stamp (ns), sequence.
 
-A message that came as bytes is an :class:`~navette.transports.encoded.Encoded`, one of
-a publisher with a lifespan an :class:`~navette.transports.expiring.Expiring`.
+The message is an :class:`~navette.transports.encoded.Encoded` if the sample arrived as
+bytes, and an :class:`~navette.transports.expiring.Expiring` if it has a lifespan.
 """
 
 Sink = Callable[[Item], None]
@@ -33,7 +33,7 @@ Sink = Callable[[Item], None]
 
 @dataclass(frozen=True)
 class NodeInfo:
-    """A node as the graph lists it."""
+    """Name of a node in the graph."""
 
     name: str
     namespace: str
@@ -45,23 +45,25 @@ class NodeInfo:
 
 
 class EndpointKind(Enum):
-    """What an endpoint does on its topic or service."""
+    """Role of an endpoint on its topic or service."""
 
     PUBLISHER = 1
     SUBSCRIPTION = 2
     SERVICE = 3
     CLIENT = 4
 
-    # Each is one object; Enum's own hashes the name, in Python, at every look-up.
+    # Each is one object; Enum's own hash is computed in Python at every look-up.
     __hash__ = object.__hash__
 
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
-    """One end of a topic or service, as the graph lists it (labels, no node object).
+    """One endpoint in the graph, described by names.
 
-    ``topic`` is the name of the service for servers and clients. ``type_hash`` is that
-    of a remote endpoint, as it was announced; empty = the one of the type here.
+    Attributes:
+        topic: name of the topic, or of the service for servers and clients.
+        type_hash: announced hash of a remote endpoint; empty for a local one, whose
+            type is the one of this process.
     """
 
     kind: EndpointKind
@@ -75,7 +77,7 @@ class Endpoint:
 
     @property
     def is_remote(self) -> bool:
-        """Whether it is of another process."""
+        """Whether the endpoint belongs to another process."""
         return bool(self.type_hash)
 
     @property
@@ -84,19 +86,19 @@ class Endpoint:
 
 
 class TransportObserver:
-    """What a transport tells its owner; override what is of interest."""
+    """Callbacks of a transport; override those of interest."""
 
     def graph_changed(self) -> None:
-        """An endpoint or a node came or went."""
+        """Handle that an endpoint or node was added or removed."""
 
     def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        """The two endpoints exchange samples from now on."""
+        """Handle that two endpoints exchange samples from now on."""
 
     def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        """The two endpoints no longer exchange samples."""
+        """Handle that two endpoints no longer exchange samples."""
 
     def asserted(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        """A sample of a remote publisher that asserts itself has come."""
+        """Handle that a remote MANUAL_BY_TOPIC publisher asserted its liveliness."""
 
     def incompatible_qos(
         self,
@@ -104,17 +106,17 @@ class TransportObserver:
         subscription: Endpoint,
         policies: tuple[QoSPolicyKind, ...],
     ) -> None:
-        """Same topic and type, but the offer falls short of the request."""
+        """Handle that the offered QoS does not satisfy the requested QoS."""
 
     def message_lost(self, subscription: Endpoint, count: int) -> None:
-        """So many samples of a publisher did not reach the subscription."""
+        """Handle that samples of a publisher did not reach the subscription."""
 
     def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
-        """Same topic, another type or another definition of it: they do not meet."""
+        """Handle that two endpoints of a topic have different type names or hashes."""
 
 
 class PublisherPort(ABC):
-    """A publisher's door into a transport."""
+    """Port of one publisher on a transport."""
 
     __slots__ = ()
 
@@ -125,35 +127,35 @@ class PublisherPort(ABC):
 
     @abstractmethod
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
-        """Deliver ``message`` as it is now; later edits by the caller are unseen."""
+        """Deliver ``message`` as it is now; later changes have no effect."""
 
     def assert_alive(self) -> bool:
-        """Say without a sample that it is alive; whether all who listen are told."""
+        """Assert liveliness without a sample; return whether it reaches everyone."""
         return True
 
     @property
     @abstractmethod
     def matched_count(self) -> int:
-        """How many subscriptions the samples go to through this transport."""
+        """Number of subscriptions that receive the samples through this transport."""
 
     @abstractmethod
     def close(self) -> None:
-        """Leave the topic; closing twice is harmless."""
+        """Leave the topic; may be called again."""
 
 
 class SubscriptionPort(ABC):
-    """A subscription's door into a transport."""
+    """Port of one subscription on a transport."""
 
     __slots__ = ()
 
     @property
     @abstractmethod
     def matched_count(self) -> int:
-        """How many publishers are heard through this transport."""
+        """Number of publishers whose samples arrive through this transport."""
 
     @abstractmethod
     def close(self) -> None:
-        """Leave the topic; closing twice is harmless."""
+        """Leave the topic; may be called again."""
 
 
 class Transport(ABC):
@@ -164,7 +166,7 @@ class Transport(ABC):
         """Open a publisher's port.
 
         Raises:
-            InvalidValueError: the topic carries another type; both are named.
+            InvalidValueError: the topic has another type; the message names both.
         """
 
     @abstractmethod
@@ -173,10 +175,11 @@ class Transport(ABC):
     ) -> SubscriptionPort:
         """Open a subscription's port; latched samples reach ``sink`` at once.
 
-        ``shared`` samples may be the same object for several sinks: read-only.
+        Args:
+            shared: samples may be one object for several sinks, which only read it.
 
         Raises:
-            InvalidValueError: the topic carries another type; both are named.
+            InvalidValueError: the topic has another type; the message names both.
         """
 
     @abstractmethod
@@ -184,40 +187,40 @@ class Transport(ABC):
         """Open a server's port.
 
         Raises:
-            InvalidValueError: the service is of another type; both are named.
+            InvalidValueError: the service has another type; the message names both.
         """
 
     @abstractmethod
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> ClientPort:
-        """Open the port of a service's client.
+        """Open a client's port.
 
         Raises:
-            InvalidValueError: the service is of another type; both are named.
+            InvalidValueError: the service has another type; the message names both.
         """
 
     def announce(self, node: NodeInfo) -> None:
-        """A node is here from now on; in process nobody needs telling."""
+        """Add a node to the graph of other processes."""
         return
 
     def withdraw(self, node: NodeInfo) -> None:
-        """A node of :meth:`announce` is gone."""
+        """Remove a node that :meth:`announce` has added."""
         return
 
     def gid_for(self, endpoint: Endpoint) -> bytes | None:
-        """The id under which a new endpoint will be known; None = any will do."""
+        """Return the gid that a new endpoint must have; None: any."""
         return None
 
     def remote_nodes(self) -> list[NodeInfo]:
-        """Nodes of other processes, in order of appearance."""
+        """Return the nodes of other processes, in order of appearance."""
         return []
 
     @abstractmethod
     def endpoints(self) -> list[Endpoint]:
-        """All endpoints of topics that can be seen, in order of appearance."""
+        """Return all visible topic endpoints, in order of appearance."""
 
     @abstractmethod
     def service_endpoints(self) -> list[Endpoint]:
-        """All servers and clients that can be seen, in order of appearance."""
+        """Return all visible servers and clients, in order of appearance."""
 
     @abstractmethod
     def observe(self, observer: TransportObserver) -> None:

@@ -1,4 +1,4 @@
-"""Makes what mutual TLS needs: an authority, and a certificate per robot or person.
+"""Certificates for mutual TLS: an authority, and a certificate for each machine.
 
 X.509 version 3 (RFC 5280) with P-256 keys; both key usages, because every process
 listens and connects.
@@ -24,32 +24,33 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 def create_keys(
     folder: Path, names: Sequence[str], *, now: datetime.datetime, days: int = 365
 ) -> list[Path]:
-    """A folder of keys for each name below ``folder``; the authority is made once.
+    """Create a folder of keys for each name below ``folder``.
 
-    Each gets ``ca.pem``, ``cert.pem`` and ``key.pem``, as ``NAVETTE_SECURITY`` wants
-    them. ``ca.key`` signs further ones: keep it where no robot goes.
+    Each folder contains ``ca.pem``, ``cert.pem`` and ``key.pem``, as required by
+    ``NAVETTE_SECURITY``. The authority is created if there is none; its ``ca.key``
+    signs further certificates, so keep it away from the robots.
 
     Args:
-        now: from when they are valid (with a zone).
-        days: and for how long.
+        now: start of validity (with a time zone).
+        days: period of validity.
 
     Raises:
-        InvalidValueError: a name cannot be one, or has its keys already.
+        InvalidValueError: a name is invalid or has keys already.
         MissingPartError: the ``cryptography`` package is not installed.
     """
     for name in names:
         if not _NAME.fullmatch(name):
             raise InvalidValueError(
-                f"name {name!r}: wanted letters, digits, '-', '_' and '.', 63 at most"
+                f"name {name!r}: expected at most 63 letters, digits, '-', '_' and '.'"
             )
         if (folder / name).exists():
-            raise InvalidValueError(f"{folder / name} is there already")
+            raise InvalidValueError(f"{folder / name} exists already")
     authority = _Authority.of(folder, now, days)
     return [authority.issue(name, now, days) for name in names]
 
 
 class _Authority:
-    """Signs; its key and certificate are files of the folder."""
+    """Signs certificates; its key and certificate are files in the folder."""
 
     def __init__(
         self,
@@ -63,21 +64,23 @@ class _Authority:
 
     @classmethod
     def of(cls, folder: Path, now: datetime.datetime, days: int) -> "_Authority":
-        """The folder's own, made if there is none."""
+        """Return the authority of the folder, created if there is none."""
         try:
             from cryptography import x509
             from cryptography.hazmat.primitives import hashes, serialization
             from cryptography.hazmat.primitives.asymmetric import ec
         except ImportError as error:
             raise MissingPartError(
-                "making keys needs the package cryptography: "
+                "creating keys requires the package cryptography: "
                 "pip install 'navette[security]'"
             ) from error
         if (folder / "ca.key").is_file():
             data = (folder / "ca.key").read_bytes()
             key = serialization.load_pem_private_key(data, None)
             if not isinstance(key, ec.EllipticCurvePrivateKey):
-                raise InvalidValueError(f"{folder / 'ca.key'} is no elliptic-curve key")
+                raise InvalidValueError(
+                    f"{folder / 'ca.key'} is not an elliptic-curve key"
+                )
             text = (folder / "ca.pem").read_bytes()
             return cls(folder, key, x509.load_pem_x509_certificate(text))
         folder.mkdir(parents=True, exist_ok=True)
@@ -93,7 +96,7 @@ class _Authority:
         return cls(folder, made, certificate)
 
     def issue(self, name: str, now: datetime.datetime, days: int) -> Path:
-        """A key and its certificate for one name."""
+        """Create a key and its certificate."""
         from cryptography import x509
         from cryptography.hazmat.primitives import hashes
         from cryptography.hazmat.primitives.asymmetric import ec
@@ -137,7 +140,7 @@ def _begin(
 ) -> "x509.CertificateBuilder":
     from cryptography import x509
 
-    # Clocks of robots are late now and then.
+    # The clock of a robot may be slow.
     early = now - datetime.timedelta(hours=1)
     return (
         x509.CertificateBuilder()
@@ -157,7 +160,7 @@ def _pem(certificate: "x509.Certificate") -> bytes:
 
 
 def _write_key(path: Path, key: "ec.EllipticCurvePrivateKey") -> None:
-    """For the owner's eyes only, from the first byte on."""
+    """Write a key readable by its owner only, from the first byte on."""
     from cryptography.hazmat.primitives import serialization
 
     text = key.private_bytes(

@@ -1,4 +1,4 @@
-"""Samples that arrive as bytes: decoded where they are taken, or not at all."""
+"""Messages that arrive as bytes and are decoded when they are taken, if at all."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,10 +8,10 @@ from navette.msgs import deserialize
 
 
 class Encoded:
-    """In place of the message of a delivered sample: its CDR bytes.
+    """CDR bytes in place of the message of a delivered sample.
 
     Args:
-        failed: told why the bytes are no such message.
+        failed: called with the error if the bytes cannot be decoded.
     """
 
     __slots__ = ("_failed", "_message_class", "data")
@@ -24,7 +24,7 @@ class Encoded:
         self._failed = failed
 
     def decode(self) -> Any:
-        """The message; None if the bytes are none (which is then reported)."""
+        """Return the message; None if the bytes are invalid, which is reported."""
         try:
             return deserialize(self.data, self._message_class)
         except DecodeError as error:

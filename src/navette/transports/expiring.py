@@ -6,26 +6,26 @@ from typing import Any
 from navette.transports.base import Endpoint, Item
 from navette.transports.qos import INFINITE_NS
 
-# Stamps that are further apart than this are of clocks that do not belong together:
-# one counts from 1970, the other from the beginning of a simulation.
+# Stamps further apart than this are of different clocks: one counts from 1970, the
+# other from the beginning of a simulation.
 _SAME_CLOCK_NS = 365 * 86_400 * 10**9
 
-# What comes to a new subscription in its first seconds may be a history, and old.
+# Samples that a new subscription receives in its first seconds may be history, and old.
 _HISTORY_NS = 2 * 10**9
 
 
 def age_ns(item: Item) -> int:
-    """How old a sample was when it came; 0 where the two clocks do not compare."""
+    """Return the age of a sample on arrival; 0 if its two clocks do not compare."""
     age = item[2] - item[1]
     return 0 if abs(age) > _SAME_CLOCK_NS else age
 
 
 class Expiring:
-    """In place of the message of a delivered sample: the message, and until when.
+    """A message with its expiry, in place of the message of a delivered sample.
 
     Args:
         message: may be an :class:`~navette.transports.encoded.Encoded`.
-        expires_ns: asked when it is taken, where it is not known before.
+        expires_ns: a function if the lifespan is not known yet.
     """
 
     __slots__ = ("expires_ns", "message")
@@ -35,56 +35,56 @@ class Expiring:
         self.expires_ns = expires_ns
 
     def at(self, now_ns: int) -> Any:
-        """The message; None if it is too old by then."""
+        """Return the message; None if it has expired by then."""
         until = self.expires_ns
         until_ns = until if isinstance(until, int) else until()
         return self.message if now_ns < until_ns else None
 
 
 class Lifespans:
-    """Limits samples by what their publishers, in other processes, have announced.
+    """Applies the announced lifespans of remote publishers to their samples.
 
-    A sample's age is the time here less the time of its sending there, as DDS counts
-    it: the machines' clocks are to agree. Where one side's time is a simulation's and
-    the other's the machine's, it is as old as it has waited here.
+    The age of a sample is the time here minus the time of sending there, as in DDS: the
+    clocks of the machines must agree. If one of the two is simulated time, the age is
+    the time since the sample arrived.
 
     Args:
-        publishers: those that are known by now, by gid; changes meanwhile.
-        complain: told of one whose samples are too old when they arrive.
+        publishers: the known publishers by gid; changes meanwhile.
+        warn: called with a publisher whose samples have expired on arrival.
     """
 
-    __slots__ = ("_complain", "_first_ns", "_publishers")
+    __slots__ = ("_first_ns", "_publishers", "_warn")
 
     def __init__(
         self,
         publishers: Mapping[bytes, Endpoint],
-        complain: Callable[[Endpoint, str], None],
+        warn: Callable[[Endpoint, str], None],
     ) -> None:
         self._publishers = publishers
-        self._complain = complain
+        self._warn = warn
         self._first_ns: int | None = None
 
     def limited(self, gid: bytes, item: Item) -> Item:
-        """The sample as it is, or one that expires; any thread."""
+        """Return the sample, with an expiry if it has one; called from any thread."""
         publisher = self._publishers.get(gid)
         lifespan_ns = 0 if publisher is None else publisher.qos.lifespan_ns
         if publisher is not None and not 0 < lifespan_ns < INFINITE_NS:
             return item
         message, source_ns, received_ns, number = item
         since_ns = received_ns - age_ns(item)
-        if publisher is None:  # announced already, and known here in a moment
+        if publisher is None:  # its token has not been read yet
             message = Expiring(message, lambda: since_ns + self._lifespan_of(gid))
         else:
             if received_ns - since_ns >= lifespan_ns:
-                self._look_at_age(publisher, since_ns, received_ns)
+                self._warn_if_live(publisher, since_ns, received_ns)
             message = Expiring(message, since_ns + lifespan_ns)
         return message, source_ns, received_ns, number
 
-    def _look_at_age(self, publisher: Endpoint, since_ns: int, now_ns: int) -> None:
+    def _warn_if_live(self, publisher: Endpoint, since_ns: int, now_ns: int) -> None:
         if self._first_ns is None:
             self._first_ns = now_ns
         if now_ns - self._first_ns >= _HISTORY_NS:
-            self._complain(publisher, _too_old(publisher, now_ns - since_ns))
+            self._warn(publisher, _expired(publisher, now_ns - since_ns))
 
     def _lifespan_of(self, gid: bytes) -> int:
         publisher = self._publishers.get(gid)
@@ -92,10 +92,10 @@ class Lifespans:
         return lifespan_ns or INFINITE_NS
 
 
-def _too_old(publisher: Endpoint, old_ns: int) -> str:
+def _expired(publisher: Endpoint, old_ns: int) -> str:
     lifespan_s = publisher.qos.lifespan_ns / 1e9
     return (
-        f"what {publisher.node_full_name} sends is ignored: it is {old_ns / 1e9:g} s "
-        f"old when it comes, and its lifespan is {lifespan_s:g} s; are the clocks of "
-        "both machines right?"
+        f"messages of {publisher.node_full_name} are dropped: they are "
+        f"{old_ns / 1e9:g} s old on arrival, longer than their lifespan of "
+        f"{lifespan_s:g} s; check that the clocks of both machines agree"
     )

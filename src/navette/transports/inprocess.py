@@ -1,4 +1,4 @@
-"""The default transport: a topic table in memory, at most one copy a delivery."""
+"""The in-process transport: a topic table, at most one copy for each delivery."""
 
 import threading
 from collections import deque
@@ -28,15 +28,14 @@ from navette.transports.service_ports import ReplySink, RequestSink
 
 
 class InProcessPublisher(PublisherPort):
-    """Delivers by calling the matched subscriptions' sinks, in order of matching."""
+    """Calls the sinks of the matched subscriptions, in order of matching."""
 
     __slots__ = ("_history", "_shared_sinks", "_sinks", "_transport", "endpoint")
 
     def __init__(self, endpoint: Endpoint, transport: "InProcessTransport") -> None:
         self.endpoint = endpoint
         self._transport = transport
-        # Tuples, replaced as a whole on a change: a publishing thread never sees
-        # a half-changed list.
+        # Tuples, replaced as a whole: a publishing thread sees no partial change.
         self._sinks: tuple[Sink, ...] = ()
         self._shared_sinks: tuple[Sink, ...] = ()
         self._history: deque[Item] | None = None
@@ -50,7 +49,7 @@ class InProcessPublisher(PublisherPort):
         for sink in self._sinks:
             sink((copy_message(message), source_ns, source_ns, sequence))
         if self._shared_sinks or self._history is not None:
-            # One copy for all that only read: the caller may edit its own later.
+            # One copy for all readers: the caller may change its own later.
             item = (copy_message(message), source_ns, source_ns, sequence)
             if self._history is not None:
                 self._history.append(item)
@@ -58,19 +57,19 @@ class InProcessPublisher(PublisherPort):
                 sink(item)
 
     def _send_encoded(self, item: Item) -> None:
-        """Bytes do not change: each who reads them decodes an object of its own."""
+        """Deliver bytes uncopied: each subscription decodes its own object."""
         for sink in (*self._sinks, *self._shared_sinks):
             sink(item)
         if self._history is not None:
             self._history.append(item)
 
     def relink(self, subscriptions: "list[InProcessSubscription]") -> None:
-        """Take over the current list of matched subscriptions."""
+        """Replace the matched subscriptions."""
         self._sinks = tuple(s.sink for s in subscriptions if not s.shared)
         self._shared_sinks = tuple(s.sink for s in subscriptions if s.shared)
 
     def replay(self, subscription: "InProcessSubscription") -> None:
-        """Give a late joiner the newest latched samples, oldest first."""
+        """Deliver the newest latched samples to a late joiner, oldest first."""
         if self._history is None or not subscription.endpoint.qos.is_latched:
             return
         wanted = subscription.endpoint.qos.queue_length
@@ -89,7 +88,7 @@ class InProcessPublisher(PublisherPort):
 
 
 class _PublisherWithLifespan(InProcessPublisher):
-    """Each sample tells until when it may be taken."""
+    """Publisher whose samples expire."""
 
     __slots__ = ()
 
@@ -108,7 +107,7 @@ class _PublisherWithLifespan(InProcessPublisher):
 
 
 def _copied(message: Any) -> Any:
-    """A receiver's own; bytes do not change, so all may share them."""
+    """Return a copy for one receiver; bytes are shared."""
     if message.__class__ is Encoded:
         return message
     if message.__class__ is Expiring:
@@ -125,7 +124,7 @@ def _publisher(
 
 
 class InProcessSubscription(SubscriptionPort):
-    """Names the sink that the matched publishers call."""
+    """Holds the sink that the matched publishers call."""
 
     __slots__ = ("_transport", "endpoint", "shared", "sink")
 
@@ -151,7 +150,7 @@ class InProcessSubscription(SubscriptionPort):
 
 
 class _Topic:
-    """The endpoints of one topic name, and its type while it has any."""
+    """Endpoints and type of one topic name."""
 
     __slots__ = ("publishers", "subscriptions", "type_name")
 
@@ -164,10 +163,12 @@ class _Topic:
         return [*self.publishers, *self.subscriptions]
 
     def matches(self, publisher: InProcessPublisher) -> "list[InProcessSubscription]":
-        return [s for s in self.subscriptions if _fits(publisher, s)]
+        return [s for s in self.subscriptions if _is_compatible(publisher, s)]
 
 
-def _fits(publisher: InProcessPublisher, subscription: InProcessSubscription) -> bool:
+def _is_compatible(
+    publisher: InProcessPublisher, subscription: InProcessSubscription
+) -> bool:
     return not incompatible_policies(publisher.endpoint.qos, subscription.endpoint.qos)
 
 
@@ -202,7 +203,7 @@ class InProcessTransport(Transport):
             subscription = InProcessSubscription(endpoint, sink, self, shared=shared)
             topic.subscriptions.append(subscription)
             for publisher in topic.publishers:
-                if _fits(publisher, subscription):
+                if _is_compatible(publisher, subscription):
                     publisher.relink(topic.matches(publisher))
                     publisher.replay(subscription)
             self._report_matches(
@@ -217,7 +218,7 @@ class InProcessTransport(Transport):
         return self._services.connect(endpoint, sink)
 
     def remove_publisher(self, publisher: InProcessPublisher) -> None:
-        """Take the port off its topic."""
+        """Remove the port from its topic."""
         with self._lock:
             topic = self._topics.get(publisher.endpoint.topic)
             if topic is None or publisher not in topic.publishers:
@@ -225,14 +226,14 @@ class InProcessTransport(Transport):
             topic.publishers.remove(publisher)
             matched = topic.matches(publisher)
             publisher.relink([])
-            self._forget_if_empty(publisher.endpoint.topic, topic)
+            self._remove_if_empty(publisher.endpoint.topic, topic)
             for subscription in matched:
                 for observer in self._observers:
                     observer.unmatched(publisher.endpoint, subscription.endpoint)
             self._changed()
 
     def remove_subscription(self, subscription: InProcessSubscription) -> None:
-        """Take the port off its topic."""
+        """Remove the port from its topic."""
         with self._lock:
             topic = self._topics.get(subscription.endpoint.topic)
             if topic is None or subscription not in topic.subscriptions:
@@ -240,18 +241,20 @@ class InProcessTransport(Transport):
             topic.subscriptions.remove(subscription)
             for publisher in topic.publishers:
                 publisher.relink(topic.matches(publisher))
-                if _fits(publisher, subscription):
+                if _is_compatible(publisher, subscription):
                     for observer in self._observers:
                         observer.unmatched(publisher.endpoint, subscription.endpoint)
-            self._forget_if_empty(subscription.endpoint.topic, topic)
+            self._remove_if_empty(subscription.endpoint.topic, topic)
             self._changed()
 
     def count_publishers_of(self, subscription: InProcessSubscription) -> int:
-        """How many publishers the subscription hears."""
+        """Return the number of publishers matched with the subscription."""
         topic = self._topics.get(subscription.endpoint.topic)
         if topic is None or subscription not in topic.subscriptions:
             return 0
-        return sum(_fits(publisher, subscription) for publisher in topic.publishers)
+        return sum(
+            _is_compatible(publisher, subscription) for publisher in topic.publishers
+        )
 
     def endpoints(self) -> list[Endpoint]:
         with self._lock:
@@ -277,11 +280,13 @@ class InProcessTransport(Transport):
         topic = self._topics.setdefault(endpoint.topic, _Topic(endpoint.type_name))
         if topic.type_name != endpoint.type_name:
             others = sorted({port.endpoint.node_full_name for port in topic.ports()})
-            verb = "publish" if endpoint.kind == EndpointKind.PUBLISHER else "read"
+            verb = (
+                "publish" if endpoint.kind == EndpointKind.PUBLISHER else "subscribe to"
+            )
             raise InvalidValueError(
-                f"topic {endpoint.topic} carries {topic.type_name} "
-                f"({', '.join(others)}); node {endpoint.node_full_name} wants to "
-                f"{verb} {endpoint.type_name}"
+                f"topic {endpoint.topic} has the type {topic.type_name} "
+                f"({', '.join(others)}); node {endpoint.node_full_name} cannot {verb} "
+                f"{endpoint.type_name} on it"
             )
         return topic
 
@@ -298,7 +303,7 @@ class InProcessTransport(Transport):
                     observer.matched(*ends)
         self._changed()
 
-    def _forget_if_empty(self, name: str, topic: _Topic) -> None:
+    def _remove_if_empty(self, name: str, topic: _Topic) -> None:
         if not topic.publishers and not topic.subscriptions:
             del self._topics[name]
 

@@ -1,4 +1,4 @@
-"""Services in memory: a request is copied to the server, the reply to the client."""
+"""In-process services: requests and replies are copied."""
 
 import threading
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from navette.transports.service_ports import (
 
 
 class InProcessService(ServicePort):
-    """Names the sink that the clients of the service call."""
+    """Holds the sink that the clients of the service call."""
 
     __slots__ = ("_table", "endpoint", "sink")
 
@@ -45,13 +45,13 @@ class InProcessService(ServicePort):
         self._table.remove(self)
 
     def _client_of(self, request_id: RequestId) -> "InProcessClient | None":
-        if request_id.ticket:  # another transport's, in whosever name
+        if request_id.ticket:  # of another transport, whatever gid it has
             return None
         return self._table.clients_by_gid.get(request_id.client_gid)
 
 
 class InProcessClient(ClientPort):
-    """Calls the sinks of the servers that fit, oldest first."""
+    """Calls the sinks of the compatible servers, oldest first."""
 
     __slots__ = ("_table", "endpoint", "servers", "sink")
 
@@ -61,7 +61,7 @@ class InProcessClient(ClientPort):
         self.endpoint = endpoint
         self.sink = sink
         self._table = table
-        # Replaced as a whole on a change: a calling thread sees the old or the new.
+        # Replaced as a whole, so that a calling thread sees no partial change.
         self.servers: tuple[InProcessService, ...] = ()
 
     def request(self, message: Any, source_ns: int, sequence: int) -> None:
@@ -83,10 +83,10 @@ Port = InProcessService | InProcessClient
 
 
 class ServiceTable:
-    """All servers and clients of a transport, by the name of their service.
+    """All servers and clients of a transport, by service name.
 
     Args:
-        lock: taken around every change.
+        lock: held during every change.
         changed: called after every change.
     """
 
@@ -110,7 +110,7 @@ class ServiceTable:
         return client
 
     def remove(self, port: Port) -> None:
-        """Take the port off its service."""
+        """Remove the port from its service."""
         name = port.endpoint.topic
         with self._lock:
             ports = self._ports.get(name, [])
@@ -124,7 +124,7 @@ class ServiceTable:
             self._changed()
 
     def ports(self) -> list[Port]:
-        """All ports, by service in order of appearance."""
+        """Return all ports, by service in order of appearance."""
         with self._lock:
             return [port for ports in self._ports.values() for port in ports]
 
@@ -138,15 +138,15 @@ class ServiceTable:
 
 
 def _relink(ports: list[Port]) -> None:
-    """Give every client the servers that fit it."""
+    """Assign the compatible servers to every client."""
     servers = [port for port in ports if isinstance(port, InProcessService)]
     for port in ports:
         if isinstance(port, InProcessClient):
-            port.servers = tuple(s for s in servers if _fits(port, s))
+            port.servers = tuple(s for s in servers if _is_compatible(port, s))
 
 
-def _fits(client: InProcessClient, service: InProcessService) -> bool:
-    """Whether requests reach the server and replies the client."""
+def _is_compatible(client: InProcessClient, service: InProcessService) -> bool:
+    """Return whether the QoS allows requests and replies."""
     mine, other = client.endpoint.qos, service.endpoint.qos
     return not (
         incompatible_policies(mine, other) or incompatible_policies(other, mine)
@@ -159,7 +159,7 @@ def _check_type(endpoint: Endpoint, ports: list[Port]) -> None:
     others = sorted({port.endpoint.node_full_name for port in ports})
     verb = "serve" if endpoint.kind is EndpointKind.SERVICE else "call"
     raise InvalidValueError(
-        f"service {endpoint.topic} is of type {ports[0].endpoint.type_name} "
-        f"({', '.join(others)}); node {endpoint.node_full_name} wants to {verb} it "
+        f"service {endpoint.topic} has the type {ports[0].endpoint.type_name} "
+        f"({', '.join(others)}); node {endpoint.node_full_name} cannot {verb} it "
         f"as {endpoint.type_name}"
     )

@@ -1,7 +1,6 @@
-"""Quality of service as a transport sees it, and which offers satisfy which requests.
+"""Quality of service of endpoints, and which offers satisfy which requests.
 
-Enum values are those of ROS 2's ``rmw_qos_*_policy_t``: they travel in bags and on
-the wire.
+Enum values are those of ROS 2's ``rmw_qos_*_policy_t``: bags and the wire contain them.
 """
 
 from dataclasses import dataclass
@@ -12,18 +11,18 @@ INFINITE_NS = 2**63 - 1
 """RMW_DURATION_INFINITE in nanoseconds."""
 
 BEST_AVAILABLE_NS = INFINITE_NS - 1
-"""A deadline or lease that goes with whatever the other side has."""
+"""A deadline or lease that is compatible with any other."""
 
 DEFAULT_DEPTH = 42
-"""Queue depth where the profile leaves it open (as in rmw_zenoh)."""
+"""Queue depth if the profile does not set one, as in rmw_zenoh."""
 
 
 class QoSPolicyEnum(IntEnum):
-    """Base of the policy enums: short names for command lines and files."""
+    """Base of the policy enums, with short names for command lines and files."""
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        return [each.name.lower() for each in cls]  # without the RMW_… aliases
+        return [each.name.lower() for each in cls]  # without aliases
 
     @classmethod
     def get_from_short_key(cls, name: str) -> int:
@@ -35,14 +34,14 @@ class QoSPolicyEnum(IntEnum):
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """How many samples are kept: the last ``depth``, or all."""
+    """Which samples are kept: the last ``depth``, or all."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
     KEEP_ALL = 2
     UNKNOWN = 3
 
-    # The names of older programs.
+    # Names in older programs.
     RMW_QOS_POLICY_HISTORY_SYSTEM_DEFAULT = SYSTEM_DEFAULT
     RMW_QOS_POLICY_HISTORY_KEEP_LAST = KEEP_LAST
     RMW_QOS_POLICY_HISTORY_KEEP_ALL = KEEP_ALL
@@ -58,7 +57,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
     UNKNOWN = 3
     BEST_AVAILABLE = 4
 
-    # The names of older programs.
+    # Names in older programs.
     RMW_QOS_POLICY_RELIABILITY_SYSTEM_DEFAULT = SYSTEM_DEFAULT
     RMW_QOS_POLICY_RELIABILITY_RELIABLE = RELIABLE
     RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT = BEST_EFFORT
@@ -66,7 +65,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether late joiners get the last samples (TRANSIENT_LOCAL)."""
+    """Whether late joiners receive the last samples (TRANSIENT_LOCAL)."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -74,7 +73,7 @@ class DurabilityPolicy(QoSPolicyEnum):
     UNKNOWN = 3
     BEST_AVAILABLE = 4
 
-    # The names of older programs.
+    # Names in older programs.
     RMW_QOS_POLICY_DURABILITY_SYSTEM_DEFAULT = SYSTEM_DEFAULT
     RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL = TRANSIENT_LOCAL
     RMW_QOS_POLICY_DURABILITY_VOLATILE = VOLATILE
@@ -82,7 +81,7 @@ class DurabilityPolicy(QoSPolicyEnum):
 
 
 class LivelinessPolicy(QoSPolicyEnum):
-    """Who asserts that a publisher is alive."""
+    """How a publisher asserts that it is alive."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -90,7 +89,7 @@ class LivelinessPolicy(QoSPolicyEnum):
     UNKNOWN = 4
     BEST_AVAILABLE = 5
 
-    # The names of older programs.
+    # Names in older programs.
     RMW_QOS_POLICY_LIVELINESS_SYSTEM_DEFAULT = SYSTEM_DEFAULT
     RMW_QOS_POLICY_LIVELINESS_AUTOMATIC = AUTOMATIC
     RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC = MANUAL_BY_TOPIC
@@ -98,7 +97,7 @@ class LivelinessPolicy(QoSPolicyEnum):
 
 
 class QoSPolicyKind(IntEnum):
-    """Names the policy in incompatible-QoS events; values as in rmw."""
+    """Policy named by an incompatible-QoS event; values as in rmw."""
 
     INVALID = 1
     DURABILITY = 2
@@ -127,14 +126,14 @@ class EndpointQos:
 
     @property
     def queue_length(self) -> int | None:
-        """Samples a queue may hold; ``None`` = all of them."""
+        """Maximum number of queued samples; None: unlimited."""
         if self.history == HistoryPolicy.KEEP_ALL:
             return None
         return self.depth or DEFAULT_DEPTH
 
     @property
     def is_latched(self) -> bool:
-        """Whether this endpoint keeps (or wants) samples for late joiners."""
+        """Whether the endpoint keeps or requests samples for late joiners."""
         return self.durability in (
             DurabilityPolicy.TRANSIENT_LOCAL,
             DurabilityPolicy.BEST_AVAILABLE,
@@ -142,22 +141,22 @@ class EndpointQos:
 
     @property
     def asserts_itself(self) -> bool:
-        """Whether a publisher of that QoS is alive only for a while after a message."""
+        """Whether a publisher is alive only within its lease after a message."""
         manual = self.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
         return manual and 0 < self.lease_ns < INFINITE_NS
 
     @classmethod
     def latched(cls, depth: int = 1) -> Self:
-        """Reliable, transient local: what maps and descriptions use."""
+        """Return reliable, transient local: for maps and robot descriptions."""
         return cls(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def incompatible_policies(
     offered: EndpointQos, requested: EndpointQos
 ) -> tuple[QoSPolicyKind, ...]:
-    """The policies in which an offer falls short of a request; empty = they match.
+    """Return the policies in which an offer does not satisfy a request.
 
-    Rules: DDS request versus offered (OMG DDS 1.4, 2.2.3).
+    Rules: requested versus offered (OMG DDS 1.4, 2.2.3).
     """
     checks = (
         (

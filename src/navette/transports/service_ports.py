@@ -1,4 +1,4 @@
-"""The service half of the seam: requests from clients, replies from servers."""
+"""Ports of servers and clients: requests and replies of services."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 
 class RequestId(NamedTuple):
-    """Whose request it is: a reply goes back to that client under that number.
+    """Identifies a request, so that the reply reaches its client.
 
-    Others may use the same two, by mistake or on purpose: ``ticket`` says at the port
-    that has taken a request which of those it is; 0 in process, where nobody can.
+    Other clients may use the same gid and number, by mistake or on purpose. ``ticket``
+    is unique at the port that accepted the request; it is 0 in process.
     """
 
     client_gid: bytes
@@ -18,7 +18,7 @@ class RequestId(NamedTuple):
 
 
 class Request(NamedTuple):
-    """One request as a server gets it; stamps in nanoseconds."""
+    """One request as a server receives it; stamps in nanoseconds."""
 
     message: Any
     source_ns: int
@@ -27,9 +27,12 @@ class Request(NamedTuple):
 
 
 class Reply(NamedTuple):
-    """One reply as the client gets it; without a message, why there is none.
+    """One reply as the client receives it.
 
-    ``timed_out``: nobody answered in the time that the transport waits.
+    Attributes:
+        message: None if the request failed.
+        failure: why there is no message.
+        timed_out: whether no server replied within the transport's timeout.
     """
 
     message: Any
@@ -46,25 +49,25 @@ ReplySink = Callable[[Reply], None]
 
 
 class ServicePort(ABC):
-    """A server's door into a transport."""
+    """Port of one server on a transport."""
 
     __slots__ = ()
 
     @abstractmethod
     def reply(self, request_id: RequestId, message: Any) -> None:
-        """Send a reply as it is now; a client that has left is no error."""
+        """Send a reply as it is now; it is dropped if the client has closed."""
 
     @abstractmethod
     def fail(self, request_id: RequestId, reason: str) -> None:
-        """Tell the client that there will be no reply, and why."""
+        """Report to the client that there will be no reply."""
 
     @abstractmethod
     def close(self) -> None:
-        """Leave the service; closing twice is harmless."""
+        """Leave the service; may be called again."""
 
 
 class ClientPort(ABC):
-    """A client's door into a transport."""
+    """Port of one client on a transport."""
 
     __slots__ = ()
 
@@ -75,13 +78,13 @@ class ClientPort(ABC):
 
     @abstractmethod
     def request(self, message: Any, source_ns: int, sequence: int) -> None:
-        """Send a request as it is now to every server that fits."""
+        """Send a request as it is now to every matched server."""
 
     @property
     @abstractmethod
     def server_count(self) -> int:
-        """How many servers the requests go to through this transport."""
+        """Number of servers that receive the requests through this transport."""
 
     @abstractmethod
     def close(self) -> None:
-        """Leave the service; closing twice is harmless."""
+        """Leave the service; may be called again."""

@@ -1,10 +1,10 @@
-"""How a process ends: none of its threads may be inside Zenoh when Python does.
+"""End of the process: no thread may be inside Zenoh when the interpreter ends.
 
-Python kills a thread that comes back to it when it is ending. One that comes back out
-of Zenoh takes the whole process with it (SIGABRT, "exception not rethrown"): what was
-done and saved looks as if it had failed. Such a thread is there when a session is slow
-to close: it waits for links that are being opened, up to 10 s where the other end is
-stopped (Ctrl-Z) or the machine is busy. So the end of Python waits for it.
+Python kills a thread that returns to it while the interpreter ends. If the thread
+returns from Zenoh, this aborts the whole process (SIGABRT, "exception not rethrown"),
+so that a run whose results were saved seems to have failed. Such a thread exists while
+a session closes: closing waits for links that are being opened, up to 10 s if the other
+process is stopped (Ctrl-Z) or the machine is busy. The interpreter therefore waits.
 """
 
 import atexit
@@ -18,36 +18,33 @@ from contextlib import suppress
 _inside: "weakref.WeakSet[threading.Thread]" = weakref.WeakSet()
 
 
-class _Ending:
-    """What is known of the end."""
-
+class _End:
     exit_code: int | None = None
 
 
 def wait_for_at_end(thread: threading.Thread) -> None:
-    """A thread that is inside Zenoh, and comes back some time after its session."""
+    """Let the end of the interpreter wait for a thread that is inside Zenoh."""
     _inside.add(thread)
 
 
 def end_with(exit_code: int) -> None:
-    """The process is about to end with this: it need not wait for anybody.
+    """End the process with that code at once if a thread is still inside Zenoh.
 
-    Who says nothing waits. A command that people type does not want to: it ends at
-    once, without what is left of Python's own end, if somebody would have to be waited
-    for.
+    For commands that people type: they skip the rest of the interpreter's own end
+    instead of waiting. All other programs wait.
     """
-    _Ending.exit_code = exit_code
+    _End.exit_code = exit_code
 
 
 @atexit.register
 def _wait_for_all() -> None:
     threads = [thread for thread in list(_inside) if thread.is_alive()]
-    if threads and _Ending.exit_code is not None:
+    if threads and _End.exit_code is not None:
         logging.shutdown()
         for stream in (sys.stdout, sys.stderr):
-            with suppress(OSError, ValueError):  # nobody reads it any more
+            with suppress(OSError, ValueError):  # the reader has closed it
                 stream.flush()
-        os._exit(_Ending.exit_code)
+        os._exit(_End.exit_code)
     for thread in threads:
         thread.join()
 

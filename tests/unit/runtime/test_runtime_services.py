@@ -303,7 +303,7 @@ def test_wrong_types_are_loud(graph: GraphHarness) -> None:
     _, client = pair(graph)
     with pytest.raises(TypeError, match=r"expected .*_Request, got SetBool_Request"):
         client.call_async(SetBool.Request())
-    with pytest.raises(InvalidValueError, match="wants to call it as std_srvs/srv/Set"):
+    with pytest.raises(InvalidValueError, match="cannot call it as std_srvs/srv/Set"):
         node.create_client(SetBool, "add")
     assert graph.context.graph.service_endpoints(node="/harness") == []
 

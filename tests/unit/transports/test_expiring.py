@@ -1,4 +1,4 @@
-"""Lifespans of publishers in other processes: what is known of them, and when."""
+"""Lifespans of remote publishers, known before or after their samples arrive."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ SINCE_1970 = 1_800_000_000 * S
 
 
 class Case:
-    """A publisher, known or not yet, and what comes of it."""
+    """A publisher with a lifespan and the warnings about it."""
 
     def __init__(self, lifespan_ns: int) -> None:
         self.publisher = Endpoint(
@@ -27,11 +27,11 @@ class Case:
             "RIHS01_0",
         )
         self.known = {GID: self.publisher}
-        self.complaints: list[str] = []
+        self.warnings: list[str] = []
         self.lifespans = Lifespans(self.known, lambda _, text: self.note(text))
 
     def note(self, text: str) -> None:
-        self.complaints.append(text)
+        self.warnings.append(text)
 
     def sent(self, source_ns: int, received_ns: int) -> Any:
         item = ("text", source_ns, received_ns, 7)
@@ -41,8 +41,8 @@ class Case:
 
 
 @pytest.mark.parametrize("lifespan_ns", [0, 2**63 - 1])
-def test_without_a_lifespan_nothing_is_wrapped(lifespan_ns: int) -> None:
-    """Zero is how some write that there is none."""
+def test_samples_without_a_lifespan_do_not_expire(lifespan_ns: int) -> None:
+    """Some peers announce zero for no lifespan."""
     case = Case(lifespan_ns)
     assert case.sent(1, 2) == "text"
     case.known.clear()
@@ -51,14 +51,14 @@ def test_without_a_lifespan_nothing_is_wrapped(lifespan_ns: int) -> None:
     assert early.at(10 * S) == "text"
 
 
-def test_it_counts_from_the_sending() -> None:
+def test_the_lifespan_begins_at_the_source_stamp() -> None:
     message = Case(2 * S).sent(5 * S, 6 * S)
     assert isinstance(message, Expiring)
     assert message.at(7 * S - 1) == "text"
     assert message.at(7 * S) is None
 
 
-def test_what_comes_before_its_publisher_is_known_expires_once_it_is() -> None:
+def test_an_early_sample_expires_once_its_publisher_is_known() -> None:
     case = Case(2 * S)
     case.known.clear()
     message = case.sent(5 * S, 6 * S)
@@ -71,21 +71,23 @@ def test_what_comes_before_its_publisher_is_known_expires_once_it_is() -> None:
 @pytest.mark.parametrize(
     ("source_ns", "received_ns"), [(5 * S, SINCE_1970), (SINCE_1970, 5 * S)]
 )
-def test_clocks_of_two_worlds_do_not_compare(source_ns: int, received_ns: int) -> None:
-    """A simulation's time and the machine's: it is as old as it waited here."""
+def test_two_different_clocks_are_not_compared(
+    source_ns: int, received_ns: int
+) -> None:
+    """The age is then the time since the sample arrived."""
     case = Case(2 * S)
     message = case.sent(source_ns, received_ns)
     assert message.at(received_ns + 2 * S - 1) == "text"
     assert message.at(received_ns + 2 * S) is None
-    assert case.complaints == []
+    assert case.warnings == []
 
 
-def test_clocks_that_differ_by_more_than_the_lifespan_are_complained_about() -> None:
+def test_samples_that_expired_on_arrival_cause_a_warning() -> None:
     case = Case(10 * S)
-    for second in range(3):  # at first it could be a history
-        assert case.complaints == []
+    for second in range(3):  # at first the samples could be history
+        assert case.warnings == []
         now_ns = SINCE_1970 + second * S
         assert case.sent(now_ns - 35 * S, now_ns).at(now_ns) is None
-    (text,) = case.complaints
-    assert text.startswith("what /talker sends is ignored: it is 35 s old")
-    assert "lifespan is 10 s" in text
+    (text,) = case.warnings
+    assert text.startswith("messages of /talker are dropped: they are 35 s old")
+    assert "lifespan of 10 s" in text

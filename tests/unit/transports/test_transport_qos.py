@@ -1,4 +1,4 @@
-"""Which offers satisfy which requests (DDS table)."""
+"""Which offered QoS satisfies which request (DDS 1.4, 2.2.3)."""
 
 import pytest
 
@@ -17,7 +17,7 @@ R, D, L = ReliabilityPolicy, DurabilityPolicy, LivelinessPolicy
 
 
 @pytest.mark.parametrize(
-    ("offered", "requested", "fits"),
+    ("offered", "requested", "compatible"),
     [
         (R.RELIABLE, R.RELIABLE, True),
         (R.RELIABLE, R.BEST_EFFORT, True),
@@ -29,15 +29,15 @@ R, D, L = ReliabilityPolicy, DurabilityPolicy, LivelinessPolicy
         (R.SYSTEM_DEFAULT, R.RELIABLE, True),
     ],
 )
-def test_reliability(offered: R, requested: R, fits: bool) -> None:
+def test_reliability(offered: R, requested: R, compatible: bool) -> None:
     found = incompatible_policies(
         EndpointQos(reliability=offered), EndpointQos(reliability=requested)
     )
-    assert found == (() if fits else (QoSPolicyKind.RELIABILITY,))
+    assert found == (() if compatible else (QoSPolicyKind.RELIABILITY,))
 
 
 @pytest.mark.parametrize(
-    ("offered", "requested", "fits"),
+    ("offered", "requested", "compatible"),
     [
         (D.VOLATILE, D.VOLATILE, True),
         (D.TRANSIENT_LOCAL, D.VOLATILE, True),
@@ -46,14 +46,14 @@ def test_reliability(offered: R, requested: R, fits: bool) -> None:
         (D.VOLATILE, D.BEST_AVAILABLE, True),
     ],
 )
-def test_durability(offered: D, requested: D, fits: bool) -> None:
+def test_durability(offered: D, requested: D, compatible: bool) -> None:
     found = incompatible_policies(
         EndpointQos(durability=offered), EndpointQos(durability=requested)
     )
-    assert found == (() if fits else (QoSPolicyKind.DURABILITY,))
+    assert found == (() if compatible else (QoSPolicyKind.DURABILITY,))
 
 
-def test_durations_must_not_be_longer_than_asked_for() -> None:
+def test_offered_durations_must_not_exceed_the_request() -> None:
     slow = EndpointQos(deadline_ns=20, lease_ns=20)
     fast = EndpointQos(deadline_ns=10, lease_ns=10)
     assert incompatible_policies(fast, slow) == ()
@@ -63,7 +63,7 @@ def test_durations_must_not_be_longer_than_asked_for() -> None:
     )
 
 
-def test_manual_liveliness_is_not_offered_by_automatic() -> None:
+def test_automatic_liveliness_does_not_satisfy_manual() -> None:
     manual = EndpointQos(liveliness=L.MANUAL_BY_TOPIC)
     assert incompatible_policies(EndpointQos(), manual) == (QoSPolicyKind.LIVELINESS,)
     assert incompatible_policies(manual, EndpointQos()) == ()

@@ -1,4 +1,4 @@
-"""Tokens that come together are filed together."""
+"""Tokens that arrive together cause one notification."""
 
 from navette.transports.base import TransportObserver
 from navette.transports.zenoh.graph import RemoteGraph
@@ -8,7 +8,7 @@ NODES = [f"@ros2_lv/7/abc/{number}/{number}/NN/%/%/n{number}" for number in rang
 
 
 class Counting(TransportObserver):
-    """Counts what it is told."""
+    """Counts notifications."""
 
     def __init__(self) -> None:
         self.changes = 0
@@ -17,20 +17,20 @@ class Counting(TransportObserver):
         self.changes += 1
 
 
-def test_a_change_is_told_once_for_all_that_came_together() -> None:
-    graph, told = RemoteGraph("fff", LogOnce()), Counting()
-    graph.observers.append(told)
+def test_observers_are_notified_once_for_a_batch() -> None:
+    graph, counting = RemoteGraph("fff", LogOnce()), Counting()
+    graph.observers.append(counting)
     graph.on_tokens([(key, True) for key in NODES])
     assert [node.name for node in graph.nodes()] == ["n0", "n1", "n2", "n3", "n4"]
-    assert told.changes == 1
+    assert counting.changes == 1
     graph.on_tokens([(NODES[0], True), ("@ros2_lv/7/x", True), (NODES[1][:-1], False)])
-    assert told.changes == 1  # known, no token, never heard of
+    assert counting.changes == 1  # known already, invalid, never added
     graph.on_tokens([(NODES[0], False), (NODES[0], True), (NODES[1], False)])
     assert [node.name for node in graph.nodes()] == ["n2", "n3", "n4", "n0"]
-    assert told.changes == 2
+    assert counting.changes == 2
 
 
-def test_waiting_tells_what_is_still_missing() -> None:
+def test_waiting_returns_the_missing_tokens() -> None:
     graph = RemoteGraph("fff", LogOnce())
     graph.on_tokens([(NODES[0], True)])
     assert graph.wait_until_known({NODES[0]}, 60.0) == set()

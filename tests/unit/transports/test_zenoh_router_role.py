@@ -1,4 +1,4 @@
-"""Who takes over from a router that is gone, and when it stops doing so."""
+"""Taking over from a lost router, and the end of doing so."""
 
 import threading
 from typing import Any
@@ -10,16 +10,16 @@ from navette.transports.zenoh.settings import Settings
 
 
 class Role(RouterRole):
-    """Counts how often it looks for a router, instead of doing so."""
+    """Counts the searches for a router instead of searching."""
 
     def __init__(self) -> None:
         super().__init__(Settings())
-        self.looks = 0
-        self.has_looked = threading.Event()
+        self.searches = 0
+        self.has_searched = threading.Event()
 
     def find_or_serve(self) -> None:
-        self.looks += 1
-        self.has_looked.set()
+        self.searches += 1
+        self.has_searched.set()
 
     def begin(self) -> threading.Thread:
         session: Any = NoSession()
@@ -32,7 +32,7 @@ class Role(RouterRole):
 
 
 class NoSession:
-    """In place of Zenoh's: tells of no events."""
+    """Stands in for Zenoh's session; reports no events."""
 
     @property
     def info(self) -> "NoSession":
@@ -44,8 +44,8 @@ class NoSession:
         return
 
 
-class CloseComesBetween(threading.Event):
-    """The process closes just as it is being noted that its router is gone."""
+class CloseDuringLoss(threading.Event):
+    """Lets the process close while the loss of its router is being handled."""
 
     def __init__(self, role: Role) -> None:
         super().__init__()
@@ -56,32 +56,32 @@ class CloseComesBetween(threading.Event):
         super().clear()
 
 
-def test_a_close_just_when_the_router_is_lost_ends() -> None:
-    """At the end of a lock-step all leave at once, and the router is one of them."""
+def test_a_close_during_the_loss_of_the_router_ends_the_thread() -> None:
+    """At the end of a lock-step all processes close, also the one with the router."""
     role = Role()
-    role._lost = CloseComesBetween(role)
+    role._lost = CloseDuringLoss(role)
     thread = role.begin()
     role.lose()
     thread.join(60.0)
     assert not thread.is_alive()
     role.close()
-    assert role.looks == 0
+    assert role.searches == 0
 
 
-def test_a_lost_router_is_looked_for_each_time_until_the_close() -> None:
+def test_each_loss_of_the_router_starts_a_search_until_the_close() -> None:
     role = Role()
     role.begin()
     for count in (1, 2):
         role.lose()
-        assert role.has_looked.wait(60.0)
-        role.has_looked.clear()
-        assert role.looks == count
+        assert role.has_searched.wait(60.0)
+        role.has_searched.clear()
+        assert role.searches == count
     role.close()
-    assert role.looks == 2
+    assert role.searches == 2
 
 
-def test_why_one_is_alone_is_told_in_plain_words() -> None:
+def test_the_warning_names_why_there_is_no_router() -> None:
     far = "tls/192.0.2.7:7447"
     cannot = f"{far}: Can not bind: Cannot assign requested address (os error 99)"
-    assert "on another machine: it is off, out of reach" in alone([far], [cannot])
-    assert "none can start: no key" in alone([far], ["no key"])
+    assert "on another machine: the machine is off" in alone([far], [cannot])
+    assert "none can be started: no key" in alone([far], ["no key"])

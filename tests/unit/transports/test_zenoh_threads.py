@@ -1,4 +1,4 @@
-"""Enough threads that lost links do not stop all the others."""
+"""Enough threads that lost links do not block the others."""
 
 import os
 
@@ -13,7 +13,7 @@ from navette.transports.zenoh.threads import provide_threads
     [(Settings(), 8), (Settings(router=("tcp/10.0.0.1:7447",)), 64)],
     ids=["one machine", "several"],
 )
-def test_there_are_more_threads_than_links_that_may_be_lost(
+def test_more_threads_between_machines_than_on_one(
     settings: Settings, count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("ZENOH_RUNTIME", raising=False)
@@ -23,7 +23,7 @@ def test_there_are_more_threads_than_links_that_may_be_lost(
     assert text.endswith("))")
 
 
-def test_a_child_has_its_own_number(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_child_process_sets_its_own_number(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("ZENOH_RUNTIME", raising=False)
     provide_threads(Settings())
     inherited = os.environ["ZENOH_RUNTIME"]
@@ -33,7 +33,7 @@ def test_a_child_has_its_own_number(monkeypatch: pytest.MonkeyPatch) -> None:
     assert os.environ["ZENOH_RUNTIME"] == inherited
 
 
-def test_what_the_environment_says_wins(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_value_in_the_environment_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ZENOH_RUNTIME", "(rx:(worker_threads:4))")
     provide_threads(Settings())
     assert os.environ["ZENOH_RUNTIME"] == "(rx:(worker_threads:4))"

@@ -1,8 +1,7 @@
-"""Bytes and texts of the wire contract.
+"""Bytes and texts of rmw_zenoh's wire format.
 
-Tokens are the examples of rmw_zenoh's docs/design.md; the others follow from the
-design's "Joining ROS 2 on rmw_zenoh" and were compared with two independent peers
-(tests/conformance/test_zenoh_peers.py).
+The tokens are the examples of rmw_zenoh's docs/design.md. The other values were checked
+against two independent peers (tests/conformance/test_zenoh_peers.py).
 """
 
 import struct
@@ -53,7 +52,7 @@ CLIENT = (
 )
 
 
-def test_a_nodes_token() -> None:
+def test_node_token() -> None:
     token = NodeToken(
         2, "aac3178e146ba6f1fc6e6a4085e77f21", 0, NodeInfo("listener", "/")
     )
@@ -61,7 +60,7 @@ def test_a_nodes_token() -> None:
     assert parse_token(LISTENER) == token
 
 
-def test_a_nodes_token_with_namespace_and_enclave() -> None:
+def test_node_token_with_namespace_and_enclave() -> None:
     token = NodeToken(0, "1f", 3, NodeInfo("n", "/a/b", "/sec/one"))
     assert token.key() == "@ros2_lv/0/1f/3/3/NN/%sec%one/%a%b/n"
     assert parse_token(token.key()) == token
@@ -108,7 +107,7 @@ def test_a_nodes_token_with_namespace_and_enclave() -> None:
         ),
     ],
 )
-def test_an_endpoints_token(
+def test_endpoint_token(
     key: str,
     kind: EndpointKind,
     zid: str,
@@ -133,7 +132,7 @@ def test_an_endpoints_token(
     assert parse_token(key) == token
 
 
-def test_a_gid_is_the_tokens_hash_with_its_low_half_first() -> None:
+def test_gid_is_the_byte_reversed_hash_of_the_token() -> None:
     # XXH3-128 of the text (xxhsum -H2), byte-reversed: rmw_zenoh copies the low 64
     # bits and then the high ones, little-endian.
     assert gid_of("") == bytes.fromhex("99aa06d3014798d86001c324468d497f")[::-1]
@@ -154,14 +153,14 @@ def test_dds_names_of_types(name: str, dds: str) -> None:
     assert ros_type_name(dds) == name
 
 
-def test_what_is_no_type_is_refused() -> None:
-    with pytest.raises(InvalidValueError, match="wanted package/msg/Name"):
+def test_invalid_type_names_are_refused() -> None:
+    with pytest.raises(InvalidValueError, match="expected package/msg/Name"):
         dds_type_name("String")
-    with pytest.raises(DecodeError, match="no DDS name"):
+    with pytest.raises(DecodeError, match="not the DDS name"):
         ros_type_name("std_msgs::msg::String")
 
 
-def test_keys_of_data() -> None:
+def test_data_keys() -> None:
     assert (
         data_key(0, "/chatter", "std_msgs/msg/String", STRING_HASH)
         == f"0/chatter/std_msgs::msg::dds_::String_/{STRING_HASH}"
@@ -199,20 +198,20 @@ def test_qos_as_text(qos: EndpointQos, text: str) -> None:
     assert parse_qos(text) == qos
 
 
-def test_an_infinite_duration_may_be_written_out() -> None:
+def test_an_explicit_infinite_duration_is_accepted() -> None:
     text = "::,10:9223372036,854775807:,:,,"
     assert parse_qos(text).deadline_ns == INFINITE_NS
 
 
-def test_what_is_left_open_is_announced_as_what_it_becomes() -> None:
-    left_open = EndpointQos(
+def test_open_qos_values_are_announced_with_their_defaults() -> None:
+    open_values = EndpointQos(
         history=HistoryPolicy.SYSTEM_DEFAULT,
         depth=0,
         reliability=ReliabilityPolicy.SYSTEM_DEFAULT,
         durability=DurabilityPolicy.UNKNOWN,
         liveliness=LivelinessPolicy.SYSTEM_DEFAULT,
     )
-    assert announced(left_open, offers=True) == EndpointQos(depth=42)
+    assert announced(open_values, offers=True) == EndpointQos(depth=42)
     best = EndpointQos(
         reliability=ReliabilityPolicy.BEST_AVAILABLE,
         durability=DurabilityPolicy.BEST_AVAILABLE,
@@ -223,7 +222,7 @@ def test_what_is_left_open_is_announced_as_what_it_becomes() -> None:
     )
 
 
-def test_an_attachment() -> None:
+def test_attachment() -> None:
     gid = bytes(range(16))
     data = Attachment(1, 0x0102030405060708, gid).encode()
     assert data == bytes.fromhex(
@@ -235,13 +234,13 @@ def test_an_attachment() -> None:
 @pytest.mark.parametrize(
     ("data", "what"),
     [
-        (b"", "of 0 bytes, wanted 33"),
-        (bytes(34), "of 34 bytes, wanted 33"),
-        (bytes(33), "gid of 0 bytes, wanted 16"),
+        (b"", "of 0 bytes, expected 33"),
+        (bytes(34), "of 34 bytes, expected 33"),
+        (bytes(33), "gid of 0 bytes, expected 16"),
         (struct.pack("<qqB16s", -1, 0, 16, b""), "sequence number -1"),
     ],
 )
-def test_what_is_no_attachment_is_refused(data: bytes, what: str) -> None:
+def test_invalid_attachments_are_refused(data: bytes, what: str) -> None:
     with pytest.raises(DecodeError, match=what):
         decode_attachment(data)
 
@@ -277,6 +276,6 @@ def test_what_is_no_attachment_is_refused(data: bytes, what: str) -> None:
         PUBLISHER.replace("::,7:", "::,٧:"),
     ],
 )
-def test_what_is_no_token_is_refused(key: str) -> None:
+def test_invalid_tokens_are_refused(key: str) -> None:
     with pytest.raises(DecodeError):
         parse_token(key)

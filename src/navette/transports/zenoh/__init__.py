@@ -1,4 +1,4 @@
-"""Endpoints of other processes and machines, over Zenoh as rmw_zenoh uses it."""
+"""Transport to other processes and machines: Zenoh with rmw_zenoh's wire format."""
 
 from navette.transports.zenoh.settings import Settings
 from navette.transports.zenoh.transport import ZenohTransport

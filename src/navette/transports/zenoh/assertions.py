@@ -16,7 +16,9 @@ from navette.transports.zenoh.session_id import is_navette_session
 
 
 class LivelinessAssertions(TransportObserver):
-    """Sends assertions; receives them once a publisher that asserts itself is matched.
+    """Sends assertions of publishers here, and receives those of remote ones.
+
+    The subscriber is declared when a subscription or publisher first requires it.
 
     Args:
         on_asserted: called with the gid of a publisher, on Zenoh's threads.
@@ -47,8 +49,11 @@ class LivelinessAssertions(TransportObserver):
         return all(map(is_navette_session, sessions))
 
     def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        if not (publisher.is_remote and publisher.qos.asserts_itself):
-            return
+        if publisher.is_remote and publisher.qos.asserts_itself:
+            self.receive()
+
+    def receive(self) -> None:
+        """Receive assertions from now on; may be called again."""
         with self._lock:
             if self._subscriber is None:
                 self._subscriber = self._session.declare_subscriber(

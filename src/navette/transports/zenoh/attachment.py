@@ -1,4 +1,4 @@
-"""What travels beside each sample, request and reply: number, time, whose it is."""
+"""Attachment of each sample, request and reply: sequence number, time and gid."""
 
 import struct
 from typing import NamedTuple
@@ -12,28 +12,27 @@ GID_SIZE = 16
 
 
 class Attachment(NamedTuple):
-    """The three values beside a sample."""
+    """Sequence number, source time and gid of a sample's sender."""
 
     sequence: int
     source_ns: int
     gid: bytes
 
     def encode(self) -> bytes:
-        """33 bytes."""
         return _LAYOUT.pack(self.sequence, self.source_ns, GID_SIZE, self.gid)
 
 
 def decode_attachment(data: bytes) -> Attachment:
-    """The inverse of :meth:`Attachment.encode`.
+    """Decode an attachment.
 
     Raises:
-        DecodeError: it is no attachment of that form.
+        DecodeError: ``data`` is not such an attachment.
     """
     if len(data) != SIZE:
-        raise DecodeError(f"attachment of {len(data)} bytes, wanted {SIZE}")
+        raise DecodeError(f"attachment of {len(data)} bytes, expected {SIZE}")
     sequence, source_ns, size, gid = _LAYOUT.unpack(data)
     if size != GID_SIZE:
-        raise DecodeError(f"attachment with a gid of {size} bytes, wanted {GID_SIZE}")
+        raise DecodeError(f"attachment with a gid of {size} bytes, expected {GID_SIZE}")
     if sequence < 0:
-        raise DecodeError(f"attachment with the sequence number {sequence}")
+        raise DecodeError(f"attachment with the negative sequence number {sequence}")
     return Attachment(sequence, source_ns, gid)

@@ -1,4 +1,4 @@
-"""Zenoh configurations: of a peer, of the router, of a client that only asks."""
+"""Zenoh configurations of peers, of the router, and of clients that only query."""
 
 import json
 from pathlib import Path
@@ -10,25 +10,25 @@ from navette.errors import InvalidValueError
 from navette.transports.zenoh.security import Security
 from navette.transports.zenoh.settings import Settings
 
-ASK_TIMEOUT_MS = 1000
-"""A router that is stopped (SIGSTOP) still has its port: it is not waited for."""
+QUERY_TIMEOUT_MS = 1000
+"""Time for a router to respond; a stopped one (SIGSTOP) still has its port."""
 
-# So long a link may take to open. A peer is called once, when it is heard of: many
-# processes that start at once need longer than anybody would think.
+# Time for a link to open. A peer is called only once, when it is discovered, and many
+# processes that start together take long.
 _OPEN_TIMEOUT_MS = 10_000
 
-# What a message has around it; one that is too long by less is complained of.
-_ROOM_BYTES = 1024 * 1024
+# Overhead of a message. A message that is too long by less than this is reported.
+_OVERHEAD_BYTES = 1024 * 1024
 
-# A link that is silent for its lease (10 s) is lost. What waits in it is then still
-# tried to be sent, each batch for the time between two signs of life; until that is
-# over the link is half there: a new one joins the remains of it, is misunderstood at
-# the other end, and ends with them. On one machine nobody cuts a cable, and there may
-# be thousands of links: there Zenoh's own number (4) is enough.
+# A link that is silent for its lease (10 s) is closed. Zenoh then still tries to send
+# each queued batch, for the time between two keep-alives. A new link that opens
+# meanwhile joins the rest of the old one, is misunderstood at the other end, and closes
+# with it. On one machine no cable is cut, and there may be thousands of links: there
+# Zenoh's own number (4) is enough.
 _KEEP_ALIVES_BETWEEN_MACHINES = 20
 
-# As in rmw_zenoh's default configurations, but for the retries: the router is in one
-# of the processes, and another one takes over at once.
+# As in rmw_zenoh's default configurations, except for the retries: the router is in
+# one of the processes, and another process takes over at once.
 _COMMON: dict[str, Any] = {
     "connect": {
         "timeout_ms": {"router": -1, "peer": -1, "client": 0},
@@ -40,7 +40,7 @@ _COMMON: dict[str, Any] = {
         },
     },
     "scouting": {
-        # The session waits for those who are there itself (see session.py).
+        # The session itself waits until the present nodes are known (session.py).
         "delay": 0,
         "multicast": {"enabled": False},
         "gossip": {
@@ -65,7 +65,11 @@ _COMMON: dict[str, Any] = {
 
 
 def peer_config(settings: Settings, zid: str = "") -> zenoh.Config:
-    """Of the session that does the work, with that id unless a file says another."""
+    """Return the configuration of a peer.
+
+    Args:
+        zid: id of the session, unless a configuration file sets one.
+    """
     config = _base(settings, settings.session_file)
     if zid and config.get_json("id") == "null":
         config.insert_json5("id", json.dumps(zid))
@@ -74,25 +78,25 @@ def peer_config(settings: Settings, zid: str = "") -> zenoh.Config:
         config.insert_json5("connect/endpoints", json.dumps(settings.router))
     if settings.session_file is None or "listen" in settings.explicit:
         config.insert_json5("listen/endpoints", json.dumps(settings.listen))
-    # Zenoh drops those without a word, but does not even put them together.
-    longest = _ROOM_BYTES + 2 * settings.max_message_bytes
-    config.insert_json5("transport/link/rx/max_message_size", str(longest))
+    # Zenoh drops longer messages silently, without assembling them.
+    max_size = _OVERHEAD_BYTES + 2 * settings.max_message_bytes
+    config.insert_json5("transport/link/rx/max_message_size", str(max_size))
     return config
 
 
 def client_config(settings: Settings) -> zenoh.Config:
-    """Of a session that asks the router who is there."""
+    """Return the configuration of a session that queries the router."""
     config = peer_config(settings)
     config.insert_json5("mode", '"client"')
     config.insert_json5("listen/endpoints", "[]")
     config.insert_json5("connect/timeout_ms", "0")
-    config.insert_json5("transport/unicast/open_timeout", str(ASK_TIMEOUT_MS))
+    config.insert_json5("transport/unicast/open_timeout", str(QUERY_TIMEOUT_MS))
     config.insert_json5("connect/exit_on_failure", "true")
     return config
 
 
 def router_config(settings: Settings, endpoint: str) -> zenoh.Config:
-    """Of a router that listens at one of the places where the others look for it."""
+    """Return the configuration of a router that listens at ``endpoint``."""
     config = _base(settings, settings.router_file or settings.session_file)
     config.insert_json5("mode", '"router"')
     if settings.router_file is None:
@@ -102,7 +106,7 @@ def router_config(settings: Settings, endpoint: str) -> zenoh.Config:
 
 
 def router_endpoints(settings: Settings) -> list[str]:
-    """Where the router is looked for."""
+    """Return the endpoints at which the router is expected."""
     if settings.session_file is None or "router" in settings.explicit:
         return list(settings.router)
     found = json.loads(peer_config(settings).get_json("connect/endpoints"))
@@ -117,7 +121,7 @@ def _base(settings: Settings, path: Path | None) -> zenoh.Config:
     if settings.security is not None:
         security = Security(settings.security)
         if security.is_encrypted:
-            _refuse_plain((*settings.router, *settings.listen))
+            _check_encrypted((*settings.router, *settings.listen))
         security.apply(config)
     return config
 
@@ -129,12 +133,12 @@ def _read(path: Path | None) -> zenoh.Config:
         config = zenoh.Config.from_file(str(path))
     except zenoh.ZError as error:
         raise InvalidValueError(f"Zenoh configuration {path}: {error}") from error
-    # Latched topics need it, whatever the file says.
+    # Transient-local topics require it.
     config.insert_json5("timestamping/enabled", "true")
     return config
 
 
-def _refuse_plain(endpoints: tuple[str, ...]) -> None:
+def _check_encrypted(endpoints: tuple[str, ...]) -> None:
     for endpoint in endpoints:
         if not endpoint.startswith("tls/"):
             raise InvalidValueError(

@@ -1,4 +1,4 @@
-"""The others: which nodes and endpoints there are, and which of them match ours."""
+"""Nodes and endpoints of other sessions, matched with the local endpoints."""
 
 import threading
 from collections import Counter, deque
@@ -17,7 +17,7 @@ from navette.transports.zenoh.log_once import LogOnce
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.tokens import EndpointToken, Token, gid_of, parse_token
 
-# What is listed of one session; nobody has as many, except to do harm.
+# Limit for one session, against flooding.
 MAX_TOKENS_OF_A_SESSION = 20_000
 _MAX_TOPICS = 100_000
 
@@ -32,12 +32,12 @@ _OPPOSITE = {
 
 
 class RemoteGraph:
-    """Keeps the tokens of other sessions; tells observers what they mean.
+    """Stores the tokens of other sessions and notifies observers of changes.
 
-    Tokens come on Zenoh's threads. The lock is a leaf: no observer is called under it.
+    Called from several threads. No observer is called while the lock is held.
 
     Args:
-        own_zid: the session whose own tokens are left out.
+        own_zid: id of the local session, whose tokens are ignored.
     """
 
     def __init__(self, own_zid: str, log_once: LogOnce) -> None:
@@ -48,19 +48,19 @@ class RemoteGraph:
         self._endpoints: dict[str, Endpoint] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[str, Endpoint]] = {}
         self._count_of: Counter[str] = Counter()
-        #: Never taken out: a gid means the same for ever.
+        #: Gid → topic, also of closed endpoints: a gid is never used for another topic.
         self._topics: dict[bytes, str] = {}
         self._locals: dict[tuple[EndpointKind, str], list[Matches]] = {}
         self._lock = threading.Condition()
         self._events: deque[Callable[[], None]] = deque()
         self._notifying = threading.RLock()
 
-    # -- the others ------------------------------------------------------------
+    # -- remote endpoints --------------------------------------------------------
 
     def on_tokens(self, changes: Iterable[tuple[str, bool]]) -> None:
-        """Tokens have come (true) or gone; what is no token is reported once.
+        """Add (true) and remove (false) tokens; invalid ones are logged once.
 
-        That the graph has changed is told once for all of them.
+        Observers are notified once that the graph has changed.
         """
         read = [
             (key, alive, self._token(key) if alive else None) for key, alive in changes
@@ -78,18 +78,18 @@ class RemoteGraph:
         self._notify()
 
     def nodes(self) -> list[NodeInfo]:
-        """Remote nodes, in order of appearance."""
+        """Return the remote nodes, in order of appearance."""
         with self._lock:
             return list(self._nodes.values())
 
     def endpoints(self, kinds: Iterable[EndpointKind]) -> list[Endpoint]:
-        """Remote endpoints of those kinds, in order of appearance."""
-        wanted = set(kinds)
+        """Return the remote endpoints of these kinds, in order of appearance."""
+        chosen = set(kinds)
         with self._lock:
-            return [e for e in self._endpoints.values() if e.kind in wanted]
+            return [e for e in self._endpoints.values() if e.kind in chosen]
 
     def counts(self) -> dict[str, int]:
-        """Session → how many nodes and endpoints; the observers know of all of them."""
+        """Notify observers; return session → number of nodes and endpoints."""
         with self._notifying:
             while True:
                 self._notify()
@@ -98,33 +98,33 @@ class RemoteGraph:
                         return dict(self._count_of)
 
     def wait_until_known(self, keys: set[str], timeout_s: float) -> set[str]:
-        """Wait for those tokens; what is not here within the time."""
+        """Wait until these tokens are known; return those missing after the timeout."""
         missing = keys
 
-        def all_here() -> bool:
+        def all_known() -> bool:
             nonlocal missing
             missing = missing - self._nodes.keys() - self._endpoints.keys()
             return not missing
 
         with self._lock:
-            self._lock.wait_for(all_here, timeout_s)
+            self._lock.wait_for(all_known, timeout_s)
         return missing
 
-    # -- ours ------------------------------------------------------------------
+    # -- local endpoints ---------------------------------------------------------
 
     def add_local(self, endpoint: Endpoint, type_hash: str) -> Matches:
-        """An endpoint of this session, from now on matched against the others."""
+        """Match an endpoint of this session with the remote ones from now on."""
         matches = Matches(endpoint, type_hash, self._topics, self._queue_assertion)
         with self._lock:
             self._locals.setdefault((endpoint.kind, endpoint.topic), []).append(matches)
-            there = self._by_name.get((_OPPOSITE[endpoint.kind], endpoint.topic), {})
-            for key, remote in there.items():
-                self._meet(matches, key, remote)
+            remotes = self._by_name.get((_OPPOSITE[endpoint.kind], endpoint.topic), {})
+            for key, remote in remotes.items():
+                self._match(matches, key, remote)
         self._notify()
         return matches
 
     def remove_local(self, matches: Matches) -> None:
-        """The endpoint of :meth:`add_local` is gone."""
+        """Unmatch an endpoint that :meth:`add_local` has added."""
         name = matches.endpoint.kind, matches.endpoint.topic
         with self._lock:
             here = self._locals.get(name, [])
@@ -139,7 +139,7 @@ class RemoteGraph:
         self._notify()
 
     def _token(self, key: str) -> Token | None:
-        """None: one of our own, or none at all."""
+        """Return the token; None if it is invalid or of this session."""
         try:
             token = parse_token(key)
         except DecodeError as error:
@@ -157,7 +157,7 @@ class RemoteGraph:
             self._log_once.warning(
                 ("tokens", token.zid),
                 f"session {token.zid} has more than {MAX_TOKENS_OF_A_SESSION} "
-                "nodes and endpoints: the others are ignored",
+                "nodes and endpoints: further ones are ignored",
             )
             return False
         self._count_of[token.zid] += 1
@@ -183,7 +183,7 @@ class RemoteGraph:
             self._note_topic(endpoint)
         self._by_name.setdefault((endpoint.kind, endpoint.topic), {})[key] = endpoint
         for matches in self._locals.get((_OPPOSITE[token.kind], token.topic), ()):
-            self._meet(matches, key, endpoint)
+            self._match(matches, key, endpoint)
 
     def _note_topic(self, sender: Endpoint) -> None:
         if len(self._topics) >= _MAX_TOPICS:
@@ -193,7 +193,7 @@ class RemoteGraph:
     def _remove(self, key: str) -> bool:
         endpoint = self._endpoints.pop(key, None)
         if endpoint is not None:
-            self._part(key, endpoint)
+            self._unmatch(key, endpoint)
         elif self._nodes.pop(key, None) is None:
             return False
         zid = key.split("/", 3)[2]
@@ -202,7 +202,7 @@ class RemoteGraph:
             del self._count_of[zid]
         return True
 
-    def _part(self, key: str, endpoint: Endpoint) -> None:
+    def _unmatch(self, key: str, endpoint: Endpoint) -> None:
         name = endpoint.kind, endpoint.topic
         del self._by_name[name][key]
         if not self._by_name[name]:
@@ -213,7 +213,7 @@ class RemoteGraph:
             if matches.remove(key):
                 self._queue_match(matches.endpoint, endpoint, up=False)
 
-    def _meet(self, matches: Matches, key: str, remote: Endpoint) -> None:
+    def _match(self, matches: Matches, key: str, remote: Endpoint) -> None:
         local = matches.endpoint
         if (remote.type_name, remote.type_hash) != (local.type_name, matches.type_hash):
             self._queue("incompatible_type", local, remote)
@@ -240,7 +240,7 @@ class RemoteGraph:
             self._events.append(partial(getattr(observer, event), *ends))
 
     def lost(self, subscription: Endpoint, count: int) -> None:
-        """So many samples did not arrive; told at once."""
+        """Report that samples did not arrive."""
         for observer in self.observers:
             observer.message_lost(subscription, count)
 
@@ -261,10 +261,10 @@ class RemoteGraph:
             self._queue("asserted", publisher, matches.endpoint)
         self._notify()
 
-    # -- telling ---------------------------------------------------------------
+    # -- notification ------------------------------------------------------------
 
     def _notify(self) -> None:
-        """Call the observers, in the order in which things happened."""
+        """Call the observers, in the order of the events."""
         with self._notifying:
             while self._events:
                 self._events.popleft()()
@@ -275,7 +275,7 @@ class RemoteGraph:
 
 
 def _in_order(local: Endpoint, remote: Endpoint) -> tuple[Endpoint, Endpoint]:
-    """The one that sends (or serves), then the other."""
+    """Return the publisher or server first."""
     if local.kind in (EndpointKind.PUBLISHER, EndpointKind.SERVICE):
         return local, remote
     return remote, local

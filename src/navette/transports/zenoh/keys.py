@@ -1,6 +1,6 @@
 """Names on the wire: key expressions of topics and services, DDS names of types.
 
-As rmw_zenoh has them (Jazzy from 0.2.4, Kilted, Rolling).
+As in rmw_zenoh (Jazzy from 0.2.4, Kilted, Rolling).
 """
 
 import re
@@ -14,48 +14,48 @@ _MANGLED_NAME = re.compile(r"(%[A-Za-z_]\w*)+", re.ASCII)
 
 
 def dds_type_name(type_name: str) -> str:
-    """``geometry_msgs::msg::dds_::Twist_`` of ``geometry_msgs/msg/Twist``."""
+    """Return ``geometry_msgs::msg::dds_::Twist_`` for ``geometry_msgs/msg/Twist``."""
     match = _TYPE.fullmatch(type_name)
     if match is None:
         raise InvalidValueError(
-            f"type {type_name!r}: wanted package/msg/Name, /srv/ or /action/"
+            f"type {type_name!r}: expected package/msg/Name, /srv/ or /action/"
         )
     return "{}::{}::dds_::{}_".format(*match.groups())
 
 
 def ros_type_name(dds_name: str) -> str:
-    """The inverse of :func:`dds_type_name`.
+    """Return the ROS 2 type name for a DDS type name.
 
     Raises:
-        DecodeError: it is no DDS name of a ROS 2 type.
+        DecodeError: ``dds_name`` is not the DDS name of a ROS 2 type.
     """
     match = _DDS_TYPE.fullmatch(dds_name)
     if match is None:
-        raise DecodeError(f"{dds_name!r} is no DDS name of a ROS 2 type")
+        raise DecodeError(f"{dds_name!r} is not the DDS name of a ROS 2 type")
     return "/".join(match.groups())
 
 
 def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:
-    """Where a topic's samples, or a service's requests, travel."""
+    """Return the key expression of a topic's samples or a service's requests."""
     return f"{domain_id}/{name.lstrip('/')}/{dds_type_name(type_name)}/{type_hash}"
 
 
 def mangled(name: str) -> str:
-    """A full name as one chunk of a key; the root is ``%``."""
+    """Return a full name as one chunk of a key expression; the root is ``%``."""
     return name.replace("/", "%")
 
 
 def demangled_name(chunk: str) -> str:
-    """Full name of a topic, service or node's namespace (not the root).
+    """Return the full name of a topic, service or namespace other than the root.
 
     Raises:
-        DecodeError: it is no such name.
+        DecodeError: ``chunk`` is not a mangled name.
     """
     if not _MANGLED_NAME.fullmatch(chunk):
-        raise DecodeError(f"{chunk!r} is no mangled name")
+        raise DecodeError(f"{chunk!r} is not a mangled name")
     return chunk.replace("%", "/")
 
 
 def is_full_name(name: str) -> bool:
-    """Whether it can be a topic's or service's full name."""
+    """Return whether ``name`` is a valid full name of a topic or service."""
     return _NAME.fullmatch(name) is not None

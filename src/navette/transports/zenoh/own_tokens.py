@@ -1,4 +1,4 @@
-"""The tokens of this session's own nodes and endpoints: made, shown, taken back."""
+"""Liveliness tokens of this session's nodes and endpoints."""
 
 import itertools
 import threading
@@ -14,10 +14,11 @@ from navette.transports.zenoh.tokens import EndpointToken, NodeToken, gid_of
 
 
 class OwnTokens:
-    """Gives every node and endpoint its name on the network; safe from any thread.
+    """Creates, declares and withdraws tokens; called from any thread.
 
     Args:
-        reuses_endpoints: an endpoint may get the token of one of its kind that is gone.
+        reuses_endpoints: whether an endpoint may get the token of a closed one of the
+            same kind.
     """
 
     def __init__(
@@ -28,28 +29,28 @@ class OwnTokens:
         self._reuses_endpoints = reuses_endpoints
         self._ids = itertools.count()
         self._nodes: dict[NodeInfo, list[tuple[int, zenoh.LivelinessToken]]] = {}
-        #: Numbers of nodes that are gone, for others of their names.
-        self._spare_nodes: dict[NodeInfo, list[int]] = {}
+        #: Numbers of closed nodes, for new nodes of the same name.
+        self._free_nodes: dict[NodeInfo, list[int]] = {}
         self._pool = TokenPool()
-        #: By gid, until the endpoint is opened.
-        self._made: dict[bytes, tuple[EndpointToken, int]] = {}
+        #: Created tokens by gid, until the endpoint is opened.
+        self._created: dict[bytes, tuple[EndpointToken, int]] = {}
         self._hashes: dict[str, str] = {}
         self._lock = threading.Lock()
 
     # -- nodes -----------------------------------------------------------------
 
     def announce(self, node: NodeInfo) -> None:
-        """A node is there."""
+        """Declare the token of a node."""
         with self._lock:
-            spare = self._spare_nodes.get(node)
-            nid = spare.pop() if spare else next(self._ids)
+            free = self._free_nodes.get(node)
+            nid = free.pop() if free else next(self._ids)
         token = NodeToken(self._domain_id, self._session.zid, nid, node)
         declared = self.declare(token)
         with self._lock:
             self._nodes.setdefault(node, []).append((nid, declared))
 
     def withdraw(self, node: NodeInfo) -> None:
-        """One node of that name is gone."""
+        """Undeclare the token of one node of that name."""
         with self._lock:
             tokens = self._nodes.get(node, [])
             if not tokens:
@@ -60,44 +61,44 @@ class OwnTokens:
         if not self._session.zenoh.is_closed():
             token.undeclare()
             with self._lock:
-                self._spare_nodes.setdefault(node, []).append(nid)
+                self._free_nodes.setdefault(node, []).append(nid)
 
     def nodes(self) -> list[NodeInfo]:
-        """One entry a node, also where several have the same name."""
+        """Return one entry for each node, also if several have the same name."""
         with self._lock:
             return [node for node, tokens in self._nodes.items() for _ in tokens]
 
     # -- endpoints -------------------------------------------------------------
 
     def gid_for(self, endpoint: Endpoint) -> bytes:
-        """The gid is a hash of the token, which is therefore made up here."""
-        token, used = self._make(endpoint)
+        """Return the gid of a new endpoint: the hash of a token created here."""
+        token, used = self._create(endpoint)
         gid = gid_of(token.key())
         with self._lock:
-            self._made[gid] = token, used
+            self._created[gid] = token, used
         return gid
 
     def take(self, endpoint: Endpoint) -> tuple[EndpointToken, int]:
-        """The endpoint's token, and the last number that was used under it."""
+        """Return the endpoint's token and the last sequence number sent under it."""
         with self._lock:
-            made = self._made.pop(endpoint.gid, None)
-        return made or self._make(endpoint)
+            created = self._created.pop(endpoint.gid, None)
+        return created or self._create(endpoint)
 
     def declare(self, token: NodeToken | EndpointToken) -> zenoh.LivelinessToken:
-        """Show it to the others."""
+        """Declare a token, which other sessions receive."""
         return self._session.zenoh.liveliness().declare_token(token.key())
 
     def take_back(
-        self, token: EndpointToken, declared: zenoh.LivelinessToken, last: int
+        self, token: EndpointToken, declared: zenoh.LivelinessToken, last_sequence: int
     ) -> None:
-        """The endpoint is gone; ``last``: the last number that it has sent."""
+        """Undeclare the token of a closed endpoint and keep it for reuse."""
         if not self._session.zenoh.is_closed():
             declared.undeclare()
-            self._pool.put(token, last)
+            self._pool.put(token, last_sequence)
 
     # -- inside ----------------------------------------------------------------
 
-    def _make(self, endpoint: Endpoint) -> tuple[EndpointToken, int]:
+    def _create(self, endpoint: Endpoint) -> tuple[EndpointToken, int]:
         offers = endpoint.kind in (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
         nid, node = self._node_of(endpoint)
         token = EndpointToken(
@@ -115,7 +116,7 @@ class OwnTokens:
         return self._pool.take(token) if self._reuses_endpoints else (token, 0)
 
     def _node_of(self, endpoint: Endpoint) -> tuple[int, NodeInfo]:
-        """The newest announced node of that name; 0 where none was."""
+        """Return number and node of the newest announced node of that name, else 0."""
         with self._lock:
             for node, tokens in self._nodes.items():
                 if node.full_name == endpoint.node_full_name:

@@ -1,4 +1,4 @@
-"""QoS as one chunk of a liveliness token; what has its default value is left empty.
+"""QoS as one chunk of a liveliness token; default values are left empty.
 
 ``<rel>:<dur>:<hist>,<depth>:<deadline s>,<ns>:<lifespan s>,<ns>:<liv>,<lease s>,<ns>``
 """
@@ -24,7 +24,7 @@ _CHUNK = re.compile(
 )
 _NS = 1_000_000_000
 
-# Left open in a profile, and what rmw_zenoh makes of it.
+# Values that a profile leaves open, and what rmw_zenoh replaces them by.
 _RELIABILITY = {
     ReliabilityPolicy.SYSTEM_DEFAULT: ReliabilityPolicy.RELIABLE,
     ReliabilityPolicy.UNKNOWN: ReliabilityPolicy.RELIABLE,
@@ -36,10 +36,10 @@ _DURABILITY = {
 
 
 def announced(qos: EndpointQos, *, offers: bool) -> EndpointQos:
-    """What the others are told: nothing is left open.
+    """Return the QoS to announce, without open values.
 
-    ``BEST_AVAILABLE`` fits everybody: the most where it ``offers`` (a publisher),
-    the least where it requests.
+    ``BEST_AVAILABLE`` becomes the strongest policy of an endpoint that ``offers`` (a
+    publisher) and the weakest of one that requests.
     """
     reliability = _RELIABILITY.get(qos.reliability, qos.reliability)
     if reliability == ReliabilityPolicy.BEST_AVAILABLE:
@@ -66,7 +66,7 @@ def announced(qos: EndpointQos, *, offers: bool) -> EndpointQos:
 
 
 def format_qos(qos: EndpointQos) -> str:
-    """The chunk of a QoS that leaves nothing open (see :func:`announced`)."""
+    """Return the chunk for a QoS without open values (see :func:`announced`)."""
     return ":".join(
         (
             _or_empty(qos.reliability, ReliabilityPolicy.RELIABLE),
@@ -82,14 +82,14 @@ def format_qos(qos: EndpointQos) -> str:
 
 
 def parse_qos(chunk: str) -> EndpointQos:
-    """The inverse of :func:`format_qos`.
+    """Decode the chunk of a QoS.
 
     Raises:
-        DecodeError: it is no such chunk.
+        DecodeError: ``chunk`` is not a QoS.
     """
     match = _CHUNK.fullmatch(chunk)
     if match is None:
-        raise DecodeError(f"{chunk[:100]!r} is no QoS")
+        raise DecodeError(f"{chunk[:100]!r} is not a QoS")
     parts = match.groups()
     try:
         return EndpointQos(
@@ -103,7 +103,7 @@ def parse_qos(chunk: str) -> EndpointQos:
             lease_ns=_duration(parts[9], parts[10]),
         )
     except ValueError as error:
-        raise DecodeError(f"{chunk!r} is no QoS: {error}") from None
+        raise DecodeError(f"{chunk!r} is not a QoS: {error}") from None
 
 
 def _or_empty(value: int, default: int) -> str:

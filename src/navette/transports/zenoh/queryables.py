@@ -1,8 +1,8 @@
-"""Queryables of services; those directly below a node's name share one.
+"""Queryables of services; the services directly below a node's name share one.
 
-Every node has six services for its parameters and one for its types, and each entity
-that a session declares is told to every other one over every link: among fifty
-processes these seven were a quarter of all that Zenoh had to do (decision 0019).
+Every node has six parameter services and one for its types, and every entity that a
+session declares is sent to all other sessions. Among fifty processes these seven
+queryables caused a quarter of Zenoh's work (decision 0019).
 """
 
 import threading
@@ -18,8 +18,8 @@ class Queryables:
     """The queryables of a session; safe to use from several threads.
 
     Args:
-        shares: several services may have one. Not where rules say which keys may be
-            declared: they are written for the services' own.
+        shares: whether services may share a queryable. Not with access rules, which
+            name the keys of single services.
     """
 
     def __init__(self, session: zenoh.Session, *, shares: bool) -> None:
@@ -31,15 +31,15 @@ class Queryables:
     def open(
         self, key: str, handler: Handler, *, is_of_node: bool
     ) -> Callable[[], None]:
-        """Take the queries to that key from now on.
+        """Pass the queries of a key to a handler.
 
         Args:
-            key: path, type and hash; no wildcards.
+            key: service name, type and hash; no wildcards.
             handler: called on Zenoh's threads.
-            is_of_node: the path is a node's name and one word more.
+            is_of_node: whether the service name is a node's name and one more part.
 
         Returns:
-            What ends it.
+            A function that undeclares it.
         """
         if is_of_node and self._shares:
             head = key.rsplit("/", 3)[0]
@@ -47,7 +47,7 @@ class Queryables:
                 shared = self._shared.get(head)
                 if shared is None:
                     shared = self._shared[head] = _Shared(self._session, head)
-                # A second one of the same name has its own: both are asked.
+                # A second server of the same name has its own: both are queried.
                 if key not in shared.handlers:
                     shared.handlers[key] = handler
                     return lambda: self._close_one(head, key)
@@ -69,17 +69,17 @@ class Queryables:
 
 
 class _Shared:
-    """One queryable for all services of one node."""
+    """One queryable for the services of one node."""
 
     def __init__(self, session: zenoh.Session, head: str) -> None:
         self.handlers: dict[str, Handler] = {}
-        # Service, type, hash.
+        # The wildcards are service, type and hash.
         self.queryable: Any = _declare(session, f"{head}/*/*/*", self._on_query)
 
     def _on_query(self, query: zenoh.Query) -> None:
         handler = self.handlers.get(str(query.key_expr))
         if handler is None:
-            # Another one's, or nobody's: without an answer, as if it were not asked.
+            # Served by another session, or by none: end the query without a reply.
             query.drop()
         else:
             handler(query)

@@ -1,7 +1,7 @@
-"""The router among the processes: the first one serves, and another takes over.
+"""The router in one of the processes; another process takes over when it ends.
 
-Peers find each other at the router and talk directly from then on; whose process ends
-takes its router along. Who binds the endpoint first is the next.
+Peers discover each other through the router and then communicate directly. The router
+ends with its process; the process that binds the endpoint first is the next router.
 """
 
 import logging
@@ -19,17 +19,17 @@ from navette.transports.zenoh.settings import Settings
 
 _log = logging.getLogger(__name__)
 
-# While one process binds, another may neither bind nor connect: it looks again.
-_LOOKS = 20
-_LOOK_S = 0.05
-_PATIENCE_S = 1.5  # with one that takes calls but does not answer
+# While one process binds, another can neither bind nor connect: it tries again.
+_ATTEMPTS = 20
+_PAUSE_S = 0.05
+_LIMIT_S = 1.5  # for a port that accepts links but does not respond
 
-# What the system says of an address that is another machine's.
-_NOT_HERE = "Cannot assign requested address"
+# The system's error for an address of another machine.
+_OTHER_MACHINE = "Cannot assign requested address"
 
 
 class RouterRole:
-    """Serves as the router where there is none, from now on until :meth:`close`."""
+    """Serves as the router if there is none, until :meth:`close`."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -44,35 +44,35 @@ class RouterRole:
         return self._router is not None
 
     def find_or_serve(self) -> zenoh.Session | None:
-        """A client's session with the router that is there, or that is made here.
+        """Return a client session with the router, which is started if there is none.
 
-        None if there is none and none can be made here (it is to be on another
-        machine, and cannot be reached).
+        None if the router cannot be reached and cannot be started here, because its
+        endpoint belongs to another machine.
         """
-        patience = threading.Timer(_PATIENCE_S, lambda: None)
-        patience.daemon = True
-        patience.start()
-        for _ in range(_LOOKS):
-            client = self._ask()
+        limit = threading.Timer(_LIMIT_S, lambda: None)
+        limit.daemon = True
+        limit.start()
+        for _ in range(_ATTEMPTS):
+            client = self._connect()
             if client is not None:
-                patience.cancel()
+                limit.cancel()
                 return client
             if not self._serve():
                 return None
-            if self._stop.wait(0.0 if self.is_serving else _LOOK_S):
+            if self._stop.wait(0.0 if self.is_serving else _PAUSE_S):
                 return None
-            if not patience.is_alive():
+            if not limit.is_alive():
                 break
         _log.warning(
-            "%s is taken, but who listens there does not let this process in: another "
-            "program, a wrong certificate or password, links with and without TLS, or "
-            "one that is stopped (Ctrl-Z)",
+            "%s is in use, but the program there does not accept this process: it is "
+            "not a router, requires another certificate or password, differs in the "
+            "use of TLS, or is stopped (Ctrl-Z); navette doctor reports which",
             ", ".join(router_endpoints(self._settings)),
         )
         return None
 
     def watch(self, session: zenoh.Session) -> None:
-        """Take over when ``session`` loses its router."""
+        """Become the router when ``session`` loses its router."""
 
         def on_event(event: zenoh.TransportEvent) -> None:
             if (
@@ -90,12 +90,12 @@ class RouterRole:
         )
 
     def stop_watching(self) -> None:
-        """Take over no more: where all leave at once, nobody needs another router."""
+        """Do not take over any more; processes that end together need no new router."""
         self._stop.set()
         self._lost.set()
 
     def close(self) -> None:
-        """Serve no more; another process takes over."""
+        """Stop serving; another process takes over."""
         self.stop_watching()
         if self._thread is not None:
             self._thread.join()
@@ -106,8 +106,8 @@ class RouterRole:
     def _take_over(self) -> None:
         while True:
             self._lost.wait()
-            # Before the look at _stop: the other way round, a close that comes between
-            # the two is forgotten, and waits for this thread for ever.
+            # Before _stop is read: in the other order, a close between the two would be
+            # lost, and would wait for this thread for ever.
             self._lost.clear()
             if self._stop.is_set():
                 return
@@ -115,14 +115,14 @@ class RouterRole:
             if client is not None:
                 client.close()
 
-    def _ask(self) -> zenoh.Session | None:
+    def _connect(self) -> zenoh.Session | None:
         try:
             return zenoh.open(client_config(self._settings))
         except zenoh.ZError:
-            return None  # nobody answers
+            return None  # no router responds
 
     def _serve(self) -> bool:
-        """Try to bind; False where no endpoint is of this machine."""
+        """Try to bind; return False if no endpoint belongs to this machine."""
         if self._router is not None:
             return True
         reasons = []
@@ -131,7 +131,7 @@ class RouterRole:
                 self._router = zenoh.open(router_config(self._settings, endpoint))
             except zenoh.ZError as error:
                 if "in use" in str(error):
-                    return True  # by who was faster
+                    return True  # another process was faster
                 reasons.append(f"{endpoint}: {reason_of(error)}")
             else:
                 return True
@@ -140,23 +140,26 @@ class RouterRole:
 
 
 def alone(endpoints: list[str], reasons: list[str]) -> str:
-    """Why there is no router, in the user's words; ``reasons``: of each endpoint."""
+    """Return why there is no router; ``reasons``: one for each endpoint."""
     where = ", ".join(endpoints)
-    if reasons and all(_NOT_HERE in reason for reason in reasons):
+    if reasons and all(_OTHER_MACHINE in reason for reason in reasons):
         return (
-            f"no router answers at {where}, on another machine: it is off, out of "
-            "reach, or does not let this one in (navette doctor says which)"
+            f"no router responds at {where}, on another machine: the machine is off, "
+            "cannot be reached, or does not accept this one (navette doctor reports "
+            "which)"
         )
-    return f"no router answers at {where}, and none can start: {'; '.join(reasons)}"
+    return (
+        f"no router responds at {where}, and none can be started: {'; '.join(reasons)}"
+    )
 
 
 def reason_of(error: zenoh.ZError) -> str:
-    """Zenoh's words, without the place in its source."""
+    """Return Zenoh's message without its source location."""
     return str(error).split(" at /")[0]
 
 
 def refuse(settings: Settings, error: zenoh.ZError) -> NetworkError:
-    """Why the network cannot be joined, in the user's words."""
+    """Return the error for a network that cannot be joined."""
     listen = ", ".join(settings.listen)
     return NetworkError(
         f"cannot join the network (router {', '.join(router_endpoints(settings))}, "

@@ -1,13 +1,13 @@
-"""Who may join: certificates, passwords and access rules from one folder.
+"""Access control: certificates, passwords and access rules from one folder.
 
-What the folder holds says what is asked for (``NAVETTE_SECURITY``):
+The files in the folder (``NAVETTE_SECURITY``) define what every link requires:
 
 ======================  ===========================================================
-``ca.pem``              whose certificates are trusted
-``cert.pem, key.pem``   who this process is; every link is TLS, both sides show one
-``login``               ``name:password`` that this process gives
-``users``               ``name:password`` lines of those who may join
-``access.json5``        Zenoh's ``access_control`` block: who may do what
+``ca.pem``              authority whose certificates are accepted
+``cert.pem, key.pem``   identity of this process; every link uses mutual TLS
+``login``               ``name:password`` of this process
+``users``               ``name:password`` lines of all processes that may join
+``access.json5``        Zenoh's ``access_control`` block
 ======================  ===========================================================
 """
 
@@ -27,22 +27,22 @@ _MAX_BYTES = 1 << 20
 
 @dataclass(frozen=True)
 class Security:
-    """A folder of credentials, looked through once.
+    """A folder of credentials.
 
     Raises:
-        InvalidValueError: there is no such folder, or nothing in it that counts.
-        FileFormatError: a file is missing beside another one, or is not as it should.
+        InvalidValueError: the folder does not exist or contains none of the files.
+        FileFormatError: a file is missing that another one requires.
     """
 
     folder: Path
 
     def __post_init__(self) -> None:
         if not self.folder.is_dir():
-            raise InvalidValueError(f"NAVETTE_SECURITY: no folder {self.folder}")
+            raise InvalidValueError(f"NAVETTE_SECURITY: {self.folder} is not a folder")
         names = (*_CERTIFICATES, *_LOGIN, _ACCESS)
         if not any(self._has(name) for name in names):
             raise InvalidValueError(
-                f"NAVETTE_SECURITY: nothing in {self.folder}; wanted some of "
+                f"NAVETTE_SECURITY: no credentials in {self.folder}; expected some of "
                 f"{', '.join(names)}"
             )
         for group in (_CERTIFICATES, _LOGIN):
@@ -50,28 +50,32 @@ class Security:
             if missing and len(missing) < len(group):
                 raise FileFormatError(
                     self.folder / missing[0],
-                    f"missing; it goes with {', '.join(group)}",
+                    f"missing; required together with {', '.join(group)}",
                 )
 
     @property
     def is_encrypted(self) -> bool:
-        """Whether every link is TLS with certificates on both sides."""
+        """Whether every link uses mutual TLS."""
         return self._has("cert.pem")
 
     def describe(self) -> list[str]:
-        """What is asked of every link, in words; raises where a file is not right."""
+        """Return what every link requires, as text.
+
+        Raises:
+            FileFormatError: a file is invalid.
+        """
         self.apply(zenoh.Config())
         lines = [
             "TLS with certificates on both sides" if self.is_encrypted else "no TLS"
         ]
         if self._has("login"):
-            lines.append(f"passwords; this is {self._login()['user']}")
+            lines.append(f"passwords; user of this process: {self._login()['user']}")
         if self._has(_ACCESS):
             lines.append("access rules")
         return lines
 
     def apply(self, config: zenoh.Config) -> None:
-        """Ask of every link what the folder says."""
+        """Insert the requirements into a Zenoh configuration."""
         if self.is_encrypted:
             self._insert(config, "transport/link/protocols", ["tls"])
             self._insert(config, "transport/link/tls", self._tls())
@@ -92,8 +96,8 @@ class Security:
             "connect_certificate": cert,
             "connect_private_key": key,
             "enable_mtls": True,
-            # Peers learn each other's addresses on the way, and robots change
-            # theirs: who has a certificate of this authority is let in.
+            # Peers learn addresses by discovery, and robots change theirs: a
+            # certificate of this authority is sufficient.
             "verify_name_on_connect": False,
         }
 
@@ -101,7 +105,7 @@ class Security:
         name, colon, password = self._text("login").strip().partition(":")
         if not (name and colon and password):
             raise FileFormatError(
-                self.folder / "login", "wanted one line name:password"
+                self.folder / "login", "expected one line name:password"
             )
         return {
             "user": name,

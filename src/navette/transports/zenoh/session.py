@@ -1,4 +1,4 @@
-"""The session of a process with the network: opened, looked around, closed."""
+"""The Zenoh session of a process: opened, discovery completed, closed."""
 
 import atexit
 import contextlib
@@ -20,29 +20,29 @@ from navette.transports.zenoh.settings import Settings
 from navette.transports.zenoh.threads import provide_threads
 from navette.transports.zenoh.tokens import SPACE
 
-# Those who are there are listed when the session opens; one that is just leaving, or
-# cannot be reached, is waited for this long.
-_LOOKS = 4
-_LOOK_S = 0.25
-_ASK_S = 2.0
-# Closing waits for links that are being opened, also to one that is stopped (Ctrl-Z).
+# The session waits so often and so long for tokens that the router knows; their process
+# may be closing, or out of reach.
+_DISCOVERY_ATTEMPTS = 4
+_DISCOVERY_S = 0.25
+_QUERY_S = 2.0
+# Closing waits for links that are being opened, also to a stopped process (Ctrl-Z).
 _CLOSE_S = 1.5
-# Tokens that wait to be read; who declares more at once waits for the reader.
-_CHANNEL = 10_000
-_SHORTEST_PAUSE_S, _LONGEST_PAUSE_S = 0.002, 0.128
-_PAUSES_GROW = 4  # times, while tokens come in crowds
+# Unread tokens; a session that declares more at once waits for the reader.
+_CHANNEL_SIZE = 10_000
+_MIN_PAUSE_S, _MAX_PAUSE_S = 0.002, 0.128
+_PAUSE_GROWTH = 4
 
 _open: "weakref.WeakSet[Session]" = weakref.WeakSet()
 
 
 class Session:
-    """A peer on the network, and the router where there was none.
+    """A peer on the network, and the router if there was none.
 
     Args:
-        domain_id: whose nodes are seen.
+        domain_id: the domain whose nodes are discovered.
 
     Raises:
-        NetworkError: says with which endpoints, and why.
+        NetworkError: the network cannot be joined; names endpoints and reason.
     """
 
     def __init__(self, settings: Settings, domain_id: int) -> None:
@@ -60,11 +60,11 @@ class Session:
             raise refuse(settings, error) from error
         self.zid = str(self.zenoh.zid())
         self.graph = RemoteGraph(self.zid, self.log_once)
-        # Through a channel: a callback would run in the thread that declares a token
-        # here, and a Ctrl-C that came just then would be lost in it.
+        # A channel, because a callback would run in the thread that declares a token
+        # here, and would swallow a Ctrl-C that arrives in it.
         self._closing = threading.Event()
         self._samples: Any = self.zenoh.liveliness().declare_subscriber(
-            self._tokens, zenoh.handlers.FifoChannel(_CHANNEL), history=True
+            self._tokens, zenoh.handlers.FifoChannel(_CHANNEL_SIZE), history=True
         )
         self._reader = threading.Thread(
             target=self._read, name="navette-graph", daemon=True
@@ -73,17 +73,17 @@ class Session:
         wait_for_at_end(self._reader)
         self._role.watch(self.zenoh)
         if router is not None:
-            self._look_around(router)
+            self._complete_discovery(router)
             router.close()
         _open.add(self)
 
     @property
     def serves_as_router(self) -> bool:
-        """Whether the others find each other through this process."""
+        """Whether this process is the router."""
         return self._role.is_serving
 
     def close(self) -> None:
-        """Leave the network; closing twice is harmless."""
+        """Leave the network; may be called again."""
         _open.discard(self)
         self._closing.set()
         self._role.stop_watching()
@@ -97,46 +97,46 @@ class Session:
         self._role.close()
 
     def _close(self) -> None:
-        # In the end Zenoh stops waiting for those links, too; all is said by then.
+        # Zenoh reports an error when it stops waiting for a link; nothing is lost.
         with contextlib.suppress(zenoh.ZError):
             self.zenoh.close()
 
     def _read(self) -> None:
-        """Take tokens as they come and go, until the session is closed.
+        """Pass tokens to the graph until the session is closed.
 
-        One that comes after a silence is taken at once, then there is a pause; those
-        that come meanwhile are taken together: each time costs two changes of threads,
-        here and in who waits for news of the graph. Pauses grow while several come at
-        once, and halve while none do.
+        A token that follows a quiet period is passed at once. Then the reader pauses
+        and passes the tokens of the pause together, because each batch switches threads
+        twice: here and in the threads that wait for the graph. Pauses grow while
+        several tokens arrive at once, and halve while none arrive.
         """
         pause_s = 0.0
         with contextlib.suppress(zenoh.ZError):
             while True:
                 first = self._samples.try_recv()
-                if first is None and pause_s > _SHORTEST_PAUSE_S:
+                if first is None and pause_s > _MIN_PAUSE_S:
                     pause_s /= 2
                 else:
                     first = first or self._samples.recv()
-                    samples = self._all(first)
+                    samples = self._with_waiting(first)
                     self.graph.on_tokens(map(_change, samples))
                     if len(samples) > 1:
-                        pause_s = min(_PAUSES_GROW * pause_s, _LONGEST_PAUSE_S)
-                    pause_s = max(pause_s, _SHORTEST_PAUSE_S)
+                        pause_s = min(_PAUSE_GROWTH * pause_s, _MAX_PAUSE_S)
+                    pause_s = max(pause_s, _MIN_PAUSE_S)
                 self._closing.wait(pause_s)
 
-    def _all(self, first: zenoh.Sample) -> list[zenoh.Sample]:
-        """It, and those that wait behind it."""
+    def _with_waiting(self, first: zenoh.Sample) -> list[zenoh.Sample]:
+        """Return a token sample and all that wait in the channel."""
         samples = [first]
         while (more := self._samples.try_recv()) is not None:
             samples.append(more)
         return samples
 
-    def _look_around(self, router: zenoh.Session) -> None:
-        """Wait until all that the router knows of are known here."""
+    def _complete_discovery(self, router: zenoh.Session) -> None:
+        """Wait until all tokens that the router knows are known here."""
         known = _listed(router, self._tokens)
-        for _ in range(_LOOKS):
-            missing = self.graph.wait_until_known(known, _LOOK_S)
-            # Those may have gone meanwhile: only of their sessions it is asked again.
+        for _ in range(_DISCOVERY_ATTEMPTS):
+            missing = self.graph.wait_until_known(known, _DISCOVERY_S)
+            # Their sessions may have closed meanwhile: query only these again.
             sessions = {key.split("/", 3)[2] for key in missing}
             known = {
                 key
@@ -148,8 +148,8 @@ class Session:
 
 
 def _listed(router: zenoh.Session, tokens: str) -> set[str]:
-    """The tokens that the router knows of."""
-    replies = router.liveliness().get(tokens, timeout=_ASK_S)
+    """Return the tokens that the router knows."""
+    replies = router.liveliness().get(tokens, timeout=_QUERY_S)
     return {str(reply.ok.key_expr) for reply in replies if reply.ok}
 
 
@@ -157,13 +157,13 @@ def _change(sample: zenoh.Sample) -> tuple[str, bool]:
     return str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
 
 
-# A forked child has the sessions but not their threads: closing one would never end.
+# A forked child has the sessions without their threads: closing would never end.
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_open.clear)
 
 
 @atexit.register
 def _close_all() -> None:
-    """Zenoh's threads must not outlive the interpreter that they call back."""
+    """Close all sessions: Zenoh must not call back an interpreter that has ended."""
     for session in list(_open):
         session.close()

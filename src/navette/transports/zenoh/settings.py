@@ -1,4 +1,4 @@
-"""What the environment says about the network; loopback only where it says nothing."""
+"""Network settings from the environment; loopback only by default."""
 
 import math
 import os
@@ -22,19 +22,18 @@ class Settings:
     """How to join the network.
 
     Args:
-        router: endpoints at which the router is reached; who finds none there serves
-            as the router itself.
-        listen: endpoints at which this process is reached by the others.
+        router: endpoints of the router; a process that finds none there becomes the
+            router.
+        listen: endpoints at which other processes reach this one.
         session_file: a Zenoh configuration (JSON5) to start from.
-        router_file: the same for the router, where this process serves as one.
-        explicit: which of ``router`` and ``listen`` were asked for: they win over
-            what a file says.
-        max_message_bytes: longer messages of others are rejected.
-        service_timeout_s: so long an answer of another process is waited for; an
-            action's result is asked for again then.
+        router_file: the same for the router, if this process becomes the router.
+        explicit: which of ``router`` and ``listen`` were set: they override the files.
+        max_message_bytes: longer messages are rejected.
+        service_timeout_s: time for the reply of another process; an action's result is
+            requested again after it.
         retransmit: topics (names or shell patterns) whose reliable samples are resent
             when they were lost.
-        security: credentials that every link is asked for; None: none.
+        security: folder of credentials that every link requires; None: none.
     """
 
     router: tuple[str, ...] = (DEFAULT_ROUTER,)
@@ -49,32 +48,32 @@ class Settings:
 
     @property
     def has_rules(self) -> bool:
-        """Whether there may be rules about which keys are used."""
+        """Whether access rules may limit the keys."""
         files = self.security, self.session_file, self.router_file
         return any(file is not None for file in files)
 
     @property
     def is_local(self) -> bool:
-        """Whether only processes of this machine are met."""
+        """Whether all endpoints belong to this machine."""
         return all(map(_is_local, (*self.router, *self.listen)))
 
     @classmethod
     def from_environment(
         cls, environment: Mapping[str, str] = os.environ
     ) -> "Settings":
-        """Read ``NAVETTE_ROUTER``, ``NAVETTE_LISTEN`` (several apart by commas),
+        """Read ``NAVETTE_ROUTER``, ``NAVETTE_LISTEN`` (separated by commas),
         ``ZENOH_SESSION_CONFIG_URI``, ``ZENOH_ROUTER_CONFIG_URI``,
         ``NAVETTE_SECURITY``, ``NAVETTE_MAX_MESSAGE_BYTES``,
         ``NAVETTE_SERVICE_TIMEOUT`` and ``NAVETTE_RETRANSMIT``.
 
         Raises:
-            InvalidValueError: names variable, value and what is allowed.
+            InvalidValueError: a value is invalid; names variable and allowed values.
         """
         router = _endpoints(environment, "NAVETTE_ROUTER")
         listen = _endpoints(environment, "NAVETTE_LISTEN")
-        asked = {"router": router, "listen": listen}
+        given = {"router": router, "listen": listen}
         folder = environment.get("NAVETTE_SECURITY", "")
-        # Without certificates (passwords or rules only) links stay as they are.
+        # With passwords or rules only, links are not encrypted.
         secure = bool(folder) and (Path(folder) / "cert.pem").is_file()
         return cls(
             router=router or (SECURE_ROUTER if secure else DEFAULT_ROUTER,),
@@ -82,7 +81,7 @@ class Settings:
             security=Path(folder) if folder else None,
             session_file=_file(environment, "ZENOH_SESSION_CONFIG_URI"),
             router_file=_file(environment, "ZENOH_ROUTER_CONFIG_URI"),
-            explicit=frozenset(name for name, value in asked.items() if value),
+            explicit=frozenset(name for name, value in given.items() if value),
             max_message_bytes=_positive(
                 environment, "NAVETTE_MAX_MESSAGE_BYTES", DEFAULT_MAX_MESSAGE_BYTES
             ),
@@ -109,8 +108,8 @@ def _endpoints(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
         protocol, slash, address = endpoint.partition("/")
         if not (protocol.isalnum() and slash and address):
             raise InvalidValueError(
-                f"{name}: {endpoint!r} is no endpoint; wanted protocol/address, such "
-                f"as {DEFAULT_ROUTER}"
+                f"{name}: {endpoint!r} is not an endpoint; expected protocol/address, "
+                f"such as {DEFAULT_ROUTER}"
             )
     return endpoints
 
@@ -121,7 +120,7 @@ def _file(environment: Mapping[str, str], name: str) -> Path | None:
         return None
     path = Path(text)
     if not path.is_file():
-        raise InvalidValueError(f"{name}: there is no file {text}")
+        raise InvalidValueError(f"{name}: file {text} does not exist")
     return path
 
 
@@ -130,7 +129,7 @@ def _positive(environment: Mapping[str, str], name: str, default: int) -> int:
     if not text:
         return default
     if not (text.isascii() and text.isdigit() and int(text) > 0):
-        raise InvalidValueError(f"{name} {text!r}: wanted a number of bytes > 0")
+        raise InvalidValueError(f"{name} {text!r}: expected a number of bytes > 0")
     return int(text)
 
 
@@ -143,8 +142,8 @@ def _seconds(environment: Mapping[str, str], name: str, default: float) -> float
     except ValueError:
         seconds = math.nan
     least, most = _SERVICE_TIMEOUTS_S
-    if not least <= seconds <= most:  # not a number is neither
+    if not least <= seconds <= most:  # also false for NaN
         raise InvalidValueError(
-            f"{name} {text!r}: wanted a number of seconds from {least:g} to {most:g}"
+            f"{name} {text!r}: expected a number of seconds from {least:g} to {most:g}"
         )
     return seconds

@@ -1,4 +1,4 @@
-"""Liveliness tokens: how nodes and endpoints tell of themselves.
+"""Liveliness tokens, by which nodes and endpoints are discovered.
 
 Node: ``@ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<name>``; endpoint:
 ``…/<zid>/<nid>/<eid>/<kind>/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>``.
@@ -22,7 +22,7 @@ from navette.transports.zenoh.keys import (
 from navette.transports.zenoh.qos_text import format_qos, parse_qos
 
 SPACE = "@ros2_lv"
-_LONGEST = 2048
+_MAX_LENGTH = 2048
 _NODE, _ENDPOINT = 9, 13  # chunks
 
 _KINDS = {
@@ -31,19 +31,19 @@ _KINDS = {
     "SS": EndpointKind.SERVICE,
     "SC": EndpointKind.CLIENT,
 }
-_LETTERS = {kind: letters for letters, kind in _KINDS.items()}
+_ABBREVIATIONS = {kind: text for text, kind in _KINDS.items()}
 
 _DOMAIN = re.compile(r"\d{1,10}", re.ASCII)
 _ZID = re.compile(r"[0-9a-f]{1,32}")
 _ID = re.compile(r"\d{1,20}", re.ASCII)
 _ENCLAVE = re.compile(r"%|(%[A-Za-z_][\w.-]*)+", re.ASCII)
 _NODE_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-# Types of before Jazzy have a word instead of a hash.
+# Before Jazzy, tokens have a word instead of a hash.
 _HASH = re.compile(r"\w{1,128}", re.ASCII)
 
 
 class NodeToken(NamedTuple):
-    """A node of the session ``zid``, the ``nid``-th."""
+    """Node ``nid`` of the session ``zid``."""
 
     domain_id: int
     zid: str
@@ -51,12 +51,12 @@ class NodeToken(NamedTuple):
     node: NodeInfo
 
     def key(self) -> str:
-        """The token's key expression."""
+        """Return the token's key expression."""
         return _head(self, self.nid, "NN")
 
 
 class EndpointToken(NamedTuple):
-    """An endpoint of a node: the ``eid``-th entity of its session."""
+    """Endpoint ``eid`` of a session, at the node ``nid``."""
 
     domain_id: int
     zid: str
@@ -70,8 +70,8 @@ class EndpointToken(NamedTuple):
     qos: EndpointQos
 
     def key(self) -> str:
-        """The token's key expression."""
-        head = _head(self, self.eid, _LETTERS[self.kind])
+        """Return the token's key expression."""
+        head = _head(self, self.eid, _ABBREVIATIONS[self.kind])
         return "/".join(
             (
                 head,
@@ -87,32 +87,32 @@ Token = NodeToken | EndpointToken
 
 
 def gid_of(key: str) -> bytes:
-    """The 16 bytes by which an endpoint's samples are known."""
+    """Return the gid of the endpoint with this token."""
     return xxhash.xxh3_128_digest(key.encode())[::-1]
 
 
 def parse_token(key: str) -> Token:
-    """The inverse of ``key()``.
+    """Decode the key expression of a token.
 
     Raises:
-        DecodeError: it is no token of a node or an endpoint.
+        DecodeError: ``key`` is not a token of a node or an endpoint.
     """
-    if len(key) > _LONGEST:
-        raise DecodeError(
-            f"token of {len(key)} characters: at most {_LONGEST} are read"
-        )
+    if len(key) > _MAX_LENGTH:
+        raise DecodeError(f"token of {len(key)} characters, longer than {_MAX_LENGTH}")
     parts = key.split("/")
     if len(parts) not in (_NODE, _ENDPOINT) or parts[0] != SPACE:
-        raise DecodeError(f"{key!r} is no token of a node or endpoint")
+        raise DecodeError(f"{key!r} is not a token of a node or endpoint")
     domain, zid, nid = _session(parts[1], parts[2], parts[3])
     eid = int(_checked(_ID, parts[4], "entity id"))
     node = _node(parts[6], parts[7], parts[8])
     if len(parts) == _NODE:
         if parts[5] != "NN":
-            raise DecodeError(f"{key!r}: entity {parts[5]!r} with a node's parts")
+            raise DecodeError(
+                f"{key!r}: entity {parts[5]!r} instead of NN in a token of a node"
+            )
         return NodeToken(domain, zid, nid, node)
     if parts[5] not in _KINDS:
-        raise DecodeError(f"{key!r}: entity {parts[5]!r}, wanted MP, MS, SS or SC")
+        raise DecodeError(f"{key!r}: entity {parts[5]!r}, expected MP, MS, SS or SC")
     return EndpointToken(
         domain,
         zid,
@@ -127,13 +127,13 @@ def parse_token(key: str) -> Token:
     )
 
 
-# Many processes have thousands of tokens of few sessions, nodes, types and QoS.
-_once = lru_cache(4096)
+# Thousands of tokens have few different sessions, nodes, types and QoS.
+_cached = lru_cache(4096)
 
 
-@_once
+@_cached
 def _session(domain: str, zid: str, nid: str) -> tuple[int, str, int]:
-    """Domain, session and number of the node."""
+    """Return domain id, session id and number of the node."""
     return (
         int(_checked(_DOMAIN, domain, "domain id")),
         _checked(_ZID, zid, "session id"),
@@ -141,7 +141,7 @@ def _session(domain: str, zid: str, nid: str) -> tuple[int, str, int]:
     )
 
 
-@_once
+@_cached
 def _node(enclave: str, namespace: str, name: str) -> NodeInfo:
     return NodeInfo(
         name=_checked(_NODE_NAME, name, "node name"),
@@ -150,13 +150,13 @@ def _node(enclave: str, namespace: str, name: str) -> NodeInfo:
     )
 
 
-@_once
+@_cached
 def _type_name(dds_name: str, type_hash: str) -> str:
     _checked(_HASH, type_hash, "type hash")
     return ros_type_name(dds_name)
 
 
-_qos = _once(parse_qos)
+_qos = _cached(parse_qos)
 
 
 def _head(token: Token, eid: int, kind: str) -> str:
@@ -178,5 +178,5 @@ def _head(token: Token, eid: int, kind: str) -> str:
 
 def _checked(pattern: re.Pattern[str], text: str, what: str) -> str:
     if not pattern.fullmatch(text):
-        raise DecodeError(f"{text!r} is no {what}")
+        raise DecodeError(f"{text!r} is not a valid {what}")
     return text

@@ -129,6 +129,9 @@ class ZenohTransport(Transport):
         self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
     ) -> ZenohSubscription:
         def make(entity: Entity) -> ZenohSubscription:
+            if endpoint.qos.asserts_itself:
+                # Before the token: a publisher may assert itself once it sees that.
+                self._assertions.receive()
             return ZenohSubscription(
                 self,
                 entity,

@@ -1,4 +1,4 @@
-"""What the conformance suites run on: pairs of ends that exchange samples."""
+"""Pairs of transports for the conformance suites."""
 
 import itertools
 import os
@@ -27,21 +27,21 @@ LIMIT_S = 60.0
 
 
 def until(condition: Callable[[], bool], what: str = "the condition") -> None:
-    """Wait until it holds; fail after a limit that is never reached but by a fault."""
+    """Wait until the condition holds; fail after a limit that only a defect reaches."""
     watch, pause = Stopwatch(), threading.Event()
     while not condition():
-        assert watch.elapsed_s < LIMIT_S, f"{what} did not come about"
+        assert watch.elapsed_s < LIMIT_S, f"{what} was not reached"
         pause.wait(0.001)
 
 
 def zenoh_environment(router: str, **more: str) -> dict[str, str]:
-    """Of a process that is to join the network whose router is at ``router``."""
+    """Return the environment of a process on the network of ``router``."""
     kept = {k: v for k, v in os.environ.items() if k != "PYTEST_CURRENT_TEST"}
     return {**kept, "NAVETTE_TRANSPORT": "zenoh", "NAVETTE_ROUTER": router, **more}
 
 
 def message_of(item: Item) -> Any:
-    """The message of a delivered sample, decoded if it came as bytes."""
+    """Return the message of a delivered sample, decoded if it arrived as bytes."""
     message = item[0]
     if isinstance(message, Expiring):
         message = message.message
@@ -49,17 +49,17 @@ def message_of(item: Item) -> Any:
 
 
 class Pair(ABC):
-    """Two ends of a network; in process they are one."""
+    """Two ends of a network; in process both are one transport."""
 
     near: Transport
     far: Transport
 
     @abstractmethod
     def settle(self) -> None:
-        """Wait until all that was done so far has had its effect on both ends."""
+        """Wait until everything done so far has had its effect at both ends."""
 
     def observe(self, observer: TransportObserver) -> None:
-        """Report what the near end sees."""
+        """Report changes at the near end."""
         self.near.observe(observer)
 
     def endpoints(self) -> list[Endpoint]:
@@ -73,7 +73,7 @@ class Pair(ABC):
 
 
 class InProcessPair(Pair):
-    """One transport: everything happens at once."""
+    """One transport, without delays."""
 
     def __init__(self) -> None:
         self.near = self.far = InProcessTransport()
@@ -86,7 +86,7 @@ class InProcessPair(Pair):
 
 
 class ZenohPair(Pair):
-    """Two sessions, one of which brings the router along."""
+    """Two sessions, one of which is the router."""
 
     def __init__(self, **settings: Any) -> None:
         chosen = Settings(router=(free_endpoint(),), **settings)
@@ -101,8 +101,8 @@ class ZenohPair(Pair):
         near.declare_subscriber("fence/pong", _direct(self._on_pong))
 
     def settle(self) -> None:
-        # Each link keeps the order of what it carries: what comes behind a fence has
-        # seen all that was before it, tokens apart from samples.
+        # Each link keeps the order of tokens and the order of samples: what was sent
+        # before a fence has arrived before it.
         number = next(self._count)
         fences = NodeInfo(f"near_{number}", "/fence"), NodeInfo(f"far_{number}", "/f")
         self.near.announce(fences[0])
