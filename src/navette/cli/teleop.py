@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from navette.topics import CMD_VEL
+
 # A terminal tells when a key goes down, and again while it is held, but never when it
 # is let go: a key drives for so long. Longer than a usual keyboard waits to repeat.
 _HOLD_NS = 600_000_000
@@ -76,7 +78,9 @@ class KeyDriver:
 
 
 def teleop(
-    topic: Annotated[str, typer.Argument(help="Where the robot listens.")] = "/cmd_vel",
+    topic: Annotated[
+        str, typer.Argument(help="Where the robot listens.")
+    ] = CMD_VEL.name,
     speed: Annotated[float, typer.Option(metavar="M/S", help="Forward.")] = 0.5,
     turn: Annotated[float, typer.Option(metavar="RAD/S", help="Of turns.")] = 0.8,
 ) -> None:

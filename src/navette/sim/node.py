@@ -4,6 +4,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from navette import topics
 from navette.geometry import Pose2, Transform3
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.msgs.rosgraph_msgs.msg import Clock
@@ -39,71 +40,73 @@ class SimNode(StageNode):
     FIXED_AT_START = FIXED_AT_START
     INPUTS = (
         Input(
-            topic="/cmd_vel",
-            type="geometry_msgs/msg/Twist",
+            topic=topics.CMD_VEL.name,
+            type=topics.CMD_VEL.type,
             role="commanded velocity; clamped to the limits, zero after the timeout",
             callback="on_cmd_vel",
         ),
     )
     OUTPUTS = (
         Output(
-            topic="/clock", type="rosgraph_msgs/msg/Clock", role="time", rate_hz=100.0
+            topic=topics.CLOCK.name, type=topics.CLOCK.type, role="time", rate_hz=100.0
         ),
         Output(
-            topic="/lidar", type="sensor_msgs/msg/LaserScan", role="scan", rate_hz=10
+            topic=topics.LIDAR.name, type=topics.LIDAR.type, role="scan", rate_hz=10
         ),
         Output(
-            topic="/imu",
-            type="sensor_msgs/msg/Imu",
+            topic=topics.IMU.name,
+            type=topics.IMU.type,
             role="orientation, turn rate, specific force",
         ),
-        Output(topic="/camera", type="sensor_msgs/msg/Image", role="image", rate_hz=30),
         Output(
-            topic="/camera_info",
-            type="sensor_msgs/msg/CameraInfo",
+            topic=topics.CAMERA.name, type=topics.CAMERA.type, role="image", rate_hz=30
+        ),
+        Output(
+            topic=topics.CAMERA_INFO.name,
+            type=topics.CAMERA_INFO.type,
             role="intrinsics of the camera",
             rate_hz=30,
         ),
         Output(
-            topic="/odom/filtered",
-            type="nav_msgs/msg/Odometry",
+            topic=topics.ODOMETRY.name,
+            type=topics.ODOMETRY.type,
             role="estimated pose and velocity",
             rate_hz=50,
         ),
         Output(
-            topic="/ground_truth",
-            type="nav_msgs/msg/Odometry",
+            topic=topics.GROUND_TRUTH.name,
+            type=topics.GROUND_TRUTH.type,
             role="true pose of the axle midpoint in the world frame",
             rate_hz=50,
         ),
         Output(
-            topic="/tf",
-            type="tf2_msgs/msg/TFMessage",
+            topic=topics.TF.name,
+            type=topics.TF.type,
             role="moving frames",
             rate_hz=50,
         ),
         Output(
-            topic="/tf_static",
-            type="tf2_msgs/msg/TFMessage",
+            topic=topics.TF_STATIC.name,
+            type=topics.TF_STATIC.type,
             role="fixed frames",
             depth=1,
             latched=True,
         ),
         Output(
-            topic="/contacts",
-            type="diagnostic_msgs/msg/DiagnosticStatus",
+            topic=topics.CONTACTS.name,
+            type=topics.CONTACTS.type,
             role="start of each contact with an obstacle",
         ),
         Output(
-            topic="/robot_description",
-            type="std_msgs/msg/String",
+            topic=topics.ROBOT_DESCRIPTION.name,
+            type=topics.ROBOT_DESCRIPTION.type,
             role="URDF of the robot",
             depth=1,
             latched=True,
         ),
         Output(
-            topic="/world_description",
-            type="std_msgs/msg/String",
+            topic=topics.WORLD_DESCRIPTION.name,
+            type=topics.WORLD_DESCRIPTION.type,
             role="URDF of the world",
             depth=1,
             latched=True,
@@ -184,29 +187,33 @@ class SimNode(StageNode):
             transforms.append(
                 messages.transform_message(stamp, p.map_frame, p.odom_frame, origin)
             )
-        self.publish("/tf_static", TFMessage(transforms=transforms))
+        self.publish(topics.TF_STATIC.name, TFMessage(transforms=transforms))
         compiled = self.simulator.compiled
         robot = describe_robot(compiled, self.frames)
-        self.publish("/robot_description", String(data=robot))
+        self.publish(topics.ROBOT_DESCRIPTION.name, String(data=robot))
         world = describe_world(compiled, p.map_frame)
-        self.publish("/world_description", String(data=world))
+        self.publish(topics.WORLD_DESCRIPTION.name, String(data=world))
 
     def _create_timers(self) -> None:
         p = self.params
         self.create_timer(_HEARTBEAT_S, self._beat)
-        self._every(p.clock_rate_hz, self._publish_clock, "/clock")
-        self._every(p.odometry_rate_hz, self._publish_odometry, "/odom/filtered")
-        self._every(p.odometry_rate_hz, self._publish_truth, "/ground_truth")
-        self._every(p.tf_rate_hz, self._publish_base_tf, "/tf")
+        self._every(p.clock_rate_hz, self._publish_clock, topics.CLOCK.name)
+        self._every(p.odometry_rate_hz, self._publish_odometry, topics.ODOMETRY.name)
+        self._every(p.odometry_rate_hz, self._publish_truth, topics.GROUND_TRUTH.name)
+        self._every(p.tf_rate_hz, self._publish_base_tf, topics.TF.name)
         if self.frames.moving:
-            self._every(p.joint_tf_rate_hz, self._publish_joint_tf, "/tf")
-        self._create_sensor_timers(LidarSensor, "/lidar", self._publish_scan)
-        self._create_sensor_timers(ImuSensor, "/imu", self._publish_imu)
-        self._create_sensor_timers(CameraSensor, "/camera", self._publish_image)
-        self._create_sensor_timers(CameraSensor, "/camera_info", self._publish_info)
+            self._every(p.joint_tf_rate_hz, self._publish_joint_tf, topics.TF.name)
+        self._create_sensor_timers(LidarSensor, topics.LIDAR.name, self._publish_scan)
+        self._create_sensor_timers(ImuSensor, topics.IMU.name, self._publish_imu)
+        self._create_sensor_timers(
+            CameraSensor, topics.CAMERA.name, self._publish_image
+        )
+        self._create_sensor_timers(
+            CameraSensor, topics.CAMERA_INFO.name, self._publish_info
+        )
 
     def _every(
-        self, rate_hz: float, publish: Callable[[int], None], *topics: str
+        self, rate_hz: float, publish: Callable[[int], None], *names: str
     ) -> None:
         """Call ``publish(stamp)`` at a rate while the topic has a subscriber."""
 
@@ -214,12 +221,12 @@ class SimNode(StageNode):
             publish(self._advance())
 
         timer = self.create_timer(1.0 / rate_hz, tick, autostart=False)
-        self._sleepers.append((timer, topics))
+        self._sleepers.append((timer, names))
 
     def _wake_and_rest(self) -> None:
         """Run the timers of the topics that have a subscriber, and no others."""
-        for timer, topics in self._sleepers:
-            wanted = any(map(self.has_listeners, topics))
+        for timer, names in self._sleepers:
+            wanted = any(map(self.has_listeners, names))
             if wanted and timer.is_canceled():
                 timer.reset()
             elif not wanted and not timer.is_canceled():
@@ -262,11 +269,11 @@ class SimNode(StageNode):
                 f"contact: {episode.part} touched {episode.obstacle}"
             )
             told = messages.contact_message(episode, number + 1)
-            self.publish("/contacts", told)
+            self.publish(topics.CONTACTS.name, told)
         self._contacts_told = len(episodes)
 
     def _publish_clock(self, stamp_ns: int) -> None:
-        self.publish("/clock", Clock(clock=messages.time_message(stamp_ns)))
+        self.publish(topics.CLOCK.name, Clock(clock=messages.time_message(stamp_ns)))
 
     def _publish_odometry(self, stamp_ns: int) -> None:
         odom_T_base, motion, covariances = self._odometry()
@@ -278,7 +285,7 @@ class SimNode(StageNode):
             self._base_T_child,
             covariances,
         )
-        self.publish("/odom/filtered", message)
+        self.publish(topics.ODOMETRY.name, message)
 
     def _odometry(self) -> tuple[Transform3, Motion, PlanarCovariances | None]:
         """Return the estimated pose and motion of the base, and their covariances."""
@@ -304,14 +311,14 @@ class SimNode(StageNode):
             self.simulator.motion(),
             Transform3.identity(),
         )
-        self.publish("/ground_truth", message)
+        self.publish(topics.GROUND_TRUTH.name, message)
 
     def _publish_base_tf(self, stamp_ns: int) -> None:
         p = self.params
         transform = messages.transform_message(
             stamp_ns, p.odom_frame, p.base_frame, self._believed_pose()
         )
-        self.publish("/tf", TFMessage(transforms=[transform]))
+        self.publish(topics.TF.name, TFMessage(transforms=[transform]))
 
     def _publish_joint_tf(self, stamp_ns: int) -> None:
         transforms = [
@@ -320,7 +327,7 @@ class SimNode(StageNode):
             )
             for link, frame in self.frames.moving.items()
         ]
-        self.publish("/tf", TFMessage(transforms=transforms))
+        self.publish(topics.TF.name, TFMessage(transforms=transforms))
 
     def _publish_scan(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
         period_s = 1.0 / self.simulator.lidars[index].sensor.rate_hz

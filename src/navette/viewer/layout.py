@@ -7,6 +7,8 @@ address and work for every robot.
 
 from typing import Any
 
+from navette import topics
+
 _BLUE = "#4c8dff"
 _PATH = ("#ff8a3dff", "#ffc46bff")
 
@@ -19,8 +21,8 @@ def build_layout(map_frame: str, base_frame: str) -> dict[str, Any]:
             "Image!camera": _camera_view(),
             "Teleop!wheels": _teleop(),
             "StateTransitions!states": _state_lines(),
-            "RawMessages!planner": _message("/planner/status"),
-            "RawMessages!control": _message("/control/status"),
+            "RawMessages!planner": _message(topics.PLANNER_STATUS.name),
+            "RawMessages!control": _message(topics.CONTROL_STATUS.name),
             "Parameters!all": {"title": "Parameters"},
             "RosOut!log": {
                 "searchTerms": [],
@@ -94,9 +96,9 @@ def _drive_view(map_frame: str) -> dict[str, Any]:
         "layers": _layers(map_frame),
         "publish": {
             "type": "point",
-            "pointTopic": "/goal_point",
-            "poseTopic": "/goal_pose",
-            "poseEstimateTopic": "/initialpose",
+            "pointTopic": topics.GOAL_POINT.name,
+            "poseTopic": topics.GOAL_POSE.name,
+            "poseEstimateTopic": topics.INITIAL_POSE.name,
             "poseEstimateXDeviation": 0.5,
             "poseEstimateYDeviation": 0.5,
             "poseEstimateThetaDeviation": 0.26179939,
@@ -134,7 +136,7 @@ def _camera(*, distance: float, phi: float, perspective: bool) -> dict[str, Any]
 
 def _topics() -> dict[str, Any]:
     return {
-        "/map": {
+        topics.MAP.name: {
             "visible": True,
             "colorMode": "custom",
             "minColor": "#f4f6f8ff",
@@ -144,19 +146,19 @@ def _topics() -> dict[str, Any]:
             "frameLocked": True,
             "alpha": 0.85,
         },
-        "/costmap": {
+        topics.COSTMAP.name: {
             "visible": True,
             "colorMode": "costmap",
             "frameLocked": True,
             "alpha": 0.35,
         },
-        "/path": {
+        topics.PATH.name: {
             "visible": True,
             "type": "line",
             "lineWidth": 0.12,
             "gradient": list(_PATH),
         },
-        "/lidar": {
+        topics.LIDAR.name: {
             "visible": True,
             "pointSize": 4,
             "pointShape": "circle",
@@ -164,8 +166,12 @@ def _topics() -> dict[str, Any]:
             "flatColor": "#ff3d6eff",
             "decayTime": 0,
         },
-        "/goal_point": {"visible": True, "type": "point", "color": "#ffb020ff"},
-        "/odom/filtered": {"visible": False},
+        topics.GOAL_POINT.name: {
+            "visible": True,
+            "type": "point",
+            "color": "#ffb020ff",
+        },
+        topics.ODOMETRY.name: {"visible": False},
     }
 
 
@@ -186,8 +192,10 @@ def _layers(map_frame: str) -> dict[str, Any]:
             "rotation": [0, 0, 0],
             "order": 1,
         },
-        "robot": _urdf("robot", "Robot", "/robot_description", _BLUE, order=2),
-        "world": _urdf("world", "World", "/world_description", "#8b95a1", order=3),
+        "robot": _urdf("robot", "Robot", topics.ROBOT_DESCRIPTION.name, _BLUE, order=2),
+        "world": _urdf(
+            "world", "World", topics.WORLD_DESCRIPTION.name, "#8b95a1", order=3
+        ),
     }
 
 
@@ -216,8 +224,8 @@ def _camera_view() -> dict[str, Any]:
     return {
         "title": "Camera",
         "imageMode": {
-            "imageTopic": "/camera",
-            "calibrationTopic": "/camera_info",
+            "imageTopic": topics.CAMERA.name,
+            "calibrationTopic": topics.CAMERA_INFO.name,
         },
         "cameraState": _camera(distance=20.0, phi=60.0, perspective=True),
         "followMode": "follow-pose",
@@ -232,7 +240,7 @@ def _teleop() -> dict[str, Any]:
     """Publish at 10 Hz; the robot stops soon after the button is released."""
     return {
         "title": "Teleop",
-        "topic": "/cmd_vel",
+        "topic": topics.CMD_VEL.name,
         "publishRate": 10,
         "upButton": {"field": "linear-x", "value": 0.5},
         "downButton": {"field": "linear-x", "value": -0.3},

@@ -111,7 +111,7 @@ def test_a_stage_that_is_missing_between_others() -> None:
     finding = of(check_nodes(seen), "control")
     assert finding.level is Level.PROBLEM
     assert finding.text == (
-        "is missing: nobody makes /cmd_vel of /path; the robot drives at 0.4 m/s"
+        "is missing: no node turns /path into /cmd_vel; the robot drives at 0.4 m/s"
     )
     assert "navette run navette control" in finding.advice
     assert "/cmd_vel" not in [each.what for each in check_topics(seen)]

@@ -1,30 +1,17 @@
 """What drives the robot: which stage makes what of what, and what is missed without."""
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from navette.cli.doctor.snapshot import Snapshot
+from navette.topics import CHAIN, LIDAR, ODOMETRY, Link
 
 _STANDS_MPS = 0.03
 
 
-class Link(NamedTuple):
-    """A stage of the stack: what it reads, and what it makes of it."""
-
-    stage: str
-    reads: str
-    makes: str
-
-
-CHAIN = (
-    Link("costmap", "/lidar", "/costmap"),
-    Link("map_memory", "/costmap", "/map"),
-    Link("planner", "/map", "/path"),
-    Link("control", "/path", "/cmd_vel"),
+#: Topics without which the robot does not drive.
+NEEDED = frozenset(
+    {LIDAR.name, ODOMETRY.name, *(link.publishes.name for link in CHAIN)}
 )
-
-#: Nobody drives without them.
-NEEDED = frozenset({"/lidar", "/odom/filtered", *(link.makes for link in CHAIN)})
 
 
 def missing_links(seen: Snapshot) -> list[Link]:
@@ -33,17 +20,17 @@ def missing_links(seen: Snapshot) -> list[Link]:
     return [
         link
         for link in CHAIN
-        if seen.publishers(link.reads)
-        and seen.subscriptions(link.makes)
-        and not seen.publishers(link.makes)
-        and link.makes not in unreached
+        if seen.publishers(link.reads.name)
+        and seen.subscriptions(link.publishes.name)
+        and not seen.publishers(link.publishes.name)
+        and link.publishes.name not in unreached
     ]
 
 
 def explained(seen: Snapshot) -> set[str]:
     """Topics that nobody publishes for a reason that is told already."""
     unreached = {topic for topics in seen.unreached_topics.values() for topic in topics}
-    return unreached | {link.makes for link in missing_links(seen)}
+    return unreached | {link.publishes.name for link in missing_links(seen)}
 
 
 def consequence(seen: Snapshot, topics: Iterable[str]) -> str:

@@ -8,6 +8,7 @@ from navette.cli.doctor.chain import consequence, explained, missing_links
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.snapshot import Snapshot, is_own
 from navette.cli.session import is_of_every_node
+from navette.topics import GOAL_POINT, GOAL_POSE, INITIAL_POSE
 from navette.transports import Endpoint, EndpointKind, QoSPolicyKind
 from navette.transports.qos import incompatible_policies
 
@@ -16,7 +17,12 @@ TOPICS = "Topics"
 SERVICES = "Services"
 
 # What a person publishes, by a click or a command: silence is normal.
-_BY_HAND = {"/goal_point", "/goal_pose", "/initialpose", "/clicked_point"}
+_BY_HAND = {
+    GOAL_POINT.name,
+    GOAL_POSE.name,
+    INITIAL_POSE.name,
+    "/clicked_point",
+}
 
 _MENDS = {
     QoSPolicyKind.RELIABILITY: "let the subscription ask for best effort"
@@ -40,11 +46,15 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
             Level.PROBLEM,
             NODES,
             link.stage,
-            f"is missing: nobody makes {link.makes} of {link.reads}"
-            + consequence(seen, [link.makes]),
+            f"is missing: no node turns {link.reads.name} into {link.publishes.name}"
+            + consequence(seen, [link.publishes.name]),
             "it has ended, is cut off, or was never started: navette ps;"
             f" navette run navette {link.stage}",
-            {"missing": link.stage, "reads": link.reads, "makes": link.makes},
+            {
+                "missing": link.stage,
+                "reads": link.reads.name,
+                "makes": link.publishes.name,
+            },
         )
     if not seen.nodes:
         yield Finding(

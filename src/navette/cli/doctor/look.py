@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from navette.cli.asking import node_names
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
 from navette.cli.session import endpoints, is_hidden, service_endpoints, wait_for
+from navette.topics import CLOCK, ODOMETRY
 from navette.transports import Endpoint, EndpointKind
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 LOOK_S = 1.2  # over two periods of a stage's status; who lives has answered by then
 
 _STATUS = "diagnostic_msgs/msg/DiagnosticStatus"
-_ODOMETRY = "nav_msgs/msg/Odometry"
 _GET = "rcl_interfaces/srv/GetParameters"
 _SANE_AGE_S = 3600.0  # older than that, a stamp is of another clock
 
@@ -102,7 +102,7 @@ class _Listening:
         for end in topics:
             if end.kind is not EndpointKind.PUBLISHER:
                 continue
-            if end.topic == "/clock" and not self._has_clock:
+            if end.topic == CLOCK.name and not self._has_clock:
                 self._hear_clock()
             elif _is_odometry(end) and not self._has_odometry:
                 self._hear_odometry(end)
@@ -138,7 +138,7 @@ class _Listening:
 
         self._has_clock = True
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._here.create_subscription(Clock, "/clock", hear, qos)
+        self._here.create_subscription(Clock, CLOCK.name, hear, qos)
 
     def _hear_odometry(self, end: Endpoint) -> None:
         from navette.msgs.nav_msgs.msg import Odometry
@@ -184,7 +184,7 @@ class _Listening:
 
 
 def _is_odometry(end: Endpoint) -> bool:
-    return end.topic == "/odom/filtered" and end.type_name == _ODOMETRY
+    return end.topic == ODOMETRY.name and end.type_name == ODOMETRY.type
 
 
 def _is_heartbeat(end: Endpoint) -> bool:

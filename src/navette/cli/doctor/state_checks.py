@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from navette.cli.doctor.chain import and_the_robot, robot
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
+from navette.topics import CLOCK
 
 TIME = "Time"
 STAGES = "Stages"
@@ -15,12 +16,12 @@ STALE_AFTER_S = 2.0  # four heartbeats: where control stops the robot, too
 def check_time(seen: Snapshot) -> Iterator[Finding]:
     """Does somebody tick for those who live in simulated time?"""
     waiting = [name for name, simulated in seen.sim_time.items() if simulated]
-    clocks = sorted({e.node_full_name for e in seen.publishers("/clock")})
+    clocks = sorted({e.node_full_name for e in seen.publishers(CLOCK.name)})
     if len(clocks) > 1:
         yield Finding(
             Level.PROBLEM,
             TIME,
-            "/clock",
+            CLOCK.name,
             f"is published by {listed(clocks)}: time jumps to and fro",
             "keep one: a simulator, or a bag played with --clock",
         )
@@ -28,7 +29,7 @@ def check_time(seen: Snapshot) -> Iterator[Finding]:
         yield Finding(
             Level.PROBLEM,
             TIME,
-            "/clock",
+            CLOCK.name,
             f"nobody publishes it, and {plural(len(waiting), 'node')} with"
             f" use_sim_time ({listed(waiting)}) stay at time zero",
             "start a simulator or navette bag play --clock; or navette param set"
@@ -38,7 +39,7 @@ def check_time(seen: Snapshot) -> Iterator[Finding]:
         yield Finding(
             Level.WARNING,
             TIME,
-            "/clock",
+            CLOCK.name,
             f"does not tick; {listed(waiting)} with use_sim_time stand still",
             f"{listed(clocks)} is paused, or hangs",
         )

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from navette import topics
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, yaw_of
 from navette.grids import grid_from_message
@@ -45,30 +46,30 @@ class ControlNode(StageNode):
     PARAMS = ControlParams
     INPUTS = (
         Input(
-            topic="/path",
-            type="nav_msgs/msg/Path",
+            topic=topics.PATH.name,
+            type=topics.PATH.type,
             role="what to follow; an empty path stops",
             callback="on_path",
         ),
         Input(
-            topic="/odom/filtered",
-            type="nav_msgs/msg/Odometry",
+            topic=topics.ODOMETRY.name,
+            type=topics.ODOMETRY.type,
             role="where the robot is and how it moves",
             rate_hz=10.0,
             timeout_s=0.14,
             callback="on_odometry",
         ),
         Input(
-            topic="/costmap",
-            type="nav_msgs/msg/OccupancyGrid",
+            topic=topics.COSTMAP.name,
+            type=topics.COSTMAP.type,
             role="obstacles that the body must clear",
             rate_hz=10.0,
             timeout_s=0.19,
             callback="on_costmap",
         ),
         Input(
-            topic="/planner/status",
-            type="diagnostic_msgs/msg/DiagnosticStatus",
+            topic=topics.PLANNER_STATUS.name,
+            type=topics.PLANNER_STATUS.type,
             role="sign of life of whoever made the path",
             rate_hz=2.0,
             timeout_s=2.0,
@@ -79,12 +80,12 @@ class ControlNode(StageNode):
     )
     OUTPUTS = (
         Output(
-            topic="/cmd_vel",
-            type="geometry_msgs/msg/Twist",
+            topic=topics.CMD_VEL.name,
+            type=topics.CMD_VEL.type,
             role="velocity command",
             rate_hz=20.0,
         ),
-        status_output("/control/status"),
+        status_output(topics.CONTROL_STATUS.name),
     )
 
     _zeros_left = 0  # also while half made
@@ -103,7 +104,7 @@ class ControlNode(StageNode):
         self._planner_ns = _NEVER
         self._planner_said = ""
         self._ticks_to_report = 0
-        self._status = StatusReporter(self, "/control/status")
+        self._status = StatusReporter(self, topics.CONTROL_STATUS.name)
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
 
     def on_path(self, msg: Path) -> None:
@@ -168,7 +169,7 @@ class ControlNode(StageNode):
     def destroy_node(self) -> None:
         """Stop the robot, then end."""
         if self._zeros_left and self.context.ok():
-            self.publish("/cmd_vel", Twist())
+            self.publish(topics.CMD_VEL.name, Twist())
             self._zeros_left = 0
         super().destroy_node()
 
@@ -278,7 +279,7 @@ class ControlNode(StageNode):
             self._zeros_left -= 1
         twist = Twist()
         twist.linear.x, twist.angular.z = output.command
-        self.publish("/cmd_vel", twist)
+        self.publish(topics.CMD_VEL.name, twist)
 
     def _report(self, output: FollowerOutput) -> None:
         """Publish the state: at once when it changes, with figures now and then."""

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from navette import topics
 from navette.errors import InvalidValueError
 from navette.grids import grid_to_message
 from navette.msgs.sensor_msgs.msg import LaserScan
@@ -23,8 +24,8 @@ class CostmapNode(StageNode):
     PARAMS = CostmapParams
     INPUTS: ClassVar = (
         Input(
-            topic="/lidar",
-            type="sensor_msgs/msg/LaserScan",
+            topic=topics.LIDAR.name,
+            type=topics.LIDAR.type,
             role="what the laser scanner sees",
             rate_hz=10.0,
             timeout_s=0.5,
@@ -33,8 +34,8 @@ class CostmapNode(StageNode):
     )
     OUTPUTS: ClassVar = (
         Output(
-            topic="/costmap",
-            type="nav_msgs/msg/OccupancyGrid",
+            topic=topics.COSTMAP.name,
+            type=topics.COSTMAP.type,
             role="what is dangerous around the robot",
             rate_hz=10.0,
         ),
@@ -64,7 +65,7 @@ class CostmapNode(StageNode):
         stamp_ns = stamp_to_ns(msg.header.stamp)
         frame_id = msg.header.frame_id
         message = grid_to_message(cells, self._costmap.spec, frame_id, stamp_ns)
-        self.publish("/costmap", message)
+        self.publish(topics.COSTMAP.name, message)
 
     def on_params_changed(self, old: CostmapParams) -> None:
         """The next scan is made into a costmap with the new values."""

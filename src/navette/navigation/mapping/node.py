@@ -8,6 +8,7 @@ odometry or transforms they are dropped and the map stays as it is.
 import math
 from typing import Any, ClassVar
 
+from navette import topics
 from navette.errors import InvalidValueError
 from navette.grids import grid_from_message, grid_to_message, placed
 from navette.msgs.geometry_msgs.msg import Quaternion
@@ -30,16 +31,16 @@ class MapMemoryNode(StageNode):
     PARAMS = MapMemoryParams
     INPUTS: ClassVar = (
         Input(
-            topic="/costmap",
-            type="nav_msgs/msg/OccupancyGrid",
+            topic=topics.COSTMAP.name,
+            type=topics.COSTMAP.type,
             role="what is dangerous around the robot",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_costmap",
         ),
         Input(
-            topic="/odom/filtered",
-            type="nav_msgs/msg/Odometry",
+            topic=topics.ODOMETRY.name,
+            type=topics.ODOMETRY.type,
             role="where the robot is",
             rate_hz=10.0,
             timeout_s=0.5,
@@ -48,8 +49,8 @@ class MapMemoryNode(StageNode):
     )
     OUTPUTS: ClassVar = (
         Output(
-            topic="/map",
-            type="nav_msgs/msg/OccupancyGrid",
+            topic=topics.MAP.name,
+            type=topics.MAP.type,
             role="what the robot remembers",
             depth=1,
             latched=True,
@@ -177,7 +178,7 @@ class MapMemoryNode(StageNode):
     def _publish_map(self, stamp_ns: int) -> None:
         memory, frame_id = self._memory, self.params.map_frame
         message = grid_to_message(memory.occupancy(), memory.spec, frame_id, stamp_ns)
-        self.publish("/map", message)
+        self.publish(topics.MAP.name, message)
 
     def _complain(self, reason: str) -> None:
         self.get_logger().warning(

@@ -7,6 +7,7 @@ and (unless switched off) a map was seen; then it publishes each goal once.
 from collections.abc import Callable
 from typing import Any
 
+from navette import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
@@ -28,8 +29,8 @@ class MissionNode(StageNode):
     PARAMS = MissionParams
     INPUTS = (
         Input(
-            topic="/planner/status",
-            type="diagnostic_msgs/msg/DiagnosticStatus",
+            topic=topics.PLANNER_STATUS.name,
+            type=topics.PLANNER_STATUS.type,
             role="what becomes of the goal",
             rate_hz=2.0,
             depth=1,
@@ -37,15 +38,15 @@ class MissionNode(StageNode):
             callback="on_planner_status",
         ),
         Input(
-            topic="/odom/filtered",
-            type="nav_msgs/msg/Odometry",
+            topic=topics.ODOMETRY.name,
+            type=topics.ODOMETRY.type,
             role="path length and distance left",
             rate_hz=10.0,
             callback="on_odometry",
         ),
         Input(
-            topic="/map",
-            type="nav_msgs/msg/OccupancyGrid",
+            topic=topics.MAP.name,
+            type=topics.MAP.type,
             role="sign that planning can begin",
             depth=1,
             latched=True,
@@ -54,8 +55,8 @@ class MissionNode(StageNode):
     )
     OUTPUTS = (
         Output(
-            topic="/goal_point",
-            type="geometry_msgs/msg/PointStamped",
+            topic=topics.GOAL_POINT.name,
+            type=topics.GOAL_POINT.type,
             role="the next goal",
         ),
     )
@@ -157,7 +158,9 @@ class MissionNode(StageNode):
             return
         map_ready = self._map_seen or not self.params.wait_for_map
         if not (
-            map_ready and self._planner_heard and self.has_listeners("/goal_point")
+            map_ready
+            and self._planner_heard
+            and self.has_listeners(topics.GOAL_POINT.name)
         ):
             return
         goal = self._sequence.start_next(self._now_ns)
@@ -171,4 +174,4 @@ class MissionNode(StageNode):
         msg.header.frame_id = self.params.map_frame
         msg.header.stamp = ns_to_stamp(self._now_ns)
         msg.point.x, msg.point.y = goal
-        self.publish("/goal_point", msg)
+        self.publish(topics.GOAL_POINT.name, msg)

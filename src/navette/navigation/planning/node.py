@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from navette import topics
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
 from navette.grids import GridSpec, grid_from_message
@@ -46,41 +47,41 @@ class PlannerNode(StageNode):
     PARAMS = PlannerParams
     INPUTS: ClassVar = (
         Input(
-            topic="/map",
-            type="nav_msgs/msg/OccupancyGrid",
+            topic=topics.MAP.name,
+            type=topics.MAP.type,
             role="what the robot remembers",
             depth=1,
             latched=True,
             callback="on_map",
         ),
         Input(
-            topic="/odom/filtered",
-            type="nav_msgs/msg/Odometry",
+            topic=topics.ODOMETRY.name,
+            type=topics.ODOMETRY.type,
             role="where the robot is",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
         ),
         Input(
-            topic="/goal_point",
-            type="geometry_msgs/msg/PointStamped",
+            topic=topics.GOAL_POINT.name,
+            type=topics.GOAL_POINT.type,
             role="where to go",
             callback="on_goal_point",
         ),
         Input(
-            topic="/goal_pose",
-            type="geometry_msgs/msg/PoseStamped",
+            topic=topics.GOAL_POSE.name,
+            type=topics.GOAL_POSE.type,
             role="where to go, and which way to look there",
             callback="on_goal_pose",
         ),
     )
     OUTPUTS: ClassVar = (
         Output(
-            topic="/path",
-            type="nav_msgs/msg/Path",
+            topic=topics.PATH.name,
+            type=topics.PATH.type,
             role="what to follow; empty = stop",
         ),
-        status_output("/planner/status"),
+        status_output(topics.PLANNER_STATUS.name),
     )
 
     params: PlannerParams
@@ -92,7 +93,7 @@ class PlannerNode(StageNode):
         self._navigator.planner.warm_up()
         self._odometry_ns: int | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
-        self._status = StatusReporter(self, "/planner/status")
+        self._status = StatusReporter(self, topics.PLANNER_STATUS.name)
         self._said = ""
         self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
         self.create_timer(_WATCH_PERIOD_S, self.on_watch)
@@ -168,7 +169,7 @@ class PlannerNode(StageNode):
             self._navigator.set_map(*self._map)
         if had_path:
             empty = path_message(np.empty((0, 3)), self.params.map_frame, self._now_ns)
-            self.publish("/path", empty)
+            self.publish(topics.PATH.name, empty)
         self._report()
 
     @property
@@ -223,7 +224,9 @@ class PlannerNode(StageNode):
         poses = self._navigator.take_path()
         if poses is not None:
             stamp_ns = self._now_ns
-            self.publish("/path", path_message(poses, self.params.map_frame, stamp_ns))
+            self.publish(
+                topics.PATH.name, path_message(poses, self.params.map_frame, stamp_ns)
+            )
         self._report()
 
     def _report(self) -> None:

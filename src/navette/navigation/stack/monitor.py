@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from navette import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile
 
@@ -37,8 +38,8 @@ class MonitorNode(Node):
         self._on_change = on_change
         self.progress = Progress()
         for topic, callback in (
-            ("/planner/status", self._on_planner),
-            ("/control/status", self._on_control),
+            (topics.PLANNER_STATUS.name, self._on_planner),
+            (topics.CONTROL_STATUS.name, self._on_control),
         ):
             self.create_subscription(
                 DiagnosticStatus, topic, callback, LATCHED, shared=True

@@ -28,6 +28,7 @@ from navette.runtime import (
 )
 from navette.runtime.context import Scope, current_scope
 from navette.runtime.overrides import OverrideSet, ParameterOverrides
+from navette.topics import TF, TF_STATIC
 from navette.transports import EndpointKind
 
 MakeNode = Callable[[Context], Node]
@@ -35,7 +36,7 @@ MakeNode = Callable[[Context], Node]
 # Said by every node about itself: no result of its work.
 _OWN_AFFAIRS = ("/rosout", "/parameter_events")
 # Listened to when it is needed, maybe late.
-_TRANSFORMS = ("/tf", "/tf_static")
+_TRANSFORMS = (TF.name, TF_STATIC.name)
 
 
 @dataclass(frozen=True)

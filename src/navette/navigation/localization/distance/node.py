@@ -7,6 +7,7 @@ from then on, also while nothing comes.
 from dataclasses import replace
 from typing import Any, ClassVar
 
+from navette import topics
 from navette.geometry.geodesy import GeoPoint
 from navette.msgs.geometry_msgs.msg import TwistStamped
 from navette.msgs.gnss_driver.msg import Gps
@@ -27,8 +28,8 @@ class OdomIntegratorNode(StageNode):
     FIXED_AT_START = ("topic", "topic_type", "queue_size")
     INPUTS: ClassVar = (
         Input(
-            topic="/gnss_driver/odometry",
-            type="gnss_driver/msg/Gps",
+            topic=topics.GNSS.name,
+            type=topics.GNSS.type,
             role="where the robot is and how fast; parameters name other topics",
             rate_hz=100.0,
             depth=1,
@@ -37,8 +38,8 @@ class OdomIntegratorNode(StageNode):
     )
     OUTPUTS: ClassVar = (
         Output(
-            topic="/odom_integrator/distance",
-            type="std_msgs/msg/Float64",
+            topic=topics.DISTANCE.name,
+            type=topics.DISTANCE.type,
             role="distance travelled, m; 0.0 before the first message",
             rate_hz=10.0,
         ),
@@ -74,7 +75,7 @@ class OdomIntegratorNode(StageNode):
 
     def on_timer(self) -> None:
         """Publish the distance so far."""
-        self.publish("/odom_integrator/distance", Float64(data=self.distance))
+        self.publish(topics.DISTANCE.name, Float64(data=self.distance))
 
     def on_params_changed(self, old: DistanceParams) -> None:
         """The distance stays; the next message is where counting goes on."""

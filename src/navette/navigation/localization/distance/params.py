@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from navette import topics
 from navette.errors import ParameterError
 from navette.params import Params, param
 
@@ -24,7 +25,7 @@ class DistanceParams(Params):
         "times time (vel)",
         choices=("pos", "gps", "vel"),
     )
-    topic: str = param("/gnss_driver/odometry", "where the messages come from")
+    topic: str = param(topics.GNSS.name, "where the messages come from")
     topic_type: str = param(
         GPS,
         "their type; NavSatFix has no velocity and TwistStamped no position",

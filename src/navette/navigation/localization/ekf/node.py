@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from navette import topics
 from navette.errors import NavetteError, ParameterError, TransformError
 from navette.geometry import Transform3
 from navette.msgs.tf2_msgs.msg import TFMessage
@@ -60,13 +61,13 @@ class EkfNode(StageNode):
     )
     OUTPUTS: ClassVar = (
         Output(
-            topic="/odom/filtered",
-            type="nav_msgs/msg/Odometry",
+            topic=topics.ODOMETRY.name,
+            type=topics.ODOMETRY.type,
             role="where the robot takes itself to be",
             rate_hz=30.0,
         ),
         Output(
-            topic="/tf", type="tf2_msgs/msg/TFMessage", role="the same", rate_hz=30.0
+            topic=topics.TF.name, type=topics.TF.type, role="the same", rate_hz=30.0
         ),
     )
 
@@ -210,7 +211,7 @@ class EkfNode(StageNode):
     def _publish(self, estimate: Estimate) -> None:
         params = self.params
         message = odometry_message(estimate, params.world_frame, params.base_link_frame)
-        self.publish("/odom/filtered", message)
+        self.publish(topics.ODOMETRY.name, message)
         if params.publish_tf:
             self._publish_transform(estimate)
 
@@ -229,7 +230,7 @@ class EkfNode(StageNode):
         stamped = transform_message(
             estimate.stamp_ns, params.world_frame, child, transform
         )
-        self.publish("/tf", TFMessage(transforms=[stamped]))
+        self.publish(topics.TF.name, TFMessage(transforms=[stamped]))
 
     def _lookup(self, target: str, source: str) -> Transform3:
         if target == source:

@@ -1,0 +1,67 @@
+"""Topics of the stack: names, types and QoS, in the order data flows.
+
+The nodes' inputs and outputs, the live view, ``navette doctor`` and the reference page
+read them from here. The module imports nothing, so that every layer may use it.
+"""
+
+from typing import NamedTuple
+
+
+class StackTopic(NamedTuple):
+    """A topic; ``latched`` is transient local durability."""
+
+    name: str
+    type: str
+    depth: int = 10
+    latched: bool = False
+
+
+# Simulator or robot
+CLOCK = StackTopic("/clock", "rosgraph_msgs/msg/Clock")
+LIDAR = StackTopic("/lidar", "sensor_msgs/msg/LaserScan")
+IMU = StackTopic("/imu", "sensor_msgs/msg/Imu")
+CAMERA = StackTopic("/camera", "sensor_msgs/msg/Image")
+CAMERA_INFO = StackTopic("/camera_info", "sensor_msgs/msg/CameraInfo")
+GROUND_TRUTH = StackTopic("/ground_truth", "nav_msgs/msg/Odometry")
+CONTACTS = StackTopic("/contacts", "diagnostic_msgs/msg/DiagnosticStatus")
+ROBOT_DESCRIPTION = StackTopic("/robot_description", "std_msgs/msg/String", 1, True)
+WORLD_DESCRIPTION = StackTopic("/world_description", "std_msgs/msg/String", 1, True)
+
+# Localization
+TF = StackTopic("/tf", "tf2_msgs/msg/TFMessage")
+TF_STATIC = StackTopic("/tf_static", "tf2_msgs/msg/TFMessage", 1, True)
+ODOMETRY = StackTopic("/odom/filtered", "nav_msgs/msg/Odometry")
+GNSS = StackTopic("/gnss_driver/odometry", "gnss_driver/msg/Gps", 1)
+DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
+
+# Costmap, mapping, planning, control
+COSTMAP = StackTopic("/costmap", "nav_msgs/msg/OccupancyGrid")
+MAP = StackTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, True)
+PATH = StackTopic("/path", "nav_msgs/msg/Path")
+CMD_VEL = StackTopic("/cmd_vel", "geometry_msgs/msg/Twist")
+
+# Status of a stage
+_STATUS = "diagnostic_msgs/msg/DiagnosticStatus"
+PLANNER_STATUS = StackTopic("/planner/status", _STATUS, 1, True)
+CONTROL_STATUS = StackTopic("/control/status", _STATUS, 1, True)
+
+# Published by a person
+GOAL_POINT = StackTopic("/goal_point", "geometry_msgs/msg/PointStamped")
+GOAL_POSE = StackTopic("/goal_pose", "geometry_msgs/msg/PoseStamped")
+INITIAL_POSE = StackTopic("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped")
+
+
+class Link(NamedTuple):
+    """A stage of the chain from sensor to wheels: its input and its output."""
+
+    stage: str
+    reads: StackTopic
+    publishes: StackTopic
+
+
+CHAIN = (
+    Link("costmap", LIDAR, COSTMAP),
+    Link("map_memory", COSTMAP, MAP),
+    Link("planner", MAP, PATH),
+    Link("control", PATH, CMD_VEL),
+)
