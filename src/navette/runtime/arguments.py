@@ -15,10 +15,10 @@ ParameterArgument = tuple[str | None, str, object]
 
 @dataclass
 class RosArguments:
-    """What stood between ``--ros-args`` and ``--``, and what did not."""
+    """The arguments between ``--ros-args`` and ``--``, and the others."""
 
     remaps: list[RemapRule] = field(default_factory=list)
-    #: Parameter files and single parameters in their order: the last wins.
+    #: Parameter files and single parameters; later ones take precedence.
     parameters: list[Path | ParameterArgument] = field(default_factory=list)
     #: (logger name or None for all, level)
     log_levels: list[tuple[str | None, LoggingSeverity]] = field(default_factory=list)
@@ -50,10 +50,10 @@ _WITH_VALUE = {
 
 
 def parse_ros_arguments(args: Sequence[str]) -> RosArguments:
-    """Read the ROS arguments among ``args`` (program name included or not).
+    """Parse the ROS arguments in ``args``, with or without the program's name.
 
     Raises:
-        InvalidValueError: an unknown ROS argument or one of the wrong form.
+        InvalidValueError: a ROS argument is unknown or has the wrong form.
     """
     found = RosArguments()
     rest = iter(args)
@@ -66,7 +66,7 @@ def parse_ros_arguments(args: Sequence[str]) -> RosArguments:
 
 
 def remove_ros_args(args: Sequence[str]) -> list[str]:
-    """``args`` without the blocks from ``--ros-args`` to ``--``."""
+    """Return ``args`` without the blocks from ``--ros-args`` to ``--``."""
     kept: list[str] = []
     inside = False
     for argument in args:
@@ -92,9 +92,9 @@ def _parse_block(rest: Iterator[str], found: RosArguments) -> None:
             text = next(rest, None)
             if text is None:
                 raise InvalidValueError(
-                    f"ROS argument {argument}: its value is missing"
+                    f"ROS argument {argument}: the value is missing"
                 )
-            _take(_WITH_VALUE[argument], text, found)
+            _store(_WITH_VALUE[argument], text, found)
         elif ":=" in argument and not argument.startswith("-"):
             found.remaps.append(RemapRule.parse(argument))
         else:
@@ -104,7 +104,7 @@ def _parse_block(rest: Iterator[str], found: RosArguments) -> None:
             )
 
 
-def _take(kind: str, text: str, found: RosArguments) -> None:
+def _store(kind: str, text: str, found: RosArguments) -> None:
     if kind == "remap":
         found.remaps.append(RemapRule.parse(text))
     elif kind == "parameter":
@@ -123,9 +123,9 @@ def _take(kind: str, text: str, found: RosArguments) -> None:
 
 
 def parse_parameter_argument(text: str) -> ParameterArgument:
-    """``[node:]name:=value``."""
+    """Parse ``[node:]name:=value``."""
     left, separator, value = text.partition(":=")
     if not separator or not left:
-        raise InvalidValueError(f"parameter {text!r}: wanted [node:]name:=value")
+        raise InvalidValueError(f"parameter {text!r}: expected [node:]name:=value")
     node, colon, name = left.rpartition(":")
     return (node if colon else None, name, parse_value(value))

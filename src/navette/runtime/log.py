@@ -1,4 +1,4 @@
-"""Loggers with ROS 2's levels and filters, and the hub that hands records to sinks."""
+"""Loggers with ROS 2's levels and filters; the hub passes records to sinks."""
 
 import logging
 import sys
@@ -12,7 +12,7 @@ from navette.runtime.log_levels import LoggingSeverity
 
 @dataclass(frozen=True, slots=True)
 class LogRecord:
-    """One message, as it goes to the console, the file and ``/rosout``."""
+    """One log message for the console, the file and ``/rosout``."""
 
     stamp_ns: int
     severity: LoggingSeverity
@@ -24,29 +24,32 @@ class LogRecord:
 
 
 class LogSink(Protocol):
-    """Takes records; the hub calls it in order."""
+    """Receiver of log records; the hub calls the sinks in order."""
 
     def __call__(self, record: LogRecord) -> None: ...
 
 
 class LogHub:
-    """Levels and sinks of one context.
+    """Log levels and sinks of one context.
 
     Args:
-        now_ns: gives the stamp of a record.
+        now_ns: returns the stamp of a record.
     """
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self.now_ns = now_ns
         self.sinks: list[LogSink] = []
-        #: Takes the records while there is no sink, if set.
+        #: Receives the records while there is no sink, if set.
         self.fallback: LogSink | None = None
         self.default_level = LoggingSeverity.INFO
         self._levels: dict[str, LoggingSeverity] = {}
         self._effective: dict[str, LoggingSeverity] = {}
 
     def set_level(self, name: str, level: int) -> None:
-        """Level of a logger and its children; "" is all, UNSET inherits again."""
+        """Set the level of a logger and its children.
+
+        The name "" stands for all loggers; UNSET restores inheritance.
+        """
         level = LoggingSeverity(level)
         if name:
             self._levels[name] = level
@@ -55,19 +58,19 @@ class LogHub:
         self._effective.clear()
 
     def reset_levels(self) -> None:
-        """Every logger inherits again, and the default is INFO."""
+        """Remove all levels and set the default to INFO."""
         self.default_level = LoggingSeverity.INFO
         self._levels.clear()
         self._effective.clear()
 
     def get_level(self, name: str) -> LoggingSeverity:
-        """The level set for exactly this logger."""
+        """Return the level of this logger itself, UNSET if it inherits."""
         if not name:
             return self.default_level
         return self._levels.get(name, LoggingSeverity.UNSET)
 
     def effective_level(self, name: str) -> LoggingSeverity:
-        """The level that counts: its own or the nearest parent's."""
+        """Return the logger's own level or that of its nearest parent with one."""
         level = self._effective.get(name)
         if level is None:
             level = self._effective[name] = self._find_level(name)
@@ -103,7 +106,7 @@ class _CallSite:
         self.skipped = False
 
     def lets_through(self, now_ns: int, filters: dict[str, Any]) -> bool:
-        """All filters in rclpy's order (throttle, skip_first, once)."""
+        """Apply the filters in rclpy's order (throttle, skip_first, once)."""
         throttle_s = filters.get("throttle_duration_sec")
         if throttle_s:
             if self.last_ns is not None and now_ns < self.last_ns + throttle_s * 1e9:
@@ -120,7 +123,7 @@ class _CallSite:
 
 
 class Logger:
-    """A named logger; children inherit its level (``node.child``)."""
+    """A named logger; its children (``node.child``) inherit its level."""
 
     def __init__(self, name: str, hub: LogHub) -> None:
         self.name = name
@@ -142,14 +145,14 @@ class Logger:
         return severity >= self._hub.effective_level(self.name)
 
     def log(self, message: object, severity: int, **filters: Any) -> bool:
-        """Log unless the level or a filter keeps it back; True if logged.
+        """Log a message; return False if the level or a filter suppresses it.
 
         Keyword Args:
-            once: only the first time this line is reached.
-            skip_first: not the first time.
-            throttle_duration_sec: not more often than this.
-            throttle_time_source_type: a clock for the throttle.
-            name: log under another name.
+            once: log only the first time that this line is reached.
+            skip_first: do not log the first time.
+            throttle_duration_sec: shortest time between two messages, in s.
+            throttle_time_source_type: the clock for the throttle.
+            name: name of another logger.
         """
         return self._log(message, LoggingSeverity(severity), filters)
 
@@ -212,12 +215,12 @@ def _check_filters(filters: dict[str, Any]) -> None:
 
 
 class StdlibHandler(logging.Handler):
-    """Hands what the algorithm modules log (``logging.getLogger``) to a hub.
+    """Handler that passes records of ``logging.getLogger`` (algorithms) to a hub.
 
     Args:
-        hub: gets the records.
-        running_node: full name of the node whose callback runs, or empty; the record
-            then counts as that node's (``/rosout``, level).
+        hub: receives the records.
+        running_node: returns the full name of the node whose callback runs, or "". The
+            record belongs to that node (``/rosout``, level).
     """
 
     def __init__(self, hub: LogHub, running_node: Callable[[], str]) -> None:

@@ -6,7 +6,7 @@ from navette.errors import InvalidValueError
 
 
 class LoggingSeverity(IntEnum):
-    """Numbers as in rcutils and rcl_interfaces/msg/Log."""
+    """Severities with the numbers of rcutils and rcl_interfaces/msg/Log."""
 
     UNSET = 0
     DEBUG = 10
@@ -17,10 +17,10 @@ class LoggingSeverity(IntEnum):
 
 
 def severity_from_string(text: str) -> LoggingSeverity:
-    """``info`` → INFO, in any case.
+    """Return the severity of a name such as ``info``, in upper or lower case.
 
     Raises:
-        InvalidValueError: lists the known names.
+        InvalidValueError: the name is unknown; lists the known ones.
     """
     name = text.upper()
     name = "WARN" if name == "WARNING" else name

@@ -1,4 +1,4 @@
-"""Where log records go: console, file; ``/rosout`` is a publisher of each node."""
+"""Sinks of log records: console and file. Each node publishes ``/rosout`` itself."""
 
 import sys
 from pathlib import Path
@@ -18,7 +18,7 @@ _RESET = "\x1b[0m"
 
 
 def format_record(record: LogRecord) -> str:
-    """``[INFO] [1.500000000] [name]: message``, as ROS 2 prints it."""
+    """Return ``[INFO] [1.500000000] [name]: message``, ROS 2's format."""
     seconds, nanoseconds = divmod(record.stamp_ns, 1_000_000_000)
     return (
         f"[{record.severity.name}] [{seconds}.{nanoseconds:09d}] "
@@ -27,11 +27,11 @@ def format_record(record: LogRecord) -> str:
 
 
 class ConsoleSink:
-    """Writes to standard error; coloured only on a terminal.
+    """Sink that writes to standard error, with colours on a terminal.
 
     Args:
-        stream: where to instead of standard error.
-        least: records below this severity go elsewhere only.
+        stream: replaces standard error.
+        least: records below this severity are not written.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class ConsoleSink:
     def __call__(self, record: LogRecord) -> None:
         if record.severity < self._least:
             return
-        # Looked up late: programs and tests replace sys.stderr.
+        # sys.stderr is read here because programs and tests replace it.
         stream = self._stream or sys.stderr
         line = format_record(record)
         colour = _COLOURS.get(record.severity, "")
@@ -57,7 +57,7 @@ class ConsoleSink:
 
 
 class FileSink:
-    """Appends to a file, a line a record.
+    """Sink that appends one line per record to a file.
 
     Raises:
         FileFormatError: the file cannot be opened.

@@ -1,4 +1,4 @@
-"""The services by which others read and set the levels of loggers."""
+"""Services that read and set log levels."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class LoggingService:
-    """Serves ``~/get_logger_levels`` and ``~/set_logger_levels`` for a node."""
+    """Server of ``~/get_logger_levels`` and ``~/set_logger_levels`` for a node."""
 
     def __init__(self, node: "Node") -> None:
         self._hub = node.context.log
@@ -29,12 +29,13 @@ class LoggingService:
         response.results = [self._try_set(each) for each in request.levels]
         return response
 
-    def _try_set(self, wanted: LoggerLevel) -> SetLoggerLevelsResult:
+    def _try_set(self, requested: LoggerLevel) -> SetLoggerLevelsResult:
         known = [int(level) for level in LoggingSeverity]
-        if wanted.level not in known:
+        if requested.level not in known:
             return SetLoggerLevelsResult(
                 successful=False,
-                reason=f"logger {wanted.name!r}: level {wanted.level}; known: {known}",
+                reason=f"logger {requested.name!r}: level {requested.level}; "
+                f"known: {known}",
             )
-        self._hub.set_level(wanted.name, wanted.level)
+        self._hub.set_level(requested.name, requested.level)
         return SetLoggerLevelsResult(successful=True)

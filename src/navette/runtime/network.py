@@ -1,4 +1,4 @@
-"""Which transports a context has: in process only, or the network beside it."""
+"""Choice of a context's transports: in process only, or also the network."""
 
 import os
 from collections.abc import Callable
@@ -14,10 +14,10 @@ VARIABLE = "NAVETTE_TRANSPORT"
 
 
 def checked_transport(name: str, source: str) -> str:
-    """The name, if there is such a transport.
+    """Return the name of a transport.
 
     Raises:
-        InvalidValueError: lists those that there are.
+        InvalidValueError: there is no such transport; lists the existing ones.
     """
     if name not in TRANSPORTS:
         known = ", ".join(TRANSPORTS)
@@ -25,24 +25,24 @@ def checked_transport(name: str, source: str) -> str:
     return name
 
 
-def chosen_transport(asked: str | None, clock: ContextClock) -> str:
-    """What is asked for, else ``NAVETTE_TRANSPORT``, else what suits the run.
+def chosen_transport(requested: str | None, clock: ContextClock) -> str:
+    """Return the requested transport, or ``NAVETTE_TRANSPORT``, or the default.
 
-    A lock-step run in virtual time stays alone, so that it is the same every time;
-    tests under pytest stay alone, so that they do not meet each other.
+    The default is in process for a run in virtual time, which is then reproducible, and
+    for tests under pytest, which are then isolated from each other; else Zenoh.
 
     Raises:
-        InvalidValueError: the variable names no transport, or one that cannot be.
+        InvalidValueError: the variable's transport does not exist or is not possible.
     """
     if clock.is_shared:
-        if (asked or os.environ.get(VARIABLE)) == IN_PROCESS:
+        if (requested or os.environ.get(VARIABLE)) == IN_PROCESS:
             raise InvalidValueError(
-                f"transport {IN_PROCESS!r}: a lock-step with other processes needs "
+                f"transport {IN_PROCESS!r}: lock-step with other processes requires "
                 f"{ZENOH!r}"
             )
         return ZENOH
-    if asked is not None:
-        return asked
+    if requested is not None:
+        return requested
     named = os.environ.get(VARIABLE)
     if named:
         return checked_transport(named, VARIABLE)
@@ -58,17 +58,17 @@ def join_network(
     now_ns: Callable[[], int],
     lock_step: LockStepClock | None = None,
 ) -> None:
-    """Add the network to the graph's transports, unless it is one of them.
+    """Add the network to the graph's transports unless it is one of them already.
 
     Args:
-        graph: what is joined to it.
+        graph: the graph that joins the network.
         domain_id: separates systems on one network.
-        now_ns: the time here.
-        lock_step: the clock, where it is on one time with other processes.
+        now_ns: returns this process's time.
+        lock_step: the clock of a lock-step with other processes, if there is one.
 
     Raises:
         InvalidValueError: the graph has joined another domain, or has nodes already.
-        NetworkError: the network cannot be joined.
+        NetworkError: joining the network failed.
     """
     with graph.joining:
         _join(graph, domain_id, now_ns, lock_step)
@@ -80,14 +80,14 @@ def _join(
     now_ns: Callable[[], int],
     lock_step: LockStepClock | None,
 ) -> None:
-    # Imported here: who stays in process does not pay for it.
+    # Imported here, so that runs in process do not load Zenoh.
     from navette.transports.zenoh import ZenohTransport
 
     for transport in graph.transports:
         if isinstance(transport, ZenohTransport):
             if lock_step is not None:
                 raise InvalidValueError(
-                    "lock-step: only one context of a process can take part"
+                    "lock-step: only one context of a process can participate"
                 )
             if transport.domain_id != domain_id:
                 raise InvalidValueError(
@@ -97,7 +97,9 @@ def _join(
             return
     if graph.nodes():
         names = ", ".join(info.full_name for info in graph.nodes())
-        raise InvalidValueError(f"cannot join the network: there are nodes ({names})")
+        raise InvalidValueError(
+            f"cannot join the network: the graph has nodes already ({names})"
+        )
     if lock_step is None:
         graph.add_transport(ZenohTransport(domain_id, now_ns))
         return

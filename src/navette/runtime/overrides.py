@@ -1,7 +1,11 @@
-"""Parameter values given from outside: files, launch, command line; the last wins."""
+"""Parameter values from files, launch files and the command line.
+
+Of several values for one parameter the last one counts.
+"""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -13,27 +17,28 @@ from navette.runtime.parameter_files import read_parameter_file
 
 
 class Override(NamedTuple):
-    """A value for a parameter of a node, and where it comes from."""
+    """A value for a parameter of a node, and its origin."""
 
     value: Any
     origin: str
-    is_for_all: bool = False  # given for "/**": not every node need know the name
+    is_for_all: bool = False  # given for "/**": nodes without the parameter ignore it
 
 
-class NodeWithParameters(Protocol):
-    """What :meth:`ParameterOverrides.check` needs to know of a node."""
+class ParameterOwner(Protocol):
+    """The part of a node that :meth:`ParameterOverrides.check` needs."""
 
     def get_fully_qualified_name(self) -> str: ...
     def known_parameters(self) -> list[str] | None:
-        """Declared names; None if the node takes any."""
+        """Return the declared names; None if the node accepts any."""
 
 
 @dataclass
 class OverrideSet:
-    """Values from one origin for the nodes that a pattern names.
+    """Values from one origin for the nodes that match a pattern.
 
-    ``by_base_name`` rules (``-p node:name:=value``) go by the node's bare name; the
-    others by the full name, with ``*`` for one part and ``**`` for any number.
+    With ``by_base_name`` (``-p node:name:=value``) the pattern is a name without
+    namespace, otherwise a full name, in which ``*`` stands for one part and ``**`` for
+    any number of parts.
     """
 
     pattern: str
@@ -49,7 +54,7 @@ class OverrideSet:
 
     @property
     def names_a_node(self) -> bool:
-        """Whether the pattern is more than "every node"."""
+        """Whether the pattern does not simply stand for all nodes."""
         return self.pattern != "/**"
 
 
@@ -66,7 +71,7 @@ def _regex(pattern: str) -> re.Pattern[str]:
 
 
 class ParameterOverrides:
-    """All override sets of a context, weakest first."""
+    """All override sets of a context, in increasing precedence."""
 
     def __init__(self) -> None:
         self.sets: list[OverrideSet] = []
@@ -79,7 +84,7 @@ class ParameterOverrides:
         *,
         by_base_name: bool = False,
     ) -> None:
-        """Add values that win over everything added before."""
+        """Add values that take precedence over all values added before."""
         if not by_base_name:
             pattern = "/" + pattern.strip("/")
         self.sets.append(OverrideSet(pattern, dict(values), origin, by_base_name))
@@ -103,7 +108,7 @@ class ParameterOverrides:
             self.add(node or "/**", {name: value}, text, by_base_name=by_base_name)
 
     def for_node(self, full_name: str) -> dict[str, Override]:
-        """name → value for a node, the last word already chosen."""
+        """Return the values for a node by parameter name."""
         chosen: dict[str, Override] = {}
         for override in self.sets:
             if override.matches(full_name):
@@ -114,13 +119,14 @@ class ParameterOverrides:
                     )
         return chosen
 
-    def check(self, nodes: Iterable[NodeWithParameters]) -> None:
-        """Raise unless every value given reaches a parameter that a node declared.
+    def check(self, nodes: Iterable[ParameterOwner]) -> None:
+        """Check that every value belongs to a declared parameter of a node.
 
-        Values for ``/**`` need one node that knows the name.
+        A value for ``/**`` needs one node with such a parameter.
 
         Raises:
-            ParameterError: names the file or argument and the known nodes or names.
+            ParameterError: names the file or argument and the existing nodes or
+                parameters.
         """
         known = {n.get_fully_qualified_name(): n.known_parameters() for n in nodes}
         for override in self.sets:
@@ -133,14 +139,32 @@ class ParameterOverrides:
             for name in override.values:
                 self._check_name(override, name, {n: known[n] for n in matching})
 
+    def check_used_by(self, nodes: Sequence[ParameterOwner]) -> None:
+        """As :meth:`check`, for nodes that are only a part of the system.
+
+        A parameter file often serves a whole system: entries for other nodes are
+        accepted, but a file without any entry for these nodes is an error. Values that
+        a file gives for ``/**`` are not checked.
+        """
+        names = [node.get_fully_qualified_name() for node in nodes]
+        by_origin: dict[str, list[OverrideSet]] = defaultdict(list)
+        for each in self.sets:
+            by_origin[each.origin].append(each)
+        checked = ParameterOverrides()
+        for sets in by_origin.values():
+            own = [each for each in sets if any(map(each.matches, names))]
+            is_file = len(sets) > 1 or sets[0].names_a_node
+            named = [each for each in own if each.names_a_node or not is_file]
+            checked.sets += named if own else sets
+        checked.check(nodes)
+
     @staticmethod
     def _check_name(
         override: OverrideSet, name: str, known: dict[str, list[str] | None]
     ) -> None:
         if not known:
             return
-        takers = [names is None or name in names for names in known.values()]
-        if any(takers):
+        if any(names is None or name in names for names in known.values()):
             return
         listed = "; ".join(
             f"{node}: {', '.join(sorted(names or [])) or 'none'}"

@@ -1,4 +1,4 @@
-"""Parameters: typed values with ROS 2's types."""
+"""Parameters: names with values of ROS 2's parameter types."""
 
 import math
 from collections.abc import Sequence
@@ -28,20 +28,20 @@ AllowableParameterValue = (
     | Sequence[float]
     | Sequence[str]
 )
-"""For annotations: what a parameter may hold."""
+"""For annotations: the type of a parameter's value."""
 
 PARAMETER_SEPARATOR_STRING = "."
 
 
 def validate_parameter_name(name: str) -> bool:
-    """True, or raise; the name must not be empty."""
+    """Return True; raise InvalidParameterException if the name is empty."""
     if not isinstance(name, str) or not name:
         raise InvalidParameterException(str(name))
     return True
 
 
 class ParameterType(IntEnum):
-    """Types of a value; numbers as in rcl_interfaces/msg/ParameterType."""
+    """Types of values, with the numbers of rcl_interfaces/msg/ParameterType."""
 
     NOT_SET = 0
     BOOL = 1
@@ -56,7 +56,7 @@ class ParameterType(IntEnum):
 
     @classmethod
     def from_parameter_value(cls, parameter_value: Any) -> "ParameterType":
-        """The type that fits a Python value; raises TypeError if none does."""
+        """Return the type for a Python value; raise TypeError if there is none."""
         if parameter_value is None:
             return cls.NOT_SET
         for kind, python_type in _SCALARS.items():
@@ -68,7 +68,7 @@ class ParameterType(IntEnum):
                 if all(_is_item(item, item_type) for item in items):
                     return kind
         raise TypeError(
-            f"value {parameter_value!r} is not of a parameter type: wanted bool, "
+            f"value {parameter_value!r} has no parameter type: expected bool, "
             "int, float, str, or a list of bytes, bool, int, float or str"
         )
 
@@ -125,7 +125,7 @@ def _is_item(item: Any, wanted: type) -> bool:
 
 
 class Parameter(Generic[T]):
-    """A name, a type and a value."""
+    """A parameter: name, type and value."""
 
     Type = ParameterType
 
@@ -173,7 +173,7 @@ class Parameter(Generic[T]):
     __hash__ = None  # type: ignore[assignment]  # values may be lists
 
     def get_parameter_value(self) -> ParameterValue:
-        """As rcl_interfaces/msg/ParameterValue."""
+        """Return the value as rcl_interfaces/msg/ParameterValue."""
         message = ParameterValue(type=int(self._type))
         if self._type is not ParameterType.NOT_SET:
             setattr(message, _VALUE_FIELDS[self._type], _plain(self._value))
@@ -184,7 +184,7 @@ class Parameter(Generic[T]):
 
     @classmethod
     def from_parameter_msg(cls, param_msg: ParameterMsg) -> "Parameter[Any]":
-        """Raises ParameterError where the message's type is none of the known."""
+        """Return the message's parameter; raise ParameterError for an unknown type."""
         kind = param_msg.value.type
         if kind not in set(ParameterType):
             raise ParameterError(
@@ -196,14 +196,14 @@ class Parameter(Generic[T]):
 
 
 def _plain(value: Any) -> Any:
-    """Arrays as lists of plain items."""
+    """Convert an array to a list of Python items."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     return list(value) if _is_array(value) else value
 
 
 def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
-    """The Python value inside a ParameterValue; None if not set."""
+    """Return the Python value of a ParameterValue; None if it is not set."""
     kind = ParameterType(parameter_value.type)
     if kind is ParameterType.NOT_SET:
         return None
@@ -212,7 +212,7 @@ def parameter_value_to_python(parameter_value: ParameterValue) -> Any:
 
 
 def get_parameter_value(string_value: str) -> ParameterValue:
-    """The value that a text means, read as YAML; a string if nothing else fits."""
+    """Return the value of a text, read as YAML; a string if it is not YAML."""
     return Parameter("text", value=parse_value(string_value)).get_parameter_value()
 
 
@@ -222,16 +222,16 @@ def parameter_dict_from_yaml_file(
     target_nodes: list[str] | None = None,
     namespace: str = "",
 ) -> dict[str, ParameterMsg]:
-    """Name → parameter message of a ROS 2 parameter file.
+    """Return the parameter messages of a ROS 2 parameter file by name.
 
     Args:
-        use_wildcard: take what stands under ``/**``, too (others win over it).
-        target_nodes: only these nodes of the file; all if None or empty.
-        namespace: put before every name.
+        use_wildcard: include the values for ``/**``; values for a node take precedence.
+        target_nodes: nodes of the file to read; all if None or empty.
+        namespace: prefix for every name.
 
     Raises:
-        FileFormatError: not a parameter file.
-        ParameterError: a target node is not in it, or nothing is selected.
+        FileFormatError: the file is not a parameter file.
+        ParameterError: a target node is not in the file, or no parameter is selected.
     """
     entries = read_parameter_file(parameter_file)
     wanted = [f"/{name.strip('/')}" for name in target_nodes or ()]
@@ -253,10 +253,10 @@ def parameter_dict_from_yaml_file(
 
 
 def coerced(name: str, value: Any, wanted: ParameterType) -> Any:
-    """``value`` as the declared type allows it: an int for a double, [] for any list.
+    """Convert a value to the declared type: an int to a double, [] to any list.
 
     Raises:
-        ParameterError: names the parameter, the value and the wanted type.
+        ParameterError: names the parameter, the value and the expected type.
     """
     if wanted is ParameterType.DOUBLE and ParameterType.INTEGER.check(value):
         return float(value)
@@ -270,7 +270,7 @@ def coerced(name: str, value: Any, wanted: ParameterType) -> Any:
         except TypeError:
             got = type(value).__name__
         raise ParameterError(
-            f"parameter {name!r}: {value!r} is {got}, wanted {wanted.name}"
+            f"parameter {name!r}: {value!r} is {got}, expected {wanted.name}"
         )
     return value
 

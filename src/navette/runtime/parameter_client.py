@@ -1,4 +1,4 @@
-"""A client of another node's parameter services."""
+"""Client of another node's parameter services."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -35,10 +35,10 @@ _SERVICES = {
 
 
 class AsyncParameterClient:
-    """Reads and sets the parameters of ``remote_node_name``.
+    """Client that reads and sets the parameters of ``remote_node_name``.
 
-    Every request gives a future of the service's response; ``callback`` is called
-    with that future once it is done.
+    Every request returns a future of the service's response; ``callback`` is called
+    with that future when it is done.
     """
 
     def __init__(
@@ -79,47 +79,49 @@ class AsyncParameterClient:
         depth: int | None = None,
         callback: DoneCallback | None = None,
     ) -> Future[Any]:
-        """Names below the prefixes; ``depth`` None = all levels."""
-        return self._ask(
+        """Request the names below the prefixes; ``depth`` None means all levels."""
+        return self._request(
             "list_parameters", callback, prefixes=prefixes or [], depth=depth or 0
         )
 
     def get_parameters(
         self, names: list[str], callback: DoneCallback | None = None
     ) -> Future[Any]:
-        return self._ask("get_parameters", callback, names=names)
+        return self._request("get_parameters", callback, names=names)
 
     def describe_parameters(
         self, names: list[str], callback: DoneCallback | None = None
     ) -> Future[Any]:
-        return self._ask("describe_parameters", callback, names=names)
+        return self._request("describe_parameters", callback, names=names)
 
     def get_parameter_types(
         self, names: list[str], callback: DoneCallback | None = None
     ) -> Future[Any]:
-        return self._ask("get_parameter_types", callback, names=names)
+        return self._request("get_parameter_types", callback, names=names)
 
     def set_parameters(
         self,
         parameters: Sequence[Parameter[Any] | ParameterMsg],
         callback: DoneCallback | None = None,
     ) -> Future[Any]:
-        """Set one by one; the response has a result for each."""
-        return self._ask("set_parameters", callback, parameters=_messages(parameters))
+        """Set the parameters one by one; the response has a result for each."""
+        return self._request(
+            "set_parameters", callback, parameters=_messages(parameters)
+        )
 
     def set_parameters_atomically(
         self,
         parameters: Sequence[Parameter[Any] | ParameterMsg],
         callback: DoneCallback | None = None,
     ) -> Future[Any]:
-        """Set all or none."""
+        """Set all parameters or none."""
         messages = _messages(parameters)
-        return self._ask("set_parameters_atomically", callback, parameters=messages)
+        return self._request("set_parameters_atomically", callback, parameters=messages)
 
     def delete_parameters(
         self, names: list[str], callback: DoneCallback | None = None
     ) -> Future[Any]:
-        """Take the values away; only dynamically typed parameters allow it."""
+        """Delete the values; only dynamically typed parameters allow it."""
         unset: list[Parameter[Any]] = [
             Parameter(name, ParameterType.NOT_SET) for name in names
         ]
@@ -131,7 +133,11 @@ class AsyncParameterClient:
         use_wildcard: bool = False,
         callback: DoneCallback | None = None,
     ) -> Future[Any]:
-        """Set what a parameter file holds (all its nodes; ``/**`` if asked)."""
+        """Set the parameters of a file for all its nodes.
+
+        Args:
+            use_wildcard: include the values for ``/**``.
+        """
         found = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters(list(found.values()), callback)
 
@@ -141,7 +147,7 @@ class AsyncParameterClient:
         use_wildcard: bool = False,
         callback: DoneCallback | None = None,
     ) -> Future[Any]:
-        """As :meth:`load_parameter_file`, all or none."""
+        """As :meth:`load_parameter_file`, but set all parameters or none."""
         found = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters_atomically(list(found.values()), callback)
 
@@ -156,7 +162,7 @@ class AsyncParameterClient:
             ParameterEvent, "/parameter_events", callback, qos_profile, **options
         )
 
-    def _ask(
+    def _request(
         self, name: str, callback: DoneCallback | None, **fields: Any
     ) -> Future[Any]:
         client = self._clients[name]

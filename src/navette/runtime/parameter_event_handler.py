@@ -1,4 +1,4 @@
-"""Callbacks for changes of single parameters, of this node or any other."""
+"""Callbacks for changes of parameters of any node."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from navette.runtime.qos import QoSProfile, qos_profile_parameter_events
 
 @dataclass(eq=False)
 class ParameterCallbackHandle:
-    """Names the callback of one parameter; keep it to remove that again."""
+    """Handle of a parameter's callback, for its removal."""
 
     parameter_name: str
     node_name: str
@@ -24,13 +24,13 @@ class ParameterCallbackHandle:
 
 @dataclass(eq=False)
 class ParameterEventCallbackHandle:
-    """Names a callback of every event; keep it to remove that again."""
+    """Handle of an event callback, for its removal."""
 
     callback: Callable[[ParameterEvent], object]
 
 
 class ParameterEventHandler:
-    """Listens to ``/parameter_events``; the newest callback is called first."""
+    """Subscriber of ``/parameter_events``; the newest callback is called first."""
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class ParameterEventHandler:
     def get_parameter_from_event(
         event: ParameterEvent, parameter_name: str, node_name: str
     ) -> ParameterMsg | None:
-        """The new value of that node's parameter, if the event has it."""
+        """Return the new value of a node's parameter; None if it did not change."""
         if event.node != node_name:
             return None
         found = ParameterEventHandler.get_parameters_from_event(event)
@@ -67,7 +67,7 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameters_from_event(event: ParameterEvent) -> Iterator[ParameterMsg]:
-        """Everything new or changed."""
+        """Return the new and the changed parameters."""
         return chain(event.new_parameters, event.changed_parameters)
 
     def add_parameter_callback(
@@ -76,7 +76,7 @@ class ParameterEventHandler:
         node_name: str,
         callback: Callable[[ParameterMsg], object],
     ) -> ParameterCallbackHandle:
-        """Call ``callback(parameter message)`` when it changes; "" = this node."""
+        """Call ``callback(parameter message)`` on changes; "" stands for this node."""
         full_name = self._full_name(node_name)
         handle = ParameterCallbackHandle(parameter_name, full_name, callback)
         self._parameter_handles.insert(0, handle)

@@ -1,4 +1,4 @@
-"""ROS 2 parameter files: YAML → (node pattern, name, value), safely and bounded."""
+"""Reader and writer of ROS 2 parameter files, with limits on size and depth."""
 
 import re
 from collections.abc import Mapping
@@ -18,9 +18,9 @@ NodeParameters = list[tuple[str, dict[str, Any]]]
 
 
 class RosLoader(yaml.SafeLoader):
-    """Plain scalars as ROS 2 reads them: ``1e5`` is a double, dates are strings.
+    """YAML loader with ROS 2's scalars: ``1e5`` is a double, dates are strings.
 
-    Keys are text whatever they look like: a parameter may be named ``y``.
+    Keys are always text, so that a parameter may be named ``y``.
     """
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
@@ -63,10 +63,10 @@ def _integer(text: str) -> int:
 
 
 def parse_value(text: str) -> Any:
-    """The value of ``-p name:=text``: read as YAML, else taken as a string.
+    """Return the value of ``-p name:=text``, read as YAML; a string if not YAML.
 
     Raises:
-        ParameterError: a YAML mapping or nothing, which no parameter can be.
+        ParameterError: a YAML mapping or another value that parameters cannot have.
     """
     try:
         value = yaml.load(text, Loader=RosLoader)
@@ -78,17 +78,20 @@ def parse_value(text: str) -> Any:
 
 
 def read_parameter_file(path: Path | str) -> NodeParameters:
-    """Read ``node: ros__parameters: …``; nested names are joined with dots.
+    """Read a file of the form ``node: ros__parameters: …``.
+
+    Nested names are joined with dots.
 
     Raises:
-        FileFormatError: not readable, not YAML, or not of that form; names the line.
-        ParameterError: a value of a type that parameters do not have.
+        FileFormatError: the file is not readable, not YAML, or has another form; names
+            the line.
+        ParameterError: a value has a type that parameters cannot have.
     """
     path = Path(path)
     try:
         size = path.stat().st_size
         if size > _MAX_BYTES:
-            raise FileFormatError(path, f"{size} bytes; wanted at most {_MAX_BYTES}")
+            raise FileFormatError(path, f"{size} bytes; allowed: at most {_MAX_BYTES}")
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise FileFormatError(path, f"cannot be read: {error}") from error
@@ -96,7 +99,7 @@ def read_parameter_file(path: Path | str) -> NodeParameters:
 
 
 def parse_parameters(text: str, origin: Path | str = "parameters") -> NodeParameters:
-    """As :func:`read_parameter_file`, from the text itself."""
+    """Read parameters from a text as :func:`read_parameter_file` does from a file."""
     try:
         document = yaml.load(text, Loader=RosLoader)
     except yaml.YAMLError as error:
@@ -107,14 +110,14 @@ def parse_parameters(text: str, origin: Path | str = "parameters") -> NodeParame
     except RecursionError as error:
         raise FileFormatError(origin, "nested too deeply") from error
     if not isinstance(document, dict):
-        raise FileFormatError(origin, "wanted 'node_name: ros__parameters: …'")
+        raise FileFormatError(origin, "expected 'node_name: ros__parameters: …'")
     reader = _Reader(str(origin))
     reader.nodes("", document, 0)
     return reader.found
 
 
 class _Reader:
-    """Walks the nested mappings and counts, so that hostile files end early."""
+    """Traversal of the nested mappings with a limit on depth and number of values."""
 
     def __init__(self, origin: str) -> None:
         self.found: NodeParameters = []
@@ -122,7 +125,7 @@ class _Reader:
         self._count = 0
 
     def nodes(self, prefix: str, mapping: dict[Any, Any], depth: int) -> None:
-        """Namespaces and node names, down to ``ros__parameters``."""
+        """Read namespaces and node names down to ``ros__parameters``."""
         self._check_depth(depth)
         for key, value in mapping.items():
             if key == "ros__parameters":
@@ -134,7 +137,7 @@ class _Reader:
             if not isinstance(value, dict):
                 raise FileFormatError(
                     self._origin,
-                    f"{pattern}: wanted 'ros__parameters:' below a node name, "
+                    f"{pattern}: expected 'ros__parameters:' below a node name, "
                     f"got {value!r}",
                 )
             self.nodes(pattern, value, depth + 1)
@@ -147,7 +150,8 @@ class _Reader:
             return
         if not isinstance(mapping, dict):
             raise FileFormatError(
-                self._origin, f"{prefix or 'ros__parameters'}: wanted name: value pairs"
+                self._origin,
+                f"{prefix or 'ros__parameters'}: expected name: value pairs",
             )
         for key, value in mapping.items():
             name = f"{prefix}{key}"
@@ -165,7 +169,7 @@ class _Reader:
 
 
 def _leaf(name: str, value: Any, origin: str) -> Any:
-    """A scalar, or a list of one kind of scalar (ints among doubles count as such)."""
+    """Return a scalar or a list of one type; ints among doubles become doubles."""
     if isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, list):
@@ -175,13 +179,13 @@ def _leaf(name: str, value: Any, origin: str) -> Any:
         if len(kinds) <= 1 and kinds <= {bool, int, float, str}:
             return value
     raise ParameterError(
-        f"{origin}: parameter {name!r}: {value!r} is not a parameter value; wanted "
+        f"{origin}: parameter {name!r}: {value!r} is not a parameter value; expected "
         "a bool, int, float, string, or a list of one of these"
     )
 
 
 class _Dumper(yaml.SafeDumper):
-    """Quotes text that either YAML or :class:`RosLoader` takes for something else."""
+    """YAML dumper that quotes text which a reader would not read as text."""
 
     def ignore_aliases(self, data: Any) -> bool:
         return True
@@ -197,10 +201,10 @@ _Dumper.yaml_implicit_resolvers = {
 
 
 def format_parameters(nodes: Mapping[str, Mapping[str, Any]]) -> str:
-    """A parameter file of (node → flat name → value) that reads back as the same.
+    """Return the text of a parameter file with the values by node and flat name.
 
-    Dotted names are nested; where a name is both a value and a prefix, the longer
-    name stays dotted.
+    Dotted names are nested. If a name is both a value and a prefix, the longer name
+    stays dotted. Reading the text returns the same values.
     """
     document = {node: {"ros__parameters": _nested(own)} for node, own in nodes.items()}
     text: str = yaml.dump(document, Dumper=_Dumper, allow_unicode=True, width=2**31 - 1)
@@ -208,7 +212,7 @@ def format_parameters(nodes: Mapping[str, Mapping[str, Any]]) -> str:
 
 
 def format_value(value: Any) -> str:
-    """A value as :func:`parse_value` reads it, in one line."""
+    """Return a value as one line of text for :func:`parse_value`."""
     text: str = yaml.dump(
         value,
         Dumper=_Dumper,

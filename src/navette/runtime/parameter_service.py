@@ -1,4 +1,4 @@
-"""The services by which others read and set a node's parameters."""
+"""Services that read and set a node's parameters."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class ParameterService:
-    """Serves ``~/get_parameters``, ``~/set_parameters`` and company for a node."""
+    """Server of ``~/get_parameters``, ``~/set_parameters`` and the other services."""
 
     def __init__(self, node: "Node") -> None:
         self._node = node
@@ -35,7 +35,7 @@ class ParameterService:
                 qos_profile=qos_profile_parameters,
             )
 
-    # As in ROS 2, one name that is not there makes the whole answer empty.
+    # As in ROS 2, the response is empty if one of the names does not exist.
 
     def _describe(self, request: Any, response: Any) -> Any:
         try:
@@ -73,7 +73,7 @@ class ParameterService:
         return response
 
     def _try_set(self, messages: list[Any]) -> SetParametersResult:
-        """What a remote asks for wrongly is its own error, not this node's."""
+        """Set the parameters; report an invalid request to the client only."""
         try:
             parameters = [Parameter.from_parameter_msg(each) for each in messages]
             return self._node.set_parameters_atomically(parameters)

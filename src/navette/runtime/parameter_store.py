@@ -1,4 +1,4 @@
-"""The declared parameters of one node: descriptors, checks, callbacks."""
+"""Declared parameters of one node, with descriptors, checks and callbacks."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -28,7 +28,12 @@ Changes = tuple[list[Parameter[Any]], list[Parameter[Any]], list[Parameter[Any]]
 
 
 class ParameterStore:
-    """Values and descriptors; ``on_change`` is told what each change did."""
+    """Values and descriptors of a node's parameters.
+
+    Args:
+        on_change: called after each change.
+        allow_undeclared: whether parameters may be set without a declaration.
+    """
 
     def __init__(
         self, on_change: Callable[[Changes], None], *, allow_undeclared: bool
@@ -44,9 +49,11 @@ class ParameterStore:
     def declare(self, parameter: Parameter[Any], descriptor: Any, origin: str) -> None:
         """Add a parameter with its first value.
 
+        Args:
+            origin: where the value comes from, for error messages; may be empty.
+
         Raises:
-            ParameterError: declared already, or the value is refused; ``origin``
-                says where the value came from.
+            ParameterError: the parameter is declared already, or its value is rejected.
         """
         name = parameter.name
         if name in self.values:
@@ -58,7 +65,7 @@ class ParameterStore:
             raise InvalidParameterValueException(name, parameter.value, reason)
 
     def set(self, parameters: Sequence[Parameter[Any]]) -> SetParametersResult:
-        """Set all of them or none; refusals come back in the result."""
+        """Set all parameters or none; the result contains the reason of a rejection."""
         wanted = list(parameters)
         for pre in self.pre_callbacks:
             wanted = pre(wanted)
@@ -78,7 +85,7 @@ class ParameterStore:
         self.descriptors.pop(name, None)
 
     def _coerced(self, parameter: Parameter[Any]) -> Parameter[Any]:
-        """An int becomes a double where a double is declared."""
+        """Convert the value to the declared type."""
         descriptor = self.descriptors.get(parameter.name)
         if (
             descriptor is None
@@ -95,9 +102,9 @@ class ParameterStore:
         parameters: list[Parameter[Any]],
         descriptors: dict[str, ParameterDescriptor] | None,
     ) -> SetParametersResult:
-        """Check everything, then take it over; ``descriptors`` = being declared."""
+        """Check all parameters, then store them; ``descriptors`` of a declaration."""
         for parameter in parameters:
-            reason = self._objection(parameter, descriptors)
+            reason = self._rejection(parameter, descriptors)
             if reason:
                 return SetParametersResult(successful=False, reason=reason)
         for callback in self.on_callbacks:
@@ -105,16 +112,16 @@ class ParameterStore:
             if not isinstance(result, SetParametersResult):  # a forgotten return
                 raise AttributeError(
                     f"on-set-parameters callback {callback!r} returned {result!r}, "
-                    "wanted a SetParametersResult"
+                    "expected a SetParametersResult"
                 )
             if not result.successful:
                 return result
-        self._on_change(self._take_over(parameters, descriptors))
+        self._on_change(self._store(parameters, descriptors))
         for post in self.post_callbacks:
             post(parameters)
         return SetParametersResult(successful=True)
 
-    def _objection(
+    def _rejection(
         self,
         parameter: Parameter[Any],
         descriptors: dict[str, ParameterDescriptor] | None,
@@ -135,11 +142,11 @@ class ParameterStore:
         elif parameter.type_ != descriptor.type:
             return (
                 f"parameter {name!r}: {parameter.value!r} is {parameter.type_.name}, "
-                f"wanted {ParameterType(descriptor.type).name}"
+                f"expected {ParameterType(descriptor.type).name}"
             )
-        return _range_objection(parameter, descriptor)
+        return _range_rejection(parameter, descriptor)
 
-    def _take_over(
+    def _store(
         self,
         parameters: list[Parameter[Any]],
         descriptors: dict[str, ParameterDescriptor] | None,
@@ -167,8 +174,8 @@ class ParameterStore:
         return new, changed, deleted
 
 
-def _range_objection(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> str:
-    """Why the value is outside the descriptor's range or between its steps."""
+def _range_rejection(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> str:
+    """Return why the descriptor's range rejects the value; empty if it does not."""
     bounds: Any
     if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
         bounds, exact = descriptor.integer_range[0], True

@@ -1,7 +1,7 @@
-"""Loggers of the program, without a node: rclpy's ``rclpy.logging``.
+"""Loggers without a node: ``rclpy.logging``.
 
-They belong to whatever context is the default one when a line is logged. Before that is
-initialised, lines go to the console.
+A message belongs to the context that is the default one when it is logged. Before that
+context is initialised, messages go to the console.
 """
 
 import os
@@ -16,7 +16,7 @@ _console = ConsoleSink()
 
 
 class ProgramLogger(Logger):
-    """A logger that finds its context's hub anew for each line."""
+    """A logger that looks the default context's hub up for each message."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name, program_hub())
@@ -27,7 +27,7 @@ class ProgramLogger(Logger):
 
     @_hub.setter
     def _hub(self, hub: LogHub) -> None:
-        """The base class keeps one; here it is looked up."""
+        """Ignore the hub that the base class assigns."""
 
     def get_child(self, name: str) -> "ProgramLogger":
         if not name:
@@ -36,7 +36,7 @@ class ProgramLogger(Logger):
 
 
 def program_hub() -> LogHub:
-    """Where the lines of the default context go."""
+    """Return the hub of the default context."""
     context = get_default_context()
     has_begun = context.ok() or context.was_shut_down
     context.log.fallback = None if has_begun else _console
@@ -44,7 +44,7 @@ def program_hub() -> LogHub:
 
 
 def get_logger(name: str) -> ProgramLogger:
-    """A logger of that name; raises ValueError if it is empty."""
+    """Return the logger of that name; raise ValueError if the name is empty."""
     if not name:
         raise ValueError("logger name must not be empty")
     return ProgramLogger(name)
@@ -53,27 +53,27 @@ def get_logger(name: str) -> ProgramLogger:
 def set_logger_level(
     name: str, level: int | LoggingSeverity, detailed_error: bool = False
 ) -> None:
-    """Level of a logger and its children; "" is all, UNSET inherits again."""
+    """Set the level of a logger and its children; see :meth:`LogHub.set_level`."""
     program_hub().set_level(name, level)
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
-    """The level set for exactly this logger."""
+    """Return the level of this logger itself, UNSET if it inherits."""
     return program_hub().get_level(name)
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
-    """The level that counts: its own or the nearest parent's."""
+    """Return the logger's own level or that of its nearest parent with one."""
     return program_hub().effective_level(name)
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """``info`` → INFO, in any case; raises InvalidValueError with the known names."""
+    """Return the severity of a name such as ``info``."""
     return severity_from_string(log_severity)
 
 
 def get_logging_directory() -> Path:
-    """Where ROS 2 programs write their logs: ROS_LOG_DIR, ROS_HOME/log, ~/.ros/log."""
+    """Return ROS 2's log directory: ROS_LOG_DIR, ROS_HOME/log or ~/.ros/log."""
     directory = os.environ.get("ROS_LOG_DIR")
     if directory:
         return Path(directory).expanduser()
@@ -82,15 +82,15 @@ def get_logging_directory() -> Path:
 
 
 def initialize() -> None:
-    """Nothing to prepare: the first line that is logged finds its way."""
+    """Set up logging for the default context."""
     program_hub()
 
 
 def clear_config() -> None:
-    """All loggers at their default levels again."""
+    """Reset all loggers to their default levels."""
     program_hub().reset_levels()
 
 
 def shutdown() -> None:
-    """As :func:`clear_config`."""
+    """Reset all loggers, as :func:`clear_config` does."""
     clear_config()

@@ -56,19 +56,19 @@ QoSDurabilityPolicy = DurabilityPolicy
 QoSLivelinessPolicy = LivelinessPolicy
 
 
-#: Whatever the other side has; the lease's name is spelt as in rclpy.
+#: The other endpoint's value counts; the second name is misspelled in rclpy.
 DeadlineBestAvailable = Duration(nanoseconds=BEST_AVAILABLE_NS)
 LivelinessLeaseDurationeBestAvailable = Duration(nanoseconds=BEST_AVAILABLE_NS)
 
 
 class InvalidQoSProfileException(InvalidValueError):  # noqa: N818 - rclpy's name
-    """A profile that contradicts itself."""
+    """The profile's settings are incomplete or contradict each other."""
 
 
 class QoSProfile:
     """Quality of service of a publisher or subscription.
 
-    Either ``depth`` (then keep_last) or ``history`` must be given.
+    Either ``depth`` (which implies keep_last) or ``history`` is required.
     """
 
     __slots__ = (
@@ -98,12 +98,12 @@ class QoSProfile:
         if history is None:
             if depth is None:
                 raise InvalidQoSProfileException(
-                    "QoS profile: history and/or depth settings are required"
+                    "QoS profile: history or depth is required"
                 )
             history = HistoryPolicy.KEEP_LAST
         if history == HistoryPolicy.KEEP_LAST and depth is None:
             raise InvalidQoSProfileException(
-                "QoS profile: history KEEP_LAST needs a depth"
+                "QoS profile: history KEEP_LAST requires a depth"
             )
         self.history = HistoryPolicy(history)
         self.depth = _checked_depth(10 if depth is None else depth)
@@ -116,7 +116,7 @@ class QoSProfile:
         self.avoid_ros_namespace_conventions = avoid_ros_namespace_conventions
 
     def to_endpoint_qos(self) -> EndpointQos:
-        """For the transport; a duration of zero means unspecified = infinite."""
+        """Return the transport's QoS; a duration of zero (unspecified) is infinite."""
         return EndpointQos(
             history=HistoryPolicy(self.history),
             depth=self.depth,
@@ -130,7 +130,7 @@ class QoSProfile:
 
     @classmethod
     def from_endpoint_qos(cls, qos: EndpointQos) -> "QoSProfile":
-        """For graph queries."""
+        """Return the profile of an endpoint, for graph queries."""
         return cls(
             history=qos.history,
             depth=qos.depth,
@@ -163,24 +163,25 @@ def _shown(value: Any) -> str:
 
 def _checked_depth(depth: Any) -> int:
     if not isinstance(depth, int) or isinstance(depth, bool) or depth < 0:
-        raise InvalidQoSProfileException(f"QoS depth {depth!r}: wanted an int >= 0")
+        raise InvalidQoSProfileException(f"QoS depth {depth!r}: expected an int >= 0")
     return depth
 
 
 def as_profile(qos_or_depth: "QoSProfile | int") -> QoSProfile:
-    """A profile as it is, or keep_last of that depth.
+    """Return a profile unchanged, or keep_last with the given depth.
 
     Raises:
-        InvalidValueError: neither a profile nor a depth.
+        TypeError: the argument is neither a profile nor a depth.
+        InvalidQoSProfileException: the depth is negative.
     """
     if isinstance(qos_or_depth, QoSProfile):
         return qos_or_depth
     if isinstance(qos_or_depth, bool) or not isinstance(qos_or_depth, int):
         raise TypeError(
-            f"qos_profile {qos_or_depth!r}: wanted a QoSProfile or a depth (int)"
+            f"qos_profile {qos_or_depth!r}: expected a QoSProfile or a depth (int)"
         )
     if qos_or_depth < 0:
-        raise InvalidQoSProfileException(f"QoS depth {qos_or_depth}: wanted >= 0")
+        raise InvalidQoSProfileException(f"QoS depth {qos_or_depth}: expected >= 0")
     return QoSProfile(depth=qos_or_depth)
 
 
@@ -219,7 +220,7 @@ qos_profile_best_available = QoSProfile(
 
 
 class QoSPresetProfiles(Enum):
-    """The presets by name; ``.value`` is the profile."""
+    """Preset profiles by name."""
 
     UNKNOWN = qos_profile_unknown
     DEFAULT = qos_profile_default
@@ -246,7 +247,7 @@ def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
 
 
 class QoSCompatibility(IntEnum):
-    """Whether a publisher and a subscription would meet; values as in rmw."""
+    """Whether a publisher and a subscription match, with rmw's values."""
 
     OK = 0
     WARNING = 1
@@ -256,19 +257,19 @@ class QoSCompatibility(IntEnum):
 def qos_check_compatible(
     publisher_qos: QoSProfile, subscription_qos: QoSProfile
 ) -> tuple[QoSCompatibility, str]:
-    """Whether messages would get through, and why not."""
+    """Return whether the two endpoints match, and the reason if they do not."""
     offered = publisher_qos.to_endpoint_qos()
-    wanted = subscription_qos.to_endpoint_qos()
-    short = incompatible_policies(offered, wanted)
-    if short:
-        names = ", ".join(kind.name.lower() for kind in short)
+    requested = subscription_qos.to_endpoint_qos()
+    incompatible = incompatible_policies(offered, requested)
+    if incompatible:
+        names = ", ".join(kind.name.lower() for kind in incompatible)
         return QoSCompatibility.ERROR, f"ERROR: incompatible: {names}"
-    left_open = [
+    unspecified = [
         f"{side} {name}"
-        for side, qos in (("publisher", offered), ("subscription", wanted))
+        for side, qos in (("publisher", offered), ("subscription", requested))
         for name in ("reliability", "durability")
         if getattr(qos, name).name in ("SYSTEM_DEFAULT", "UNKNOWN")
     ]
-    if left_open:
-        return QoSCompatibility.WARNING, f"WARNING: not set: {', '.join(left_open)}"
+    if unspecified:
+        return QoSCompatibility.WARNING, f"WARNING: not set: {', '.join(unspecified)}"
     return QoSCompatibility.OK, ""

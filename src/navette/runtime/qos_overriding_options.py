@@ -1,4 +1,4 @@
-"""QoS of a topic from outside: parameters ``qos_overrides.<topic>.<kind>.<policy>``."""
+"""QoS overrides by parameters ``qos_overrides.<topic>.<kind>.<policy>``."""
 
 import copy
 from collections.abc import Callable, Iterable
@@ -15,16 +15,16 @@ QosCallbackType = Callable[[QoSProfile], SetParametersResult]
 
 
 class InvalidQosOverridesError(InvalidValueError):
-    """The callback refused the profile that the overrides make."""
+    """The overrides have an unknown value, or the callback rejects the profile."""
 
 
 class QoSOverridingOptions:
-    """Which policies may be given from outside.
+    """Policies that parameters may override.
 
     Args:
         policy_kinds: each becomes a read-only parameter.
-        callback: may refuse the whole profile.
-        entity_id: tells several endpoints of one topic apart.
+        callback: may reject the resulting profile.
+        entity_id: suffix for one of several endpoints of a topic.
     """
 
     def __init__(
@@ -45,13 +45,13 @@ class QoSOverridingOptions:
         callback: QosCallbackType | None = None,
         entity_id: str | None = None,
     ) -> Self:
-        """History, depth and reliability."""
+        """Return options with history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
 
-class NodeWithParameters(Protocol):
-    """What is needed of the node."""
+class _ParameterNode(Protocol):
+    """The part of a node that :func:`overridden` needs."""
 
     def has_parameter(self, name: str) -> bool: ...
     def get_parameter(self, name: str) -> Parameter[Any]: ...
@@ -61,21 +61,21 @@ class NodeWithParameters(Protocol):
 
 
 def overridden(
-    node: NodeWithParameters,
+    node: _ParameterNode,
     kind: str,
     topic: str,
     qos: QoSProfile,
     options: QoSOverridingOptions,
 ) -> QoSProfile:
-    """The profile with the node's parameters taken over.
+    """Return a copy of the profile with the values of the node's parameters.
 
     Args:
         kind: ``publisher`` or ``subscription``.
         topic: full name.
 
     Raises:
-        InvalidQosOverridesError: a value is none of the policy's, or the callback
-            refuses the result.
+        InvalidQosOverridesError: the policy has no such value, or the callback rejects
+            the profile.
     """
     qos = copy.copy(qos)
     suffix = "" if options.entity_id is None else f"_{options.entity_id}"

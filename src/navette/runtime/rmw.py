@@ -1,6 +1,6 @@
-"""Which middleware carries the messages, under the names of rclpy's functions."""
+"""Name of the middleware, under the names of rclpy's functions."""
 
-#: Navette's own transports; on a network they speak rmw_zenoh's wire format.
+#: Navette's transports; on a network they use rmw_zenoh's wire format.
 IDENTIFIER = "rmw_navette"
 
 

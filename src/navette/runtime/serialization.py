@@ -1,4 +1,4 @@
-"""rclpy's names for CDR: a message to bytes and back."""
+"""Serialization of messages to CDR and back, under rclpy's names."""
 
 from typing import Any, TypeVar
 
@@ -9,16 +9,16 @@ MsgT = TypeVar("MsgT")
 
 
 def serialize_message(message: Any) -> bytes:
-    """CDR with its 4-byte header."""
+    """Return the message as CDR with its 4-byte header."""
     check_is_valid_msg_type(type(message))
     return serialize(message)
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[MsgT]) -> MsgT:
-    """The message of that type in the bytes.
+    """Return the message of that type from CDR.
 
     Raises:
-        DecodeError: they hold none.
+        DecodeError: the bytes are not such a message.
     """
     check_is_valid_msg_type(message_type)
     found: MsgT = deserialize(serialized_message, message_type)  # type: ignore[type-var]

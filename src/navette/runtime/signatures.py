@@ -1,4 +1,4 @@
-"""How many arguments a callback takes."""
+"""Number of arguments of a callback."""
 
 import inspect
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def takes_arguments(callback: Callable[..., Any], count: int) -> bool:
-    """Whether ``callback`` needs ``count`` positional arguments (and not fewer)."""
+    """Whether ``callback`` accepts ``count`` positional arguments and no fewer."""
     try:
         signature = inspect.signature(callback)
     except (TypeError, ValueError):  # builtins without a signature

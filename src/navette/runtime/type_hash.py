@@ -1,4 +1,4 @@
-"""Hash of a type's description (REP 2016): RIHS01_…"""
+"""Hash of a type's description, ``RIHS01_…`` (REP 2016)."""
 
 from dataclasses import dataclass
 
@@ -7,14 +7,14 @@ _SIZE = 32
 
 @dataclass(frozen=True)
 class TypeHash:
-    """Version and the 32 bytes of a type hash; version -1 = unknown."""
+    """Version and 32 bytes of a type hash; version -1 means unknown."""
 
     version: int = -1
     value: bytes = bytes(_SIZE)
 
     @classmethod
     def parse(cls, text: str) -> "TypeHash":
-        """From ``RIHS01_<64 hexadecimal digits>``."""
+        """Parse ``RIHS01_<64 hexadecimal digits>``."""
         head, _, digits = text.partition("_")
         return cls(int(head.removeprefix("RIHS")), bytes.fromhex(digits))
 

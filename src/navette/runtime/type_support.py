@@ -1,4 +1,4 @@
-"""Which interface a class is, checked where a user hands one in."""
+"""Checks of interface classes that programs pass in."""
 
 from typing import Any, TypeVar
 
@@ -17,59 +17,62 @@ _KINDS = {"msg": "a message", "srv": "a service", "action": "an action"}
 
 
 class NoTypeSupportImportedException(MessageError, RuntimeError):  # noqa: N818 - rclpy's
-    """A class that is no interface, or not of the wanted kind."""
+    """The class is not an interface, or not of the expected kind."""
 
 
 def interface_name(cls: Any, kind: str) -> str:
-    """``std_srvs/srv/Trigger`` of a class of that kind (``msg``, ``srv``, ``action``).
+    """Return the name of an interface class, such as ``std_srvs/srv/Trigger``.
+
+    Args:
+        kind: ``msg``, ``srv`` or ``action``.
 
     Raises:
-        NoTypeSupportImportedException: it is something else; says what.
+        NoTypeSupportImportedException: the class is not an interface of that kind.
     """
     wanted = _KINDS[kind]
     if not isinstance(cls, type):
         raise NoTypeSupportImportedException(
-            f"wanted {wanted} class, got {cls!r}, which is no class"
+            f"expected {wanted} class, got {cls!r}, which is not a class"
         )
     try:
         name = type_name(cls)
     except UnknownNameError:
         raise NoTypeSupportImportedException(
-            f"wanted {wanted} class, got {cls!r}: it is no ROS 2 interface"
+            f"expected {wanted} class, got {cls!r}, which is not a ROS 2 interface"
         ) from None
     found = _kind(cls)
     if found != kind:
         raise NoTypeSupportImportedException(
-            f"wanted {wanted} class, got {name}, which is {_KINDS[found]}"
+            f"expected {wanted} class, got {name}, which is {_KINDS[found]}"
         )
     return name
 
 
 def _kind(cls: type) -> str:
-    # Not by the name: an action's services are called pkg/action/Name_SendGoal.
+    # The name does not help: an action's services are named pkg/action/Name_SendGoal.
     if hasattr(cls, "_spec_"):
         return "msg"
     return "srv" if hasattr(cls, "Request") else "action"
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
-    """Raise unless it is an interface of any kind."""
+    """Raise NoTypeSupportImportedException unless the class is an interface."""
     if getattr(msg_or_srv_type, "_type_name_", None) is None:
         raise NoTypeSupportImportedException(
-            f"{msg_or_srv_type!r} is no ROS 2 message, service or action class"
+            f"{msg_or_srv_type!r} is not a ROS 2 message, service or action class"
         )
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:
-    """Raise unless it is a message class."""
+    """Raise NoTypeSupportImportedException unless the class is a message."""
     interface_name(msg_type, "msg")
 
 
 def check_is_valid_srv_type(srv_type: Any) -> None:
-    """Raise unless it is a service class."""
+    """Raise NoTypeSupportImportedException unless the class is a service."""
     interface_name(srv_type, "srv")
 
 
 def check_is_valid_action_type(action_type: Any) -> None:
-    """Raise unless it is an action class."""
+    """Raise NoTypeSupportImportedException unless the class is an action."""
     interface_name(action_type, "action")

@@ -373,7 +373,9 @@ def test_waiting_for_the_server(graph: GraphHarness) -> None:
 def test_wrong_use_is_named(make: Make, graph: GraphHarness) -> None:
     pair = make()
     node: Any = graph.node
-    with pytest.raises(NoTypeSupportImportedException, match="wanted an action class"):
+    with pytest.raises(
+        NoTypeSupportImportedException, match="expected an action class"
+    ):
         ActionClient(node, AddTwoInts, "x")
     with pytest.raises(TypeError, match="None is not callable"):
         ActionServer(node, Fibonacci, "x", None)  # type: ignore[arg-type]

@@ -136,7 +136,7 @@ def test_errors_are_processed(
     graph.run_for(0.1)
     told = "\n".join(message.msg for message in logs.messages)
     assert ("ValueError: no port" in told) is isinstance(fault, ValueError)
-    assert ("wanted a TransitionCallbackReturn" in told) is (fault is None)
+    assert ("expected a TransitionCallbackReturn" in told) is (fault is None)
 
 
 def test_events_of_transitions(graph: GraphHarness) -> None:
@@ -229,9 +229,9 @@ def test_wrong_use(graph: GraphHarness) -> None:
     )
     assert node.count_services("~/change_state") == 0
     assert node.trigger_activate() is ERROR
-    with pytest.raises(TypeError, match="wanted a ManagedEntity, got 3"):
+    with pytest.raises(TypeError, match="expected a ManagedEntity, got 3"):
         node.add_managed_entity(3)
-    with pytest.raises(TypeError, match="cannot be chosen"):
+    with pytest.raises(TypeError, match="do not accept a publisher_class"):
         node.create_lifecycle_publisher(String, "t", 1, publisher_class=object)
     with pytest.raises(RuntimeError, match="needs Node"):
         LifecycleNodeMixin()

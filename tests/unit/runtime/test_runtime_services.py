@@ -290,7 +290,7 @@ def test_wrong_types_are_loud(graph: GraphHarness) -> None:
         node.create_service(String, "s", add)
     with pytest.raises(TypeError, match="Fibonacci, which is an act"):
         node.create_client(Fibonacci, "s")
-    with pytest.raises(RuntimeError, match="is no class"):
+    with pytest.raises(RuntimeError, match="is not a class"):
         node.create_client("std_srvs/srv/Trigger", "s")
     with pytest.raises(MessageError, match="AddTwoInts, which is a serv"):
         node.create_publisher(AddTwoInts, "t", 1)
@@ -312,9 +312,9 @@ def test_type_checks() -> None:
     check_for_type_support(String)
     check_is_valid_msg_type(AddTwoInts.Request)
     check_is_valid_srv_type(AddTwoInts)
-    with pytest.raises(TypeError, match="no ROS 2 message"):
+    with pytest.raises(TypeError, match="not a ROS 2 message"):
         check_for_type_support(int)
-    with pytest.raises(RuntimeError, match="no ROS 2 interface"):
+    with pytest.raises(RuntimeError, match="not a ROS 2 interface"):
         check_is_valid_srv_type(int)
 
 

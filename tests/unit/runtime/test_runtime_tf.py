@@ -188,7 +188,7 @@ def test_frames_in_a_circle_are_found_out() -> None:
     core.set("a", "b", 0, at(1), is_static=True)
     core.set("b", "a", 0, at(1), is_static=True)
     core.set("c", "d", 0, at(1), is_static=True)
-    with pytest.raises(InvalidArgumentException, match="circle"):
+    with pytest.raises(InvalidArgumentException, match="form a cycle"):
         core.lookup("a", "d", 0)
 
 

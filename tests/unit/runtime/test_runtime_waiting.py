@@ -91,7 +91,7 @@ def test_serialization() -> None:
         deserialize_message(b"\x00", String)
     with pytest.raises(TypeError, match="which is a service"):
         deserialize_message(data, Trigger)
-    with pytest.raises(TypeError, match="no ROS 2 interface"):
+    with pytest.raises(TypeError, match="not a ROS 2 interface"):
         serialize_message("x")
 
 

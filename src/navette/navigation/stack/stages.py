@@ -17,7 +17,6 @@ from navette import runtime
 from navette.errors import CallbackError, NavetteError
 from navette.runtime import Context, ContextClock, Node, PacedClock
 from navette.runtime.lockstep import Coordinator
-from navette.runtime.override_check import check_reached
 from navette.runtime.overrides import ParameterOverrides
 
 if TYPE_CHECKING:
@@ -300,7 +299,7 @@ def _run(
     try:
         context.init(args=sys.argv)
         node = make(context)
-        check_reached(context.overrides, [node])
+        context.overrides.check_used_by([node])
         runtime.spin(node)
     except KeyboardInterrupt:
         pass  # the way to end it

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from navette.errors import ParameterError
 from navette.runtime import Context, Node
 from navette.runtime.names import NodeRemapper, RemapRule
-from navette.runtime.override_check import check_reached
 
 
 def warn_of_unused_arguments(context: Context) -> None:
@@ -18,7 +17,7 @@ def warn_of_unused_arguments(context: Context) -> None:
         return
     log = nodes[0].get_logger()
     try:
-        check_reached(context.overrides, nodes)
+        context.overrides.check_used_by(nodes)
     except ParameterError as error:
         log.warning(str(error))
     for rule in context.arguments.remaps:

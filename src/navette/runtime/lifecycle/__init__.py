@@ -1,6 +1,6 @@
 """Managed nodes: configured, activated, deactivated and cleaned up on request.
 
-As in rclpy ``Node``, ``Publisher`` and ``State`` are short names here.
+As in rclpy, ``Node``, ``NodeMixin``, ``Publisher`` and ``State`` are short names.
 """
 
 from navette.runtime.lifecycle.managed_entity import ManagedEntity, SimpleManagedEntity

@@ -1,4 +1,4 @@
-"""What takes part in the transitions of a managed node."""
+"""Entities that take part in the transitions of a managed node."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -11,7 +11,7 @@ from navette.runtime.lifecycle.state_machine import (
 
 
 class ManagedEntity:
-    """Told of every transition of its node; may refuse it."""
+    """Entity whose callbacks run on transitions of its node and can reject them."""
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         return TransitionCallbackReturn.SUCCESS
@@ -33,7 +33,7 @@ class ManagedEntity:
 
 
 class SimpleManagedEntity(ManagedEntity):
-    """Knows whether it is activated."""
+    """Managed entity with an activation state."""
 
     def __init__(self) -> None:
         self._enabled = False
@@ -56,7 +56,11 @@ class SimpleManagedEntity(ManagedEntity):
         *,
         when_not_enabled: Callable[[], None] | None = None,
     ) -> Callable[..., Any]:
-        """Decorate a method so that it does nothing (or that) while not activated."""
+        """Decorate a method so that it runs only while the entity is activated.
+
+        Args:
+            when_not_enabled: called otherwise.
+        """
 
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
             @wraps(method)

@@ -1,4 +1,4 @@
-"""Managed nodes: a state machine, its services and the callbacks in between."""
+"""Managed nodes: state machine, transition callbacks and services."""
 
 import traceback
 from collections.abc import Callable
@@ -39,10 +39,10 @@ _CALLBACKS = {
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """What a :class:`LifecycleNode` has beyond a node; call its init after Node's.
+    """Lifecycle of a node; its ``__init__`` must be called after that of Node.
 
-    The default callbacks ask the managed entities, in the order of their adding, and
-    stop at the first that does not succeed.
+    The default callbacks call those of the managed entities in the order in which they
+    were added, up to the first that does not succeed.
     """
 
     def __init__(
@@ -75,17 +75,17 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change_state(Transition.TRANSITION_DEACTIVATE)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Shut down, from whatever primary state.
+        """Shut down from any primary state.
 
         Raises:
-            RCLError: it is shut down already.
+            RCLError: the node is shut down already.
         """
         return self._change_state(self._state_machine.by_label("shutdown").id)
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Let ``entity`` take part in the transitions."""
+        """Add an entity to the transitions."""
         if not isinstance(entity, ManagedEntity):
-            raise TypeError(f"wanted a ManagedEntity, got {entity!r}")
+            raise TypeError(f"expected a ManagedEntity, got {entity!r}")
         self._managed_entities.append(entity)
 
     def create_lifecycle_publisher(
@@ -97,13 +97,13 @@ class LifecycleNodeMixin(ManagedEntity):
         publisher_class: None = None,
         **kwargs: Any,
     ) -> LifecyclePublisher[MsgT]:
-        """A publisher that is silent while the node is not active."""
+        """Create a publisher that publishes only while the node is active."""
         if publisher_class is not None:
-            raise TypeError("publisher_class cannot be chosen for lifecycle publishers")
+            raise TypeError("lifecycle publishers do not accept a publisher_class")
         publisher = self._node.create_publisher(
             msg_type, topic, qos_profile, publisher_class=LifecyclePublisher, **kwargs
         )
-        assert isinstance(publisher, LifecyclePublisher), "as asked for"
+        assert isinstance(publisher, LifecyclePublisher), "the requested class"
         self._managed_entities.append(publisher)
         return publisher
 
@@ -116,51 +116,51 @@ class LifecycleNodeMixin(ManagedEntity):
     # -- what a subclass may override ------------------------------------------
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._ask_entities("on_configure", state)
+        return self._call_entities("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._ask_entities("on_cleanup", state)
+        return self._call_entities("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._ask_entities("on_shutdown", state)
+        return self._call_entities("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._ask_entities("on_activate", state)
+        return self._call_entities("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._ask_entities("on_deactivate", state)
+        return self._call_entities("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        return self._ask_entities("on_error", state)
+        return self._call_entities("on_error", state)
 
     # -- transitions -----------------------------------------------------------
 
-    def _ask_entities(
+    def _call_entities(
         self, name: str, state: LifecycleState
     ) -> TransitionCallbackReturn:
         for entity in tuple(self._managed_entities):
-            answer = _checked(getattr(entity, name)(state), name, entity)
-            if answer is not TransitionCallbackReturn.SUCCESS:
-                return answer
+            result = _checked(getattr(entity, name)(state), name, entity)
+            if result is not TransitionCallbackReturn.SUCCESS:
+                return result
         return TransitionCallbackReturn.SUCCESS
 
     def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
-        """Go through a transition and its callbacks; ERROR if there is none such."""
+        """Run a transition with its callbacks; return ERROR if it is not available."""
         before = self._state_machine.state
         try:
             transition = self._state_machine.by_id(transition_id)
         except RCLError as error:
             self._node.get_logger().error(str(error))
             return TransitionCallbackReturn.ERROR
-        self._go(transition)
-        answer = self._call_back(before)
-        self._go(self._state_machine.by_label(answer.to_label()))
-        if answer is TransitionCallbackReturn.ERROR:
-            mended = self._call_back(before)
-            self._go(self._state_machine.by_label(mended.to_label()))
-        return answer
+        self._enter(transition)
+        result = self._run_callback(before)
+        self._enter(self._state_machine.by_label(result.to_label()))
+        if result is TransitionCallbackReturn.ERROR:
+            recovery = self._run_callback(before)
+            self._enter(self._state_machine.by_label(recovery.to_label()))
+        return result
 
-    def _go(self, transition: LifecycleTransition) -> None:
+    def _enter(self, transition: LifecycleTransition) -> None:
         self._state_machine.state = transition.goal
         if self._transition_events is not None:
             described = _description(transition)
@@ -173,11 +173,11 @@ class LifecycleNodeMixin(ManagedEntity):
                 )
             )
 
-    def _call_back(self, before: LifecycleState) -> TransitionCallbackReturn:
-        """The present transition state's callback.
+    def _run_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
+        """Run the callback of the current transition state.
 
-        An exception is what the lifecycle calls an error: it is logged with its
-        traceback, and ``on_error`` decides how the node goes on.
+        An exception is an error of the lifecycle: it is logged with its traceback, and
+        ``on_error`` decides the next state.
         """
         name = _CALLBACKS[self._state_machine.state.label]
         callback: Callable[[LifecycleState], Any] = getattr(self, name)
@@ -220,8 +220,8 @@ class LifecycleNodeMixin(ManagedEntity):
                 self._node.get_logger().error(str(error))
                 return response
             transition_id = found.id
-        answer = self._change_state(transition_id)
-        response.success = answer is TransitionCallbackReturn.SUCCESS
+        result = self._change_state(transition_id)
+        response.success = result is TransitionCallbackReturn.SUCCESS
         return response
 
     def _on_get_state(self, request: Any, response: Any) -> Any:
@@ -243,7 +243,13 @@ class LifecycleNodeMixin(ManagedEntity):
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):
-    """A managed node; arguments as :class:`Node`, and whether to open the services."""
+    """A managed node.
+
+    Args:
+        node_name: name in the graph.
+        enable_communication_interface: whether to serve the lifecycle's services.
+        kwargs: as for :class:`Node`.
+    """
 
     def __init__(
         self,
@@ -258,13 +264,13 @@ class LifecycleNode(LifecycleNodeMixin, Node):
         )
 
 
-def _checked(answer: Any, name: str, entity: object) -> TransitionCallbackReturn:
-    if not isinstance(answer, TransitionCallbackReturn):
+def _checked(result: Any, name: str, entity: object) -> TransitionCallbackReturn:
+    if not isinstance(result, TransitionCallbackReturn):
         raise TypeError(
-            f"{name}() of {type(entity).__name__} returned {answer!r}, wanted a "
+            f"{name}() of {type(entity).__name__} returned {result!r}, expected a "
             "TransitionCallbackReturn"
         )
-    return answer
+    return result
 
 
 def _state(state: LifecycleState) -> StateMsg:

@@ -1,4 +1,4 @@
-"""A publisher that is silent while its node is not active."""
+"""Publisher of a managed node."""
 
 from typing import Any, TypeVar
 
@@ -9,13 +9,16 @@ MsgT = TypeVar("MsgT")
 
 
 class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgT]):
-    """Made by ``create_lifecycle_publisher``."""
+    """Publisher that publishes only while its node is active.
+
+    ``create_lifecycle_publisher`` creates it.
+    """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         SimpleManagedEntity.__init__(self)
         Publisher.__init__(self, *args, **kwargs)
 
     def publish(self, msg: MsgT | bytes) -> None:
-        """Send ``msg`` if activated; else do nothing."""
+        """Publish ``msg`` if activated, else do nothing."""
         if self.is_activated:
             super().publish(msg)

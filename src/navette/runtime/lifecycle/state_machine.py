@@ -1,4 +1,4 @@
-"""The states of a managed node and the transitions between them.
+"""States of a managed node and the transitions between them.
 
 https://design.ros2.org/articles/node_lifecycle.html; ids and labels as in rcl_lifecycle
 (lifecycle_msgs/msg/State, Transition).
@@ -12,19 +12,19 @@ from navette.runtime.exceptions import RCLError
 
 
 class TransitionCallbackReturn(IntEnum):
-    """What a transition's callback says."""
+    """Result of a transition's callback."""
 
     SUCCESS = Transition.TRANSITION_CALLBACK_SUCCESS
     FAILURE = Transition.TRANSITION_CALLBACK_FAILURE
     ERROR = Transition.TRANSITION_CALLBACK_ERROR
 
     def to_label(self) -> str:
-        """Label of the transition that follows."""
+        """Return the label of the next transition."""
         return f"transition_{self.name.lower()}"
 
 
 class LifecycleState(NamedTuple):
-    """A state, as the callbacks get it."""
+    """A state, as passed to the callbacks."""
 
     label: str
     state_id: int
@@ -54,8 +54,7 @@ _LABELS = {
 }
 STATES = {label: LifecycleState(label, state_id) for state_id, label in _LABELS.items()}
 
-# Request: id, label, start, while under way. Then where success, failure and error
-# lead; their ids count from the id beside them.
+# Requests: id, label, start state, transition state.
 _REQUESTS = (
     (Transition.TRANSITION_CONFIGURE, "configure", "unconfigured", "configuring"),
     (Transition.TRANSITION_CLEANUP, "cleanup", "inactive", "cleaningup"),
@@ -70,6 +69,7 @@ _REQUESTS = (
     (Transition.TRANSITION_INACTIVE_SHUTDOWN, "shutdown", "inactive", "shuttingdown"),
     (Transition.TRANSITION_ACTIVE_SHUTDOWN, "shutdown", "active", "shuttingdown"),
 )
+# Outcomes: id of the first, transition state, next states (success, failure, error).
 _OUTCOMES = (
     (10, "configuring", ("inactive", "unconfigured", "errorprocessing")),
     (20, "cleaningup", ("unconfigured", "inactive", "errorprocessing")),
@@ -94,7 +94,7 @@ TRANSITIONS: tuple[LifecycleTransition, ...] = (
 
 
 class LifecycleStateMachine:
-    """The present state, and where one can go from it."""
+    """Current state and the transitions that are available in it."""
 
     def __init__(self) -> None:
         self.state = STATES["unconfigured"]
@@ -104,26 +104,26 @@ class LifecycleStateMachine:
         return [each for each in TRANSITIONS if each.start == self.state]
 
     def by_label(self, label: str) -> LifecycleTransition:
-        """The transition of that label from the present state.
+        """Return the transition with that label from the current state.
 
         Raises:
-            RCLError: there is none; lists those there are.
+            RCLError: there is none; lists the available ones.
         """
         for each in self.available_transitions:
             if each.label == label:
                 return each
-        raise RCLError(self._refusal(repr(label)))
+        raise RCLError(self._error_text(repr(label)))
 
     def by_id(self, transition_id: int) -> LifecycleTransition:
-        """The transition of that id; raises as :meth:`by_label`."""
+        """Return the transition with that id; raise as :meth:`by_label`."""
         for each in self.available_transitions:
             if each.id == transition_id:
                 return each
-        raise RCLError(self._refusal(str(transition_id)))
+        raise RCLError(self._error_text(str(transition_id)))
 
-    def _refusal(self, wanted: str) -> str:
+    def _error_text(self, requested: str) -> str:
         known = [f"{each.label} ({each.id})" for each in self.available_transitions]
         return (
-            f"no transition {wanted} from state {self.state.label}; available: "
+            f"no transition {requested} from state {self.state.label}; available: "
             f"{', '.join(known) or 'none'}"
         )

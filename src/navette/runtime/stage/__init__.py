@@ -1,4 +1,4 @@
-"""What Navette's own nodes share: declared inputs and outputs, parameters, the pose."""
+"""Base of the stages: inputs, outputs, parameters, robot pose and status."""
 
 from navette.runtime.stage.params import declare_params
 from navette.runtime.stage.stage_node import Input, Output, StageNode

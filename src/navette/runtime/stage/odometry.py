@@ -1,4 +1,4 @@
-"""Where the robot's base is on the map, from odometry and tf."""
+"""Pose of the robot's base in the map frame, from odometry and tf."""
 
 from bisect import bisect_right
 from collections import deque
@@ -13,18 +13,18 @@ _HERE = Pose2(0.0, 0.0, 0.0)
 
 
 class PoseTracker:
-    """Turns odometry into poses of the base on the map, and keeps a short history.
+    """Pose of the base in the map frame with a short history, updated by odometry.
 
-    Odometry may carry another frame of the robot (a lidar ahead of the axle): the
-    static transforms take it to the base. Where its own frame is not the map, the
-    newest transform between the two takes it there. Until these are known there is
-    no pose (never a guessed one).
+    The odometry's child frame may be another frame of the robot, such as a lidar in
+    front of the axle; static transforms convert its pose to the base's. If the
+    odometry's frame is not the map frame, the newest transform between the two is
+    applied. There is no pose until these transforms are available.
 
     Args:
-        node: listens to the transforms.
-        base_frame: the frame that navigation steers.
-        map_frame: the frame of the poses given.
-        history_s: how far back :meth:`pose_at` can look.
+        node: the node that receives the transforms.
+        base_frame: the frame that navigation controls.
+        map_frame: the frame of the poses.
+        history_s: how long poses are kept for :meth:`pose_at`, in s.
     """
 
     def __init__(
@@ -42,14 +42,14 @@ class PoseTracker:
         self._history_ns = round(history_s * 1e9)
         self._history: deque[tuple[int, Pose2]] = deque()
         self._velocity = (0.0, 0.0)
-        # Moving transforms are listened to only where odometry needs them.
+        # Received only if odometry needs moving transforms.
         self._listener = TransformListener(self.buffer, node, static_only=True)
         self._moving_listener: TransformListener | None = None
         self._child_T_base: tuple[str, Pose2] | None = None
 
     @property
     def latest(self) -> Pose2 | None:
-        """The newest map_T_base."""
+        """The newest map_T_base, or None."""
         return self._history[-1][1] if self._history else None
 
     @property
@@ -63,7 +63,7 @@ class PoseTracker:
         return self._velocity
 
     def update(self, odometry: Odometry) -> bool:
-        """Take a message; False if it could not be used (the reason is logged)."""
+        """Use a message; return False if it is unusable, and log the reason."""
         child_T_base = self._base_in(odometry.child_frame_id)
         map_T_odom = self._odom_in_map(odometry.header.frame_id)
         if child_T_base is None or map_T_odom is None:
@@ -75,7 +75,7 @@ class PoseTracker:
             map_T_base = map_T_odom @ map_T_base
         total = sum(map_T_base)
         if total - total != 0.0:  # inf or nan
-            self._complain("odometry is not finite")
+            self._warn("odometry is not finite")
             return False
         self._store(stamp_to_ns(odometry.header.stamp), map_T_base)
         twist = odometry.twist.twist
@@ -85,7 +85,7 @@ class PoseTracker:
         return True
 
     def pose_at(self, stamp_ns: int) -> Pose2 | None:
-        """map_T_base interpolated at a stamp; None outside the history."""
+        """Return map_T_base, interpolated at a stamp; None outside the history."""
         history = self._history
         if not history or not history[0][0] <= stamp_ns <= history[-1][0]:
             return None
@@ -99,12 +99,12 @@ class PoseTracker:
         )
 
     def transform_to_base(self, frame_id: str) -> Pose2 | None:
-        """base_T_frame of a frame fixed to the robot; None until it is known."""
+        """Return base_T_frame of a frame fixed to the robot, or None."""
         transform = self._static(self.base_frame, frame_id)
         return None if transform is None else transform.to_pose2()
 
     def reset(self) -> None:
-        """Forget the history (a new run, a jump back in time)."""
+        """Delete the history: a new run, or a jump backward in time."""
         self._history.clear()
         self._velocity = (0.0, 0.0)
 
@@ -114,13 +114,13 @@ class PoseTracker:
             if stamp_ns == history[-1][0]:
                 history.pop()
             else:
-                history.clear()  # time was set back: the old poses are of another run
+                history.clear()  # time jumped backward
         history.append((stamp_ns, map_T_base))
         while history[0][0] < stamp_ns - self._history_ns:
             history.popleft()
 
     def _base_in(self, child: str) -> Pose2 | None:
-        """child_T_base, looked up once per frame name."""
+        """Return child_T_base, looked up once per frame name."""
         if self._child_T_base is None or self._child_T_base[0] != child:
             transform = self._static(child, self.base_frame)
             if transform is None:
@@ -129,7 +129,7 @@ class PoseTracker:
         return self._child_T_base[1]
 
     def _odom_in_map(self, frame: str) -> Pose2 | None:
-        """map_T_odom, the newest."""
+        """Return the newest map_T_odom."""
         if frame == self.map_frame:
             return _HERE
         try:
@@ -137,7 +137,7 @@ class PoseTracker:
         except TransformException as error:
             if self._moving_listener is None:
                 self._moving_listener = TransformListener(self.buffer, self._node)
-            self._complain(str(error))
+            self._warn(str(error))
             return None
 
     def _static(self, target: str, source: str) -> Transform3 | None:
@@ -146,10 +146,10 @@ class PoseTracker:
         try:
             return self.buffer.lookup(target, source, 0)
         except TransformException as error:
-            self._complain(str(error))
+            self._warn(str(error))
             return None
 
-    def _complain(self, reason: str) -> None:
+    def _warn(self, reason: str) -> None:
         self._node.get_logger().warning(
             f"odometry not used: {reason}", throttle_duration_sec=5.0
         )
@@ -158,9 +158,9 @@ class PoseTracker:
 def _velocity_of_base(
     vx: float, vy: float, omega: float, child_T_base: Pose2
 ) -> tuple[float, float]:
-    """Forward speed at the base from the velocity of another point of the body.
+    """Return forward speed (m/s) and turn rate (rad/s) of the base.
 
-    v_base = v_child + ω × p (rigid body), turned into the base's axes.
+    v_base = v_child + ω × p (rigid body), rotated into the base's axes.
     """
     at_base = (vx - omega * child_T_base.y, vy + omega * child_T_base.x)
     base_T_child = Pose2(0.0, 0.0, -child_T_base.yaw)

@@ -1,4 +1,4 @@
-"""A stage's parameters, written once as a dataclass, declared as ROS parameters."""
+"""Declaration of a stage's parameters, a :class:`Params` dataclass, on a node."""
 
 import dataclasses
 import types
@@ -32,41 +32,44 @@ _ARRAYS: dict[Any, ParameterType] = {
 
 
 def declare_params(node: Node, params_class: type[P]) -> P:
-    """Declare every field with its text and range; the values as a ``Params``.
+    """Declare every field as a parameter of the node and return the values.
+
+    A value from a file, a launch file or the command line replaces the field's default.
 
     Raises:
-        ParameterError: names node, parameter, value and what is allowed.
+        ParameterError: names the node, the parameter, its value and the allowed values.
     """
     hints = typing.get_type_hints(params_class)
     defaults = params_class()
-    for field in dataclasses.fields(params_class):
-        kind = parameter_type(hints[field.name])
-        default = getattr(defaults, field.name)
-        # As a message, an empty list keeps its type.
-        value: Parameter[Any] = Parameter(
-            field.name, kind, list(default) if isinstance(default, tuple) else default
-        )
-        descriptor = _descriptor(info_of(field), kind)
-        node.declare_parameter(field.name, value.get_parameter_value(), descriptor)
-    return params_from(node, params_class)
-
-
-def params_from(node: Node, params_class: type[P]) -> P:
-    """The declared values as a ``Params``, checked."""
     values = {
-        field.name: node.get_parameter(field.name).value
+        field.name: _declare(node, field, hints[field.name], defaults)
         for field in dataclasses.fields(params_class)
     }
     try:
-        return params_class.from_dict(values)
+        return params_class(**values)
     except ParameterError as error:
         raise ParameterError(
             f"node {node.get_fully_qualified_name()}: {error}"
         ) from None
 
 
-def parameter_type(hint: Any) -> ParameterType:
-    """ROS 2's type for a field's annotation (bool, int, float, str or a tuple)."""
+def _declare(
+    node: Node, field: "dataclasses.Field[Any]", hint: Any, defaults: Params
+) -> Any:
+    """Declare one field and return its value."""
+    kind = _parameter_type(hint)
+    default = getattr(defaults, field.name)
+    if isinstance(default, tuple):
+        default = list(default)
+    parameter: Parameter[Any] = Parameter(field.name, kind, default)
+    # As a message, because an empty list alone has no type.
+    message = parameter.get_parameter_value()
+    descriptor = _descriptor(info_of(field), kind)
+    return node.declare_parameter(field.name, message, descriptor).value
+
+
+def _parameter_type(hint: Any) -> ParameterType:
+    """Return ROS 2's type for an annotation: bool, int, float, str or a tuple."""
     if isinstance(hint, types.GenericAlias) and hint.__origin__ is tuple:
         return _ARRAYS[hint.__args__[0]]
     return _TYPES[hint]
@@ -80,8 +83,8 @@ def _descriptor(info: ParamInfo, kind: ParameterType) -> ParameterDescriptor:
     )
     low = info.at_least if info.at_least is not None else info.above
     high = info.at_most if info.at_most is not None else info.below
-    # A ROS range has two ends; a one-sided bound is told in words only, and Params
-    # checks it (as well as the open ends of a range).
+    # A range of ROS 2 has two closed ends. The text describes other bounds, and Params
+    # checks them.
     if low is None or high is None:
         return descriptor
     if kind is ParameterType.DOUBLE:

@@ -1,4 +1,4 @@
-"""The base of every stage's node: topics and parameters declared as data."""
+"""Base class of Navette's nodes: topics and parameters are declared as data."""
 
 import dataclasses
 from collections.abc import Callable, Collection
@@ -20,15 +20,15 @@ from navette.runtime.time import Duration
 
 @dataclass(frozen=True, kw_only=True)
 class _Topic:
-    """A topic that a stage reads or writes."""
+    """A topic that a stage subscribes to or publishes."""
 
     topic: str
     type: str
     role: str
-    #: How often it is expected, for docs and viewers; None = on events.
+    #: Expected rate, for documentation and viewers; None = published on events.
     rate_hz: float | None = None
     depth: int = 10
-    #: Late joiners get the last samples (transient local).
+    #: Whether late subscribers receive the last samples (transient local).
     latched: bool = False
     best_effort: bool = False
 
@@ -51,34 +51,36 @@ class _Topic:
 
 @dataclass(frozen=True, kw_only=True)
 class Input(_Topic):
-    """What a stage reads; ``callback`` names the method that gets the message."""
+    """A subscription; ``callback`` is the name of the method that gets the message."""
 
     callback: str
-    #: Older than this (by arrival, node's clock) counts as stale; None = never.
+    #: Time since the last arrival after which the input is stale; None = no limit.
     timeout_s: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Output(_Topic):
-    """What a stage writes."""
+    """A publisher."""
 
 
 class StageNode(Node):
-    """Declares PARAMS, subscribes INPUTS (shared: read-only), advertises OUTPUTS.
+    """Node that declares PARAMS, subscribes to INPUTS and publishes OUTPUTS.
+
+    Input messages are shared with other subscribers: callbacks must not change them.
 
     Args:
         node_name: name in the graph.
-        kwargs: as :class:`Node`.
+        kwargs: as for :class:`Node`.
 
     Raises:
-        ParameterError: a value from outside is refused, or meant for this node and
-            unknown; names the known ones.
+        ParameterError: a parameter value given for this node is not allowed, or the
+            node has no such parameter; lists the existing ones.
     """
 
     PARAMS: ClassVar[type[Params]] = Params
     INPUTS: ClassVar[tuple[Input, ...]] = ()
     OUTPUTS: ClassVar[tuple[Output, ...]] = ()
-    #: Parameters that are read at the start only; setting one later is refused.
+    #: Parameters that cannot be set after the start.
     FIXED_AT_START: ClassVar[Collection[str]] = ()
 
     params: Any
@@ -88,21 +90,22 @@ class StageNode(Node):
         try:
             self._set_up()
         except NavetteError:
-            # Leave no half-made node in the graph; the subclass's own way of ending
-            # may need what it has not made yet.
+            # Remove the incomplete node from the graph. A subclass's destroy_node()
+            # may need attributes that do not exist yet.
             Node.destroy_node(self)
             raise
 
     def _set_up(self) -> None:
         self.params = declare_params(self, self.PARAMS)
+        self._checked_params = self.params
         self._check_unknown_overrides()
         self.add_on_set_parameters_callback(self._check_params)
-        self.add_post_set_parameters_callback(self._take_params)
+        self.add_post_set_parameters_callback(self._apply_params)
         self._arrivals_ns: dict[str, int] = {}
-        set_back = JumpThreshold(
+        backward = JumpThreshold(
             min_forward=None, min_backward=Duration(nanoseconds=-1)
         )
-        self._clock.create_jump_callback(set_back, post_callback=self._on_time_jump)
+        self._clock.create_jump_callback(backward, post_callback=self._on_time_jump)
         self._timeouts_ns = {
             i.topic: None if i.timeout_s is None else round(i.timeout_s * 1e9)
             for i in self.inputs()
@@ -117,28 +120,28 @@ class StageNode(Node):
             self.create_subscription(
                 get_interface(declared.type),
                 declared.topic,
-                self._noting_arrival(declared),
+                self._receiver(declared),
                 declared.qos,
                 shared=True,
             )
 
     def inputs(self) -> tuple[Input, ...]:
-        """INPUTS; override where ``self.params`` chooses topics or types."""
+        """Return INPUTS; override if topics or types depend on ``self.params``."""
         return self.INPUTS
 
     def publish(self, topic: str, msg: Any) -> None:
-        """Publish on a declared output, by the name it has in OUTPUTS."""
+        """Publish on an output; ``topic`` is its name in OUTPUTS, before remapping."""
         publisher = self.publishers_by_topic.get(topic)
         if publisher is None:
             raise UnknownNameError.of("output", topic, list(self.publishers_by_topic))
         publisher.publish(msg)
 
     def has_listeners(self, topic: str) -> bool:
-        """Whether anybody reads a declared output."""
+        """Whether an output has a subscriber."""
         return self.publishers_by_topic[topic].get_subscription_count() > 0
 
     def is_stale(self, topic: str) -> bool:
-        """Whether an input never came, or not within its ``timeout_s``."""
+        """Whether an input never arrived, or not within its ``timeout_s``."""
         if topic not in self._timeouts_ns:
             raise UnknownNameError.of("input", topic, list(self._timeouts_ns))
         arrival_ns = self._arrivals_ns.get(topic)
@@ -148,19 +151,19 @@ class StageNode(Node):
         return self._clock.now_ns - arrival_ns > timeout_ns
 
     def on_time_jump(self) -> None:
-        """Override to begin anew: the clock was set back (a bag loops, a run begins).
+        """Override to reset the node after the clock jumped backward.
 
-        What the inputs said before is of another time, and forgotten already.
+        This happens when a bag loops or a new run starts. All inputs are stale.
         """
 
     def on_params_changed(self, old: Any) -> None:
-        """Override to act on new values of ``self.params``."""
+        """Override to react to new values of ``self.params``."""
 
     def _on_time_jump(self, jump: TimeJump) -> None:
         self._arrivals_ns.clear()
         self.on_time_jump()
 
-    def _noting_arrival(self, declared: Input) -> Callable[[Any], Any]:
+    def _receiver(self, declared: Input) -> Callable[[Any], Any]:
         callback = getattr(self, declared.callback)
         topic, arrivals = declared.topic, self._arrivals_ns
         clock = self._clock
@@ -183,20 +186,17 @@ class StageNode(Node):
     def _check_params(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
         for parameter in parameters:
             if parameter.name in self.FIXED_AT_START:
-                reason = f"parameter {parameter.name!r} is read at the start only"
+                reason = f"parameter {parameter.name!r} cannot change after the start"
                 return SetParametersResult(successful=False, reason=reason)
+        own = {field.name for field in dataclasses.fields(self.PARAMS)}
+        changes = {p.name: p.value for p in parameters if p.name in own}
         try:
-            self._changed(parameters)
+            self._checked_params = dataclasses.replace(self.params, **changes)
         except ParameterError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
-    def _take_params(self, parameters: list[Parameter[Any]]) -> None:
-        old, self.params = self.params, self._changed(parameters)
+    def _apply_params(self, parameters: list[Parameter[Any]]) -> None:
+        old, self.params = self.params, self._checked_params
         if self.params != old:
             self.on_params_changed(old)
-
-    def _changed(self, parameters: list[Parameter[Any]]) -> Any:
-        own = {field.name for field in dataclasses.fields(self.PARAMS)}
-        changes = {p.name: p.value for p in parameters if p.name in own}
-        return dataclasses.replace(self.params, **changes)

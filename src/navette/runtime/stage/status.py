@@ -1,4 +1,4 @@
-"""The state of a stage on the wire: a named result, at once and then regularly."""
+"""Status of a stage, published on every change and periodically."""
 
 from functools import partial
 from typing import Any
@@ -10,11 +10,11 @@ _PERIOD_S = 0.5
 
 
 def status_output(topic: str) -> Output:
-    """The output that a stage declares for its :class:`StatusReporter`."""
+    """Return the output that a stage declares for its :class:`StatusReporter`."""
     return Output(
         topic=topic,
         type="diagnostic_msgs/msg/DiagnosticStatus",
-        role="what the stage is doing, or why not: a named state with figures",
+        role="named status of the stage with details",
         rate_hz=1 / _PERIOD_S,
         depth=1,
         latched=True,
@@ -22,13 +22,13 @@ def status_output(topic: str) -> Output:
 
 
 class StatusReporter:
-    """Publishes ``diagnostic_msgs/msg/DiagnosticStatus``, latched.
+    """Publisher of the status as ``diagnostic_msgs/msg/DiagnosticStatus``, latched.
 
-    On a change of state at once; the newest details every half second.
+    A change of state is published immediately, the newest details every 0.5 s.
 
     Args:
-        node: publishes and gives its name.
-        topic: one of the node's outputs, made by :func:`status_output`.
+        node: the node that publishes; its name is the status' name.
+        topic: an output of the node, made by :func:`status_output`.
     """
 
     OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
@@ -40,11 +40,11 @@ class StatusReporter:
 
     @property
     def state(self) -> str:
-        """The last state reported; empty before the first."""
+        """The last reported state; empty before the first report."""
         return self._status.message
 
     def report(self, state: str, level: bytes = OK, **details: Any) -> None:
-        """Say what the stage is doing; ``details`` become key/value pairs."""
+        """Set the state; ``details`` become key-value pairs."""
         status = self._status
         is_new = state != status.message or level != status.level
         status.message, status.level = state, level

@@ -1,4 +1,4 @@
-"""Transforms over time: buffer, listener, broadcasters, with tf2's names."""
+"""tf2: buffer, listener and broadcasters of transforms over time."""
 
 from navette.runtime.tf.broadcasters import (
     StaticTransformBroadcaster,
@@ -38,14 +38,14 @@ from navette.runtime.tf.registration import (
 )
 
 __all__ = [
-    # holding and asking
+    # buffers and topics
     "Buffer",
     "BufferInterface",
     "MessageCore",
     "StaticTransformBroadcaster",
     "TransformBroadcaster",
     "TransformListener",
-    # moving messages
+    # messages in other frames
     "ConvertRegistration",
     "Stamped",
     "TransformRegistration",

@@ -1,4 +1,4 @@
-"""Send transforms on ``/tf`` and ``/tf_static``."""
+"""Publishers of transforms on ``/tf`` and ``/tf_static``."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -11,7 +11,7 @@ _STATIC = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class TransformBroadcaster:
-    """Sends moving transforms."""
+    """Publisher of moving transforms."""
 
     def __init__(self, node: Any, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", qos or 100)
@@ -25,7 +25,7 @@ class TransformBroadcaster:
 
 
 class StaticTransformBroadcaster:
-    """Sends static transforms, latched: all of them in every message."""
+    """Latched publisher of static transforms; each message contains all of them."""
 
     def __init__(self, node: Any, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf_static", qos or _STATIC)

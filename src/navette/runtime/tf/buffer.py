@@ -1,4 +1,4 @@
-"""tf2's Buffer: transforms as messages, waiting and awaiting for them."""
+"""tf2's Buffer: lookup of transforms as messages, with waiting."""
 
 from collections.abc import Callable
 from typing import Any, Literal, overload
@@ -12,18 +12,17 @@ from navette.runtime.tf.exceptions import TransformException
 from navette.runtime.tf.message_core import MessageCore
 from navette.runtime.time import Duration
 
-_Answer = bool | tuple[bool, str]
+_Result = bool | tuple[bool, str]
 
 
 class Buffer(MessageCore, BufferInterface):
-    """Keeps transforms for ``cache_time`` and answers questions about them.
+    """Buffer of transforms.
 
     Args:
         cache_time: how long moving transforms are kept.
-        node: its clock tells of jumps back in time, which clear moving transforms;
-            waits (``timeout``) need it; it serves ``tf2_frames``, the tree as YAML. A
-            buffer made without one takes that of the first listener that fills it (and
-            serves nothing).
+        node: serves ``tf2_frames`` (the tree as YAML). Its clock clears the moving
+            transforms when it jumps backward; a ``timeout`` requires it. Without a node
+            the buffer uses that of its first listener and has no service.
     """
 
     def __init__(self, cache_time: Duration | None = None, node: Any = None) -> None:
@@ -33,10 +32,10 @@ class Buffer(MessageCore, BufferInterface):
         self._waiting: list[tuple[Callable[[], bool], Future[Any]]] = []
         if node is not None:
             self.attach(node)
-            node.serve("tf2_msgs/srv/FrameGraph", "tf2_frames", self._tell_frames)
+            node.serve("tf2_msgs/srv/FrameGraph", "tf2_frames", self._serve_frames)
 
     def attach(self, node: Any) -> None:
-        """Wait by, and watch, this node's clock, if no other node came before."""
+        """Use the clock of this node unless the buffer has a node already."""
         if self._node is not None:
             return
         self._node = node
@@ -48,13 +47,13 @@ class Buffer(MessageCore, BufferInterface):
         )
 
     def time_jump_callback(self, time_jump: TimeJump) -> None:
-        """Time was set back: what moved after that is not true any more."""
+        """Clear the moving transforms after the clock jumped backward."""
         self.clear()
 
-    # -- asking ----------------------------------------------------------------
+    # -- lookup ----------------------------------------------------------------
 
     def lookup(self, target_frame: str, source_frame: str, stamp_ns: int) -> Transform3:
-        """As :meth:`lookup_transform`, without messages: target_T_source."""
+        """Return target_T_source as :meth:`lookup_transform`, but not as a message."""
         return self.core.lookup(target_frame, source_frame, stamp_ns)[0]
 
     def lookup_transform(
@@ -64,14 +63,14 @@ class Buffer(MessageCore, BufferInterface):
         time: Any,
         timeout: Duration | None = NO_WAIT,
     ) -> TransformStamped:
-        """target_T_source at ``time``; waits up to ``timeout`` while events run.
+        """Return target_T_source at ``time``; wait up to ``timeout`` and run events.
 
         Raises:
             LookupException, ConnectivityException, ExtrapolationException
         """
-        ask = (target_frame, source_frame, time)
-        self._wait(lambda: self.can_transform_core(*ask)[0], timeout)
-        return self.lookup_transform_core(*ask)
+        query = (target_frame, source_frame, time)
+        self._wait(lambda: self.can_transform_core(*query)[0], timeout)
+        return self.lookup_transform_core(*query)
 
     def lookup_transform_full(
         self,
@@ -82,13 +81,13 @@ class Buffer(MessageCore, BufferInterface):
         fixed_frame: str,
         timeout: Duration | None = NO_WAIT,
     ) -> TransformStamped:
-        """Where the source was at its time, seen from the target at its own time.
+        """Return target_T_source with different times for target and source.
 
         ``fixed_frame`` does not move between the two times.
         """
-        ask = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        self._wait(lambda: self.can_transform_full_core(*ask)[0], timeout)
-        return self.lookup_transform_full_core(*ask)
+        query = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        self._wait(lambda: self.can_transform_full_core(*query)[0], timeout)
+        return self.lookup_transform_full_core(*query)
 
     @overload
     def can_transform(
@@ -116,12 +115,12 @@ class Buffer(MessageCore, BufferInterface):
         time: Any,
         timeout: Duration | None = NO_WAIT,
         return_debug_tuple: bool = False,
-    ) -> _Answer:
-        """Whether :meth:`lookup_transform` would give an answer (and why not)."""
-        ask = (target_frame, source_frame, time)
-        self._wait(lambda: self.can_transform_core(*ask)[0], timeout)
-        answer = self.can_transform_core(*ask)
-        return answer if return_debug_tuple else answer[0]
+    ) -> _Result:
+        """Whether :meth:`lookup_transform` succeeds, optionally with a reason."""
+        query = (target_frame, source_frame, time)
+        self._wait(lambda: self.can_transform_core(*query)[0], timeout)
+        result = self.can_transform_core(*query)
+        return result if return_debug_tuple else result[0]
 
     def can_transform_full(
         self,
@@ -132,19 +131,19 @@ class Buffer(MessageCore, BufferInterface):
         fixed_frame: str,
         timeout: Duration | None = NO_WAIT,
         return_debug_tuple: bool = False,
-    ) -> _Answer:
-        """Whether :meth:`lookup_transform_full` would give one (and why not)."""
-        ask = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        self._wait(lambda: self.can_transform_full_core(*ask)[0], timeout)
-        answer = self.can_transform_full_core(*ask)
-        return answer if return_debug_tuple else answer[0]
+    ) -> _Result:
+        """Whether :meth:`lookup_transform_full` succeeds, optionally with a reason."""
+        query = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        self._wait(lambda: self.can_transform_full_core(*query)[0], timeout)
+        result = self.can_transform_full_core(*query)
+        return result if return_debug_tuple else result[0]
 
-    # -- awaiting --------------------------------------------------------------
+    # -- await --------------------------------------------------------------
 
     async def lookup_transform_async(
         self, target_frame: str, source_frame: str, time: Any
     ) -> TransformStamped:
-        """Await the transform, however long it takes."""
+        """Await the transform without a timeout."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -156,17 +155,17 @@ class Buffer(MessageCore, BufferInterface):
         source_time: Any,
         fixed_frame: str,
     ) -> TransformStamped:
-        """Await the transform through ``fixed_frame``, however long it takes."""
-        ask = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        await self.wait_for_transform_full_async(*ask)
-        return self.lookup_transform_full_core(*ask)
+        """Await the transform through ``fixed_frame`` without a timeout."""
+        query = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        await self.wait_for_transform_full_async(*query)
+        return self.lookup_transform_full_core(*query)
 
     def wait_for_transform_async(
         self, target_frame: str, source_frame: str, time: Any
     ) -> Future[TransformStamped]:
-        """A future with the transform, done once it is known."""
-        ask = (target_frame, source_frame, time)
-        return self._future_of(lambda: self.lookup_transform_core(*ask))
+        """Return a future of the transform, done as soon as it is available."""
+        query = (target_frame, source_frame, time)
+        return self._future_of(lambda: self.lookup_transform_core(*query))
 
     def wait_for_transform_full_async(
         self,
@@ -176,13 +175,13 @@ class Buffer(MessageCore, BufferInterface):
         source_time: Any,
         fixed_frame: str,
     ) -> Future[TransformStamped]:
-        """A future with the transform through ``fixed_frame``."""
-        ask = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        return self._future_of(lambda: self.lookup_transform_full_core(*ask))
+        """Return a future of the transform through ``fixed_frame``."""
+        query = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        return self._future_of(lambda: self.lookup_transform_full_core(*query))
 
     # -- inside ----------------------------------------------------------------
 
-    def _tell_frames(self, request: Any, response: Any) -> Any:
+    def _serve_frames(self, request: Any, response: Any) -> Any:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
 
@@ -191,17 +190,17 @@ class Buffer(MessageCore, BufferInterface):
     ) -> None:
         super()._set(message, authority, is_static=is_static)
         if self._waiting:
-            self._release()
+            self._complete_waiting()
 
     def _future_of(
-        self, look: Callable[[], TransformStamped]
+        self, lookup: Callable[[], TransformStamped]
     ) -> Future[TransformStamped]:
         loop = None if self._node is None else self._node.context.loop
         future: Future[TransformStamped] = Future(executor=loop)
 
         def is_found() -> bool:
             try:
-                future.set_result(look())
+                future.set_result(lookup())
             except TransformException:
                 return False
             return True
@@ -210,14 +209,14 @@ class Buffer(MessageCore, BufferInterface):
             self._waiting.append((is_found, future))
         return future
 
-    def _release(self) -> None:
+    def _complete_waiting(self) -> None:
         waiting, self._waiting = self._waiting, []
         for is_found, future in waiting:
             if not future.done() and not is_found():
                 self._waiting.append((is_found, future))
 
     def _wait(self, is_known: Callable[[], bool], timeout: Duration | None) -> None:
-        """Run events until it is known, at most for ``timeout`` of the loop's time."""
+        """Run events until the transform is known or ``timeout`` has passed."""
         if self._node is None or timeout is None or timeout.nanoseconds <= 0:
             return
         if is_known():

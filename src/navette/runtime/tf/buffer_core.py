@@ -1,7 +1,7 @@
-"""The tree of frames over time: who is whose parent, and chains between frames.
+"""Tree of frames over time and the chains of transforms between frames.
 
-Lookup walks from both frames to the root, at one time, and cuts the paths where
-they meet (the method of tf2's BufferCore; T. Foote, "tf: The transform library", 2013).
+A lookup follows the parents of both frames to their common ancestor (the method of
+tf2's BufferCore; T. Foote, "tf: The transform library", 2013).
 """
 
 from navette.geometry import Transform3
@@ -17,8 +17,8 @@ _MAX_DEPTH = 1000
 _NORM_TOLERANCE = 1e-3
 
 
-class _Way:
-    """The frames from target and from source up to where they meet (excluded)."""
+class _Chain:
+    """Frames from target and from source to the common ancestor (excluded)."""
 
     __slots__ = ("_from_source", "_from_target")
 
@@ -29,7 +29,7 @@ class _Way:
         self._from_source = [(h, h.parent) for h in from_source]
 
     def newest_common_ns(self) -> int:
-        """The newest time that all moving frames reach; 0 if none moves."""
+        """Return the newest time at which all moving frames have a sample, or 0."""
         return min(
             (
                 history.newest_ns
@@ -40,7 +40,7 @@ class _Way:
         )
 
     def at(self, stamp_ns: int) -> Transform3 | None:
-        """target_T_source; None if a frame had another parent at that time."""
+        """Return target_T_source; None if a frame had another parent at that time."""
         common_T_source = _joined(self._from_source, stamp_ns)
         common_T_target = _joined(self._from_target, stamp_ns)
         if common_T_source is None or common_T_target is None:
@@ -54,7 +54,7 @@ class _Way:
 
 
 def _joined(path: list[tuple[FrameHistory, str]], stamp_ns: int) -> Transform3 | None:
-    """top_T_bottom along a path that starts at the bottom."""
+    """Return top_T_bottom along a path that starts at the bottom."""
     top_T_bottom: Transform3 | None = None
     for history, expected_parent in path:
         parent_T_child, parent = history.at(stamp_ns)
@@ -67,17 +67,17 @@ def _joined(path: list[tuple[FrameHistory, str]], stamp_ns: int) -> Transform3 |
 
 
 class BufferCore:
-    """Transforms by frame names and integer nanoseconds; knows no messages.
+    """Buffer of transforms by frame names and integer nanoseconds, without messages.
 
     Args:
-        cache_ns: how far back the samples of moving frames are kept.
+        cache_ns: how long samples of moving frames are kept.
     """
 
     def __init__(self, cache_ns: int) -> None:
         self.cache_ns = cache_ns
         self._frames: dict[str, FrameHistory] = {}
         self._parents: set[str] = set()
-        self._ways: dict[tuple[str, str], _Way] = {}
+        self._chains: dict[tuple[str, str], _Chain] = {}
 
     def set(
         self,
@@ -88,27 +88,27 @@ class BufferCore:
         *,
         is_static: bool,
     ) -> None:
-        """Take a sample over.
+        """Add a sample.
 
         Raises:
-            InvalidArgumentException: names or numbers that make no transform.
+            InvalidArgumentException: a frame name or a number is invalid.
         """
         parent, child = frame_name(parent), frame_name(child)
         if parent == child:
             raise InvalidArgumentException(f"frame {child!r} cannot be its own parent")
-        parent_T_child = _checked(parent_T_child, child)  # before it leaves a trace
+        parent_T_child = _checked(parent_T_child, child)  # before any change
         history = self._frames.get(child)
         if history is None or history.is_static != is_static:
             history = FrameHistory(child, self.cache_ns, is_static=is_static)
             self._frames[child] = history
-            self._ways.clear()
+            self._chains.clear()
         elif history.parent != parent:
-            self._ways.clear()
+            self._chains.clear()
         history.insert(stamp_ns, parent_T_child, parent)
         self._parents.add(parent)
 
     def lookup(self, target: str, source: str, stamp_ns: int) -> tuple[Transform3, int]:
-        """target_T_source and its stamp; ``stamp_ns`` 0 = the newest common time.
+        """Return target_T_source and its stamp; 0 stands for the newest common time.
 
         Raises:
             LookupException, ConnectivityException, ExtrapolationException
@@ -117,26 +117,26 @@ class BufferCore:
         if target == source:
             self._check_known(target)
             return Transform3.identity(), stamp_ns
-        way = self._way(target, source)
+        chain = self._chain(target, source)
         if stamp_ns == 0:
-            stamp_ns = way.newest_common_ns()
-        target_T_source = way.at(stamp_ns)
+            stamp_ns = chain.newest_common_ns()
+        target_T_source = chain.at(stamp_ns)
         if target_T_source is None:
-            target_T_source = self._chain(target, source, stamp_ns)
+            target_T_source = self._former_chain(target, source, stamp_ns)
         return target_T_source, stamp_ns
 
     def newest_common_ns(self, target: str, source: str) -> int:
-        """The newest time at which every moving frame between the two has a sample."""
+        """Return the newest time at which all moving frames in between have samples."""
         target, source = frame_name(target), frame_name(source)
         self._check_known(target, source)
-        return 0 if target == source else self._way(target, source).newest_common_ns()
+        return 0 if target == source else self._chain(target, source).newest_common_ns()
 
     def frames(self) -> list[str]:
-        """All known frames, parents included, sorted."""
+        """Return all known frames, parents included, sorted."""
         return sorted(self._parents | self._frames.keys())
 
     def histories(self) -> dict[str, FrameHistory]:
-        """child → its samples."""
+        """Return the samples by child frame."""
         return self._frames
 
     def knows(self, frame: str) -> bool:
@@ -145,30 +145,30 @@ class BufferCore:
     def clear(self) -> None:
         self._frames.clear()
         self._parents.clear()
-        self._ways.clear()
+        self._chains.clear()
 
     def drop_moving(self) -> None:
-        """Forget what is not static (after a jump back in time)."""
+        """Delete all moving frames, after a jump backward in time."""
         self._frames = {n: h for n, h in self._frames.items() if h.is_static}
-        self._ways.clear()
+        self._chains.clear()
 
-    def _way(self, target: str, source: str) -> "_Way":
-        """The chain between two frames as the tree is now; kept until it changes."""
-        way = self._ways.get((target, source))
-        if way is None:
+    def _chain(self, target: str, source: str) -> _Chain:
+        """Return the chain between two frames in the current tree."""
+        chain = self._chains.get((target, source))
+        if chain is None:
             self._check_known(target, source)
             up_target, up_source = self._ancestors(target), self._ancestors(source)
             common = next((frame for frame in up_source if frame in up_target), None)
             if common is None:
                 raise self._not_connected(target, source)
-            way = self._ways[target, source] = _Way(
+            chain = self._chains[target, source] = _Chain(
                 [self._frames[f] for f in up_target[: up_target.index(common)]],
                 [self._frames[f] for f in up_source[: up_source.index(common)]],
             )
-        return way
+        return chain
 
-    def _chain(self, target: str, source: str, stamp_ns: int) -> Transform3:
-        """target_T_source where parents were others at that time than they are now."""
+    def _former_chain(self, target: str, source: str, stamp_ns: int) -> Transform3:
+        """Return target_T_source at a time at which the tree was different."""
         up_target, top_of_target = self._up(target, stamp_ns)
         up_source, top_of_source = self._up(source, stamp_ns)
         for frame, common_T_source in up_source.items():
@@ -179,29 +179,27 @@ class BufferCore:
     def _up(
         self, frame: str, stamp_ns: int
     ) -> tuple[dict[str, Transform3], ExtrapolationException | None]:
-        """ancestor_T_frame of all ancestors, and what kept it from going higher."""
+        """Return ancestor_T_frame of all ancestors, and the error at the end."""
         upper_T_frame = Transform3.identity()
         found = {frame: upper_T_frame}
         while (history := self._frames.get(frame)) and len(found) < _MAX_DEPTH:
             try:
                 upper_T_lower, frame = history.at(stamp_ns)
             except ExtrapolationException as error:
-                return found, error  # what lies above may not be needed
+                return found, error  # higher frames may not be needed
             upper_T_frame = upper_T_lower @ upper_T_frame
             found[frame] = upper_T_frame
         return found, None
 
     def _ancestors(self, frame: str) -> list[str]:
-        """The frame, its parent and so on, as they are now."""
+        """Return the frame and its ancestors in the current tree."""
         path = [frame]
         for _ in range(_MAX_DEPTH):
             history = self._frames.get(path[-1])
             if history is None:
                 return path
             path.append(history.parent)
-        raise InvalidArgumentException(
-            f"frames run in a circle: {' → '.join(path[:5])} …"
-        )
+        raise InvalidArgumentException(f"frames form a cycle: {' → '.join(path[:5])} …")
 
     def _check_known(self, *frames: str) -> None:
         for frame in frames:
@@ -220,10 +218,10 @@ class BufferCore:
 
 
 def frame_name(name: str) -> str:
-    """Without a leading slash (tf1 habit).
+    """Return the name without a leading slash, which tf1 used.
 
     Raises:
-        InvalidArgumentException: empty.
+        InvalidArgumentException: the name is empty.
     """
     if not isinstance(name, str) or not name.strip("/"):
         raise InvalidArgumentException(f"frame name {name!r}: must not be empty")
@@ -231,7 +229,7 @@ def frame_name(name: str) -> str:
 
 
 def _checked(transform: Transform3, child: str) -> Transform3:
-    """Finite, with a unit quaternion (normalised within tf2's tolerance)."""
+    """Return the transform, normalised; it must be finite and nearly normalised."""
     x, y, z, w = transform.rotation
     tx, ty, tz = transform.translation
     norm = (x * x + y * y + z * z + w * w) ** 0.5
@@ -243,6 +241,6 @@ def _checked(transform: Transform3, child: str) -> Transform3:
     if abs(norm - 1.0) > _NORM_TOLERANCE:
         raise InvalidArgumentException(
             f"transform of {child!r}: quaternion {transform.rotation} has norm "
-            f"{norm:.4f}, wanted 1"
+            f"{norm:.4f}, expected 1"
         )
     return Transform3((tx, ty, tz), (x / norm, y / norm, z / norm, w / norm))

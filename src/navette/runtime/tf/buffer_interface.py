@@ -1,4 +1,4 @@
-"""What every buffer offers, whether it holds the transforms or asks for them."""
+"""Interface of buffers, with local or remote transforms."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ NO_WAIT = Duration()
 
 
 class BufferInterface:
-    """Moves stamped objects to other frames by the lookups its subclasses give."""
+    """Base of buffers: transforms stamped objects with the lookups of a subclass."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
@@ -26,18 +26,18 @@ class BufferInterface:
         timeout: Duration | None = NO_WAIT,
         new_type: Any = None,
     ) -> Any:
-        """The object in another frame, at the time of its own stamp.
+        """Transform an object to another frame at the time of its stamp.
 
         Raises:
-            TypeException: no function is registered for its type.
+            TypeException: no function is registered for the object's type.
         """
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
-        moved = do_transform(
+        transformed = do_transform(
             object_stamped,
             self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout),
         )
-        return moved if new_type is None else convert(moved, new_type)
+        return transformed if new_type is None else convert(transformed, new_type)
 
     def transform_full(
         self,
@@ -48,7 +48,7 @@ class BufferInterface:
         timeout: Duration | None = NO_WAIT,
         new_type: Any = None,
     ) -> Any:
-        """As :meth:`transform`, seen from the target at another time.
+        """As :meth:`transform`, with another time for the target.
 
         ``fixed_frame`` does not move between the two times.
         """
@@ -62,8 +62,8 @@ class BufferInterface:
             fixed_frame,
             timeout,
         )
-        moved = do_transform(object_stamped, found)
-        return moved if new_type is None else convert(moved, new_type)
+        transformed = do_transform(object_stamped, found)
+        return transformed if new_type is None else convert(transformed, new_type)
 
     def lookup_transform(
         self,
@@ -72,7 +72,7 @@ class BufferInterface:
         time: Any,
         timeout: Duration | None = NO_WAIT,
     ) -> TransformStamped:
-        """target_T_source at ``time``."""
+        """Return target_T_source at ``time``."""
         raise NotImplementedException
 
     def lookup_transform_full(
@@ -84,7 +84,7 @@ class BufferInterface:
         fixed_frame: str,
         timeout: Duration | None = NO_WAIT,
     ) -> TransformStamped:
-        """Where the source was at its time, seen from the target at its own."""
+        """Return target_T_source with different times for target and source."""
         raise NotImplementedException
 
     def can_transform(
@@ -94,7 +94,7 @@ class BufferInterface:
         time: Any,
         timeout: Duration | None = NO_WAIT,
     ) -> Any:
-        """Whether :meth:`lookup_transform` would give an answer."""
+        """Whether :meth:`lookup_transform` succeeds."""
         raise NotImplementedException
 
     def can_transform_full(
@@ -106,5 +106,5 @@ class BufferInterface:
         fixed_frame: str,
         timeout: Duration | None = NO_WAIT,
     ) -> Any:
-        """Whether :meth:`lookup_transform_full` would give an answer."""
+        """Whether :meth:`lookup_transform_full` succeeds."""
         raise NotImplementedException

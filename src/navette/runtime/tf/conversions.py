@@ -1,4 +1,4 @@
-"""Between messages and transforms."""
+"""Conversions between transform messages and :class:`Transform3`."""
 
 from navette.geometry import Transform3
 from navette.msgs.geometry_msgs.msg import (
@@ -12,13 +12,13 @@ from navette.runtime.time import ns_to_stamp
 
 
 def transform_from_msg(message: Transform) -> Transform3:
-    """geometry_msgs/Transform → outer_T_inner."""
+    """Convert geometry_msgs/Transform to outer_T_inner."""
     t, q = message.translation, message.rotation
     return Transform3((t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
 
 
 def transform_to_msg(transform: Transform3) -> Transform:
-    """outer_T_inner → geometry_msgs/Transform."""
+    """Convert outer_T_inner to geometry_msgs/Transform."""
     (x, y, z), (qx, qy, qz, qw) = transform
     return Transform(
         translation=Vector3(x=x, y=y, z=z),
@@ -29,7 +29,6 @@ def transform_to_msg(transform: Transform3) -> Transform:
 def transform_stamped(
     parent: str, child: str, stamp_ns: int, parent_T_child: Transform3
 ) -> TransformStamped:
-    """A geometry_msgs/TransformStamped."""
     return TransformStamped(
         header=Header(stamp=ns_to_stamp(stamp_ns), frame_id=parent),
         child_frame_id=child,

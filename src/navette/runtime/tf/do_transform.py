@@ -1,7 +1,7 @@
-"""Move stamped messages to another frame (tf2_geometry_msgs' functions).
+"""Transformation of stamped messages to another frame (tf2_geometry_msgs' functions).
 
-With ``a_T_b`` as the transform, each takes something given in b and returns it in a.
-The arguments are left as they are.
+With the transform ``a_T_b`` each function converts an object from frame b to frame a.
+The arguments are not changed.
 """
 
 from collections.abc import Callable
@@ -37,7 +37,7 @@ from navette.runtime.tf.registration import ConvertRegistration, TransformRegist
 def do_transform_point(
     point: PointStamped, transform: TransformStamped
 ) -> PointStamped:
-    """The same point, in the transform's frame."""
+    """Return the point in the transform's frame."""
     p = point.point
     x, y, z = transform_from_msg(transform.transform).apply((p.x, p.y, p.z))
     return PointStamped(header=transform.header, point=Point(x=x, y=y, z=z))
@@ -46,7 +46,7 @@ def do_transform_point(
 def do_transform_vector3(
     vector3: Vector3Stamped, transform: TransformStamped
 ) -> Vector3Stamped:
-    """The same direction, in the transform's frame: turned, not moved."""
+    """Return the vector in the transform's frame: rotated, not translated."""
     v = vector3.vector
     rotation = transform_from_msg(transform.transform).rotation
     x, y, z = rotate(rotation, (v.x, v.y, v.z))
@@ -54,7 +54,7 @@ def do_transform_vector3(
 
 
 def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
-    """The same pose, in the transform's frame; of q and −q the one with w ≥ 0."""
+    """Return the pose in the transform's frame; the quaternion has w ≥ 0."""
     p, q = pose.position, pose.orientation
     inner = Transform3((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
     (x, y, z), (qx, qy, qz, qw) = transform_from_msg(transform.transform) @ inner
@@ -69,7 +69,7 @@ def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
 def do_transform_pose_stamped(
     pose: PoseStamped, transform: TransformStamped
 ) -> PoseStamped:
-    """The same pose, in the transform's frame."""
+    """Return the pose in the transform's frame."""
     return PoseStamped(
         header=transform.header, pose=do_transform_pose(pose.pose, transform)
     )
@@ -78,7 +78,7 @@ def do_transform_pose_stamped(
 def do_transform_pose_with_covariance_stamped(
     pose: PoseWithCovarianceStamped, transform: TransformStamped
 ) -> PoseWithCovarianceStamped:
-    """The same pose and the covariance turned with it."""
+    """Return the pose and its covariance in the transform's frame."""
     return PoseWithCovarianceStamped(
         header=transform.header,
         pose=PoseWithCovariance(
@@ -91,7 +91,7 @@ def do_transform_pose_with_covariance_stamped(
 def do_transform_polygon_stamped(
     polygon: PolygonStamped, transform: TransformStamped
 ) -> PolygonStamped:
-    """The same corners, in the transform's frame."""
+    """Return the polygon in the transform's frame."""
     a_T_b = transform_from_msg(transform.transform)
     corners = (a_T_b.apply((p.x, p.y, p.z)) for p in polygon.polygon.points)
     points = [Point32(x=x, y=y, z=z) for x, y, z in corners]
@@ -101,21 +101,21 @@ def do_transform_polygon_stamped(
 def do_transform_wrench_stamped(
     wrench: WrenchStamped, transform: TransformStamped
 ) -> WrenchStamped:
-    """The same force and torque about the origin of the transform's frame.
+    """Return force and torque about the origin of the transform's frame.
 
     torque_a = R·torque_b + t × (R·force_b): the force acts at b's origin.
     """
     a_T_b = transform_from_msg(transform.transform)
     force, torque = wrench.wrench.force, wrench.wrench.torque
     force_a = rotate(a_T_b.rotation, (force.x, force.y, force.z))
-    turned = rotate(a_T_b.rotation, (torque.x, torque.y, torque.z))
+    rotated = rotate(a_T_b.rotation, (torque.x, torque.y, torque.z))
     lever = _cross(a_T_b.translation, force_a)
     return WrenchStamped(
         header=transform.header,
         wrench=Wrench(
             force=_vector(force_a),
             torque=_vector(
-                (turned[0] + lever[0], turned[1] + lever[1], turned[2] + lever[2])
+                (rotated[0] + lever[0], rotated[1] + lever[1], rotated[2] + lever[2])
             ),
         ),
     )
@@ -124,7 +124,7 @@ def do_transform_wrench_stamped(
 def transform_covariance(
     cov_in: NDArray[np.float64], transform: TransformStamped
 ) -> NDArray[np.float64]:
-    """A pose's covariance turned to the transform's frame.
+    """Return a pose's covariance in the transform's frame.
 
     Σ_a = diag(R, R) · Σ_b · diag(R, R)ᵀ, for (x, y, z, rotation about x, y, z).
 
@@ -140,8 +140,8 @@ def transform_covariance(
     blocks = np.zeros((6, 6))
     blocks[:3, :3] = blocks[3:, 3:] = R
     covariance = np.asarray(cov_in, dtype=np.float64).reshape(6, 6)
-    turned: NDArray[np.float64] = (blocks @ covariance @ blocks.T).ravel()
-    return turned
+    rotated: NDArray[np.float64] = (blocks @ covariance @ blocks.T).ravel()
+    return rotated
 
 
 def _cross(a: Triple, b: Triple) -> Triple:
@@ -157,7 +157,7 @@ def _vector(v: Triple) -> Vector3:
 
 
 def from_msg_msg(msg: Any) -> Any:
-    """A message as the message it is already."""
+    """Return the message unchanged."""
     return msg
 
 

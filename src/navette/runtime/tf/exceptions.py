@@ -1,4 +1,4 @@
-"""tf2's exception names."""
+"""Exceptions of transform lookups, with tf2's names."""
 
 # ruff: noqa: N818 - the names are tf2's
 
@@ -10,7 +10,7 @@ class TransformException(TransformError):
 
 
 class LookupException(TransformException):
-    """A frame is not known."""
+    """A frame does not exist."""
 
 
 class ConnectivityException(TransformException):
@@ -18,7 +18,7 @@ class ConnectivityException(TransformException):
 
 
 class ExtrapolationException(TransformException):
-    """A time outside the buffered one was asked for."""
+    """The requested time is outside the buffered interval."""
 
 
 class InvalidArgumentException(TransformException, InvalidNameError):
@@ -26,4 +26,4 @@ class InvalidArgumentException(TransformException, InvalidNameError):
 
 
 class TimeoutException(TransformException):
-    """It did not come in time."""
+    """The transform was not available in time."""

@@ -1,4 +1,4 @@
-"""The transform of one frame to its parent over time."""
+"""Transforms of one frame to its parent over time."""
 
 from bisect import bisect_left, bisect_right
 
@@ -10,7 +10,7 @@ _DROP_BATCH = 64
 
 
 class FrameHistory:
-    """Samples in order of their stamps; static frames keep one for all times."""
+    """Samples in order of their stamps; a static frame has one sample for all times."""
 
     __slots__ = (
         "_length_ns",
@@ -26,16 +26,16 @@ class FrameHistory:
         self.child = child
         self.is_static = is_static
         self._length_ns = length_ns
-        # Three lists side by side: searching plain integers is what is fast.
+        # Three parallel lists, because bisection of plain integers is fast.
         self._stamps: list[int] = []
         self._transforms: list[Transform3] = []
         self._parents: list[str] = []
         self._start = 0  # samples before it are too old
 
     def insert(self, stamp_ns: int, parent_T_child: Transform3, parent: str) -> bool:
-        """Add a sample; False if it is older than the buffer reaches.
+        """Add a sample; return False if it is too old.
 
-        Of two samples with one stamp the later word counts.
+        A sample with the stamp of an existing one replaces it.
         """
         stamps = self._stamps
         if self.is_static:
@@ -66,19 +66,18 @@ class FrameHistory:
 
     @property
     def count(self) -> int:
-        """How many samples are held."""
         return len(self._stamps) - self._start
 
     @property
     def parent(self) -> str:
-        """The newest sample's parent."""
+        """Parent in the newest sample."""
         return self._parents[-1]
 
     def at(self, stamp_ns: int) -> tuple[Transform3, str]:
-        """Interpolated parent_T_child and the parent at a time.
+        """Return parent_T_child, interpolated, and the parent at a time.
 
         Raises:
-            ExtrapolationException: before the first or after the last sample.
+            ExtrapolationException: the time is outside the interval of the samples.
         """
         stamps = self._stamps
         if self.is_static or stamp_ns == stamps[-1]:
@@ -88,7 +87,7 @@ class FrameHistory:
         after = bisect_right(stamps, stamp_ns, self._start)
         before = after - 1
         parent = self._parents[before]
-        # Given to another parent in between: it stays with the old one until then.
+        # If the parent changes in between, the old one holds until the next sample.
         if stamps[before] == stamp_ns or parent != self._parents[after]:
             return self._transforms[before], parent
         fraction = (stamp_ns - stamps[before]) / (stamps[after] - stamps[before])
@@ -111,6 +110,6 @@ class FrameHistory:
         oldest_s, newest_s = self.oldest_ns / 1e9, self.newest_ns / 1e9
         return ExtrapolationException(
             f"Lookup would require extrapolation into the {where}: transform of "
-            f"{self.child!r} in {self.parent!r} asked for at {stamp_ns / 1e9:.6f} s, "
+            f"{self.child!r} in {self.parent!r} requested at {stamp_ns / 1e9:.6f} s, "
             f"the buffer holds {oldest_s:.6f} … {newest_s:.6f} s"
         )

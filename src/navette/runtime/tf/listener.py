@@ -1,4 +1,4 @@
-"""Fills a buffer from ``/tf`` and ``/tf_static``."""
+"""Subscriber of ``/tf`` and ``/tf_static`` that fills a buffer."""
 
 import threading
 from collections.abc import Callable
@@ -15,25 +15,25 @@ from navette.runtime.time import stamp_to_ns
 
 _DYNAMIC = QoSProfile(depth=100)
 _STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-# A frame whose stamps go back by more is of another run: a bag that loops, a simulation
-# that was reset. Less is a message that came late.
+# Stamps that go back by more belong to another run: a bag that loops or a simulation
+# that was reset. With a smaller difference a message arrived late.
 _NEW_RUN_NS = 1_000_000_000
-_AUTHORITY = "default_authority"  # what tf2 records: a topic does not tell its sender
+_AUTHORITY = "default_authority"  # tf2's value for transforms from a topic
 
 
 class TransformListener:
-    """Listens on behalf of ``node`` for as long as it (or the node) lives.
+    """Fills a buffer from the topics of transforms, with subscriptions of ``node``.
 
-    Its callbacks also run while another callback of the node waits for a transform.
-    When the stamps of a frame go back, what moves is forgotten, as it is when the
-    node's clock is set back: who plays a bag in a loop may not tell the time.
+    The callbacks also run while another callback of the node waits for a transform. If
+    the stamps of a frame jump backward, the moving transforms are cleared, as after a
+    jump of the node's clock: a bag may loop without publishing the time.
 
     Args:
-        buffer: anything with tf2's ``set_transform``, ``set_transform_static`` and
+        buffer: an object with tf2's ``set_transform``, ``set_transform_static`` and
             ``clear``.
-        spin_thread: let a thread spin the node, for programs that do not. Under a
-            virtual clock there is none: time would run away from the program.
-        static_only: leave the moving transforms out.
+        spin_thread: spin the node in a thread, for programs that do not spin. Ignored
+            with a virtual clock, which would advance without the program.
+        static_only: do not subscribe to moving transforms.
     """
 
     def __init__(
@@ -64,21 +64,21 @@ class TransformListener:
             self._spin_in_thread()
 
     def unregister(self) -> None:
-        """Stop listening."""
+        """Destroy the subscriptions."""
         for subscription in (self.tf_static_sub, self.tf_sub):
             if subscription is not None:
                 self.node.destroy_subscription(subscription)
         self.tf_static_sub = self.tf_sub = None
 
     def callback(self, data: TFMessage) -> None:
-        """A message of moving transforms."""
+        """Store a message of moving transforms."""
         for transform in data.transforms:
             self._watch_stamp(transform)
-        self._take(data, self.buffer.set_transform)
+        self._store(data, self.buffer.set_transform)
 
     def static_callback(self, data: TFMessage) -> None:
-        """A message of static transforms."""
-        self._take(data, self.buffer.set_transform_static)
+        """Store a message of static transforms."""
+        self._store(data, self.buffer.set_transform_static)
 
     def _watch_stamp(self, transform: TransformStamped) -> None:
         child, stamp_ns = transform.child_frame_id, stamp_to_ns(transform.header.stamp)
@@ -87,8 +87,8 @@ class TransformListener:
             self._newest_ns.clear()
             self.buffer.clear()
             self.node.get_logger().warning(
-                f"transforms of {child!r} went back by {back_ns / 1e9:.1f} s: "
-                "what moves is forgotten",
+                f"stamps of {child!r} jumped backward by {back_ns / 1e9:.1f} s: "
+                "moving transforms are cleared",
                 throttle_duration_sec=1.0,
             )
         self._newest_ns[child] = max(stamp_ns, self._newest_ns.get(child, stamp_ns))
@@ -100,16 +100,16 @@ class TransformListener:
             TFMessage, topic, callback, qos, callback_group=self.group, shared=True
         )
 
-    def _take(
+    def _store(
         self, data: TFMessage, store: Callable[[TransformStamped, str], None]
     ) -> None:
         for transform in data.transforms:
             try:
                 store(transform, _AUTHORITY)
             except TransformException as error:
-                # One sender's bad transform must not stop those who read the rest.
+                # An invalid transform of one publisher must not affect the others.
                 self.node.get_logger().error(
-                    f"ignored a transform: {error}", throttle_duration_sec=1.0
+                    f"invalid transform ignored: {error}", throttle_duration_sec=1.0
                 )
 
     def _spin_in_thread(self) -> None:

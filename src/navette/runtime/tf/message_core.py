@@ -1,4 +1,4 @@
-"""tf2_py's BufferCore: transforms go in and come out as messages, nothing waits."""
+"""tf2_py's BufferCore: transforms as messages, without waiting."""
 
 from typing import Any
 
@@ -14,38 +14,38 @@ _SHORTEST_SPAN_S = 1e-4  # a single sample counts as this long for the rate
 
 
 class MessageCore:
-    """Keeps transforms for ``cache_time`` and answers questions about them.
+    """Buffer of the transforms of the last ``cache_time``.
 
-    Times may be a :class:`Time`, a stamp message or integer nanoseconds; zero means
-    the newest time at which the whole chain is known.
+    A time may be a :class:`Time`, a stamp message or integer nanoseconds; zero stands
+    for the newest time at which all transforms of a chain are known.
     """
 
     def __init__(self, cache_time: Duration | None = None) -> None:
         self.core = BufferCore((cache_time or _DEFAULT_CACHE).nanoseconds)
         self._authorities: dict[str, str] = {}
 
-    # -- filling ---------------------------------------------------------------
+    # -- input ---------------------------------------------------------------
 
     def set_transform(self, transform: TransformStamped, authority: str = "") -> None:
-        """Take over a moving transform; ``authority`` says who sent it."""
+        """Add a moving transform; ``authority`` is the name of its publisher."""
         self._set(transform, authority, is_static=False)
 
     def set_transform_static(
         self, transform: TransformStamped, authority: str = ""
     ) -> None:
-        """Take over a transform that holds for all times."""
+        """Add a static transform."""
         self._set(transform, authority, is_static=True)
 
     def clear(self) -> None:
-        """Forget what moves; static transforms hold for all times and stay."""
+        """Delete the moving transforms."""
         self.core.drop_moving()
 
-    # -- asking ----------------------------------------------------------------
+    # -- lookup ----------------------------------------------------------------
 
     def lookup_transform_core(
         self, target_frame: str, source_frame: str, time: Any
     ) -> TransformStamped:
-        """target_T_source at ``time``.
+        """Return target_T_source at ``time``.
 
         Raises:
             LookupException, ConnectivityException, ExtrapolationException
@@ -63,7 +63,7 @@ class MessageCore:
         source_time: Any,
         fixed_frame: str,
     ) -> TransformStamped:
-        """Where the source was at its time, seen from the target at its own time."""
+        """Return target_T_source with different times for target and source."""
         target_T_fixed, stamp_ns = self.core.lookup(
             target_frame, fixed_frame, nanoseconds(target_time)
         )
@@ -77,7 +77,7 @@ class MessageCore:
     def can_transform_core(
         self, target_frame: str, source_frame: str, time: Any
     ) -> tuple[bool, str]:
-        """Whether there is an answer, and why not."""
+        """Return whether the lookup succeeds, and the reason if it does not."""
         try:
             self.core.lookup(target_frame, source_frame, nanoseconds(time))
         except TransformException as error:
@@ -92,28 +92,25 @@ class MessageCore:
         source_time: Any,
         fixed_frame: str,
     ) -> tuple[bool, str]:
-        """Whether there is an answer through ``fixed_frame``, and why not."""
+        """As :meth:`can_transform_core`, through ``fixed_frame``."""
         known, reason = self.can_transform_core(target_frame, fixed_frame, target_time)
         if not known:
             return known, reason
         return self.can_transform_core(fixed_frame, source_frame, source_time)
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
-        """The newest time at which the chain between the frames is known."""
+        """Return the newest time at which the chain between the frames is known."""
         return Time(nanoseconds=self.core.newest_common_ns(target_frame, source_frame))
 
     # -- the whole tree --------------------------------------------------------
 
     def all_frames_as_yaml(self) -> str:
-        """child: parent, sender, rate and span of time, in the form tf2's tools read.
-
-        Times in seconds, the rate in samples per second.
-        """
+        """Return parent, publisher, rate (Hz) and times (s) of each frame as YAML."""
         histories = sorted(self.core.histories().items())
         return "\n".join(self._yaml_of(*each) for each in histories) or "[]"
 
     def all_frames_as_string(self) -> str:
-        """One line for each frame that has a parent."""
+        """Return one line for each frame with a parent."""
         return "".join(
             f"Frame {child} exists with parent {history.parent}.\n"
             for child, history in sorted(self.core.histories().items())
@@ -158,10 +155,10 @@ class MessageCore:
 
 
 def nanoseconds(time: Any) -> int:
-    """Of a Time, a stamp message, or nanoseconds.
+    """Return the nanoseconds of a Time, a stamp message or an int.
 
     Raises:
-        TypeError: of anything else.
+        TypeError: the argument is something else.
     """
     if isinstance(time, int):
         return time
@@ -172,5 +169,5 @@ def nanoseconds(time: Any) -> int:
     if hasattr(time, "nanoseconds"):
         return int(time.nanoseconds)
     raise TypeError(
-        f"wanted a rclpy.time.Time or a builtin_interfaces/msg/Time, got {time!r}"
+        f"expected a rclpy.time.Time or a builtin_interfaces/msg/Time, got {time!r}"
     )

@@ -1,7 +1,7 @@
-"""Which types can be moved to another frame, and into which they convert.
+"""Registries of functions that transform and convert types.
 
-Registries are shared by the whole process, as tf2's are: a package registers its types
-when it is imported.
+As in tf2 the registries belong to the process: a package registers its types when it is
+imported.
 """
 
 # ruff: noqa: N818, N802 - the names are tf2's
@@ -15,7 +15,7 @@ from navette.msgs.std_msgs.msg import Header
 
 
 class TypeException(InvalidValueError):
-    """A type that nobody registered."""
+    """The type is not registered."""
 
     def __init__(self, errstr: str) -> None:
         super().__init__(errstr)
@@ -34,24 +34,24 @@ _Converter = Callable[[Any], Any]
 
 
 class TransformRegistration:
-    """type → ``do_transform(object, transform_stamped)``."""
+    """Registry of functions ``do_transform(object, transform_stamped)`` by type."""
 
     _functions: ClassVar[dict[Hashable, Callable[[Any, Any], Any]]] = {}
 
     def print_me(self) -> None:
-        print(self._functions)  # noqa: T201 - that is what it is for
+        print(self._functions)  # noqa: T201 - its purpose
 
     def add(self, key: type, callback: Callable[[Any, Any], Any]) -> None:
-        """Let ``callback`` move objects of the type ``key``."""
+        """Register the function for objects of the type ``key``."""
         self._functions[key] = callback
 
     def get(self, key: type) -> Callable[[Any, Any], Any]:
-        """Raises TypeException: nobody registered the type."""
+        """Return the function; raise TypeException if the type is not registered."""
         return _registered(self._functions, key, "transform")
 
 
 class ConvertRegistration:
-    """Conversions of types to a message, from a message, or from one to another."""
+    """Registry of conversions to messages, from messages, and between types."""
 
     _to_msg: ClassVar[dict[Hashable, _Converter]] = {}
     _from_msg: ClassVar[dict[Hashable, _Converter]] = {}
@@ -94,10 +94,10 @@ def _type_names(key: Any) -> str:
 
 
 def convert(a: Any, b_type: Any) -> Any:
-    """``a`` as a ``b_type``: directly if somebody can, else by way of a message.
+    """Convert ``a`` to ``b_type`` directly or through a message.
 
     Raises:
-        TypeException: nobody registered a way.
+        TypeException: the required conversion is not registered.
     """
     registration = ConvertRegistration()
     try:
@@ -110,7 +110,7 @@ def convert(a: Any, b_type: Any) -> Any:
 
 
 def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
-    """``obj`` itself with a header: a stamp (message or Time) and a frame."""
+    """Set the header of ``obj``; ``stamp`` is a message or a Time."""
     stamp = stamp.to_msg() if hasattr(stamp, "to_msg") else stamp
     obj.header = Header(frame_id=frame_id, stamp=stamp)
     return obj

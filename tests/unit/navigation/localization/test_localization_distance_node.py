@@ -115,7 +115,7 @@ def test_parameters_change_while_running_except_where_it_listens() -> None:
         node.on_message(gps(3 * SECOND, 3.0, speed=9.0))
         assert node.distance == pytest.approx(10.0)
         (refused,) = node.set_parameters([Parameter("topic", value="/other")])
-        assert "read at the start only" in refused.reason
+        assert "cannot change after the start" in refused.reason
 
 
 def test_jumps_are_told_and_add_nothing() -> None:

@@ -305,4 +305,4 @@ def test_parameters_may_change_while_it_runs() -> None:
         bad = Parameter("process_noise_covariance", value=[0.5] * 7)
         assert "7 numbers" in node.set_parameters([bad])[0].reason
         moved = node.set_parameters([Parameter("odom0", value="/other")])[0]
-        assert "read at the start only" in moved.reason
+        assert "cannot change after the start" in moved.reason
