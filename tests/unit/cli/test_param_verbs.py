@@ -75,7 +75,7 @@ def test_list_with_types(here: World, driver: Node) -> None:
 def test_a_text_that_yaml_reads_otherwise(here: World, driver: Node) -> None:
     done = here.run("param", "set", "driver", "topic", "5")
     assert done.code == 1
-    assert done.err.endswith("""5 is INTEGER, wanted STRING; as a text: "'5'"\n""")
+    assert done.err.endswith("""5 is INTEGER, expected STRING; as a text: "'5'"\n""")
     here.said("param", "set", "driver", "topic", "'5'")
     assert driver.get_parameter("topic").value == "5"
 
@@ -117,7 +117,7 @@ def test_set_takes_an_integer_for_a_double(here: World, driver: Node) -> None:
 @pytest.mark.parametrize(
     ("name", "value", "reason"),
     [
-        ("rate", "2.5", "parameter 'rate': 2.5 is DOUBLE, wanted INTEGER"),
+        ("rate", "2.5", "parameter 'rate': 2.5 is DOUBLE, expected INTEGER"),
         ("limits.max", "7", "parameter 'limits.max': 7.0 is out of range 0 … 5"),
         ("limits.max", "-1", "parameter 'limits.max': -1.0 is out of range 0 … 5"),
     ],
@@ -264,5 +264,5 @@ def test_a_parameter_without_a_value(here: World, driver: Node) -> None:
     done = here.run("param", "get", "driver", "mode")
     assert done.err == "navette: node /driver: mode: declared, but without a value\n"
     done = here.run("param", "set", "driver", "mode", "5")
-    assert "parameter 'mode': 5 is INTEGER, wanted STRING" in done.err
+    assert "parameter 'mode': 5 is INTEGER, expected STRING" in done.err
     assert here.said("param", "set", "driver", "mode", "fast")

@@ -145,7 +145,7 @@ def set_(
         node = chosen_node(here, node_name)
         result = values.set_values(here, node, {name: values.parsed(value)})[0]
     if not result.successful:
-        hint = values.quoting_hint(value) if "wanted STRING" in result.reason else ""
+        hint = values.quoting_hint(value) if "expected STRING" in result.reason else ""
         fail(_with_reason("Setting parameter failed", result) + hint)
     show(_with_reason("Set parameter successful", result))
 

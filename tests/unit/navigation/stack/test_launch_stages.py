@@ -88,7 +88,7 @@ def test_the_odom_integrator_finds_its_configuration_under_any_name() -> None:
     [
         ("planner --robot husk", "unknown robot .* 'husk'; known: course, husky"),
         ("planner --ros-args -p clearence:=1", "unknown parameter 'clearence'"),
-        ("costmap --ros-args -p use_sim_time:=3", "is INTEGER, wanted BOOL"),
+        ("costmap --ros-args -p use_sim_time:=3", "is INTEGER, expected BOOL"),
         ("sim --speed 0", "real-time factor 0.0"),
         ("odom_integrator --ros-args -p odom_type:=speed", "one of pos, gps, vel"),
         ("ekf", "wanted the topic of at least one of odom0"),
