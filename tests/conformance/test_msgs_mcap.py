@@ -1,4 +1,4 @@
-"""Our bytes and definition texts, as mcap-ros2-support decodes them."""
+"""Bytes and definition texts, decoded by mcap-ros2-support."""
 
 import math
 from typing import Any
@@ -19,12 +19,12 @@ from navette.msgs.interface import MessageSpec, short_name
 from navette.msgs.registry import DEFINITIONS, get_message_spec
 from navette.testing.messages import random_message
 
-# It has no wstring, and reads a char as text where ROS 2 has an unsigned byte.
+# mcap-ros2-support has no wstring, and reads a char as text, not as a byte.
 FAULTS = ("wstring", "char")
 
 
 def is_read_rightly(spec: MessageSpec) -> bool:
-    """Whether no field, at any depth, is of a type that the peer has wrong."""
+    """Whether the peer supports the types of all fields, nested ones too."""
 
     return all(
         is_read_rightly(get_message_spec(field.type.base))
@@ -44,7 +44,7 @@ NAMES = [
 
 
 def plain(value: Any) -> Any:
-    """Its messages as dicts, as ours become with to_dict."""
+    """Convert a message of the peer as to_dict does."""
     if hasattr(value, "__slots__"):
         return {name: plain(getattr(value, name)) for name in value.__slots__}
     if isinstance(value, bytes | bytearray):
@@ -65,7 +65,7 @@ def same(mine: Any, theirs: Any) -> bool:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_it_reads_what_we_write(name: str) -> None:
+def test_decoded_values_are_equal(name: str) -> None:
     decode = generate_dynamic(short_name(name), definition_text(name))
     rng = np.random.default_rng(len(name))
     for _ in range(3):

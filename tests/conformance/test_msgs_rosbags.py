@@ -1,4 +1,4 @@
-"""Bytes, hashes and definitions against rosbags, which was written independently."""
+"""Bytes, hashes and definitions compared with rosbags."""
 
 from array import array
 from typing import Any
@@ -27,7 +27,7 @@ WITH_CHAR = {"service_msgs/msg/ServiceEventInfo", "std_msgs/msg/Char"}
 
 
 def as_rosbags(message: Message) -> Any:
-    """The same message as an object of rosbags' class."""
+    """Convert a message to rosbags' class."""
     values = {
         field.name: _value(field, getattr(message, field.name))
         for field in fields(message)
@@ -66,10 +66,10 @@ def test_hashes_are_identical(name: str) -> None:
 
 @pytest.mark.parametrize("name", SHARED)
 def test_definitions_are_identical(name: str) -> None:
-    """Our text, read by rosbags, gives its own fields and constants."""
+    """rosbags reads its own fields and constants from Navette's text."""
     constants, defined = get_types_from_msg(definition_text(name), name)[name]
     known_constants, known_fields = STORE.fielddefs[name]
-    # The member that stands for "none" is no part of a definition's text.
+    # The placeholder member is not part of a definition text.
     named = [each for each in known_fields if each[0] != PLACEHOLDER]
     assert list(defined) == named
     assert sorted(map(repr, constants)) == sorted(map(repr, known_constants))

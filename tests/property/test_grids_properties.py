@@ -59,7 +59,7 @@ def test_squared_distance_turns_with_the_grid(occupied, radius) -> None:
 
 
 @given(occupancy, st.floats(0.01, 3.0), st.floats(0.02, 1.0))
-def test_field_is_the_root_and_never_steeper_than_the_way(
+def test_field_is_the_root_of_the_squares_and_1_lipschitz(
     occupied, max_distance, resolution
 ) -> None:
     field = distance_field(occupied, resolution, max_distance)
@@ -71,7 +71,7 @@ def test_field_is_the_root_and_never_steeper_than_the_way(
 
 
 @given(cost_grids, st.floats(0.0, 2.0), st.sampled_from(["linear", "exponential"]))
-def test_inflation_only_raises_and_twice_is_once(cost, radius, method) -> None:
+def test_inflation_only_raises_and_is_idempotent(cost, radius, method) -> None:
     table = cost_table(method, inflation_radius_m=radius, resolution=0.1)
     once = inflate(cost, table)
     assert (once >= cost).all()
@@ -89,7 +89,7 @@ readings = st.one_of(
 
 
 @given(st.lists(readings, max_size=60), poses)
-def test_beams_write_hits_where_they_end_and_nothing_behind(values, origin) -> None:
+def test_beams_mark_their_hits_and_nothing_beyond(values, origin) -> None:
     spec = GridSpec(0.1, 61, 53, origin)
     sensor = spec.center_of(26, 30)
     cost = np.full(spec.shape, -1, np.int8)
@@ -108,7 +108,7 @@ def test_beams_write_hits_where_they_end_and_nothing_behind(values, origin) -> N
 
 
 @given(cost_grids, poses, st.sampled_from([0.05, 0.1, 0.2]))
-def test_merging_twice_is_merging_once(source, pose, resolution) -> None:
+def test_merging_is_idempotent(source, pose, resolution) -> None:
     spec = placed(GridSpec(resolution, source.shape[1], source.shape[0]), pose)
     target_spec = GridSpec(0.1, 60, 50, Pose2(-3.0, -2.5, 0.2))
     for mode in ("overwrite", "max"):
@@ -120,7 +120,7 @@ def test_merging_twice_is_merging_once(source, pose, resolution) -> None:
 
 
 @given(cost_grids, poses)
-def test_every_lethal_cell_arrives_and_no_other_does(source, pose) -> None:
+def test_each_lethal_cell_is_merged_into_one_cell(source, pose) -> None:
     spec = placed(GridSpec(0.1, source.shape[1], source.shape[0]), pose)
     target_spec = GridSpec(0.1, 300, 300, Pose2(-15.0, -15.0, 0.0))
     target = np.full(target_spec.shape, -1, np.int8)
@@ -138,7 +138,7 @@ def test_every_lethal_cell_arrives_and_no_other_does(source, pose) -> None:
 
 
 @given(cost_grids, poses)
-def test_what_was_just_merged_contradicts_nothing(source, pose) -> None:
+def test_a_merged_grid_does_not_contradict_the_map(source, pose) -> None:
     spec = placed(GridSpec(0.1, source.shape[1], source.shape[0]), pose)
     target_spec = GridSpec(0.1, 300, 300, Pose2(-15.0, -15.0, 0.0))
     target = np.full(target_spec.shape, -1, np.int8)

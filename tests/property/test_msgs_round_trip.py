@@ -1,4 +1,4 @@
-"""Every type survives the wire; damaged bytes raise DecodeError and nothing else."""
+"""CDR round trips of every type; damaged bytes raise only DecodeError."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -22,7 +22,7 @@ from navette.testing.messages import random_message
 
 
 def message_names() -> list[str]:
-    """Every message that comes with Navette, parts of services and actions too."""
+    """All messages of Navette, parts of services and actions too."""
     names = []
     for package in packages():
         if not (DEFINITIONS / package).is_dir():
@@ -82,7 +82,7 @@ def test_flipped_bits(name: str, seed: int, flips: list[tuple[float, int]]) -> N
         decoded = deserialize(data, type(message))
     except DecodeError:
         return
-    # What was accepted is a proper message: it can be written again.
+    # An accepted message is valid: it can be serialised.
     serialize(decoded)
 
 

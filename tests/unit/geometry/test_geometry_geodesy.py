@@ -18,14 +18,14 @@ def test_a_known_distance() -> None:
     assert geodesic_distance(flinders, buninyong) == pytest.approx(54972.271, abs=1e-3)
 
 
-def test_up_and_down_count_where_both_heights_are_known() -> None:
+def test_altitude_counts_if_both_are_known() -> None:
     low, high = GeoPoint(45.0, 7.0, 100.0), GeoPoint(45.0, 7.0, 130.0)
     assert geodesic_distance(low, high) == 30.0
     assert geodesic_distance(low, GeoPoint(45.0, 7.0)) == 0.0
 
 
 @given(latitudes, longitudes, st.floats(-0.005, 0.005), st.floats(-0.005, 0.005))
-def test_the_plane_keeps_distances_near_its_origin(lat, lon, north, east) -> None:
+def test_distances_near_the_origin_are_preserved(lat, lon, north, east) -> None:
     plane = LocalPlane(GeoPoint(lat, lon))
     a, b = GeoPoint(lat + north, lon), GeoPoint(lat, lon + east)
     assert plane.east_north(plane.origin) == (0.0, 0.0)
@@ -42,7 +42,7 @@ def test_east_is_x_and_north_is_y() -> None:
 
 
 @pytest.mark.parametrize("point", [(91.0, 0.0), (math.nan, 0.0), (0.0, math.inf)])
-def test_what_is_no_place_is_refused(point) -> None:
+def test_invalid_coordinates_are_refused(point) -> None:
     assert not GeoPoint(*point).is_valid
     with pytest.raises(InvalidValueError, match="within ±90°"):
         LocalPlane(GeoPoint(*point))

@@ -33,7 +33,7 @@ def test_apply_agrees_with_composition(a: Pose2, b: Pose2, x: float, y: float) -
     np.testing.assert_allclose((a @ b).apply(p), a.apply(b.apply(p)), atol=1e-7)
 
 
-def test_apply_turns_counter_clockwise_then_moves() -> None:
+def test_apply_rotates_counter_clockwise_then_translates() -> None:
     map_T_base = Pose2(1.0, 2.0, math.pi / 2)
     np.testing.assert_allclose(map_T_base.apply(np.array([[1.0, 0.0]])), [[1.0, 3.0]])
 
@@ -50,7 +50,7 @@ def test_minus_pi_wraps_to_plus_pi() -> None:
     assert wrap_angle(-math.pi) == math.pi
 
 
-def test_interpolation_goes_the_short_way_round() -> None:
+def test_interpolation_takes_the_shorter_turn() -> None:
     a, b = Pose2(0, 0, math.radians(170)), Pose2(2, 0, math.radians(-170))
     middle = a.interpolate(b, 0.5)
     assert middle.x == 1.0

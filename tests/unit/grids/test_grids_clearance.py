@@ -49,7 +49,7 @@ def test_clearance_equals_brute_force_to_a_fraction_of_a_cell() -> None:
     np.testing.assert_allclose(found, expected, atol=0.02)
 
 
-def test_a_post_inside_the_outline_is_seen() -> None:
+def test_a_post_inside_the_outline_is_detected() -> None:
     body = body_points(BODY, 0.1)
     pose = Pose2(*SPEC.center_of(45, 60), 0.3)
     for ahead, left in ((0.0, 0.0), (0.6, 0.0), (1.0, 0.3), (0.2, -0.4)):
@@ -60,7 +60,7 @@ def test_a_post_inside_the_outline_is_seen() -> None:
         assert body_clearance(field, SPEC, outline, np.array([pose]))[0] > 0.0
 
 
-def test_inner_discs_never_lower_the_clearance_to_things_outside() -> None:
+def test_inner_discs_never_lower_the_clearance_to_outside_obstacles() -> None:
     body = body_points(BODY, 0.1)
     outline = body[body[:, 2] == 0]
     for post in ((3.0, 0.2), (-0.6, 0.75), (0.5, 0.8), (1.55, 0.0), (-3.0, -2.0)):
@@ -68,7 +68,7 @@ def test_inner_discs_never_lower_the_clearance_to_things_outside() -> None:
         assert brute_force(body, pose, post) == brute_force(outline, pose, post)
 
 
-def test_outside_the_grid_counts_as_told() -> None:
+def test_points_outside_the_grid_have_the_given_distance() -> None:
     field = field_with((40, 60))
     body = np.array([[0.0, 0.0]])
     far = np.array([[100.0, 0.0, 0.0], [math.nan, 0.0, 0.0]])
@@ -77,12 +77,12 @@ def test_outside_the_grid_counts_as_told() -> None:
     assert found == pytest.approx(3.0 - HALF_DIAGONAL)
 
 
-def test_no_poses_no_clearances() -> None:
+def test_no_poses_give_no_clearances() -> None:
     field, body = field_with((40, 60)), np.zeros((1, 2))
     assert body_clearance(field, SPEC, body, np.empty((0, 3))).shape == (0,)
 
 
-def test_quick_accept_gives_a_lower_bound() -> None:
+def test_enough_gives_a_lower_bound() -> None:
     field = field_with((10, 10))
     poses = np.array([[*SPEC.center_of(60, 80), 0.0]])
     body = body_points(BODY, 0.1)

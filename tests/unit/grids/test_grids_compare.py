@@ -33,14 +33,14 @@ def test_one_cell_aside_is_the_same_obstacle_from_another_angle() -> None:
     assert changes(remembered, seen) == Changes(0, 0)
 
 
-def test_new_obstacles_are_counted_also_where_the_map_is_unknown() -> None:
+def test_new_obstacles_count_in_unknown_parts_of_the_map_too() -> None:
     seen = free(SEEN)
     seen[18:22, 25] = 100
     assert changes(free(MAP), seen) == Changes(4, 0)
     assert changes(np.full(MAP.shape, -1, np.int8), seen) == Changes(4, 0)
 
 
-def test_obstacles_that_went_are_counted_only_where_seen_free() -> None:
+def test_vanished_obstacles_count_only_where_seen_free() -> None:
     remembered = free(MAP)
     remembered[38:42, 55] = 100
     seen = free(SEEN)
@@ -48,7 +48,7 @@ def test_obstacles_that_went_are_counted_only_where_seen_free() -> None:
     assert changes(remembered, np.full(SEEN.shape, -1, np.int8)) == Changes(0, 0)
 
 
-def test_only_the_neighbourhood_counts() -> None:
+def test_only_cells_within_the_radius_count() -> None:
     seen, remembered = free(SEEN), free(MAP)
     seen[20, 38] = 100
     remembered[40, 68] = 100

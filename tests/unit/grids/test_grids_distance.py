@@ -36,7 +36,7 @@ def test_everything_is_far_without_obstacles() -> None:
     assert (distance_squared(np.zeros((5, 300), np.uint8), 7) == 64).all()
 
 
-def test_radius_beyond_the_grid_costs_nothing_and_changes_nothing() -> None:
+def test_a_radius_beyond_the_grid_changes_nothing() -> None:
     occupied = np.zeros((12, 30), np.uint8)
     assert (distance_squared(occupied, 40_000) == 40_001**2).all()
     assert (distance_field(occupied, 0.1, 1000.0) == 1000.0).all()
@@ -57,7 +57,7 @@ def test_field_is_in_metres_and_clipped() -> None:
     assert field[0, 1] == pytest.approx(0.1 * 2**0.5)
 
 
-def test_read_only_and_strided_arrays_are_taken() -> None:
+def test_read_only_and_strided_arrays_are_accepted() -> None:
     occupied = np.zeros((20, 30), np.uint8)
     occupied[5, 7] = 1
     frozen = occupied.copy()
@@ -67,8 +67,8 @@ def test_read_only_and_strided_arrays_are_taken() -> None:
     np.testing.assert_array_equal(distance_squared(occupied.T, 6), expected.T)
 
 
-def test_unaligned_arrays_are_taken() -> None:
-    """Messages from a wire hold views into its bytes."""
+def test_unaligned_arrays_are_accepted() -> None:
+    """Deserialised messages can hold views into bytes."""
     ranges = np.frombuffer(b"x" + np.ones(4, np.float32).tobytes(), np.float32, 4, 1)
     assert not ranges.flags.aligned
     assert kernel_array("ranges", ranges, np.float32, 1).flags.carray

@@ -58,7 +58,7 @@ def test_inflation_equals_the_formula_on_exact_distances(method, raise_unknown) 
     np.testing.assert_array_equal(found, expected)
 
 
-def test_inflation_only_raises_and_leaves_its_input_alone() -> None:
+def test_inflation_only_raises_and_keeps_its_input() -> None:
     cost = some_grid(np.random.default_rng(4))
     before = cost.copy()
     found = inflate(cost, cost_table("linear", inflation_radius_m=1, resolution=0.1))
@@ -66,7 +66,7 @@ def test_inflation_only_raises_and_leaves_its_input_alone() -> None:
     np.testing.assert_array_equal(cost, before)
 
 
-def test_nothing_lethal_changes_nothing() -> None:
+def test_a_grid_without_lethal_cells_is_unchanged() -> None:
     cost = np.array([[-1, 0, 99]], np.int8)
     table = cost_table("linear", inflation_radius_m=1.0, resolution=0.1)
     np.testing.assert_array_equal(inflate(cost, table), cost)

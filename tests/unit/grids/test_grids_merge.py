@@ -38,7 +38,7 @@ def without_lethal(shape: tuple[int, int]) -> np.ndarray:
 
 @pytest.mark.parametrize("resolution", [0.05, 0.1, 0.17])
 @pytest.mark.parametrize("pose", poses())
-def test_every_cell_is_pulled_from_under_its_centre(pose, resolution) -> None:
+def test_every_cell_takes_the_source_cell_at_its_centre(pose, resolution) -> None:
     source = without_lethal((41, 53))
     spec = placed(GridSpec(resolution, 53, 41, Pose2(-2.0, -1.0, 0.0)), pose)
     expected = pulled(unknown(), source, spec)
@@ -89,7 +89,7 @@ def test_lethal_cells_do_not_grow_with_repeated_merging() -> None:
     assert (target == 100).sum() <= 40
 
 
-def test_overwrite_takes_known_cells_and_keeps_under_unknown_ones() -> None:
+def test_overwrite_ignores_unknown_source_cells() -> None:
     target = unknown()
     target[:] = 100
     source = np.array([[0, -1], [50, 100]], np.int8)
@@ -109,7 +109,7 @@ def test_log_odds_add_up_and_stay_within_the_limit() -> None:
     assert np.isnan(field).sum() == field.size - 3
 
 
-def test_log_odds_count_a_hit_as_a_hit_at_any_rotation() -> None:
+def test_log_odds_of_a_hit_at_any_rotation() -> None:
     for yaw in np.linspace(-3.0, 3.0, 31):
         source = np.zeros((30, 30), np.int8)
         source[[0, 15, 29], [0, 12, 29]] = 100
@@ -162,7 +162,7 @@ def test_far_from_the_sensor_lethal_cells_are_kept() -> None:
     assert (target[distance > 2.001] == 100).all()
 
 
-def test_far_from_the_sensor_the_rest_is_overwritten_all_the_same() -> None:
+def test_far_from_the_sensor_other_cells_are_overwritten() -> None:
     source = np.array([[0, 50], [-1, 100]], np.int8)
     spec = GridSpec(0.1, 2, 2, Pose2(3.0, 3.0, 0.0))
     target = np.full(MAP.shape, 70, np.int8)

@@ -13,7 +13,7 @@ SPEC = GridSpec(0.1, 4, 3, Pose2(-1.5, 2.0, 0.5))
 CELLS = np.arange(-1, 11, dtype=np.int8).reshape(3, 4)
 
 
-def test_round_trip_in_process_and_over_a_wire() -> None:
+def test_round_trip_with_and_without_serialisation() -> None:
     msg = grid_to_message(CELLS, SPEC, "map", 3_000_000_007)
     assert msg.header.frame_id == "map"
     assert (msg.header.stamp.sec, msg.header.stamp.nanosec) == (3, 7)
@@ -24,14 +24,14 @@ def test_round_trip_in_process_and_over_a_wire() -> None:
         assert spec.origin == pytest.approx(SPEC.origin)
 
 
-def test_reading_a_grid_copies_nothing() -> None:
+def test_grid_from_message_is_a_view() -> None:
     msg = grid_to_message(CELLS, SPEC, "map", 0)
     cells, _ = grid_from_message(msg)
     assert np.shares_memory(cells, np.asarray(msg.data))
     assert not np.shares_memory(cells, CELLS)
 
 
-def test_what_is_no_grid_is_named() -> None:
+def test_invalid_messages_are_refused() -> None:
     msg = grid_to_message(CELLS, SPEC, "map", 0)
     msg.info.width = 5
     with pytest.raises(InvalidValueError, match="12 cells, expected 5 x 3 = 15"):
@@ -43,7 +43,7 @@ def test_what_is_no_grid_is_named() -> None:
 
 
 @pytest.mark.parametrize("resolution", [0.0, -0.1, math.nan, math.inf, 1e-30, 1e30])
-def test_resolutions_that_kernels_cannot_count_in_are_refused(
+def test_resolutions_out_of_range_are_refused(
     resolution: float,
 ) -> None:
     with pytest.raises(InvalidValueError, match=r"allowed are 0\.001 to 100 m"):
@@ -51,6 +51,6 @@ def test_resolutions_that_kernels_cannot_count_in_are_refused(
 
 
 @pytest.mark.parametrize("x", [math.nan, 1e10, -1e300])
-def test_origins_that_kernels_cannot_count_to_are_refused(x: float) -> None:
+def test_origins_out_of_range_are_refused(x: float) -> None:
     with pytest.raises(InvalidValueError, match="grid origin"):
         GridSpec(0.1, 4, 3, Pose2(x, 0.0, 0.0))

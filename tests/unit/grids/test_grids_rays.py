@@ -92,7 +92,7 @@ def test_no_return_is_free_up_to_range_max_only() -> None:
 
 
 @pytest.mark.parametrize("reading", [math.nan, -math.inf, -1.0, 0.0, 0.15])
-def test_what_is_no_measurement_writes_nothing(reading) -> None:
+def test_invalid_readings_write_nothing(reading) -> None:
     assert (trace([reading]) == -1).all()
 
 

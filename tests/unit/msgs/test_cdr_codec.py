@@ -1,4 +1,4 @@
-"""CDR on known bytes, and on bytes that are wrong."""
+"""CDR of known bytes, and errors of malformed bytes."""
 
 import struct
 from typing import Any
@@ -37,13 +37,13 @@ def test_known_bytes() -> None:
     assert serialize(WString(data="a€")) == LITTLE + struct.pack("<3I", 2, 97, 0x20AC)
 
 
-def test_padding_is_counted_from_behind_the_header() -> None:
+def test_alignment_starts_after_the_header() -> None:
     message = ParameterValue(type=3, double_value=1.0)
-    # uint8, bool, 6 of padding, int64, double: the double starts at 4 + 16.
+    # uint8, bool, 6 bytes of padding, int64, double: the double starts at 4 + 16.
     assert serialize(message)[20:28] == struct.pack("<d", 1.0)
 
 
-def test_empty_sequence_of_doubles_brings_no_padding() -> None:
+def test_an_empty_sequence_of_doubles_has_no_padding() -> None:
     load_definition_text("cdr_cases/msg/Doubles", "float64[] a\nuint8 b\n")
     doubles = get_interface("cdr_cases/msg/Doubles")
     assert serialize(doubles(b=7)) == LITTLE + b"\0\0\0\0\x07"
@@ -80,13 +80,13 @@ def test_big_endian() -> None:
     assert deserialize(data, WString).data == "a€"
 
 
-def test_any_buffer_is_read() -> None:
+def test_any_buffer_is_accepted() -> None:
     data = serialize(LaserScan(ranges=[1.0, 2.0]))
     for buffer in (data, bytearray(data), memoryview(data)):
         assert deserialize(buffer, LaserScan).ranges.tolist() == [1.0, 2.0]
 
 
-def test_decoded_arrays_are_own_and_writable() -> None:
+def test_decoded_arrays_are_writable_copies() -> None:
     data = bytearray(serialize(OccupancyGrid(data=[1, 2])))
     grid = deserialize(data, OccupancyGrid)
     data[-1] = 9
@@ -94,7 +94,7 @@ def test_decoded_arrays_are_own_and_writable() -> None:
     assert grid.data.tolist() == [5, 2]
 
 
-def test_padding_at_the_end_is_allowed_more_is_not() -> None:
+def test_only_padding_is_allowed_at_the_end() -> None:
     data = serialize(Bool(data=True))
     assert deserialize(data + b"\0\0\0", Bool).data is True
     with pytest.raises(DecodeError, match="4 of 9 bytes are unread"):
@@ -135,7 +135,7 @@ def test_a_string_of_length_zero_is_empty() -> None:
     assert deserialize(LITTLE + bytes(4), String) == String()
 
 
-def test_bounds_hold_for_what_is_read() -> None:
+def test_bounds_are_checked_on_reading() -> None:
     load_definition_text("cdr_cases/msg/Bounded", "string<=2 s\nint8[<=2] a\n")
     bounded = get_interface("cdr_cases/msg/Bounded")
     good = LITTLE + b"\x03\0\0\0ab\0\0" + struct.pack("<Ibb", 2, 1, 2)
@@ -175,14 +175,14 @@ def test_octets_of_fixed_and_bounded_size() -> None:
 @pytest.mark.parametrize(
     ("items", "what"), [([True, 2], "2 is int"), ([300], "300 is int"), (["a"], "str")]
 )
-def test_wrong_bools_put_into_a_list_are_named(items: list[Any], what: str) -> None:
+def test_the_error_names_the_invalid_bool(items: list[Any], what: str) -> None:
     value = ParameterValue()
     value.bool_array_value.extend(items)
     with pytest.raises(MessageError, match=rf"bool_array_value\[\d\]: .*{what}"):
         serialize(value)
 
 
-def test_wrong_bytes_put_into_a_list_are_named() -> None:
+def test_the_error_names_the_invalid_byte() -> None:
     value = ParameterValue(byte_array_value=b"ab")
     value.byte_array_value.append(b"cd")
     with pytest.raises(MessageError, match=r"byte_array_value\[2\]: b'cd'"):
@@ -196,7 +196,7 @@ def test_numbers_that_end_before_their_length() -> None:
             deserialize(data[:-cut], Float64MultiArray)
 
 
-def test_what_was_put_into_a_list_is_named() -> None:
+def test_the_error_names_the_invalid_element() -> None:
     marker = Marker(points=[Point()])
     marker.points.append(3)  # type: ignore[arg-type]
     with pytest.raises(MessageError, match=r"Marker\.points\[1\]: 3 is int"):
@@ -212,7 +212,7 @@ def test_what_was_put_into_a_list_is_named() -> None:
         serialize(descriptor)
 
 
-def test_half_a_surrogate_pair_is_no_text() -> None:
+def test_half_a_surrogate_pair_is_refused() -> None:
     with pytest.raises(MessageError, match="String: a string is not valid Unicode"):
         serialize(String(data="\ud800"))
 
@@ -226,6 +226,6 @@ def test_only_message_classes() -> None:
 
 def test_a_subclass_is_decoded_as_such() -> None:
     class Command(Twist):
-        """A user's own kind of twist."""
+        """A user's subclass."""
 
     assert type(deserialize(serialize(Command()), Command)) is Command

@@ -1,4 +1,4 @@
-"""The definition language: what is read, and how mistakes are reported."""
+"""Parser of definition files: values and errors."""
 
 import pytest
 
@@ -77,7 +77,7 @@ def test_constants(line: str, constant: Constant) -> None:
     assert parse_message("pkg/msg/Foo", line).constants == (constant,)
 
 
-def test_comments_and_blank_lines_say_nothing() -> None:
+def test_comments_and_blank_lines_are_ignored() -> None:
     text = "# it's a comment\n\n  \t\nint32 x # the robot's\n#int32 y\n"
     assert [each.name for each in parse_message("p/msg/F", text).fields] == ["x"]
 

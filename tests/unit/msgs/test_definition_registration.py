@@ -1,4 +1,4 @@
-"""Types that are made known at run time: bounds, conflicts, ROS 1's words."""
+"""Registration of types at run time: limits, conflicts, ROS 1 definitions."""
 
 from contextlib import suppress
 from typing import Any
@@ -22,7 +22,7 @@ from navette.msgs import (
 LINE = "=" * 80
 
 
-def test_a_type_nobody_has_gets_a_class() -> None:
+def test_an_unknown_type_gets_a_class() -> None:
     text = (
         f"registration_a/Wheel[] wheels\n{LINE}\nMSG: registration_a/Wheel\nfloat64 r\n"
     )
@@ -33,7 +33,7 @@ def test_a_type_nobody_has_gets_a_class() -> None:
     assert register_definition("registration_a/Cart", text) is cart
 
 
-def test_services_and_actions_are_taken_too() -> None:
+def test_services_and_actions() -> None:
     add: Any = register_definition(
         "registration_s/srv/Add", "int64 a\nint64 b\n---\nint64 sum\n"
     )
@@ -66,7 +66,7 @@ def test_another_definition_of_a_known_name() -> None:
     assert type_name(mark().header) == "std_msgs/msg/Header"
     assert not hasattr(mark().p, "z")
     assert mark is register_definition("registration_p/msg/Mark", old, private=True)
-    # The name itself is still free for who has the public definition.
+    # The public name is still free.
     new: Any = register_definition("registration_p/msg/Mark", "geometry_msgs/Point p\n")
     assert new().p.z == 0.0
     assert type_hash("registration_p/msg/Mark").startswith("RIHS01_")
@@ -94,8 +94,8 @@ def test_hostile_text_is_refused(text: str, reason: str) -> None:
         register_definition("registration_b/msg/Big", text)
 
 
-def test_types_that_explode_are_refused() -> None:
-    """Each holds the next twice: 2 to the power of 30 fields in few lines."""
+def test_exponentially_large_types_are_refused() -> None:
+    """Each type contains the next twice: 2**30 fields in few lines."""
     text = "registration_x/T1 a\n"
     for number in range(1, 30):
         text += f"{LINE}\nMSG: registration_x/T{number}\n"
@@ -115,7 +115,7 @@ def test_types_that_explode_are_refused() -> None:
 
 
 @given(st.text(alphabet="=\nMSG: ab/C[]<019#\"'\\-intf", max_size=200))
-def test_any_text_is_a_type_or_a_named_error(text: str) -> None:
+def test_any_text_is_a_type_or_a_file_format_error(text: str) -> None:
     for read in (
         lambda: register_definition("registration_f/msg/F", text, private=True),
         lambda: ros1_definition("registration_f/F", text),
@@ -155,7 +155,7 @@ geometry_msgs/TransformStamped[] transforms
 """
 
 
-def test_ros1_in_ros2_words() -> None:
+def test_ros1_definitions_are_converted() -> None:
     name, text = ros1_definition("registration_r/camera_like", CAMERA)
     assert name == "registration_r/msg/CameraLike"
     message: Any = register_definition(name, text)()

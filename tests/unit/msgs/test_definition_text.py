@@ -48,8 +48,8 @@ def test_services_and_actions_keep_their_parts() -> None:
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
-def test_committed_files_hold_facts_only(name: str) -> None:
-    """Fields, defaults, constants: nothing beside, so no comment slips in."""
+def test_committed_files_contain_no_comments(name: str) -> None:
+    """Only fields, defaults and constants."""
     package, kind, stem = name.split("/")
     spec = get_spec(name)
     if isinstance(spec, MessageSpec):
@@ -60,6 +60,6 @@ def test_committed_files_hold_facts_only(name: str) -> None:
         assert isinstance(spec, ActionSpec)
         parts = [spec.goal, spec.result, spec.feedback]
     text = "---\n".join(message_text(part) for part in parts)
-    # Types of the own package are written in full there and bare or full in files.
+    # Types of the same package have a full name there, in files a bare or full one.
     file = (DEFINITIONS / package / kind / f"{stem}.{kind}").read_text("utf-8")
     assert file.replace(f"{package}/", "") == text.replace(f"{package}/", "")

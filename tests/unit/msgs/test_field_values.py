@@ -1,4 +1,4 @@
-"""What a field takes and what it refuses."""
+"""Values that fields accept, convert and refuse."""
 
 from array import array
 from collections.abc import Callable
@@ -28,7 +28,7 @@ from navette.msgs.std_msgs.msg import (
 )
 
 
-def test_floats_take_numbers_of_any_kind() -> None:
+def test_floats_accept_numbers_of_any_kind() -> None:
     for value in (1, 1.0, np.float32(1), np.float64(1), np.int8(1)):
         message = Float64(data=value)
         assert message.data == 1.0
@@ -37,7 +37,7 @@ def test_floats_take_numbers_of_any_kind() -> None:
     assert np.isinf(Float32(data=-np.inf).data)
 
 
-def test_integers_take_numpy_scalars() -> None:
+def test_integers_accept_numpy_scalars() -> None:
     message = Int8(data=np.int64(-128))
     assert type(message.data) is int
     assert message.data == -128
@@ -49,7 +49,7 @@ def test_integers_take_numpy_scalars() -> None:
     assert type(String(data=np.str_("a")).data) is str
 
 
-def test_a_byte_is_bytes_as_in_rclpy_and_takes_integers() -> None:
+def test_a_byte_is_bytes_as_in_rclpy_and_accepts_integers() -> None:
     assert DiagnosticStatus(level=2).level == DiagnosticStatus.ERROR == b"\x02"
     assert ByteMultiArray(data=[b"\x01", 255]).data == [b"\x01", b"\xff"]
     assert ByteMultiArray(data=b"\x01\xff").data == [b"\x01", b"\xff"]
@@ -109,7 +109,7 @@ def test_a_byte_is_bytes_as_in_rclpy_and_takes_integers() -> None:
 def test_wrong_values_are_refused_by_name(make: Callable[[], Any], text: str) -> None:
     with pytest.raises(MessageError, match=text):
         make()
-    # What rclpy users expect of a wrong type, and of a wrong value.
+    # Error classes as in rclpy.
     assert issubclass(MessageError, TypeError)
     assert issubclass(MessageError, ValueError)
 
@@ -138,11 +138,11 @@ def test_assignment_checks_as_the_constructor_does() -> None:
         {1: "a", 2: "b", 3: "c"}.keys(),
     ],
 )
-def test_arrays_come_from_many_things(value: Any) -> None:
+def test_arrays_accept_many_types(value: Any) -> None:
     assert LaserScan(ranges=value).ranges == array("f", [1.0, 2.0, 3.0])
 
 
-def test_octets_come_from_bytes_and_stay_writable() -> None:
+def test_octets_from_bytes_are_writable() -> None:
     source = bytearray(b"\x00\xff")
     image = CompressedImage(data=source)
     source[0] = 9
@@ -202,7 +202,7 @@ def test_bounds_of_sequences() -> None:
             SolidPrimitive(dimensions=wrong)
 
 
-def test_validate_finds_what_was_put_into_a_list() -> None:
+def test_validate_finds_invalid_list_elements() -> None:
     state = JointState(name=["a"])
     state.name.append(3)  # type: ignore[arg-type]
     with pytest.raises(MessageError, match=r"JointState\.name\[1\]: 3 is int"):

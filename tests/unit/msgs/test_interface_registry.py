@@ -1,4 +1,4 @@
-"""User packages: loaded from a folder, found on a path, or known from a bag."""
+"""User packages: loaded from a folder, found on the search path, or from a bag."""
 
 from pathlib import Path
 
@@ -81,14 +81,14 @@ def test_broken_packages(tmp_path: Path, files: dict[str, str], text: str) -> No
         get_interface("registry_broken/msg/Foo")
 
 
-def test_a_definition_that_is_no_text(tmp_path: Path) -> None:
+def test_a_definition_that_is_not_utf8(tmp_path: Path) -> None:
     write(tmp_path, Foo__msg="")
     (tmp_path / "msg" / "Foo.msg").write_bytes(b"int32 x # \xff\n")
     with pytest.raises(FileFormatError, match=r"Foo\.msg: not UTF-8"):
         load_interfaces("registry_binary", tmp_path)
 
 
-def test_a_loaded_type_does_not_change(tmp_path: Path) -> None:
+def test_a_loaded_type_cannot_change(tmp_path: Path) -> None:
     write(tmp_path, Foo__msg="int32 x\n")
     load_interfaces("registry_fixed", tmp_path)
     write(tmp_path, Foo__msg="int32 y\n")
@@ -126,7 +126,7 @@ def test_types_from_their_text() -> None:
     outer = get_interface("registry_bag/msg/Outer")
     inner = get_interface("registry_bag/msg/Inner")
     assert outer(inner=[inner(x=1)]).inner[0].x == 1.0
-    # What we say of a type can be read back; a known type stays.
+    # definition_text can be loaded again; a registered type is kept.
     load_definition_text("registry_bag/Outer", definition_text("registry_bag/Outer"))
     for name in ("nav_msgs/msg/Odometry", "shape_msgs/msg/SolidPrimitive"):
         load_definition_text(name, definition_text(name))

@@ -61,7 +61,7 @@ def test_unknown_attribute_is_refused() -> None:
         Twist().lienar = Vector3()  # type: ignore[attr-defined]
 
 
-def test_nested_fields_are_assigned_in_place() -> None:
+def test_nested_fields_can_be_assigned_in_place() -> None:
     twist = Twist()
     twist.linear.x = 1
     assert isinstance(twist.linear.x, float)
@@ -83,7 +83,7 @@ def test_messages_are_not_hashable() -> None:
         hash(Point())
 
 
-def test_repr_is_rclpys() -> None:
+def test_repr_is_that_of_rclpy() -> None:
     assert repr(Time(sec=1)) == "builtin_interfaces.msg.Time(sec=1, nanosec=0)"
     text = repr(LaserScan(ranges=[1, 0.1]))
     assert text.endswith("ranges=[1.0, 0.10000000149011612], intensities=[])")
@@ -177,7 +177,7 @@ def test_malformed_names(name: str) -> None:
         get_interface(name)
 
 
-def test_unknown_names_list_what_there_is() -> None:
+def test_errors_of_unknown_names_list_the_known_ones() -> None:
     with pytest.raises(UnknownNameError, match="geometry_msgs/msg/Twist"):
         get_interface("geometry_msgs/msg/Twits")
     with pytest.raises(UnknownNameError, match="std_srvs"):

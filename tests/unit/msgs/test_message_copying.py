@@ -32,7 +32,7 @@ MESSAGES = [
 
 
 def mutable_parts(message: Message) -> Iterator[Any]:
-    """Everything inside that could be changed in place."""
+    """All mutable objects inside a message."""
     yield message
     for field in fields(message):
         value = getattr(message, field.name)
@@ -45,7 +45,7 @@ def mutable_parts(message: Message) -> Iterator[Any]:
 
 
 @pytest.mark.parametrize("name", MESSAGES)
-def test_a_copy_is_equal_and_apart(name: str) -> None:
+def test_a_copy_is_equal_and_independent(name: str) -> None:
     message = random_message(get_interface(name), np.random.default_rng(7))
     copied = copy_message(message)
     assert type(copied) is type(message)
@@ -54,7 +54,7 @@ def test_a_copy_is_equal_and_apart(name: str) -> None:
     assert mine.isdisjoint(id(part) for part in mutable_parts(copied))
 
 
-def test_a_wrong_element_put_into_a_list_is_named() -> None:
+def test_the_error_names_the_invalid_list_element() -> None:
     marker = Marker(points=[Point()])
     marker.points.append("here")  # type: ignore[arg-type]
     with pytest.raises(MessageError, match=r"Marker\.points\[1\]: 'here' is str"):
@@ -68,7 +68,7 @@ def test_only_messages_are_copied() -> None:
 
 def test_copier_and_subclasses() -> None:
     class Command(Twist):
-        """A user's own kind of twist."""
+        """A user's subclass."""
 
     command = Command(linear=Vector3(x=1.0))
     assert type(copy_message(command)) is Command
@@ -76,7 +76,7 @@ def test_copier_and_subclasses() -> None:
     assert copy_message(JointState(name=["a"])).name == ["a"]
 
 
-def test_a_copy_is_what_would_have_come_over_a_wire() -> None:
+def test_a_copy_equals_a_serialised_message() -> None:
     scan = LaserScan(angle_min=0.1, range_max=30.3, ranges=[0.1])
     copied = copy_message(scan)
     assert copied == deserialize(serialize(scan), LaserScan)
@@ -87,6 +87,6 @@ def test_a_copy_is_what_would_have_come_over_a_wire() -> None:
 
 
 @pytest.mark.parametrize("value", [float("inf"), float("-inf"), float("nan"), 1e-45])
-def test_what_is_no_ordinary_number_is_copied_too(value: float) -> None:
+def test_infinity_and_nan_are_copied(value: float) -> None:
     copied = copy_message(LaserScan(range_max=value))
     assert np.array_equal(copied.range_max, np.float32(value), equal_nan=True)

@@ -13,7 +13,7 @@ from navette.msgs.nav_msgs.msg import Path
 from navette.msgs.sensor_msgs.msg import CompressedImage, LaserScan
 
 
-def test_to_dict_is_plain_all_the_way_down() -> None:
+def test_to_dict_converts_nested_messages() -> None:
     message = DiagnosticArray(
         status=[DiagnosticStatus(level=b"\x01", values=[KeyValue(key="a", value="b")])]
     )
@@ -28,7 +28,7 @@ def test_arrays_become_lists() -> None:
     assert to_dict(LaserScan(ranges=np.arange(2)))["ranges"] == [0.0, 1.0]
 
 
-def test_from_dict_keeps_defaults_of_what_is_not_named() -> None:
+def test_from_dict_keeps_the_defaults_of_other_fields() -> None:
     pose = from_dict(PoseStamped, {"pose": {"position": {"x": 2}}})
     assert pose.pose.position.x == 2.0
     assert pose.pose.orientation.w == 1.0

@@ -1,4 +1,4 @@
-"""RIHS01 hashes against values that ROS 2 itself computed."""
+"""RIHS01 hashes compared with values computed by ROS 2."""
 
 import pytest
 
