@@ -1,9 +1,9 @@
-"""Callback groups: which callbacks may start while another has not ended.
+"""Callback groups: which callbacks may start while another one is in progress.
 
-On the one deterministic loop a callback runs to its end unless it waits (a nested
-spin, a coroutine's ``await``). While it waits, its own group decides: mutually
-exclusive ones hold their other callbacks back, re-entrant ones let them start. Who
-waits for a service or an action lets the group's servers answer (decision 0021).
+On the deterministic loop a callback runs to its end unless it waits (a nested spin, a
+coroutine's ``await``). While a callback waits, its group decides: a mutually exclusive
+group holds its other callbacks, a reentrant group lets them start. A callback that
+waits for a service or an action lets the group's servers run (decision 0021).
 """
 
 from collections import deque
@@ -11,16 +11,16 @@ from typing import Any
 
 
 class CallbackGroup:
-    """Base of the two kinds, and of a program's own.
+    """Base class of callback groups; programs may define their own.
 
-    Events are held back while ``held`` is above zero. A class that overrides
-    :meth:`can_execute` or :meth:`beginning_execution` has rules of its own: its groups
-    are held for ever (``floor``), and asked before each event.
+    Events are parked while ``held`` is above zero. A subclass that overrides
+    :meth:`can_execute` or :meth:`beginning_execution` has its own rules: its groups
+    stay held (``floor``), and the loop calls the rules before each event.
     """
 
-    #: Whether a waiting callback keeps the others of the group from starting.
+    #: Whether a waiting callback keeps the group's other callbacks from starting.
     exclusive = False
-    #: Whether a subclass decides by itself.
+    #: Whether a subclass has its own rules.
     has_rules = False
 
     __slots__ = (
@@ -42,17 +42,19 @@ class CallbackGroup:
 
     def __init__(self) -> None:
         self.held = self.floor = 1 if self.has_rules else 0
-        self.calling = 0  # how many of the holds are callbacks that wait for a service
+        #: Number of the holds that are callbacks waiting for a service.
+        self.calling = 0
         self.parked: deque[Any] = deque()
-        self.ready: deque[Any] | None = None  # the loop's queue, once known
+        #: The loop's queue; set when a node takes the group.
+        self.ready: deque[Any] | None = None
         self._entities: list[Any] = []
 
     def add_entity(self, entity: Any) -> None:
-        """Note that ``entity``'s callback belongs to this group."""
+        """Add an entity whose callback belongs to this group."""
         self._entities.append(entity)
 
     def remove_entity(self, entity: Any) -> None:
-        """Forget ``entity`` (it was destroyed)."""
+        """Remove a destroyed entity."""
         if entity in self._entities:
             self._entities.remove(entity)
 
@@ -60,34 +62,34 @@ class CallbackGroup:
         return entity in self._entities
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether ``entity``'s callback might start now."""
+        """Return whether the entity's callback may start now."""
         return self.held == self.floor
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Asked right before the callback; False holds it back after all."""
+        """Return whether to start the callback; called right before it."""
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Told when the callback has ended."""
+        """Called when the callback has ended."""
 
     def blocks(self, entity: Any) -> bool:
-        """Whether an event must wait; asked while the group is held."""
+        """Return whether an event must wait; called while the group is held."""
         return self.held > self.floor or not (
             self.has_rules and self.can_execute(entity)
         )
 
-    def ask_again(self) -> None:
-        """Queue what the rules held back, if they now let the first of it start."""
+    def retry_parked(self) -> None:
+        """Queue the parked events if the rules let the first of them start now."""
         if self.parked and self.ready is not None and not self.blocks(self.parked[0]):
             self.ready.extendleft(reversed(self.parked))
             self.parked.clear()
 
     def hold(self) -> None:
-        """Keep the group's events back until the matching :meth:`release`."""
+        """Park the group's events until the matching :meth:`release`."""
         self.held += 1
 
     def begin_call(self) -> None:
-        """Let servers run in spite of the hold until :meth:`end_call`."""
+        """Let servers run despite the hold until :meth:`end_call`."""
         self.calling += 1
         servers = [entity for entity in self.parked if entity.answers_calls]
         if servers and self.ready is not None:
@@ -99,7 +101,7 @@ class CallbackGroup:
         self.calling -= 1
 
     def release(self) -> None:
-        """Undo one :meth:`hold`; parked events go first, in their old order."""
+        """Undo one :meth:`hold`; parked events run first, in their old order."""
         self.held -= 1
         if self.held == self.floor and self.parked and self.ready is not None:
             self.ready.extendleft(reversed(self.parked))
@@ -107,7 +109,7 @@ class CallbackGroup:
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """At most one of the group's callbacks is under way at a time."""
+    """At most one of the group's callbacks is in progress at a time."""
 
     exclusive = True
     __slots__ = ()

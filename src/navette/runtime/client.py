@@ -1,8 +1,7 @@
-"""Clients of services: requests out, replies into futures."""
+"""Service clients: send requests and complete futures with the replies."""
 
 import threading
 from collections import deque
-from collections.abc import Callable
 from typing import Any
 
 from navette.errors import MessageError
@@ -10,6 +9,7 @@ from navette.msgs import type_name
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context
+from navette.runtime.destroyable import EntityOwner
 from navette.runtime.events import Entity
 from navette.runtime.exceptions import (
     InvalidHandle,
@@ -17,7 +17,7 @@ from navette.runtime.exceptions import (
     ServiceFailedError,
     ServiceTimeoutError,
 )
-from navette.runtime.future import Answer, Future
+from navette.runtime.future import Future, ResponseFuture
 from navette.runtime.qos import QoSProfile
 from navette.runtime.service_endpoint import ServiceEndpoint
 from navette.runtime.service_introspection import ServiceEvents
@@ -26,10 +26,10 @@ from navette.transports import ClientPort, Endpoint, Reply, RequestId, Transport
 
 
 class _Replies(Entity):
-    """Hands queued replies to their futures, whatever the client's group does.
+    """Completes futures with queued replies, outside the client's callback group.
 
-    A callback that waits for a reply holds its group: a reply that had to wait for
-    the same group would never come.
+    A callback that waits for a reply holds its group; a reply that waited for the same
+    group would never be processed.
     """
 
     __slots__ = ("_client", "queue")
@@ -49,7 +49,7 @@ class _Replies(Entity):
 
 
 class Client(ServiceEndpoint):
-    """Calls a service. Made by :meth:`Node.create_client`."""
+    """Calls a service. Created by :meth:`Node.create_client`."""
 
     def __init__(
         self,
@@ -58,7 +58,7 @@ class Client(ServiceEndpoint):
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         events: ServiceEvents,
-        on_destroy: Callable[["Client"], None],
+        owner: EntityOwner,
     ) -> None:
         self.context = context
         self.endpoint = endpoint
@@ -72,35 +72,34 @@ class Client(ServiceEndpoint):
         self._sequence = 0
         self._lock = threading.Lock()
         self._destroyed = False
-        self._on_destroy = on_destroy
+        self._owner = owner
 
     def open_port(self, transport: Transport) -> None:
-        """Ask through that transport too.
+        """Also send requests through that transport.
 
         Raises:
-            InvalidValueError: the service is of another type; both are named.
+            InvalidValueError: the service has another type; names both.
         """
         port = transport.connect(self.endpoint, self.receive)
         self.ports.append(port)
         self._sequence = max(self._sequence, port.initial_sequence)
 
-    # -- calling ---------------------------------------------------------------
-
     def call_async(self, request: Any) -> Future[Any]:
         """Send a request; the future gets the response.
 
         Raises:
-            MessageError: not of the service's request type (also a TypeError).
+            MessageError: ``request`` is of another type (also a TypeError).
+            InvalidHandle: the client was destroyed.
         """
         if self._destroyed:
             raise InvalidHandle(f"client of {self.srv_name} was destroyed")
-        wanted = self.srv_type.Request
-        if not isinstance(request, wanted):
+        expected = self.srv_type.Request
+        if not isinstance(request, expected):
             raise MessageError(
-                f"service {self.srv_name}: expected {type_name(wanted)}, got "
+                f"service {self.srv_name}: expected {type_name(expected)}, got "
                 f"{type(request).__name__}"
             )
-        future: Future[Any] = Answer()
+        future: Future[Any] = ResponseFuture()
         with self._lock:
             self._sequence = sequence = self._sequence + 1
             self._pending[sequence] = future
@@ -115,13 +114,13 @@ class Client(ServiceEndpoint):
         return future
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
-        """Send a request and let events run until the response is there.
+        """Send a request and run events until the response arrives.
 
-        Also from within a callback: its group is held meanwhile, except for servers,
-        which answer.
+        May be called in a callback, whose group is held meanwhile except for servers.
 
         Raises:
-            TimeoutError: no response in time (or, under a virtual clock, ever).
+            TimeoutError: no response within ``timeout_sec``, or no event left that
+                could produce one (virtual clock).
             ROSInterruptException: the context was shut down or the client destroyed.
             ServiceFailedError: the server's callback raised.
         """
@@ -129,7 +128,7 @@ class Client(ServiceEndpoint):
         self._loop.run(
             until_ns=self._deadline_ns(timeout_sec), done=future.done, calling=True
         )
-        if future.cancelled():  # the client was destroyed, most often by a shutdown
+        if future.cancelled():  # the client was destroyed, usually by a shutdown
             raise ROSInterruptException
         if not future.done():
             self.remove_pending_request(future)
@@ -137,38 +136,34 @@ class Client(ServiceEndpoint):
             raise TimeoutError(
                 f"service {self.srv_name}: no response "
                 + (f"in {timeout_sec:g} s" if timeout_sec is not None else "")
-                + ("" if servers else " (nobody serves it)")
+                + ("" if servers else " (the service has no server)")
             )
         return future.result()
 
     def get_pending_request(self, sequence_number: int) -> Future[Any]:
-        """The future of a request under way; KeyError if there is none."""
+        """Return the future of a pending request; KeyError if there is none."""
         with self._lock:
             return self._pending[sequence_number]
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Forget a request: its response will be ignored."""
+        """Remove a pending request; its response will be ignored."""
         with self._lock:
             for sequence, pending in self._pending.items():
                 if pending is future:
                     del self._pending[sequence]
                     return
 
-    # -- the server ------------------------------------------------------------
-
     def service_is_ready(self) -> bool:
-        """Whether somebody serves it."""
+        """Return whether the service has a server."""
         return any(port.server_count for port in self.ports)
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Let events run until somebody serves it; False after the timeout."""
+        """Run events until the service has a server; False after the timeout."""
         if not self.service_is_ready():
             self._loop.run(
                 until_ns=self._deadline_ns(timeout_sec), done=self.service_is_ready
             )
         return self.service_is_ready()
-
-    # -- inside ----------------------------------------------------------------
 
     def receive(self, reply: Reply) -> None:
         """Queue a reply (the transport's sink)."""
@@ -178,7 +173,7 @@ class Client(ServiceEndpoint):
             self._loop.wake()
 
     def take(self, reply: Reply) -> None:
-        """Finish the future of a reply; the first reply counts."""
+        """Complete the future of a reply; only the first reply counts."""
         with self._lock:
             future = self._pending.pop(reply.sequence, None)
         if future is None:
@@ -198,13 +193,13 @@ class Client(ServiceEndpoint):
         self._loop.notify_threads()
 
     def destroy(self) -> None:
-        """Leave the service; what is under way is cancelled."""
+        """Leave the service and cancel pending requests."""
         self._destroyed = True
         for port in self.ports:
             port.close()
         for future in list(self._pending.values()):
             future.cancel()
-        self._on_destroy(self)
+        self._owner.forget(self)
 
     def _deadline_ns(self, timeout_sec: float | None) -> int | None:
         if timeout_sec is None or timeout_sec < 0:

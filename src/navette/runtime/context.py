@@ -1,4 +1,4 @@
-"""A context: one graph, one loop, one set of arguments; tests make their own."""
+"""Context: the graph, event loop, clock, arguments and log that nodes share."""
 
 import logging
 import os
@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakSet
 
 from navette.errors import InvalidValueError
@@ -27,31 +27,26 @@ from navette.runtime.network import (
     chosen_transport,
     join_network,
 )
-from navette.runtime.overrides import ParameterOverrides
+from navette.runtime.overrides import NodeWithParameters, ParameterOverrides
 from navette.transports import InProcessTransport
-
-if TYPE_CHECKING:
-    from navette.runtime.node import Node
-
 
 _LONGEST_CALLBACK_S = 2.0
 
 
 class Context:
-    """What nodes share. ``clock`` decides how time passes.
+    """Everything that the nodes of one program share.
 
-    By default it is the system's, or that of the simulator of a lock-step
-    (``NAVETTE_LOCKSTEP=follow``).
-
-    As in rclpy it becomes valid with :meth:`init`; a context that was made by hand
-    initialises itself, without arguments, when its first node is made.
+    As in rclpy, a context becomes valid with :meth:`init`. A context that a program
+    creates itself is initialised, without arguments, when its first node is created.
 
     Args:
-        graph: one that several contexts share, each with a loop of its own, so that
-            programs in one process meet; its maker closes its transports.
-        transport: ``inprocess`` or ``zenoh`` (which is in process and the network);
-            None: ``NAVETTE_TRANSPORT``, else the network, except in lock-step virtual
-            time and under pytest.
+        clock: how time passes. Default: the system clock, or the simulator's clock in
+            a lock-step run (``NAVETTE_LOCKSTEP=follow``).
+        graph: a graph to share with other contexts of the process, each with its own
+            loop. The caller closes the graph's transports.
+        transport: ``inprocess``, or ``zenoh`` (in process and network). Default:
+            ``NAVETTE_TRANSPORT`` if set; otherwise the network, except in lock-step
+            virtual time and under pytest.
     """
 
     def __init__(
@@ -69,13 +64,14 @@ class Context:
         graph = graph or scope.graph
         self._owns_graph = graph is None
         self.graph = new_graph() if graph is None else graph
-        self._leave_graph = self.graph.on_change(self._look_around)
+        self._leave_graph = self.graph.on_change(self._on_graph_change)
         scope.contexts.add(self)
         self.overrides = ParameterOverrides()
         self.log = LogHub(lambda: self.loop.clock.now_ns)
         self.arguments = RosArguments()
-        self.nodes: list[Node] = []
-        #: The executor that module-level ``spin`` uses; made on demand.
+        #: The nodes, oldest first (typed Any because Node imports this module).
+        self.nodes: list[Any] = []
+        #: The executor of module-level ``spin``; created on demand.
         self.executor: Any = None
         self._initialized = False
         self._shut_down = False
@@ -88,18 +84,24 @@ class Context:
 
     @property
     def clock(self) -> ContextClock:
-        """How time passes here."""
+        """The clock of the context's loop."""
         return self.loop.clock
 
     def use_clock(self, clock: ContextClock) -> None:
-        """Let time pass as ``clock`` says; only while the context has no nodes."""
+        """Replace the clock.
+
+        Raises:
+            InvalidValueError: the context has nodes, or is part of a lock-step run.
+        """
         if clock is self.loop.clock:
             return
         if self.loop.clock.is_shared and self._initialized:
-            raise InvalidValueError("the context is in lock-step: its clock stays")
+            raise InvalidValueError(
+                "the clock of a context in a lock-step run cannot be replaced"
+            )
         if self.nodes:
             raise InvalidValueError(
-                "the context's clock cannot change once it has nodes "
+                "the clock of a context with nodes cannot be replaced "
                 f"({', '.join(n.get_fully_qualified_name() for n in self.nodes)})"
             )
         self.loop.clock = clock
@@ -112,9 +114,10 @@ class Context:
         domain_id: int | None = None,
         console_level: LoggingSeverity = LoggingSeverity.DEBUG,
     ) -> None:
-        """Read the arguments (``sys.argv`` if None) and become valid.
+        """Parse the arguments (``sys.argv`` if None) and make the context valid.
 
-        What is less severe than ``console_level`` goes to file and /rosout only.
+        Args:
+            console_level: records below this level go to file and /rosout only.
         """
         with self._lock:
             if self._initialized:
@@ -129,29 +132,31 @@ class Context:
             self._initialized = True
 
     def init_if_needed(self) -> None:
-        """Become valid without arguments, if it was never initialised."""
+        """Initialise without arguments, unless the context was initialised before."""
         if not self._initialized:
             self.init(args=[])
 
     def ok(self) -> bool:
-        """Whether it is initialised and not shut down."""
+        """Return whether the context is initialised and not shut down."""
         return self._initialized and not self._shut_down
 
     @property
     def handle(self) -> Handle:
-        """What rclpy's wait set takes."""
+        """The handle that rclpy's wait set takes."""
         return Handle(self)
 
     @property
     def was_shut_down(self) -> bool:
-        """Whether it was valid once and is not any more."""
+        """Whether the context was valid and has been shut down."""
         return self._shut_down
 
     def shutdown(self) -> None:
-        """End every spin and wait; after a signal has done so, nothing.
+        """End all spins and waits and destroy all nodes.
+
+        Without effect after a shutdown by a signal.
 
         Raises:
-            RCLError: the program has done so already.
+            RCLError: the program has shut the context down before.
         """
         self._end(by_program=True)
 
@@ -164,15 +169,15 @@ class Context:
             if self._shut_down:
                 if by_program and self._shut_down_by_program:
                     raise RCLError(
-                        "the context was shut down already; try_shutdown() is for "
-                        "where it may have been"
+                        "the context is already shut down; call try_shutdown() where "
+                        "this is possible"
                     )
                 return
             self._shut_down = True
             self._shut_down_by_program = by_program
         self.loop.close()
-        # The nodes must not be taken from under a callback of another thread; one
-        # that blocks for longer (a sleep, a join of this thread) is not waited for.
+        # Nodes must not be destroyed while another thread runs a callback. The wait
+        # is limited: the callback may be sleeping, or joining this thread.
         self.loop.wait_for_end(_LONGEST_CALLBACK_S)
         callbacks, self._on_shutdown = self._on_shutdown, []
         for callback in callbacks:
@@ -185,7 +190,7 @@ class Context:
         self._stop_logging()
 
     def try_shutdown(self) -> None:
-        """Shut down if it is valid."""
+        """Shut down if the context is valid."""
         if self.ok():
             self._end(by_program=False)
 
@@ -199,11 +204,10 @@ class Context:
     def get_domain_id(self) -> int:
         return self._domain_id
 
-    def check_overrides(self, nodes: "Sequence[Node] | None" = None) -> None:
-        """Raise if a given parameter value reaches no node (see ParameterOverrides).
-
-        Call it once all nodes exist.
-        """
+    def check_overrides(
+        self, nodes: Sequence[NodeWithParameters] | None = None
+    ) -> None:
+        """Raise if a parameter override matches no node; call when all nodes exist."""
         self.overrides.check(self.nodes if nodes is None else nodes)
 
     def __enter__(self) -> "Context":
@@ -221,7 +225,7 @@ class Context:
     def _join_network(self) -> None:
         if chosen_transport(self._transport, self.clock) == IN_PROCESS:
             return
-        # A graph that began without the network stays so, unless asked otherwise.
+        # A graph with nodes stays without the network, unless the caller requests it.
         if self._transport is None and self.graph.nodes():
             return
         lock_step = self.clock if isinstance(self.clock, LockStepClock) else None
@@ -229,8 +233,8 @@ class Context:
             lock_step.on_end = self.try_shutdown
         join_network(self.graph, self._domain_id, lambda: self.clock.now_ns, lock_step)
 
-    def _look_around(self) -> None:
-        """Something came or went by another thread: a wait may be for just that."""
+    def _on_graph_change(self) -> None:
+        """Wake the loop: a callback may be waiting for this change."""
         if not self.loop.in_driver_thread:
             self.loop.wake()
 
@@ -246,13 +250,13 @@ class Context:
             self.log.sinks.append(self._file_sink)
         package = logging.getLogger("navette")
         package.addHandler(self._handler)
-        # The hub's levels decide; the standard library's must not come before.
+        # The hub's levels apply; the standard library must not filter before.
         if package.level == logging.NOTSET:
             package.setLevel(logging.DEBUG)
 
     def _stop_logging(self) -> None:
         logging.getLogger("navette").removeHandler(self._handler)
-        # The console stays: a program may still say goodbye.
+        # The console sink stays: a program may still log after the shutdown.
         if self._file_sink is not None:
             self.log.sinks.remove(self._file_sink)
             self._file_sink.close()
@@ -263,37 +267,37 @@ def _domain_id(given: int | None) -> int:
         return given
     text = os.environ.get("ROS_DOMAIN_ID", "0") or "0"
     if not text.isdigit():
-        raise InvalidValueError(f"ROS_DOMAIN_ID {text!r}: wanted a number >= 0")
+        raise InvalidValueError(f"ROS_DOMAIN_ID must be a number >= 0, got {text!r}")
     return int(text)
 
 
 def new_graph() -> Graph:
-    """A graph of this process alone."""
+    """Return a graph of this process without a network transport."""
     graph = Graph()
     graph.add_transport(InProcessTransport())
     return graph
 
 
 class Scope:
-    """What one program's contexts have in common; by default all of the process.
+    """Contexts of one program; by default those of the process.
 
     Args:
-        graph: where the contexts meet those of other programs in the process; None:
-            each has a graph of its own.
-        default: the context used where none is given; None: one is made.
+        graph: graph shared with other programs of the process. Default: each context
+            has its own graph.
+        default: the default context. Default: created on first use.
     """
 
     def __init__(
         self, graph: Graph | None = None, default: Context | None = None
     ) -> None:
         self.graph = graph
-        #: Those still in use, in no particular order.
+        #: The contexts still in use, in no particular order.
         self.contexts: WeakSet[Context] = WeakSet()
         self._default = default
         self._lock = threading.Lock()
 
     def default_context(self) -> Context:
-        """The context used where none is given; made on first use."""
+        """Return the default context, created on first use."""
         with self._lock:
             if self._default is None:
                 self._default = Context()
@@ -312,10 +316,10 @@ current_scope: ContextVar[Scope] = ContextVar(
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
-    """The context used where none is given; a new one after a shutdown."""
+    """Return the default context."""
     return current_scope.get().default_context()
 
 
 def reset_default_context() -> None:
-    """Forget the default context, so that the next use makes a fresh one."""
+    """Remove the default context; the next use creates a new one."""
     current_scope.get().reset_default_context()

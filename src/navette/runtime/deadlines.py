@@ -1,4 +1,4 @@
-"""Deadlines and leases: what to do when nothing has happened for a while."""
+"""Watchdog timer for QoS deadlines and liveliness leases."""
 
 import threading
 from collections.abc import Callable
@@ -8,10 +8,11 @@ from navette.runtime.loop import EventLoop
 
 
 class Watchdog:
-    """Calls back when :meth:`restart` has not been called for ``period_ns``.
+    """Calls ``expired`` when :meth:`restart` has not been called for ``period_ns``.
 
-    It starts with the first restart, and goes on calling back every period. Restarted
-    and stopped from any thread; it calls back in the loop's.
+    The first restart starts the watchdog; after it expired, it expires again every
+    period. :meth:`restart` and :meth:`stop` are callable from any thread; ``expired``
+    runs in the loop's thread.
     """
 
     __slots__ = (
@@ -40,7 +41,7 @@ class Watchdog:
         self._lock = threading.Lock()
 
     def restart(self) -> None:
-        """Count from now; cheap: the alarm under way moves on when it comes."""
+        """Count from now. Cheap: the pending call reschedules itself when it runs."""
         self._due_ns = self._loop.clock.now_ns + self._period_ns
         if self._call is None:
             with self._lock:
@@ -48,7 +49,7 @@ class Watchdog:
                     self._arm()
 
     def stop(self) -> None:
-        """Call back no more; :meth:`restart` starts it again."""
+        """Stop until the next :meth:`restart`."""
         with self._lock:
             if self._call is not None:
                 self._call.cancel()
@@ -56,10 +57,10 @@ class Watchdog:
 
     def _arm(self) -> None:
         self._call = self._loop.call_at(
-            self._due_ns, self._look, "deadline", self._node
+            self._due_ns, self._check, "deadline", self._node
         )
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         with self._lock:
             if self._call is None:
                 return

@@ -1,18 +1,24 @@
-"""What can be destroyed, and is at the end of a ``with``."""
+"""Base class of entities that can be destroyed."""
 
 from abc import ABC, abstractmethod
 from types import TracebackType
-from typing import Self
+from typing import Any, Protocol, Self
+
+
+class EntityOwner(Protocol):
+    """Registry that an entity is removed from when it is destroyed."""
+
+    def forget(self, entity: Any) -> None: ...
 
 
 class Destroyable(ABC):
-    """``with node.create_subscription(…): …`` destroys it at the end."""
+    """Base of entities; a ``with`` statement destroys its entity at the end."""
 
     __slots__ = ()
 
     @abstractmethod
     def destroy(self) -> None:
-        """Leave for good."""
+        """Leave the graph; the entity cannot be used any more."""
 
     def __enter__(self) -> Self:
         return self

@@ -1,5 +1,6 @@
-"""What the loop runs: entities, and plain calls."""
+"""Events of the loop: entities with callbacks, and plain function calls."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
@@ -7,33 +8,33 @@ from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.future import Task
 
 
-class Entity:
-    """Something the loop can run: a subscription, a timer, a plain call."""
+class Entity(ABC):
+    """An object whose events the loop runs: a subscription, a timer, a plain call."""
 
     __slots__ = ("group",)
 
-    #: Whether it runs while its group is held by a callback that waits for a service
-    #: or an action, blocking or in an ``await``: what it waits for may be in that very
-    #: group.
+    #: Whether the entity runs while its group is held by a callback that waits for a
+    #: service or an action (blocking or in an ``await``), because the server may be in
+    #: the same group.
     answers_calls = False
 
     group: CallbackGroup
 
+    @abstractmethod
     def run(self) -> Any:
-        """Do one event's work; a returned coroutine is run as a task."""
-        raise NotImplementedError
+        """Process one event; the loop runs a returned coroutine as a task."""
 
     def waiting_group(self) -> CallbackGroup | None:
-        """The group that is held while this waits in a blocking call."""
+        """Return the group that is held while a blocking call of this event waits."""
         return self.group
 
     def origin(self) -> tuple[str, str]:
-        """Full name of the node and the topic or timer, for error messages."""
+        """Return the node's full name and the topic or timer, for error messages."""
         return "", type(self).__name__
 
 
 class Call(Entity):
-    """A plain function call; :meth:`cancel` keeps it from happening."""
+    """A function call that can be cancelled before it runs."""
 
     __slots__ = ("_function", "_node", "_source", "token")
 
@@ -61,8 +62,8 @@ class Call(Entity):
 
     def cancel(self) -> None:
         self.token = -1
-        self._function = _nothing
+        self._function = _do_nothing
 
 
-def _nothing() -> None:
-    """What a cancelled call does."""
+def _do_nothing() -> None:
+    return

@@ -1,10 +1,15 @@
-"""rclpy's exception names, inside Navette's tree."""
+"""Exceptions with rclpy's names, in Navette's exception hierarchy."""
 
 # ruff: noqa: N818 - the names are rclpy's
 
 from typing import Any
 
-from navette.errors import InvalidNameError, NavetteError, ParameterError
+from navette.errors import (
+    InvalidNameError,
+    NavetteError,
+    ParameterError,
+    UnknownNameError,
+)
 
 
 class NotInitializedException(NavetteError):
@@ -16,14 +21,14 @@ class NotInitializedException(NavetteError):
 
 
 class ROSInterruptException(NavetteError):
-    """A wait was cut short because the context was shut down."""
+    """The context was shut down during a wait."""
 
     def __init__(self) -> None:
         super().__init__("the context was shut down while waiting")
 
 
 class ExternalShutdownException(NavetteError):
-    """The context was shut down from outside while spinning."""
+    """The context was shut down during a spin."""
 
 
 class InvalidHandle(NavetteError):
@@ -31,15 +36,15 @@ class InvalidHandle(NavetteError):
 
 
 class RCLError(NavetteError, RuntimeError):
-    """What ROS 2's client library refuses, such as an impossible goal state."""
+    """An operation that ROS 2's client library rejects, as an invalid transition."""
 
 
 class ServiceFailedError(NavetteError, RuntimeError):
-    """A service's callback raised: there will be no response to the request."""
+    """The server's callback raised an exception, so the request gets no response."""
 
 
 class ServiceTimeoutError(ServiceFailedError, TimeoutError):
-    """A server in another process has not answered in the time that is waited for."""
+    """A server in another process did not respond within the transport's timeout."""
 
 
 class ShutdownException(NavetteError):
@@ -47,15 +52,19 @@ class ShutdownException(NavetteError):
 
 
 class TimeoutException(NavetteError):
-    """A wait took longer than allowed."""
+    """No callback became ready within the timeout."""
 
 
 class ConditionReachedException(NavetteError):
-    """What was waited for has happened."""
+    """The condition of a wait became true."""
+
+
+class NodeNameNonExistentError(UnknownNameError):
+    """A graph query names a node that does not exist."""
 
 
 class NameValidationException(InvalidNameError):
-    """A name breaks the rules at ``invalid_index``."""
+    """A name is invalid at character ``invalid_index``."""
 
     def __init__(
         self, name_type: str, name: str, error_msg: str, invalid_index: int
@@ -69,35 +78,35 @@ class NameValidationException(InvalidNameError):
 
 
 class InvalidNamespaceException(NameValidationException):
-    """A namespace breaks the rules."""
+    """A namespace is invalid."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("namespace", name, error_msg, invalid_index)
 
 
 class InvalidNodeNameException(NameValidationException):
-    """A node name breaks the rules."""
+    """A node name is invalid."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("node name", name, error_msg, invalid_index)
 
 
 class InvalidTopicNameException(NameValidationException):
-    """A topic name breaks the rules."""
+    """A topic name is invalid."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("topic name", name, error_msg, invalid_index)
 
 
 class InvalidServiceNameException(NameValidationException):
-    """A service name breaks the rules."""
+    """A service name is invalid."""
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("service name", name, error_msg, invalid_index)
 
 
 class ParameterException(ParameterError):
-    """Base of the parameter errors that rclpy names."""
+    """Base of the parameter errors with rclpy's names."""
 
     def __init__(self, error_msg: str, parameters: str | list[str]) -> None:
         super().__init__(f"{error_msg}: {parameters}")
@@ -105,7 +114,7 @@ class ParameterException(ParameterError):
 
 
 class ParameterNotDeclaredException(ParameterException):
-    """Asked for a parameter that the node has not declared."""
+    """The node has not declared the parameter."""
 
     def __init__(
         self,
@@ -121,7 +130,7 @@ class ParameterNotDeclaredException(ParameterException):
 
 
 class ParameterAlreadyDeclaredException(ParameterException):
-    """Declared twice."""
+    """The parameter was declared before."""
 
     def __init__(self, parameters: str | list[str]) -> None:
         super().__init__("parameter already declared", parameters)
@@ -135,18 +144,18 @@ class InvalidParameterException(ParameterException):
 
 
 class InvalidParameterTypeException(ParameterException):
-    """A value of another type than the declared one."""
+    """The value's type differs from the declared type."""
 
     def __init__(self, desired_parameter: Any, expected_type: str) -> None:
         super().__init__(
             f"parameter {desired_parameter.name!r} got {desired_parameter.value!r} "
-            f"({desired_parameter.type_.name}), wanted {expected_type}",
+            f"({desired_parameter.type_.name}), expected {expected_type}",
             desired_parameter.name,
         )
 
 
 class InvalidParameterValueException(ParameterException):
-    """A value that the descriptor or a callback refuses."""
+    """The descriptor or a callback rejects the value."""
 
     def __init__(self, parameter: str, value: Any, reason: str) -> None:
         super().__init__(
@@ -155,14 +164,14 @@ class InvalidParameterValueException(ParameterException):
 
 
 class ParameterImmutableException(ParameterException):
-    """A read-only parameter was to be undeclared."""
+    """A read-only parameter cannot be undeclared or changed."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__("parameter is read-only", parameter_name)
 
 
 class ParameterUninitializedException(ParameterException):
-    """A statically typed parameter without a value was read."""
+    """A statically typed parameter was read before it had a value."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__("parameter has no value yet", parameter_name)

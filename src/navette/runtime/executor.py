@@ -1,13 +1,13 @@
-"""Executors: sets of nodes whose callbacks the context's one deterministic loop runs.
+"""Executors: sets of nodes whose callbacks the context's deterministic loop runs.
 
-rclpy's names are all the same executor here: callbacks run one after the other, in
-the order of (time, sequence), in the thread that spins.
+All of rclpy's executor names are the same executor: callbacks run one after the other,
+in the order of (time, sequence), in the thread that spins.
 """
 
 from collections.abc import Callable, Coroutine
 from functools import partial
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from navette.errors import InvalidValueError
 from navette.runtime.clock import ContextClock
@@ -22,15 +22,13 @@ from navette.runtime.exceptions import (
 )
 from navette.runtime.future import Future, Task
 from navette.runtime.loop import EventLoop
-
-if TYPE_CHECKING:
-    from navette.runtime.node import Node
+from navette.runtime.node import Node
 
 
 async def await_or_execute(
     callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any
 ) -> Any:
-    """What the function gives, or what the coroutine gives in the end."""
+    """Return the result of a function, or of a coroutine after awaiting it."""
     result = callback(*args) if callable(callback) else callback
     return await result if isinstance(result, Coroutine) else result
 
@@ -38,12 +36,12 @@ async def await_or_execute(
 class Executor:
     """Runs the callbacks of its nodes.
 
-    A node that was added to any executor of the context takes part whenever the
-    context's loop runs; events of other nodes wait.
+    Callbacks of a node run whenever the context's loop runs, if the node was added to
+    any executor of the context.
 
     Args:
-        context: the default one if not given.
-        clock: how time passes in that context; only before it has nodes.
+        context: the default context if None.
+        clock: replaces the context's clock; the context must not have nodes yet.
     """
 
     def __init__(
@@ -60,7 +58,7 @@ class Executor:
             self._context.use_clock(clock)
         self._nodes: list[Node] = []
         self._stopping = False
-        self._depth = 0  # spins under way, nested ones counted
+        self._depth = 0  # number of nested spins
 
     @property
     def context(self) -> Context:
@@ -77,13 +75,15 @@ class Executor:
 
     @property
     def now_ns(self) -> int:
-        """The context's time, nanoseconds."""
+        """The context's time in nanoseconds."""
         return self._context.clock.now_ns
 
-    # -- nodes -----------------------------------------------------------------
+    def add_node(self, node: Node) -> bool:
+        """Let the node's callbacks run; False if it was added before.
 
-    def add_node(self, node: "Node") -> bool:
-        """Let the node's callbacks run; False if it was added already."""
+        Raises:
+            InvalidValueError: the node belongs to another context.
+        """
         if node in self._nodes:
             return False
         if node.context is not self._context:
@@ -98,19 +98,17 @@ class Executor:
         self.loop.wake()
         return True
 
-    def remove_node(self, node: "Node") -> None:
-        """Keep the node's events waiting from now on."""
+    def remove_node(self, node: Node) -> None:
+        """Hold the node's callbacks."""
         if node in self._nodes:
             self._nodes.remove(node)
             node.detach()
 
-    def get_nodes(self) -> list["Node"]:
+    def get_nodes(self) -> list[Node]:
         return list(self._nodes)
 
-    # -- spinning --------------------------------------------------------------
-
     def spin(self) -> None:
-        """Run until shutdown or :meth:`stop`; a virtual run, until nothing is left."""
+        """Run until shutdown or :meth:`stop`, or no event is left (virtual clock)."""
         if type(self).spin_once is _OWN_SPIN_ONCE:
             self._run()
             return
@@ -120,10 +118,10 @@ class Executor:
         self._stopping = False
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Run one event; wait for it at most ``timeout_sec`` (None = for ever).
+        """Run one event, waiting at most ``timeout_sec`` (None: no limit).
 
         Raises:
-            ExternalShutdownException: the context is not valid any more.
+            ExternalShutdownException: the context was shut down.
         """
         if not self._context.ok():
             raise ExternalShutdownException("the context was shut down")
@@ -132,7 +130,7 @@ class Executor:
     def spin_until_future_complete(
         self, future: Future[Any], timeout_sec: float | None = None
     ) -> None:
-        """Run until ``future`` is done or the time is over."""
+        """Run until ``future`` is done or the timeout expires."""
         self._run(timeout_s=timeout_sec, done=future.done)
 
     def spin_once_until_future_complete(
@@ -142,26 +140,26 @@ class Executor:
         self._run(timeout_s=timeout_sec, done=future.done, limit=1)
 
     def can_execute(self, entity: Entity) -> bool:
-        """Whether the entity's group lets its callback start now."""
+        """Return whether the entity's group lets its callback start now."""
         return entity.group.can_execute(entity)
 
     def wait_for_ready_callbacks(
         self,
         timeout_sec: float | None = None,
-        nodes: "list[Node] | None" = None,
+        nodes: list[Node] | None = None,
         condition: Callable[[], bool] = lambda: False,
-    ) -> "tuple[Callable[[], None], Entity, Node | None]":
-        """The next event, for executors that override :meth:`spin_once`.
+    ) -> tuple[Callable[[], None], Entity, Node | None]:
+        """Wait for the next event; for subclasses that override :meth:`spin_once`.
 
         Returns:
-            What runs it (from any thread; callbacks still run one at a time), what it
-            is, and whose (None: nobody's).
+            A function that runs the event (from any thread; callbacks still run one
+            at a time), the entity, and its node (None if it has no node).
 
         Raises:
-            TimeoutException: none in time.
-            ConditionReachedException: the condition holds.
+            TimeoutException: no event within the timeout.
+            ConditionReachedException: the condition is true.
             ShutdownException: the executor was shut down.
-            ExternalShutdownException: the context was.
+            ExternalShutdownException: the context was shut down.
         """
         until_ns = None
         if timeout_sec is not None and timeout_sec >= 0:
@@ -176,15 +174,15 @@ class Executor:
         if self._stopping:
             raise ShutdownException("the executor was shut down")
         if condition():
-            raise ConditionReachedException("the condition holds")
+            raise ConditionReachedException("the condition is true")
         raise TimeoutException("no callback became ready in time")
 
     def spin_until(self, time_ns: int) -> None:
-        """Run all events up to and including ``time_ns``; then it is that time."""
+        """Run all events up to and including ``time_ns``, the time afterwards."""
         self._run(until_ns=time_ns)
 
     def spin_for(self, duration_ns: int) -> None:
-        """As :meth:`spin_until`, counted from now."""
+        """Run all events of the next ``duration_ns``."""
         self._run(until_ns=self.now_ns + duration_ns)
 
     def spin_until_complete(
@@ -192,14 +190,14 @@ class Executor:
         condition: Callable[[], bool] | Future[Any],
         timeout_ns: int | None = None,
     ) -> bool:
-        """Run until the condition holds (or future is done); tells whether it does."""
+        """Run until the condition is true or the future done; return whether it is."""
         done = condition.done if isinstance(condition, Future) else condition
         until_ns = None if timeout_ns is None else self.now_ns + timeout_ns
         self._run(until_ns=until_ns, done=done)
         return done()
 
     def stop(self) -> None:
-        """Let the spins under way return after the present callback; any thread."""
+        """Make running spins return after the current callback; from any thread."""
         self._stopping = True
         self.loop.wake()
 
@@ -220,7 +218,7 @@ class Executor:
         return self.loop.create_task(callback, *args, **kwargs)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stop, and let go of all nodes."""
+        """Stop, and remove all nodes."""
         self.stop()
         for node in tuple(self._nodes):
             self.remove_node(node)
@@ -247,7 +245,7 @@ class Executor:
     ) -> None:
         if timeout_s is not None and timeout_s >= 0:
             until_ns = self.now_ns + round(timeout_s * 1e9)
-        if self._depth == 0:  # a nested spin must not swallow the outer one's stop
+        if self._depth == 0:  # a nested spin must not clear the outer spin's stop
             self._stopping = False
         self._depth += 1
         try:
@@ -258,16 +256,19 @@ class Executor:
             self._depth -= 1
 
 
-#: What :meth:`Executor.spin` need not go through for each event.
+#: If not overridden, :meth:`Executor.spin` runs events without calling it.
 _OWN_SPIN_ONCE = Executor.spin_once
 
 
 class SingleThreadedExecutor(Executor):
-    """rclpy's name for the one deterministic executor."""
+    """The deterministic executor, under rclpy's name."""
 
 
 class MultiThreadedExecutor(Executor):
-    """rclpy's name; callbacks still run one at a time, ``num_threads`` or not."""
+    """The deterministic executor: callbacks run one at a time, without threads.
+
+    ``num_threads`` is accepted and ignored.
+    """
 
     def __init__(
         self,
@@ -281,16 +282,16 @@ class MultiThreadedExecutor(Executor):
     def shutdown(
         self, timeout_sec: float | None = None, *, wait_for_threads: bool = True
     ) -> bool:
-        """As the base class; there are no threads to wait for."""
+        """Stop, and remove all nodes; there are no threads to wait for."""
         return super().shutdown(timeout_sec)
 
 
 class EventsExecutor(Executor):
-    """rclpy's experimental one, driven by events: as every executor is here."""
+    """The deterministic executor, under the name of rclpy's experimental executor."""
 
 
 class TimeoutObject:
-    """Holds a timeout, seconds."""
+    """Holds a timeout in seconds."""
 
     def __init__(self, timeout: float) -> None:
         self.timeout = timeout

@@ -1,27 +1,34 @@
-"""Futures and tasks on the deterministic loop."""
+"""Futures and tasks of the event loop."""
 
 import sys
 import threading
 from collections.abc import Callable, Coroutine, Generator
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
-if TYPE_CHECKING:
-    from navette.runtime.callback_groups import CallbackGroup
-    from navette.runtime.loop import EventLoop
+from navette.runtime.callback_groups import CallbackGroup
 
 T = TypeVar("T")
 
 
+class Scheduler(Protocol):
+    """The part of the event loop that futures and tasks use."""
+
+    def call_soon(
+        self, function: Callable[[], Any], source: str = "call", node: str = ""
+    ) -> object: ...
+    def wake(self) -> None: ...
+
+
 class Future(Generic[T]):
-    """A result that will be there later; await it or add a callback.
+    """The result of a pending operation; await it or add a done callback.
 
     Args:
-        executor: schedules the done callbacks (an Executor or the loop itself);
-            without one they are called at once by whoever sets the result.
+        executor: schedules the done callbacks (an Executor or the loop itself).
+            Without one, the thread that sets the result calls them at once.
     """
 
-    #: Whether a service may have to answer first, perhaps one of the very group whose
-    #: coroutine awaits this.
+    #: Whether a service of the awaiting coroutine's own callback group may have to
+    #: respond before this future is done.
     awaits_service = False
 
     def __init__(self, *, executor: Any = None) -> None:
@@ -31,7 +38,7 @@ class Future(Generic[T]):
         self._exception: BaseException | None = None
         self._callbacks: list[Callable[[Future[T]], object]] = []
         self._lock = threading.Lock()
-        self._loop: EventLoop | None = None
+        self._loop: Scheduler | None = None
         self._set_executor(executor)
 
     def __await__(self) -> Generator[Any, None, T | None]:
@@ -44,7 +51,7 @@ class Future(Generic[T]):
         return self.result()
 
     def cancel(self) -> None:
-        """Give up, unless it is done already."""
+        """Cancel the operation; without effect if the future is done."""
         with self._lock:
             if self._done:
                 return
@@ -55,11 +62,11 @@ class Future(Generic[T]):
         return self._cancelled
 
     def done(self) -> bool:
-        """Whether there is a result or an exception, or it was cancelled."""
+        """Whether a result or an exception is set, or the future was cancelled."""
         return self._done
 
     def result(self) -> T | None:
-        """The result (None if not done); raises the exception if one was set."""
+        """Return the result (None if not done), or raise the exception that was set."""
         if self._exception is not None:
             raise self._exception
         return self._result
@@ -68,14 +75,14 @@ class Future(Generic[T]):
         return self._exception
 
     def set_result(self, result: T) -> None:
-        """Finish with a result; from any thread."""
+        """Set the result and finish; callable from any thread."""
         with self._lock:
             self._result = result
             self._done, self._cancelled = True, False
         self._run_callbacks()
 
     def set_exception(self, exception: BaseException) -> None:
-        """Finish with an exception; from any thread."""
+        """Set the exception and finish; callable from any thread."""
         with self._lock:
             self._exception = exception
             self._done, self._cancelled = True, False
@@ -83,11 +90,11 @@ class Future(Generic[T]):
 
     @property
     def has_done_callbacks(self) -> bool:
-        """Whether somebody waits to be told."""
+        """Whether done callbacks are registered."""
         return bool(self._callbacks)
 
     def add_done_callback(self, callback: Callable[["Future[T]"], object]) -> None:
-        """Call ``callback(future)`` once done; soon, if it is already."""
+        """Schedule ``callback(future)`` for when the future is done."""
         with self._lock:
             if not self._done:
                 self._callbacks.append(callback)
@@ -112,14 +119,14 @@ class Future(Generic[T]):
         self._loop = getattr(executor, "loop", executor)
 
 
-class Answer(Future[T]):
-    """What a service or an action gives, now or later."""
+class ResponseFuture(Future[T]):
+    """The response of a service or an action server."""
 
     awaits_service = True
 
 
 class _Stepping(threading.local):
-    """How many of our tasks take a step in this thread, one inside another."""
+    """Number of nested task steps that run in this thread."""
 
     depth = 0
 
@@ -128,9 +135,9 @@ _stepping = _Stepping()
 
 
 def _asyncio_waiter(future: Future[Any]) -> Any:
-    """What an asyncio task waits on until ``future`` is done; None outside of one.
+    """Return an asyncio future that follows ``future``; None outside of asyncio.
 
-    Such a program spins in one asyncio task and awaits our futures in another.
+    An asyncio program can spin in one task and await Navette's futures in another.
     """
     asyncio = sys.modules.get("asyncio")
     if asyncio is None or _stepping.depth:
@@ -145,22 +152,22 @@ def _asyncio_waiter(future: Future[Any]) -> Any:
         if not waiter.done():
             waiter.set_result(None)
 
-    def tell(_: object) -> None:
+    def finish_in_asyncio(_: object) -> None:
         if not loop.is_closed():
             loop.call_soon_threadsafe(finish)
 
-    future.add_done_callback(tell)
+    future.add_done_callback(finish_in_asyncio)
     return waiter
 
 
 class Task(Future[T]):
-    """A coroutine (or function) that the loop runs to its end, step by step.
+    """A coroutine (or function) that the event loop runs step by step.
 
-    Awaiting a :class:`Future` resumes once it is done; a bare ``yield`` (as in
-    ``asyncio.sleep(0)``) lets everything else that is ready go first.
+    Awaiting a :class:`Future` resumes once that future is done; a bare ``yield`` (as
+    in ``asyncio.sleep(0)``) runs all other ready events first.
     """
 
-    #: What it waits for may be an answer; nobody looks.
+    #: The task may await a service; its coroutine is not inspected.
     awaits_service = True
 
     def __init__(
@@ -169,7 +176,7 @@ class Task(Future[T]):
         args: tuple[Any, ...] = (),
         kwargs: dict[str, Any] | None = None,
         *,
-        loop: "EventLoop",
+        loop: Scheduler,
         source: str = "task",
         node: str = "",
     ) -> None:
@@ -180,20 +187,21 @@ class Task(Future[T]):
         self._executing = False
         self.source = source
         self.node = node
-        #: The callback group that is held until it ends; set by the loop.
+        #: The callback group that is held until the task ends; set by the loop.
         self.group: CallbackGroup | None = None
-        self._calling: CallbackGroup | None = None  # whose servers may answer it
-        #: Called with an exception nobody else would see; set by the loop.
+        # The group whose servers may run while the task awaits a response.
+        self._calling: CallbackGroup | None = None
+        #: Handles an exception that no other code would receive; set by the loop.
         self.on_error: Callable[[Exception], None] | None = None
         if isinstance(handler, Coroutine):
             self._coroutine = handler
 
     def executing(self) -> bool:
-        """Whether one of its steps is running right now."""
+        """Whether a step of the task is running."""
         return self._executing
 
     def __call__(self) -> None:
-        """Run until the next wait, or to the end."""
+        """Run until the next ``await`` or the end."""
         self._end_call()
         if self._done or self._executing:
             return
@@ -237,11 +245,11 @@ class Task(Future[T]):
         elif awaited is None:
             self._resume()
         else:
-            # Thrown into the coroutine, so that its traceback shows the line.
+            # Raised inside the coroutine so that the traceback shows the line.
             self._coroutine.throw(
                 TypeError(
-                    f"cannot await {type(awaited).__name__} here: only Navette's "
-                    "futures and tasks run on this loop (not asyncio's)"
+                    f"cannot await {type(awaited).__name__} here: the event loop "
+                    "accepts Navette's futures and tasks, not asyncio's"
                 )
             )
 

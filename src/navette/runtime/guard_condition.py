@@ -1,23 +1,23 @@
-"""Guard conditions: a callback that any thread can ask for."""
+"""Guard conditions: callbacks that any thread can trigger."""
 
 from collections.abc import Callable
 from typing import Any
 
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context, get_default_context
+from navette.runtime.destroyable import EntityOwner
 from navette.runtime.events import Entity
 from navette.runtime.handles import Handle
 
 
 class GuardCondition(Entity):
-    """Calls back soon after :meth:`trigger`. Made by ``create_guard_condition``.
+    """Runs a callback after :meth:`trigger`. Created by ``create_guard_condition``.
 
-    One that is made by hand belongs to no node: its callback runs whenever the
-    context's loop does.
-    Triggers before the callback has begun count as one.
+    Triggers before the callback has started count as one. A guard condition without
+    an owner belongs to no node: its callback runs whenever the context's loop runs.
     """
 
-    __slots__ = ("_loop", "_node_name", "_on_destroy", "_triggered", "callback")
+    __slots__ = ("_loop", "_node_name", "_owner", "_triggered", "callback")
 
     def __init__(
         self,
@@ -26,23 +26,23 @@ class GuardCondition(Entity):
         context: Context | None = None,
         *,
         node_name: str = "",
-        on_destroy: Callable[["GuardCondition"], None] | None = None,
+        owner: EntityOwner | None = None,
     ) -> None:
         self.callback = callback
         self._loop = (context or get_default_context()).loop
         self.group = callback_group or self._loop.free_group
         self._node_name = node_name
-        self._on_destroy = on_destroy
+        self._owner = owner
         self._triggered = False
 
     @property
     def handle(self) -> Handle:
-        """What a wait set takes."""
+        """The handle that a wait set takes."""
         return Handle(self)
 
     @property
     def is_triggered(self) -> bool:
-        """Whether its callback has still to run."""
+        """Whether the callback is still to run."""
         return self._triggered
 
     @property
@@ -50,7 +50,7 @@ class GuardCondition(Entity):
         return self.group
 
     def trigger(self) -> None:
-        """Let the callback run; from any thread."""
+        """Queue the callback; callable from any thread."""
         if not self._triggered:
             self._triggered = True
             self._loop.ready.append(self)
@@ -58,7 +58,7 @@ class GuardCondition(Entity):
                 self._loop.wake()
 
     def run(self) -> Any:
-        if not self._triggered:  # destroyed while the event waited
+        if not self._triggered:  # destroyed while the event was queued
             return None
         self._triggered = False
         return None if self.callback is None else self.callback()
@@ -68,5 +68,5 @@ class GuardCondition(Entity):
 
     def destroy(self) -> None:
         self._triggered = False
-        if self._on_destroy is not None:
-            self._on_destroy(self)
+        if self._owner is not None:
+            self._owner.forget(self)

@@ -1,22 +1,21 @@
 """Services that read and set log levels."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.msgs.rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
+from navette.runtime.log import LogHub
 from navette.runtime.log_levels import LoggingSeverity
-
-if TYPE_CHECKING:
-    from navette.runtime.node import Node
+from navette.runtime.node_services import NodeServices
 
 
 class LoggingService:
     """Server of ``~/get_logger_levels`` and ``~/set_logger_levels`` for a node."""
 
-    def __init__(self, node: "Node") -> None:
-        self._hub = node.context.log
+    def __init__(self, hub: LogHub, services: NodeServices) -> None:
+        self._hub = hub
         package = "rcl_interfaces/srv"
-        node.serve(f"{package}/GetLoggerLevels", "~/get_logger_levels", self._get)
-        node.serve(f"{package}/SetLoggerLevels", "~/set_logger_levels", self._set)
+        services.serve(f"{package}/GetLoggerLevels", "~/get_logger_levels", self._get)
+        services.serve(f"{package}/SetLoggerLevels", "~/set_logger_levels", self._set)
 
     def _get(self, request: Any, response: Any) -> Any:
         response.levels = [

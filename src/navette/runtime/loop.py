@@ -1,8 +1,8 @@
-"""The event loop of a context: everything that happens, in order of (time, sequence).
+"""Event loop of a context: runs all events in order of (time, sequence).
 
-One thread at a time drives it. Events of the present moment wait in ``ready``, in
-the order of their making; later ones wait in a heap. A callback that waits runs the
-loop again from inside (nested), with its own callback group held back.
+One thread at a time drives the loop. Events of the current time are in ``ready``, in
+the order of creation; later events are in a heap. A callback that waits runs the loop
+again from inside (nested) while its callback group is held.
 """
 
 import heapq
@@ -17,7 +17,7 @@ from navette.runtime.clock import ContextClock, Wakeup
 from navette.runtime.events import Call, Entity
 from navette.runtime.future import Task
 
-# How long a thread that may not drive the loop waits before it looks again.
+# How long a thread that may not drive the loop waits before it checks again.
 _TURN_S = 0.005
 
 
@@ -27,14 +27,14 @@ class EventLoop:
     def __init__(self, clock: ContextClock) -> None:
         self.clock = clock
         self.ready: deque[Entity] = deque()
-        #: True while the driving thread waits: whoever adds an event must wake it.
+        #: True while the driving thread waits: code that adds an event must wake it.
         self.waiting = False
         self._heap: list[tuple[int, int, Any]] = []
         self._sequence = 0
         self.free_group = ReentrantCallbackGroup()
-        #: Groups with rules of their own that held something back.
+        #: Groups with their own rules that have parked events.
         self._ruled: list[CallbackGroup] = []
-        self._ran = 0  # events since they were asked
+        self._ran = 0  # events since those groups' rules were called
         self._inbox: deque[Entity] = deque()
         self._wakeup = Wakeup()
         self._attention = False
@@ -43,7 +43,7 @@ class EventLoop:
         self._running: Entity | None = None
         self._lock = threading.Lock()
         self._turn = threading.Condition()
-        self._others = 0  # threads that wait while another one drives
+        self._others = 0  # threads that wait while another thread drives
         self._pending_execute = (
             0  # threads that are to run an event before the next is taken
         )
@@ -53,7 +53,7 @@ class EventLoop:
     def call_soon(
         self, function: Callable[[], Any], source: str = "call", node: str = ""
     ) -> Call:
-        """Run ``function`` at the present time, after what is ready already."""
+        """Run ``function`` at the current time, after the events that are ready."""
         call = Call(function, self.free_group, source, node)
         self.ready.append(call)
         if self.waiting:
@@ -63,7 +63,7 @@ class EventLoop:
     def call_soon_threadsafe(
         self, function: Callable[[], Any], source: str = "call", node: str = ""
     ) -> Call:
-        """As :meth:`call_soon`, from any thread, between two callbacks."""
+        """Run ``function`` between two callbacks; callable from any thread."""
         call = Call(function, self.free_group, source, node)
         self._inbox.append(call)
         self.wake()
@@ -76,13 +76,16 @@ class EventLoop:
         source: str = "call",
         node: str = "",
     ) -> Call:
-        """Run ``function`` at ``time_ns`` (now, if that is past)."""
+        """Run ``function`` at ``time_ns``, or now if that time has passed."""
         call = Call(function, self.free_group, source, node)
         call.token = self.schedule(time_ns, call)
         return call
 
     def schedule(self, time_ns: int, entity: Any) -> int:
-        """Queue ``entity`` for ``time_ns``; it runs if its ``token`` still matches."""
+        """Queue ``entity`` for ``time_ns`` and return a token.
+
+        The entity runs only if its ``token`` is still that one.
+        """
         with self._lock:
             self._sequence += 1
             token = self._sequence
@@ -92,14 +95,14 @@ class EventLoop:
         return token
 
     def wake(self) -> None:
-        """Make the driving thread look around."""
+        """Make the driving thread check its conditions."""
         self._attention = True
         if self.waiting:
             self._wakeup.set()
         self.notify_threads()
 
     def notify_threads(self) -> None:
-        """Make the threads that wait while another one drives look at what is done."""
+        """Make the threads that wait for their turn check their conditions."""
         if self._others:
             with self._turn:
                 self._turn.notify_all()
@@ -119,7 +122,7 @@ class EventLoop:
         node: str = "",
         **kwargs: Any,
     ) -> Task[Any]:
-        """Run a function or coroutine on this loop; the task holds its result."""
+        """Run a function or coroutine on this loop; the task gets its result."""
         task: Task[Any] = Task(
             handler, args, kwargs, loop=self, source=source, node=node
         )
@@ -127,7 +130,7 @@ class EventLoop:
         def fail(error: Exception) -> None:
             awaited = task.has_done_callbacks
             task.set_exception(error)
-            if not awaited:  # nobody would see it otherwise
+            if not awaited:  # no other code would receive the exception
                 raise error
 
         task.on_error = fail
@@ -137,27 +140,27 @@ class EventLoop:
     # -- running ---------------------------------------------------------------
 
     def close(self) -> None:
-        """End every run; later runs return at once."""
+        """End every run; later runs return immediately."""
         self._closed = True
         self.wake()
 
     @property
     def is_running(self) -> bool:
-        """Whether some thread drives the loop now."""
+        """Whether a thread is driving the loop."""
         return self._driver is not None
 
     @property
     def in_driver_thread(self) -> bool:
-        """Whether the caller runs inside a callback of this loop."""
+        """Whether the calling thread is driving the loop (runs inside a callback)."""
         return self._driver == threading.get_ident()
 
     @property
     def is_driven_elsewhere(self) -> bool:
-        """Whether another thread than the caller's drives the loop."""
+        """Whether a thread other than the caller's is driving the loop."""
         return self._driver is not None and self._driver != threading.get_ident()
 
     def wait_for_end(self, timeout_s: float) -> bool:
-        """After :meth:`close`: wait until no other thread runs a callback."""
+        """Wait until no other thread runs a callback; call after :meth:`close`."""
         if self.in_driver_thread:
             return True
         with self._turn:
@@ -176,12 +179,12 @@ class EventLoop:
 
         Args:
             until_ns: run all events up to and including this time, then stop.
-            done: asked before every event.
-            limit: at most this many events.
-            stop: asked only after :meth:`wake`: a request from elsewhere.
-            calling: a callback waits for a service: those of its own group answer.
+            done: checked before every event.
+            limit: maximum number of events.
+            stop: a request from another thread; checked only after :meth:`wake`.
+            calling: a callback waits for a service, so servers of its group may run.
 
-        Under a virtual clock it also ends when nothing is left to happen.
+        Under a virtual clock the run also ends when no events are left.
 
         Raises:
             CallbackError: a callback raised; names node, source and stamp.
@@ -202,9 +205,9 @@ class EventLoop:
                 return
 
     def take(self, until_ns: int | None, stop: Callable[[], bool]) -> Entity | None:
-        """The next event that may run now, without running it.
+        """Return the next event that may run now, without running it.
 
-        None if there is none until ``until_ns``, or ``stop`` asks for the end.
+        None if there is none until ``until_ns``, or ``stop`` holds.
         """
         while not self._closed and not stop():
             if self._pending_execute or not self._take_turn():
@@ -216,14 +219,14 @@ class EventLoop:
                 self._attention = False
                 self._collect()
                 entity = self._next_ready()
-                if entity is not None or not self._go_on(until_ns):
+                if entity is not None or not self._advance(until_ns):
                     return entity
             finally:
                 self._give_turn()
         return None
 
     def execute(self, entity: Entity) -> None:
-        """Run what :meth:`take` gave; from any thread, between two callbacks.
+        """Run an event from :meth:`take` between two callbacks; from any thread.
 
         Raises:
             CallbackError: as :meth:`run`.
@@ -299,7 +302,7 @@ class EventLoop:
     ) -> None:
         outer = self._running
         held = outer.group if outer is not None and outer.group.exclusive else None
-        # A coroutine's later step holds the group of the callback that began it.
+        # A coroutine's later step holds the group of the callback that started it.
         waiting = outer.waiting_group() if outer is not None and calling else None
         if held is not None:
             held.hold()
@@ -313,7 +316,7 @@ class EventLoop:
             if held is not None:
                 held.release()
             self._running = outer
-            self._attention = True  # what woke this run may concern the outer one
+            self._attention = True  # the wake-up may concern the outer run
 
     def _run(
         self,
@@ -336,18 +339,18 @@ class EventLoop:
             if limit is not None and count >= limit:
                 return
             if until_ns is not None and self.clock.now_ns > until_ns:
-                # A callback that waited took it past that time. What was held back
-                # meanwhile goes once; it may wait as long again, and so for ever.
+                # A callback that waited has moved the time past the end. The events
+                # parked meanwhile run once more only: each may wait as long again.
                 if is_late:
                     return
                 is_late = True
             if self.ready or self._inbox or self._attention:
                 continue
-            if not self._go_on(until_ns):
+            if not self._advance(until_ns):
                 return
 
     def _collect(self) -> None:
-        """Move what is due now to ``ready``; do what other threads asked for."""
+        """Move due events to ``ready``; run the calls of other threads."""
         now = self.clock.now_ns
         heap = self._heap
         if heap and heap[0][0] <= now:
@@ -357,10 +360,9 @@ class EventLoop:
                     if entity.token == token:
                         self.ready.append(entity)
         while self._inbox:
-            # Between two callbacks, and not counted as one: spin_once has still to run
-            # an event of the program's.
+            # Not counted as an event: spin_once must still run one of the program's.
             self.ready.appendleft(self._inbox.popleft())
-            # Even if somebody calls for attention: else the next would overtake it.
+            # Not interruptible: otherwise the next call would overtake this one.
             self._run_ready(None, 1, interruptible=False)
 
     def _run_ready(
@@ -370,9 +372,9 @@ class EventLoop:
         *,
         interruptible: bool = True,
     ) -> int:
-        """Run one batch: what is ready at the start, at most ``limit`` events.
+        """Run the events that are ready at the start, at most ``limit``.
 
-        Ends early when it is called for attention, if it ``interruptible`` that.
+        An ``interruptible`` batch ends early after :meth:`wake`.
         """
         ready = self.ready
         count = 0
@@ -408,9 +410,9 @@ class EventLoop:
         if group.has_rules and group not in self._ruled:
             self._ruled.append(group)
 
-    def _go_on(self, until_ns: int | None) -> bool:
-        """Go to the next event's time; False if there is nothing to wait for."""
-        if self._rules_let_go_on():
+    def _advance(self, until_ns: int | None) -> bool:
+        """Advance to the next event's time; False if there is nothing to wait for."""
+        if self._retry_parked():
             return True
         heap = self._heap
         with self._lock:
@@ -425,8 +427,8 @@ class EventLoop:
             return False
         self.waiting = True
         try:
-            # Looked at again now that others can see that we wait: no event that
-            # was added in between is slept over.
+            # Checked again now that other threads see ``waiting``: an event added in
+            # between must not be missed.
             if self.ready or self._inbox or self._attention or self._closed:
                 return True
             self.clock.go_to(target, self._wakeup)
@@ -435,12 +437,12 @@ class EventLoop:
             self._wakeup.clear()
         return True
 
-    def _rules_let_go_on(self) -> bool:
-        """Ask groups with rules again, if an event ran that may have changed them."""
+    def _retry_parked(self) -> bool:
+        """Call the groups' rules again if an event ran that may have changed them."""
         if self._ran and self._ruled:
             self._ran = 0
             for group in self._ruled:
-                group.ask_again()
+                group.retry_parked()
         return bool(self.ready)
 
     def _start(
@@ -449,7 +451,7 @@ class EventLoop:
         coroutine: Coroutine[Any, Any, Any],
         rules: CallbackGroup | None,
     ) -> None:
-        """Run a coroutine callback; its exclusive group is held until it ends."""
+        """Run a coroutine callback; an exclusive group is held until it ends."""
         node, source = entity.origin()
         task: Task[Any] = Task(coroutine, loop=self, source=source, node=node)
         task.group = entity.group
@@ -467,7 +469,7 @@ class EventLoop:
             task.add_done_callback(lambda _: group.release())
 
     def _raise(self, origin: tuple[str, str], error: Exception) -> NoReturn:
-        # A nested run or a coroutine's step has named the culprit already.
+        # A nested run or a coroutine's step has already named the source.
         if isinstance(error, CallbackError):
             raise error
         node, source = origin

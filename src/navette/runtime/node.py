@@ -2,62 +2,89 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from navette.errors import InvalidValueError, NavetteError
-from navette.msgs.rcl_interfaces.msg import Log, ParameterEvent
-from navette.runtime.arguments import RosArguments, parse_ros_arguments
-from navette.runtime.callback_groups import (
-    CallbackGroup,
-    MutuallyExclusiveCallbackGroup,
+from navette.msgs.rcl_interfaces.msg import (
+    ListParametersResult,
+    Log,
+    ParameterDescriptor,
+    ParameterEvent,
+    ParameterValue,
+    SetParametersResult,
 )
+from navette.runtime.arguments import RosArguments, parse_ros_arguments
+from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.client import Client
+from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.context import Context, get_default_context
 from navette.runtime.exceptions import NotInitializedException
-from navette.runtime.log import Logger, LogRecord
+from navette.runtime.graph_queries import GraphQueries
+from navette.runtime.guard_condition import GuardCondition
+from navette.runtime.log import Logger
 from navette.runtime.logging_service import LoggingService
 from navette.runtime.names import (
     NodeRemapper,
-    full_node_name,
+    RemapRule,
     validate_namespace,
     validate_node_name,
 )
-from navette.runtime.node_graph import NodeGraph
+from navette.runtime.node_entities import NodeEntities
 from navette.runtime.node_parameters import NodeParameters
 from navette.runtime.node_services import NodeServices
 from navette.runtime.node_topics import NodeTopics
-from navette.runtime.node_waitables import NodeWaitables
 from navette.runtime.overrides import Override, ParameterOverrides
-from navette.runtime.parameter import Parameter
+from navette.runtime.parameter import Parameter, ParameterType
 from navette.runtime.parameter_service import ParameterService
-from navette.runtime.parameter_store import Changes, ParameterStore
+from navette.runtime.parameter_store import (
+    Changes,
+    OnCallback,
+    PostCallback,
+    PreCallback,
+)
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (
+    QoSProfile,
     qos_profile_parameter_events,
     qos_profile_rosout_default,
+    qos_profile_services_default,
 )
+from navette.runtime.qos_events import (
+    PublisherEventCallbacks,
+    SubscriptionEventCallbacks,
+)
+from navette.runtime.qos_overriding_options import QoSOverridingOptions
 from navette.runtime.rate import Rate
 from navette.runtime.ros_clock import Clock, ROSClock
+from navette.runtime.rosout import RosoutSink
+from navette.runtime.service import Service
+from navette.runtime.subscription import Subscription
 from navette.runtime.time import ns_to_stamp, seconds_to_ns
 from navette.runtime.time_source import TimeSource
 from navette.runtime.timer import Timer
 from navette.runtime.type_description_service import TypeDescriptionService
+from navette.runtime.type_support import interface_name
+from navette.runtime.waitable import Waitable, WaitableEvents
 from navette.transports import NodeInfo
 
 HIDDEN_NODE_PREFIX = "_"
 
+MsgT = TypeVar("MsgT")
 
-class Node(NodeParameters, NodeTopics, NodeServices, NodeWaitables, NodeGraph):
-    """Owns publishers, subscriptions, timers and parameters under one name.
 
-    Args as in rclpy; ``parameter_overrides`` win over everything else.
+class Node(GraphQueries):
+    """Owns publishers, subscriptions, services, timers and parameters under one name.
+
+    Arguments as in rclpy; ``parameter_overrides`` take precedence over values from
+    files and the command line.
     """
 
-    if not TYPE_CHECKING:  # else every name would be an attribute to type checkers
+    if not TYPE_CHECKING:  # type checkers would accept any attribute name
 
         def __getattr__(self, name: str) -> NoReturn:
-            """Of what is not there: tell those who forgot ``super().__init__``."""
+            """Raise AttributeError; mention a missing ``super().__init__`` call."""
             text = f"{type(self).__name__!r} object has no attribute {name!r}"
-            if "_destroyed" not in vars(self):
+            if "_node_entities" not in vars(self):
                 text += (
                     ": the node is not initialised yet; call super().__init__('name') "
                     "first in its __init__"
@@ -81,137 +108,95 @@ class Node(NodeParameters, NodeTopics, NodeServices, NodeWaitables, NodeGraph):
     ) -> None:
         self._context = _valid_context(context)
         local = _local_arguments(cli_args)
-        self._name_node(node_name, namespace or "", local, use_global_arguments)
-        full_name = self.get_fully_qualified_name()
-        self._overrides = self._collect_overrides(
-            local, parameter_overrides or (), use_global_arguments
-        )
+        remaps = self._context.arguments.remaps if use_global_arguments else []
+        remapper = _node_remapper(node_name, namespace or "", [*local.remaps, *remaps])
+        super().__init__(self._context.graph, self._context.loop, remapper)
+        self._node_entities = entities = NodeEntities(self._context, remapper)
         self._executor: Any = None
-        self._destroyed = False
-        self._entities: list[Any] = []
-        self._groups: list[CallbackGroup] = []
-        self._default_group = self._own_group(MutuallyExclusiveCallbackGroup())
         self._clock = ROSClock(context=self._context)
-        self._logger = Logger(full_name.strip("/").replace("/", "."), self._context.log)
-        self._store = ParameterStore(
-            self._report_changes, allow_undeclared=allow_undeclared_parameters
+        logger_name = entities.full_name.strip("/").replace("/", ".")
+        self._logger = Logger(logger_name, self._context.log)
+        self._node_parameters = NodeParameters(
+            entities.full_name,
+            _parameter_overrides(
+                entities.full_name,
+                self._context.overrides if use_global_arguments else None,
+                local,
+                parameter_overrides or (),
+            ),
+            self._publish_changes,
+            allow_undeclared=allow_undeclared_parameters,
         )
+        self._node_topics = NodeTopics(entities, self._node_parameters, self._logger)
+        self._node_services = NodeServices(entities, self._node_topics)
+        self._rosout_sink: RosoutSink | None = None
         self._info = NodeInfo(
-            self.get_name(), self.get_namespace(), self._context.arguments.enclave
+            remapper.node_name, remapper.namespace, self._context.arguments.enclave
         )
-        self._rosout: Publisher[Any] | None = None
         self._join_graph()
         try:
-            self._open(enable_rosout and self._context.arguments.enable_rosout)
+            if enable_rosout and self._context.arguments.enable_rosout:
+                self._open_rosout()
+            self._parameter_events = self._node_topics.create_publisher(
+                ParameterEvent, "/parameter_events", qos_profile_parameter_events
+            )
             if automatically_declare_parameters_from_overrides:
-                for name, override in self._overrides.items():
+                for name, override in self._node_parameters.overrides.items():
                     self.declare_parameter(name, override.value)
-            self._time_source = TimeSource(self)
-            if start_parameter_services:
-                self._parameter_service = ParameterService(self)
-            self._type_description_service = TypeDescriptionService(self)
-            if enable_logger_service:
-                self._logging_service = LoggingService(self)
+            self._start_services(start_parameter_services, enable_logger_service)
         except NavetteError:
             Node.destroy_node(self)  # leave no half-made node in the graph
             raise
 
-    # -- who it is -------------------------------------------------------------
+    def _join_graph(self) -> None:
+        full_name = self._node_entities.full_name
+        if full_name in self.get_fully_qualified_node_names():
+            self._logger.warning(
+                f"another node is named {full_name}: node names should be unique"
+            )
+        self._context.graph.add_node(self._info)
+        self._context.nodes.append(self)
 
-    def get_name(self) -> str:
-        return self._remapper.node_name
-
-    def get_namespace(self) -> str:
-        return self._remapper.namespace
-
-    def get_fully_qualified_name(self) -> str:
-        return full_node_name(self.get_name(), self.get_namespace())
-
-    def get_clock(self) -> Clock:
-        return self._clock
-
-    def get_logger(self) -> Logger:
-        return self._logger
-
-    @property
-    def context(self) -> Context:
-        return self._context
-
-    @property
-    def executor(self) -> Any:
-        """The executor that runs its callbacks, if it was added to one."""
-        return self._executor
-
-    @executor.setter
-    def executor(self, executor: Any) -> None:
-        if self._executor is not None and executor is not self._executor:
-            self._executor.remove_node(self)
-        if executor is not None:
-            executor.add_node(self)
-
-    @property
-    def default_callback_group(self) -> CallbackGroup:
-        return self._default_group
-
-    @property
-    def timers(self) -> Iterator[Timer]:
-        return (e for e in self._entities if isinstance(e, Timer))
-
-    # -- time ------------------------------------------------------------------
-
-    def create_timer(
-        self,
-        timer_period_sec: float,
-        callback: Callable[..., Any] | None,
-        callback_group: CallbackGroup | None = None,
-        clock: Clock | None = None,
-        autostart: bool = True,
-    ) -> Timer:
-        """Call ``callback`` every ``timer_period_sec`` seconds of the clock."""
-        timer = Timer(
-            callback,
-            self._own_group(callback_group),
-            seconds_to_ns(float(timer_period_sec)),
-            clock or self._clock,
-            node_name=self.get_fully_qualified_name(),
-            on_destroy=self._forget,
-            autostart=autostart,
+    def _open_rosout(self) -> None:
+        publisher = self._node_topics.create_publisher(
+            Log, "/rosout", qos_profile_rosout_default
         )
-        timer.group.add_entity(timer)
-        self._entities.append(timer)
-        return timer
+        self._rosout_sink = RosoutSink(publisher, self._logger.name)
+        self._context.log.sinks.append(self._rosout_sink)
 
-    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """``rate.sleep()`` lets the rest of a period of ``frequency`` Hz pass."""
-        if frequency <= 0:
-            raise InvalidValueError(f"rate {frequency!r} Hz: wanted > 0")
-        rate = Rate(
-            round(1e9 / frequency), clock or self._clock, self._context, self._forget
+    def _start_services(self, parameter_services: bool, logger_service: bool) -> None:
+        parameters, services = self._node_parameters, self._node_services
+        self._time_source = TimeSource(
+            self._context, self._clock, parameters, self._node_topics
         )
-        self._entities.append(rate)
-        return rate
+        if parameter_services:
+            self._parameter_service = ParameterService(parameters, services)
+        self._type_description_service = TypeDescriptionService(parameters, services)
+        if logger_service:
+            self._logging_service = LoggingService(self._context.log, services)
 
-    def call_soon(self, function: Callable[[], Any], source: str) -> None:
-        """Run ``function`` as an event of this node."""
-        self._context.loop.call_soon(function, source, self.get_fully_qualified_name())
-
-    # -- taking down -----------------------------------------------------------
-
-    def destroy_timer(self, timer: Timer) -> bool:
-        return self._destroy(timer)
-
-    def destroy_rate(self, rate: Rate) -> bool:
-        return self._destroy(rate)
+    def _publish_changes(self, changes: Changes) -> None:
+        new, changed, deleted = changes
+        if not self._parameter_events.get_subscription_count():
+            return
+        self._parameter_events.publish(
+            ParameterEvent(
+                stamp=ns_to_stamp(self._clock.now_ns),
+                node=self._node_entities.full_name,
+                new_parameters=[p.to_parameter_msg() for p in new],
+                changed_parameters=[p.to_parameter_msg() for p in changed],
+                deleted_parameters=[p.to_parameter_msg() for p in deleted],
+            )
+        )
 
     def destroy_node(self) -> None:
-        """Take everything down; a second call does nothing."""
-        if self._destroyed:
+        """Destroy all entities and leave the graph; a second call has no effect."""
+        if self._node_entities.is_destroyed:
             return
-        self._destroyed = True
-        if self._rosout is not None and self._to_rosout in self._context.log.sinks:
-            self._context.log.sinks.remove(self._to_rosout)
-        for entity in tuple(self._entities):
-            entity.destroy()
+        sinks = self._context.log.sinks
+        if self._rosout_sink is not None and self._rosout_sink in sinks:
+            sinks.remove(self._rosout_sink)
+        self._node_entities.destroy_all()
         if self._executor is not None:
             self._executor.remove_node(self)
         self._context.nodes.remove(self)
@@ -228,129 +213,412 @@ class Node(NodeParameters, NodeTopics, NodeServices, NodeWaitables, NodeGraph):
     ) -> None:
         self.destroy_node()
 
-    # -- inside ----------------------------------------------------------------
+    # Identity, context and executor.
+
+    def get_name(self) -> str:
+        return self._remapper.node_name
+
+    def get_namespace(self) -> str:
+        return self._remapper.namespace
+
+    def get_fully_qualified_name(self) -> str:
+        return self._node_entities.full_name
+
+    def get_clock(self) -> Clock:
+        return self._clock
+
+    def get_logger(self) -> Logger:
+        return self._logger
+
+    @property
+    def context(self) -> Context:
+        return self._context
+
+    @property
+    def executor(self) -> Any:
+        """The executor that runs the node's callbacks, or None."""
+        return self._executor
+
+    @executor.setter
+    def executor(self, executor: Any) -> None:
+        if self._executor is not None and executor is not self._executor:
+            self._executor.remove_node(self)
+        if executor is not None:
+            executor.add_node(self)
 
     def attach(self, executor: Any) -> None:
-        """Let callbacks run; called by the executor that the node was added to."""
+        """Let callbacks run; called by the executor that the node is added to."""
         self._executor = executor
-        for group in self._groups:
-            group.release()
+        self._node_entities.release()
 
     def detach(self) -> None:
-        """Keep callbacks back; called by the executor that let go of the node."""
+        """Hold callbacks; called by the executor that the node is removed from."""
         self._executor = None
-        for group in self._groups:
-            group.hold()
+        self._node_entities.hold()
 
-    def _join_graph(self) -> None:
-        full_name = self.get_fully_qualified_name()
-        if full_name in self.get_fully_qualified_node_names():
-            self._logger.warning(
-                f"there is a node {full_name} already: names should be unique"
-            )
-        self._context.graph.add_node(self._info)
-        self._context.nodes.append(self)
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        return self._node_entities.default_group
 
-    def _open(self, rosout: bool) -> None:
-        """The topics that every node has."""
-        if rosout:
-            self._rosout = self.create_publisher(
-                Log, "/rosout", qos_profile_rosout_default
-            )
-            self._context.log.sinks.append(self._to_rosout)
-        self._parameter_events = self.create_publisher(
-            ParameterEvent, "/parameter_events", qos_profile_parameter_events
-        )
+    # Topics.
 
-    def _check_alive(self) -> None:
-        if self._destroyed:
-            raise InvalidValueError(
-                f"node {self.get_fully_qualified_name()} was destroyed"
-            )
+    @property
+    def publishers(self) -> Iterator[Publisher[Any]]:
+        return self._node_entities.of_type(Publisher)
 
-    def _own_group(self, group: CallbackGroup | None) -> CallbackGroup:
-        if group is None:
-            return self._default_group
-        if group not in self._groups:
-            self._groups.append(group)
-            group.ready = self._context.loop.ready
-            if self._executor is None:
-                group.hold()
-        return group
+    @property
+    def subscriptions(self) -> Iterator[Subscription[Any]]:
+        return self._node_entities.of_type(Subscription)
 
-    def _forget(self, entity: Any) -> None:
-        if entity in self._entities:
-            self._entities.remove(entity)
-        group = getattr(entity, "group", None) or getattr(
-            entity, "callback_group", None
-        )
-        if group is not None:
-            group.remove_entity(entity)
-
-    def _destroy(self, entity: Any) -> bool:
-        if entity not in self._entities:
-            return False
-        entity.destroy()
-        return True
-
-    def _name_node(
-        self, name: str, namespace: str, local: RosArguments, use_global: bool
-    ) -> None:
-        validate_node_name(name)
-        rules = list(local.remaps)
-        if use_global:
-            rules += self._context.arguments.remaps
-        self._remapper = NodeRemapper(rules, name, namespace)
-        validate_node_name(self._remapper.node_name)
-        validate_namespace(self._remapper.namespace)
-
-    def _collect_overrides(
+    def create_publisher(
         self,
-        local: RosArguments,
-        given: Sequence[Parameter[Any]],
-        use_global: bool,
-    ) -> dict[str, Override]:
-        """Weakest to strongest: the context's, the node's arguments, the code's."""
-        full_name = self.get_fully_qualified_name()
-        chosen: dict[str, Override] = {}
-        if use_global:
-            chosen.update(self._context.overrides.for_node(full_name))
-        own = ParameterOverrides()
-        own.add_arguments(local.parameters, "node arguments")
-        chosen.update(own.for_node(full_name))
-        chosen.update({p.name: Override(p.value, "parameter_overrides") for p in given})
-        return chosen
-
-    def _report_changes(self, changes: Changes) -> None:
-        new, changed, deleted = changes
-        if not self._parameter_events.get_subscription_count():
-            return
-        self._parameter_events.publish(
-            ParameterEvent(
-                stamp=ns_to_stamp(self._clock.now_ns),
-                node=self.get_fully_qualified_name(),
-                new_parameters=[p.to_parameter_msg() for p in new],
-                changed_parameters=[p.to_parameter_msg() for p in changed],
-                deleted_parameters=[p.to_parameter_msg() for p in deleted],
-            )
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        publisher_class: type[Publisher[Any]] = Publisher,
+    ) -> Publisher[MsgT]:
+        """Create a publisher on ``topic`` (relative, private or global; remapped)."""
+        return self._node_topics.create_publisher(
+            msg_type,
+            topic,
+            qos_profile,
+            event_callbacks=event_callbacks,
+            qos_overriding_options=qos_overriding_options,
+            publisher_class=publisher_class,
         )
 
-    def _to_rosout(self, record: LogRecord) -> None:
-        name = self._logger.name
-        if record.name != name and not record.name.startswith(f"{name}."):
-            return
-        assert self._rosout is not None, "the sink is added with the publisher"
-        self._rosout.publish(
-            Log(
-                stamp=ns_to_stamp(record.stamp_ns),
-                level=int(record.severity),
-                name=record.name,
-                msg=record.message,
-                file=record.file,
-                function=record.function,
-                line=record.line,
-            )
+    def create_subscription(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
+        shared: bool = False,
+    ) -> Subscription[MsgT]:
+        """Call ``callback(msg)`` or ``callback(msg, info)`` for every sample.
+
+        Args:
+            raw: pass the serialised bytes.
+            content_filter_options: queue only samples that pass the filter.
+            shared: pass the same, uncopied object to all shared subscriptions, which
+                must not modify it.
+        """
+        return self._node_topics.create_subscription(
+            msg_type,
+            topic,
+            callback,
+            qos_profile,
+            callback_group=callback_group,
+            event_callbacks=event_callbacks,
+            qos_overriding_options=qos_overriding_options,
+            raw=raw,
+            content_filter_options=content_filter_options,
+            shared=shared,
         )
+
+    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
+        return self._node_entities.destroy(publisher)
+
+    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
+        return self._node_entities.destroy(subscription)
+
+    # Services.
+
+    @property
+    def services(self) -> Iterator[Service]:
+        return self._node_entities.of_type(Service)
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        return self._node_entities.of_type(Client)
+
+    def create_service(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service:
+        """Respond to requests with ``callback(request, response) -> response``.
+
+        The callback may be a coroutine function.
+        """
+        return self.serve(
+            interface_name(srv_type, "srv"),
+            srv_name,
+            callback,
+            qos_profile=qos_profile,
+            callback_group=callback_group,
+        )
+
+    def serve(
+        self,
+        type_name: str,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+        deferred: bool = False,
+    ) -> Service:
+        """Create a service by type name; its classes are created on first use.
+
+        Args:
+            deferred: call ``callback(request, request_id)``, which responds at any time
+                with :meth:`Service.send_response`.
+        """
+        return self._node_services.serve(
+            type_name,
+            srv_name,
+            callback,
+            qos_profile=qos_profile,
+            callback_group=callback_group,
+            deferred=deferred,
+        )
+
+    def create_client(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Client:
+        """Create a client of the service ``srv_name``."""
+        return self._node_services.create_client(
+            interface_name(srv_type, "srv"),
+            srv_name,
+            qos_profile=qos_profile,
+            callback_group=callback_group,
+        )
+
+    def destroy_service(self, service: Service) -> bool:
+        return self._node_entities.destroy(service)
+
+    def destroy_client(self, client: Client) -> bool:
+        return self._node_entities.destroy(client)
+
+    # Timers, rates, guard conditions and waitables.
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        return self._node_entities.of_type(Timer)
+
+    @property
+    def guards(self) -> Iterator[GuardCondition]:
+        return self._node_entities.of_type(GuardCondition)
+
+    @property
+    def waitables(self) -> Iterator[Waitable[Any]]:
+        return self._node_entities.of_type(Waitable)
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup | None = None,
+        clock: Clock | None = None,
+        autostart: bool = True,
+    ) -> Timer:
+        """Call ``callback`` every ``timer_period_sec`` seconds of the clock."""
+        timer = Timer(
+            callback,
+            self._node_entities.adopt(callback_group),
+            seconds_to_ns(float(timer_period_sec)),
+            clock or self._clock,
+            node_name=self._node_entities.full_name,
+            owner=self._node_entities,
+            autostart=autostart,
+        )
+        self._node_entities.add(timer)
+        return timer
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """Create a rate whose ``sleep()`` ends each period of ``frequency`` Hz."""
+        if frequency <= 0:
+            raise InvalidValueError(f"rate must be > 0 Hz, got {frequency!r}")
+        rate = Rate(
+            round(1e9 / frequency),
+            clock or self._clock,
+            self._context,
+            self._node_entities,
+        )
+        self._node_entities.add(rate)
+        return rate
+
+    def create_guard_condition(
+        self,
+        callback: Callable[[], Any] | None,
+        callback_group: CallbackGroup | None = None,
+    ) -> GuardCondition:
+        """Call ``callback`` after each ``trigger()`` of the guard condition."""
+        guard = GuardCondition(
+            callback,
+            self._node_entities.adopt(callback_group),
+            self._context,
+            node_name=self._node_entities.full_name,
+            owner=self._node_entities,
+        )
+        self._node_entities.add(guard)
+        return guard
+
+    def add_waitable(self, waitable: Waitable[Any]) -> None:
+        """Run a waitable when it is ready; the node destroys it at the end."""
+        self._node_entities.add(waitable)
+        if type(waitable).add_to_wait_set is Waitable.add_to_wait_set:
+            return  # an action, whose services and topics the loop runs
+        events = WaitableEvents(
+            waitable,
+            self._node_entities.adopt(waitable.callback_group),
+            self._context.loop,
+            self._node_entities.full_name,
+        )
+        waitable.add_to_wait_set(events.wait_set)
+
+    def remove_waitable(self, waitable: Waitable[Any]) -> None:
+        self._node_entities.forget(waitable)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        return self._node_entities.destroy(timer)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        return self._node_entities.destroy(rate)
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        return self._node_entities.destroy(guard)
+
+    # Parameters.
+
+    def declare_parameter(
+        self,
+        name: str,
+        value: Any = None,
+        descriptor: ParameterDescriptor | None = None,
+        ignore_override: bool = False,
+    ) -> Parameter[Any]:
+        """Declare a parameter with a default value or a ``Parameter.Type``.
+
+        Values from files, launch and command line take precedence over the default.
+
+        Raises:
+            ParameterError: declared before, or the value is rejected.
+        """
+        return self._node_parameters.declare_parameter(
+            name, value, descriptor, ignore_override
+        )
+
+    def declare_parameters(
+        self,
+        namespace: str,
+        parameters: Sequence[tuple[Any, ...]],
+        ignore_override: bool = False,
+    ) -> list[Parameter[Any]]:
+        """Declare (name[, value or type[, descriptor]]) as ``namespace.name``."""
+        return self._node_parameters.declare_parameters(
+            namespace, parameters, ignore_override
+        )
+
+    def undeclare_parameter(self, name: str) -> None:
+        self._node_parameters.undeclare_parameter(name)
+
+    def has_parameter(self, name: str) -> bool:
+        return self._node_parameters.has_parameter(name)
+
+    def get_parameter(self, name: str) -> Parameter[Any]:
+        """Return the parameter.
+
+        Raises:
+            ParameterNotDeclaredException: not declared, and the node requires it.
+            ParameterUninitializedException: declared with a type and without a value.
+        """
+        return self._node_parameters.get_parameter(name)
+
+    def get_parameters(self, names: list[str]) -> list[Parameter[Any]]:
+        return self._node_parameters.get_parameters(names)
+
+    def get_parameter_or(
+        self, name: str, alternative_value: Parameter[Any] | None = None
+    ) -> Parameter[Any]:
+        """Return the parameter, or the alternative if it has no value."""
+        return self._node_parameters.get_parameter_or(name, alternative_value)
+
+    def get_parameter_type(self, name: str) -> ParameterType:
+        return self._node_parameters.get_parameter_type(name)
+
+    def get_parameter_types(self, names: list[str]) -> list[ParameterType]:
+        return self._node_parameters.get_parameter_types(names)
+
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
+        """Return the parameters below ``prefix.``, keyed by the rest of the name."""
+        return self._node_parameters.get_parameters_by_prefix(prefix)
+
+    def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
+        """List names at most ``depth`` levels below any prefix; 0 means all levels."""
+        return self._node_parameters.list_parameters(prefixes, depth)
+
+    def known_parameters(self) -> list[str] | None:
+        """Return the declared names; None if undeclared parameters are allowed."""
+        return self._node_parameters.known_parameters()
+
+    def set_parameters(
+        self, parameter_list: list[Parameter[Any]]
+    ) -> list[SetParametersResult]:
+        """Set the parameters one by one; the results contain the rejections."""
+        return self._node_parameters.set_parameters(parameter_list)
+
+    def set_parameters_atomically(
+        self, parameter_list: list[Parameter[Any]]
+    ) -> SetParametersResult:
+        """Set all of the parameters or none."""
+        return self._node_parameters.set_parameters_atomically(parameter_list)
+
+    def add_pre_set_parameters_callback(self, callback: PreCallback) -> None:
+        """Add a callback that may change the list before it is checked."""
+        self._node_parameters.store.pre_callbacks.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: OnCallback) -> None:
+        """Add a callback that may reject the values."""
+        self._node_parameters.store.on_callbacks.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: PostCallback) -> None:
+        """Add a callback that runs after the values were set."""
+        self._node_parameters.store.post_callbacks.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: PreCallback) -> None:
+        self._node_parameters.store.pre_callbacks.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: OnCallback) -> None:
+        self._node_parameters.store.on_callbacks.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: PostCallback) -> None:
+        self._node_parameters.store.post_callbacks.remove(callback)
+
+    def describe_parameter(self, name: str) -> ParameterDescriptor:
+        return self._node_parameters.describe_parameter(name)
+
+    def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
+        return self._node_parameters.describe_parameters(names)
+
+    def set_descriptor(
+        self,
+        name: str,
+        descriptor: ParameterDescriptor,
+        alternative_value: ParameterValue | None = None,
+    ) -> ParameterValue:
+        """Replace the descriptor; set the alternative if the value does not fit it."""
+        return self._node_parameters.set_descriptor(name, descriptor, alternative_value)
 
 
 def _valid_context(context: Context | None) -> Context:
@@ -364,10 +632,34 @@ def _valid_context(context: Context | None) -> Context:
 
 
 def _local_arguments(cli_args: Sequence[str] | None) -> RosArguments:
-    """A node's own arguments; the leading ``--ros-args`` may be left out."""
+    """Parse a node's own arguments; the leading ``--ros-args`` is optional."""
     if not cli_args:
         return RosArguments()
     args = list(cli_args)
     if "--ros-args" not in args:
         args.insert(0, "--ros-args")
     return parse_ros_arguments(args)
+
+
+def _node_remapper(name: str, namespace: str, rules: list[RemapRule]) -> NodeRemapper:
+    validate_node_name(name)
+    remapper = NodeRemapper(rules, name, namespace)
+    validate_node_name(remapper.node_name)
+    validate_namespace(remapper.namespace)
+    return remapper
+
+
+def _parameter_overrides(
+    node_name: str,
+    shared: ParameterOverrides | None,
+    local: RosArguments,
+    given: Sequence[Parameter[Any]],
+) -> dict[str, Override]:
+    """Merge overrides of context, node arguments and code, in rising precedence."""
+    own = ParameterOverrides()
+    own.add_arguments(local.parameters, "node arguments")
+    return {
+        **(shared.for_node(node_name) if shared is not None else {}),
+        **own.for_node(node_name),
+        **{p.name: Override(p.value, "parameter_overrides") for p in given},
+    }

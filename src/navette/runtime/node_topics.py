@@ -1,19 +1,17 @@
-"""The topic half of :class:`Node`, as rclpy has it: publishers and subscriptions."""
+"""Create a node's publishers and subscriptions."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, TypeVar
 
 from navette.errors import NavetteError
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.content_filter import ContentFilterOptions
-from navette.runtime.context import Context
 from navette.runtime.log import Logger
-from navette.runtime.names import NodeRemapper
-from navette.runtime.parameter import Parameter
+from navette.runtime.node_entities import NodeEntities
+from navette.runtime.node_parameters import NodeParameters
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import QoSProfile, as_profile
 from navette.runtime.qos_events import (
-    EventCallbacks,
     PublisherEventCallbacks,
     SubscriptionEventCallbacks,
 )
@@ -27,46 +25,19 @@ MsgT = TypeVar("MsgT")
 
 
 class NodeTopics:
-    """Publish and subscribe. Mixed into :class:`Node`."""
+    """Factory of publishers and subscriptions; arguments as in :class:`Node`.
 
-    _context: Context
-    _remapper: NodeRemapper
-    _logger: Logger
-    _entities: list[Any]
+    Args:
+        parameters: QoS overrides are declared as parameters of the node.
+        logger: for warnings about incompatible endpoints.
+    """
 
-    def _check_alive(self) -> None:
-        raise NotImplementedError
-
-    def has_parameter(self, name: str) -> bool:
-        raise NotImplementedError
-
-    def get_parameter(self, name: str) -> Parameter[Any]:
-        raise NotImplementedError
-
-    def declare_parameter(
-        self, name: str, value: Any = None, descriptor: Any = None
-    ) -> Parameter[Any]:
-        raise NotImplementedError
-
-    def call_soon(self, function: Callable[[], Any], source: str) -> None:
-        raise NotImplementedError
-
-    def _own_group(self, group: CallbackGroup | None) -> CallbackGroup:
-        raise NotImplementedError
-
-    def _forget(self, entity: Any) -> None:
-        raise NotImplementedError
-
-    def _destroy(self, entity: Any) -> bool:
-        raise NotImplementedError
-
-    @property
-    def publishers(self) -> Iterator[Publisher[Any]]:
-        return (e for e in self._entities if isinstance(e, Publisher))
-
-    @property
-    def subscriptions(self) -> Iterator[Subscription[Any]]:
-        return (e for e in self._entities if isinstance(e, Subscription))
+    def __init__(
+        self, entities: NodeEntities, parameters: NodeParameters, logger: Logger
+    ) -> None:
+        self._entities = entities
+        self._parameters = parameters
+        self._logger = logger
 
     def create_publisher(
         self,
@@ -74,37 +45,27 @@ class NodeTopics:
         topic: str,
         qos_profile: QoSProfile | int,
         *,
-        callback_group: CallbackGroup | None = None,
         event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[Any]] = Publisher,
     ) -> Publisher[MsgT]:
-        """A publisher on ``topic`` (relative, private or global; remapped)."""
         kind = EndpointKind.PUBLISHER
         qos = self._profile(kind, topic, qos_profile, qos_overriding_options)
         endpoint = self._endpoint(kind, msg_type, topic, qos)
-        watch = self._watch(endpoint, event_callbacks)
+        context = self._entities.context
+        watch = EndpointWatch(context, endpoint, event_callbacks, self._logger)
         try:
             ports = [
                 transport.advertise(endpoint, msg_type)
-                for transport in self._context.graph.transports
+                for transport in context.graph.transports
             ]
         except NavetteError:
             watch.stop()
             raise
-
-        def forget(publisher: Publisher[Any]) -> None:
-            watch.stop()
-            self._forget(publisher)
-
         publisher = publisher_class(
-            msg_type, endpoint, qos, ports, self._context.loop, forget
+            msg_type, endpoint, qos, ports, context.loop, self._entities, watch
         )
-        if event_callbacks is not None:
-            publisher.event_handlers = event_callbacks.handlers()
-        if watch.on_sample is not None:
-            publisher.watch(watch.on_sample, watch.on_assertion)
-        self._entities.append(publisher)
+        self._entities.add(publisher)
         return publisher
 
     def create_subscription(
@@ -121,45 +82,31 @@ class NodeTopics:
         content_filter_options: ContentFilterOptions | None = None,
         shared: bool = False,
     ) -> Subscription[MsgT]:
-        """Call ``callback(msg)`` or ``callback(msg, info)`` for every sample.
-
-        Args:
-            raw: give the serialised bytes.
-            content_filter_options: queue only samples that pass.
-            shared: give the one object that all shared subscriptions get, uncopied:
-                look, do not alter.
-        """
         if not callable(callback):
             raise TypeError(f"topic {topic}: callback {callback!r} is not callable")
         kind = EndpointKind.SUBSCRIPTION
         qos = self._profile(kind, topic, qos_profile, qos_overriding_options)
         endpoint = self._endpoint(kind, msg_type, topic, qos)
-        watch = self._watch(endpoint, event_callbacks)
-
-        def forget(subscription: Subscription[Any]) -> None:
-            watch.stop()
-            self._forget(subscription)
-
+        context = self._entities.context
+        watch = EndpointWatch(context, endpoint, event_callbacks, self._logger)
         subscription: Subscription[MsgT] = Subscription(
             msg_type,
             endpoint,
             callback,
-            self._own_group(callback_group),
+            self._entities.adopt(callback_group),
             qos,
-            self._context.loop,
-            forget,
+            context.loop,
+            self._entities,
+            watch,
             raw=raw,
             shared=shared,
         )
-        subscription.group.add_entity(subscription)
-        self._entities.append(subscription)
-        if event_callbacks is not None:
-            subscription.event_handlers = event_callbacks.handlers()
-        sink = watch.watched(subscription.receive)
+        self._entities.add(subscription)
+        sink = watch.observe_received(subscription.receive)
         try:
             if content_filter_options is not None:
                 subscription.set_content_filter(*content_filter_options)
-            for transport in self._context.graph.transports:
+            for transport in context.graph.transports:
                 port = transport.subscribe(
                     endpoint, msg_type, sink, shared=shared or raw
                 )
@@ -168,12 +115,6 @@ class NodeTopics:
             subscription.destroy()
             raise
         return subscription
-
-    def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        return self._destroy(publisher)
-
-    def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        return self._destroy(subscription)
 
     def _profile(
         self,
@@ -185,27 +126,11 @@ class NodeTopics:
         qos = as_profile(qos_profile)
         if options is None:
             return qos
-        full_name = self._remapper.resolve(topic)
-        return overridden(self, kind.name.lower(), full_name, qos, options)
-
-    def _watch(
-        self, endpoint: Endpoint, callbacks: EventCallbacks | None
-    ) -> EndpointWatch:
-        return EndpointWatch(
-            self._context, endpoint, callbacks, self._logger, self.call_soon
-        )
+        full_name = self._entities.remapper.resolve(topic)
+        return overridden(self._parameters, kind.name.lower(), full_name, qos, options)
 
     def _endpoint(
         self, kind: EndpointKind, msg_type: type, topic: str, qos: QoSProfile
     ) -> Endpoint:
-        self._check_alive()
-        endpoint = Endpoint(
-            kind=kind,
-            topic=self._remapper.resolve(topic),
-            type_name=interface_name(msg_type, "msg"),
-            qos=qos.to_endpoint_qos(),
-            node_name=self._remapper.node_name,
-            node_namespace=self._remapper.namespace,
-            gid=b"",
-        )
-        return self._context.graph.with_gid(endpoint)
+        type_name = interface_name(msg_type, "msg")
+        return self._entities.new_endpoint(kind, type_name, topic, qos)

@@ -1,6 +1,6 @@
 """Services that read and set a node's parameters."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.errors import ParameterError
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
@@ -8,18 +8,17 @@ from navette.runtime.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
+from navette.runtime.node_parameters import NodeParameters
+from navette.runtime.node_services import NodeServices
 from navette.runtime.parameter import Parameter
 from navette.runtime.qos import qos_profile_parameters
-
-if TYPE_CHECKING:
-    from navette.runtime.node import Node
 
 
 class ParameterService:
     """Server of ``~/get_parameters``, ``~/set_parameters`` and the other services."""
 
-    def __init__(self, node: "Node") -> None:
-        self._node = node
+    def __init__(self, parameters: NodeParameters, services: NodeServices) -> None:
+        self._parameters = parameters
         for type_name, name, callback in (
             ("DescribeParameters", "describe_parameters", self._describe),
             ("GetParameters", "get_parameters", self._get),
@@ -28,7 +27,7 @@ class ParameterService:
             ("SetParameters", "set_parameters", self._set),
             ("SetParametersAtomically", "set_parameters_atomically", self._set_all),
         ):
-            node.serve(
+            services.serve(
                 f"rcl_interfaces/srv/{type_name}",
                 f"~/{name}",
                 callback,
@@ -39,14 +38,14 @@ class ParameterService:
 
     def _describe(self, request: Any, response: Any) -> Any:
         try:
-            response.descriptors = self._node.describe_parameters(request.names)
+            response.descriptors = self._parameters.describe_parameters(request.names)
         except ParameterNotDeclaredException:
             response.descriptors = []
         return response
 
     def _get(self, request: Any, response: Any) -> Any:
         try:
-            found = self._node.get_parameters(request.names)
+            found = self._parameters.get_parameters(request.names)
         except (ParameterNotDeclaredException, ParameterUninitializedException):
             found = []
         response.values = [parameter.get_parameter_value() for parameter in found]
@@ -54,14 +53,16 @@ class ParameterService:
 
     def _get_types(self, request: Any, response: Any) -> Any:
         try:
-            kinds = self._node.get_parameter_types(request.names)
+            kinds = self._parameters.get_parameter_types(request.names)
         except ParameterNotDeclaredException:
             kinds = []
         response.types = [int(kind) for kind in kinds]
         return response
 
     def _list(self, request: Any, response: Any) -> Any:
-        response.result = self._node.list_parameters(request.prefixes, request.depth)
+        response.result = self._parameters.list_parameters(
+            request.prefixes, request.depth
+        )
         return response
 
     def _set(self, request: Any, response: Any) -> Any:
@@ -76,6 +77,6 @@ class ParameterService:
         """Set the parameters; report an invalid request to the client only."""
         try:
             parameters = [Parameter.from_parameter_msg(each) for each in messages]
-            return self._node.set_parameters_atomically(parameters)
+            return self._parameters.set_parameters_atomically(parameters)
         except ParameterError as error:
             return SetParametersResult(successful=False, reason=str(error))

@@ -1,16 +1,16 @@
-"""Publishers."""
+"""Publishers of topics."""
 
 import logging
-from collections.abc import Callable
 from typing import Any, Generic, TypeVar, cast
 
 from navette.errors import DecodeError, MessageError
 from navette.msgs import deserialize, type_name
-from navette.runtime.destroyable import Destroyable
+from navette.runtime.destroyable import Destroyable, EntityOwner
 from navette.runtime.exceptions import InvalidHandle
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.qos_events import EventHandler
+from navette.runtime.qos_watch import EndpointWatch
 from navette.runtime.time import Duration
 from navette.transports import Encoded, Endpoint, PublisherPort
 
@@ -20,14 +20,14 @@ _log = logging.getLogger(__name__)
 
 
 class Publisher(Destroyable, Generic[MsgT]):
-    """Sends messages to a topic. Made by :meth:`Node.create_publisher`."""
+    """Sends messages to a topic. Created by :meth:`Node.create_publisher`."""
 
     __slots__ = (
         "_loop",
-        "_on_assertion",
-        "_on_destroy",
+        "_owner",
         "_send",
         "_sequence",
+        "_watch",
         "endpoint",
         "event_handlers",
         "msg_type",
@@ -42,25 +42,27 @@ class Publisher(Destroyable, Generic[MsgT]):
         qos_profile: QoSProfile,
         ports: list[PublisherPort],
         loop: EventLoop,
-        on_destroy: Callable[["Publisher[Any]"], None],
+        owner: EntityOwner,
+        watch: EndpointWatch,
     ) -> None:
         self.msg_type = msg_type
         self.endpoint = endpoint
         self.qos_profile = qos_profile
         self.ports = ports
-        self._send = ports[0].send if len(ports) == 1 else self._send_to_all
         self._loop = loop
         self._sequence = max((port.initial_sequence for port in ports), default=0)
-        self._on_assertion: Callable[[bool], None] | None = None
-        #: What it calls back for.
-        self.event_handlers: list[EventHandler] = []
-        self._on_destroy = on_destroy
+        self.event_handlers: list[EventHandler] = watch.event_handlers
+        self._owner = owner
+        self._watch = watch
+        send = ports[0].send if len(ports) == 1 else self._send_to_all
+        self._send = watch.observe_sent(send)
 
     def publish(self, msg: MsgT | bytes) -> None:
-        """Send ``msg`` as it is now; later edits of the object are not seen.
+        """Send a copy of ``msg`` (or a CDR message); later edits have no effect.
 
         Raises:
-            MessageError: not of the publisher's type (also a TypeError).
+            MessageError: ``msg`` is of another type (also a TypeError).
+            InvalidHandle: the publisher was destroyed.
         """
         if msg.__class__ is not self.msg_type:
             msg = self._converted(msg)
@@ -68,9 +70,9 @@ class Publisher(Destroyable, Generic[MsgT]):
         self._send(msg, self._loop.clock.now_ns, sequence)
 
     def publish_encoded(self, data: bytes) -> None:
-        """Send a message that is there as CDR: decoded where it is read, or never.
+        """Send a serialised message (CDR), which is decoded when a subscriber reads it.
 
-        What turns out to be no such message is reported where it should be read.
+        Data that cannot be decoded is logged then and not delivered.
         """
         self._sequence = sequence = self._sequence + 1
         message = Encoded(data, self.msg_type, self._report_undecodable)
@@ -85,56 +87,39 @@ class Publisher(Destroyable, Generic[MsgT]):
         return self.endpoint.topic
 
     def get_subscription_count(self) -> int:
-        """How many subscriptions get the messages."""
+        """Return the number of matched subscriptions."""
         return sum(port.matched_count for port in self.ports)
 
-    def watch(
-        self,
-        on_sample: Callable[[], None],
-        on_assertion: Callable[[bool], None] | None,
-    ) -> None:
-        """Call back with every message, and with every assertion of liveliness.
-
-        The latter are told whether all who listen hear of it.
-        """
-        send = self._send
-
-        def watched(message: Any, source_ns: int, sequence: int) -> None:
-            on_sample()
-            send(message, source_ns, sequence)
-
-        self._send = watched
-        self._on_assertion = on_assertion
-
     def assert_liveliness(self) -> None:
-        """Keep the lease of a publisher with manual liveliness."""
-        if self._on_assertion is not None:
-            told = [port.assert_alive() for port in self.ports]
-            self._on_assertion(all(told))
+        """Renew the lease of a publisher with manual liveliness."""
+        if self._watch.has_lease:
+            reached = [port.assert_alive() for port in self.ports]
+            self._watch.assert_liveliness(reaches_all=all(reached))
 
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
-        """In process a message is in the queues when ``publish`` returns."""
+        """Return True: a message is in the queues when ``publish`` returns."""
         return True
 
     def destroy(self) -> None:
-        """Leave the topic."""
+        """Leave the topic; a later :meth:`publish` raises InvalidHandle."""
         for port in self.ports:
             port.close()
-        self._send = self._send_nothing
-        self._on_destroy(self)
+        self._send = self._refuse_to_send
+        self._watch.stop()
+        self._owner.forget(self)
 
     def _send_to_all(self, message: Any, source_ns: int, sequence: int) -> None:
         for port in self.ports:
             port.send(message, source_ns, sequence)
 
-    def _send_nothing(self, message: Any, source_ns: int, sequence: int) -> None:
+    def _refuse_to_send(self, message: Any, source_ns: int, sequence: int) -> None:
         raise InvalidHandle(
             f"publisher of {self.endpoint.topic} (node "
             f"{self.endpoint.node_full_name}) was destroyed"
         )
 
     def _report_undecodable(self, error: DecodeError) -> None:
-        _log.warning("topic %s: not delivered: %s", self.endpoint.topic, error)
+        _log.warning("topic %s: message not delivered: %s", self.endpoint.topic, error)
 
     def _converted(self, msg: Any) -> Any:
         if isinstance(msg, self.msg_type):

@@ -1,4 +1,4 @@
-"""What QoS events tell, and the callbacks for them."""
+"""QoS events: their data and their callbacks."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from navette.transports import QoSPolicyKind
 
 
 class UnsupportedEventTypeError(NavetteError):
-    """An event that the transport cannot tell of; none here."""
+    """The transport does not support an event; never raised by Navette."""
 
 
 @dataclass
 class QoSCountInfo:
-    """How often something has happened."""
+    """How often an event has occurred, in total and since the last callback."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -30,7 +30,7 @@ IncompatibleTypeInfo = QoSCountInfo
 
 @dataclass
 class QoSLivelinessChangedInfo:
-    """How many of the matched publishers are alive and how many are not."""
+    """Number of matched publishers that are alive and that are not."""
 
     alive_count: int = 0
     not_alive_count: int = 0
@@ -40,7 +40,7 @@ class QoSLivelinessChangedInfo:
 
 @dataclass
 class QoSIncompatibleInfo:
-    """Handed to ``incompatible_qos`` callbacks."""
+    """Argument of ``incompatible_qos`` callbacks."""
 
     total_count: int
     total_count_change: int
@@ -53,7 +53,7 @@ QoSOfferedIncompatibleQoSInfo = QoSIncompatibleInfo
 
 @dataclass
 class QoSMatchedInfo:
-    """Handed to ``matched`` callbacks."""
+    """Argument of ``matched`` callbacks."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -90,7 +90,7 @@ class QoSSubscriptionEventType(IntEnum):
 
 @dataclass(frozen=True)
 class EventHandler:
-    """An event that an endpoint calls back for."""
+    """An event type of an endpoint and its callback."""
 
     event_type: QoSPublisherEventType | QoSSubscriptionEventType
     callback: Callable[[Any], Any]
@@ -120,18 +120,18 @@ _SUBSCRIPTION_EVENTS = dict(
 
 
 class EventCallbacks:
-    """What to call on events of one endpoint.
+    """Callbacks for the QoS events of one endpoint.
+
+    Without an ``incompatible_qos`` or ``incompatible_type`` callback a warning is
+    logged instead, unless ``use_default_callbacks`` is false.
 
     Args:
-        deadline: no sample within the deadline; :class:`QoSCountInfo`.
+        deadline: no sample within the deadline; gets a :class:`QoSCountInfo`.
         liveliness: see the subclasses.
-        incompatible_qos: called with :class:`QoSIncompatibleInfo`; without it (and
-            with ``use_default_callbacks``) a warning is logged.
-        incompatible_type: a remote endpoint means another type by the topic's name;
-            called with :class:`IncompatibleTypeInfo`; without it (and with
-            ``use_default_callbacks``) a warning is logged. In process another type on
-            a topic is an exception.
-        matched: called with :class:`QoSMatchedInfo`.
+        incompatible_qos: gets a :class:`QoSIncompatibleInfo`.
+        incompatible_type: a remote endpoint uses another type on the topic; gets an
+            :class:`IncompatibleTypeInfo`. In process, this is an exception instead.
+        matched: gets a :class:`QoSMatchedInfo`.
     """
 
     def __init__(
@@ -154,7 +154,7 @@ class EventCallbacks:
     _events: ClassVar[Mapping[str, QoSPublisherEventType | QoSSubscriptionEventType]]
 
     def handlers(self) -> list[EventHandler]:
-        """The events that there are callbacks for."""
+        """Return the events that have callbacks."""
         return [
             EventHandler(kind, getattr(self, name))
             for name, kind in self._events.items()
@@ -163,7 +163,7 @@ class EventCallbacks:
 
 
 class PublisherEventCallbacks(EventCallbacks):
-    """Events of a publisher; ``liveliness`` (:class:`QoSCountInfo`): lease not kept."""
+    """Events of a publisher; ``liveliness`` (:class:`QoSCountInfo`): lease expired."""
 
     _events = _PUBLISHER_EVENTS
 
@@ -172,9 +172,9 @@ class SubscriptionEventCallbacks(EventCallbacks):
     """Events of a subscription.
 
     Args:
-        liveliness: called with :class:`QoSLivelinessChangedInfo`.
-        message_lost: samples of a remote publisher did not arrive; called with
-            :class:`QoSCountInfo`. In process nothing is lost on the way.
+        liveliness: gets a :class:`QoSLivelinessChangedInfo`.
+        message_lost: samples of a remote publisher were lost; gets a
+            :class:`QoSCountInfo`. In process no samples are lost.
     """
 
     _events = _SUBSCRIPTION_EVENTS

@@ -1,4 +1,4 @@
-"""Follows the QoS events of one endpoint; incompatible QoS is warned about."""
+"""QoS events of one endpoint: deadlines, liveliness, matches, incompatible peers."""
 
 import threading
 from collections.abc import Callable
@@ -10,20 +10,30 @@ from navette.runtime.liveliness import Lease, LivelinessView
 from navette.runtime.log import Logger
 from navette.runtime.qos_events import (
     EventCallbacks,
+    EventHandler,
     IncompatibleTypeInfo,
     QoSCountInfo,
     QoSIncompatibleInfo,
     QoSMatchedInfo,
 )
-from navette.transports import INFINITE_NS, Endpoint, EndpointKind, Item, QoSPolicyKind
+from navette.transports import (
+    INFINITE_NS,
+    Endpoint,
+    EndpointKind,
+    Item,
+    QoSPolicyKind,
+    Sink,
+)
 
-CallSoon = Callable[[Callable[[], Any], str], None]
+Send = Callable[[Any, int, int], None]
+"""Sends a message with its source stamp (ns) and sequence number."""
 
 
 class EndpointWatch:
-    """Calls the callbacks of an endpoint until :meth:`stop`.
+    """Runs the event callbacks of an endpoint until :meth:`stop`.
 
-    An endpoint with neither a deadline nor a lease costs nothing per sample.
+    Without callbacks for incompatible endpoints a warning is logged. Samples of an
+    endpoint without deadline and lease are not intercepted.
     """
 
     def __init__(
@@ -32,13 +42,14 @@ class EndpointWatch:
         endpoint: Endpoint,
         callbacks: EventCallbacks | None,
         logger: Logger,
-        call_soon: CallSoon,
     ) -> None:
         self._context = context
         self._endpoint = endpoint
         self._callbacks = callbacks or EventCallbacks()
         self._logger = logger
-        self._call_soon = call_soon
+        self.event_handlers: list[EventHandler] = (
+            [] if callbacks is None else callbacks.handlers()
+        )
         self._incompatible = 0
         self._other_types = 0
         self._lost = 0
@@ -48,12 +59,12 @@ class EndpointWatch:
         self._deadline: Watchdog | None = None
         self._lease: Lease | None = None
         self._view: LivelinessView | None = None
-        #: Of publishers in other processes, by gid.
+        #: Leases of publishers in other processes, by gid.
         self._leases: dict[bytes, Lease] = {}
-        # Remote endpoints come and go in another thread than those here.
+        # Remote endpoints match and unmatch in another thread than local ones.
         self._counting = threading.Lock()
         graph = context.graph
-        self._undo = [
+        self._unsubscribe = [
             graph.on_incompatible(self._on_incompatible),
             graph.on_incompatible_type(self._on_incompatible_type),
             graph.on_lost(self._on_lost),
@@ -63,9 +74,9 @@ class EndpointWatch:
         self._watch_liveliness()
 
     def stop(self) -> None:
-        """Follow no more."""
-        for undo in self._undo:
-            undo()
+        """Stop all timers and graph callbacks of the endpoint."""
+        for unsubscribe in self._unsubscribe:
+            unsubscribe()
         if self._deadline is not None:
             self._deadline.stop()
         if self._lease is not None:
@@ -74,8 +85,53 @@ class EndpointWatch:
             lease.stop()
 
     @property
-    def on_sample(self) -> Callable[[], None] | None:
-        """What to call with every sample; None = nothing."""
+    def has_lease(self) -> bool:
+        """Whether the endpoint is a publisher with manual liveliness."""
+        return self._lease is not None
+
+    def observe_sent(self, send: Send) -> Send:
+        """Return ``send``, extended to restart the deadline and renew the lease."""
+        hook = self._sample_hook()
+        if hook is None:
+            return send
+
+        def observed(message: Any, source_ns: int, sequence: int) -> None:
+            hook()
+            send(message, source_ns, sequence)
+
+        return observed
+
+    def observe_received(self, sink: Sink) -> Sink:
+        """Return ``sink``, extended to restart the deadline."""
+        hook = self._sample_hook()
+        if hook is None:
+            return sink
+
+        def observed(item: Item) -> None:
+            hook()
+            sink(item)
+
+        return observed
+
+    def assert_liveliness(self, *, reaches_all: bool) -> None:
+        """Renew the publisher's lease.
+
+        Args:
+            reaches_all: whether every matched subscription receives the assertion;
+                otherwise a warning is logged once.
+        """
+        assert self._lease is not None, "only a publisher with a lease asserts"
+        self._lease.renew()
+        if not reaches_all and not self._has_warned:
+            self._has_warned = True
+            self._logger.warning(
+                f"topic {self._endpoint.topic}: assert_liveliness() reaches Navette's "
+                "subscriptions only; ROS 2 subscriptions detect liveliness by "
+                "messages: publish one within the lease"
+            )
+
+    def _sample_hook(self) -> Callable[[], None] | None:
+        """Return the function to call for each sample; None if there is none."""
         hooks = [
             *([self._deadline.restart] if self._deadline is not None else []),
             *([self._lease.renew] if self._lease is not None else []),
@@ -88,25 +144,6 @@ class EndpointWatch:
                 hook()
 
         return both
-
-    @property
-    def on_assertion(self) -> Callable[[bool], None] | None:
-        """What to call when a publisher asserts that it is alive; heard by all?"""
-        return None if self._lease is None else self._assert
-
-    def watched(self, sink: Callable[[Item], None]) -> Callable[[Item], None]:
-        """A subscription's sink, with its deadline looked after."""
-        hook = self.on_sample
-        if hook is None:
-            return sink
-
-        def receive(item: Item) -> None:
-            hook()
-            sink(item)
-
-        return receive
-
-    # -- inside ----------------------------------------------------------------
 
     def _watch_deadline(self) -> None:
         period_ns = self._endpoint.qos.deadline_ns
@@ -122,22 +159,28 @@ class EndpointWatch:
         graph, loop = self._context.graph, self._context.loop
         if self._endpoint.kind is EndpointKind.SUBSCRIPTION:
             if self._callbacks.liveliness is not None:
-                self._view = LivelinessView(graph, self._tell_liveliness)
-                self._undo.append(graph.on_liveliness(self._on_liveliness))
-                self._undo.append(graph.on_assertion(self._on_assertion))
+                self._view = LivelinessView(graph, self._notify_liveliness)
+                self._unsubscribe.append(graph.on_liveliness(self._on_liveliness))
+                self._unsubscribe.append(graph.on_assertion(self._on_assertion))
         elif self._endpoint.qos.asserts_itself:
-            self._lease = Lease(self._endpoint, graph, loop, self._tell_liveliness)
+            self._lease = Lease(self._endpoint, graph, loop, self._notify_liveliness)
 
-    def _tell(self, callback: Callable[[Any], Any] | None, info: Any, of: str) -> None:
+    def _notify(
+        self, callback: Callable[[Any], Any] | None, info: Any, event: str
+    ) -> None:
         if callback is not None:
-            self._call_soon(lambda: callback(info), f"{of} event")
+            self._context.loop.call_soon(
+                lambda: callback(info), f"{event} event", self._endpoint.node_full_name
+            )
 
-    def _tell_liveliness(self, info: Any) -> None:
-        self._tell(self._callbacks.liveliness, info, "liveliness")
+    def _notify_liveliness(self, info: Any) -> None:
+        self._notify(self._callbacks.liveliness, info, "liveliness")
 
     def _on_deadline(self) -> None:
         self._missed += 1
-        self._tell(self._callbacks.deadline, QoSCountInfo(self._missed, 1), "deadline")
+        self._notify(
+            self._callbacks.deadline, QoSCountInfo(self._missed, 1), "deadline"
+        )
 
     def _on_incompatible(
         self,
@@ -151,9 +194,9 @@ class EndpointWatch:
         callback = self._callbacks.incompatible_qos
         if callback is not None:
             info = QoSIncompatibleInfo(self._incompatible, 1, policies[0])
-            self._tell(callback, info, "incompatible_qos")
+            self._notify(callback, info, "incompatible_qos")
         elif self._callbacks.use_default_callbacks:
-            self._logger.warning(self._warning(publisher, subscription, policies))
+            self._logger.warning(self._qos_warning(publisher, subscription, policies))
 
     def _on_incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
         if self._endpoint != local:
@@ -162,7 +205,7 @@ class EndpointWatch:
         callback = self._callbacks.incompatible_type
         if callback is not None:
             info = IncompatibleTypeInfo(self._other_types, 1)
-            self._tell(callback, info, "incompatible_type")
+            self._notify(callback, info, "incompatible_type")
         elif self._callbacks.use_default_callbacks:
             self._logger.warning(_type_warning(local, remote))
 
@@ -170,7 +213,7 @@ class EndpointWatch:
         if self._endpoint == subscription:
             self._lost += count
             callback = getattr(self._callbacks, "message_lost", None)
-            self._tell(callback, QoSCountInfo(self._lost, count), "message_lost")
+            self._notify(callback, QoSCountInfo(self._lost, count), "message_lost")
 
     def _on_match(self, publisher: Endpoint, subscription: Endpoint, up: bool) -> None:
         if self._endpoint not in (publisher, subscription):
@@ -184,22 +227,11 @@ class EndpointWatch:
             if self._callbacks.matched is not None:
                 total, current = self._match.total_count, self._match.current_count
                 self._match = QoSMatchedInfo(total + up, int(up), current + step, step)
-                self._tell(self._callbacks.matched, self._match, "matched")
-
-    def _assert(self, is_heard: bool) -> None:
-        assert self._lease is not None, "only a publisher with a lease asserts"
-        self._lease.renew()
-        if not is_heard and not self._has_warned:
-            self._has_warned = True
-            self._logger.warning(
-                f"topic {self._endpoint.topic}: assert_liveliness() is heard by "
-                "Navette's subscriptions only; those of ROS 2 take a publisher for "
-                "alive by its messages: publish one within the lease"
-            )
+                self._notify(self._callbacks.matched, self._match, "matched")
 
     def _on_liveliness(self, publisher: Endpoint, alive: bool) -> None:
         with self._counting:
-            assert self._view is not None, "only a subscription with a view asks"
+            assert self._view is not None, "registered with the view only"
             self._view.on_liveliness(publisher, alive)
 
     def _on_assertion(self, publisher: Endpoint, subscription: Endpoint) -> None:
@@ -211,15 +243,15 @@ class EndpointWatch:
             self._leases[publisher.gid] = lease
         lease.renew()
 
-    def _warning(
+    def _qos_warning(
         self,
         publisher: Endpoint,
         subscription: Endpoint,
         policies: tuple[QoSPolicyKind, ...],
     ) -> str:
         names = ", ".join(
-            f"{kind.name} (offered {_shown(publisher, kind)}, "
-            f"requested {_shown(subscription, kind)})"
+            f"{kind.name} (offered {_policy_text(publisher, kind)}, "
+            f"requested {_policy_text(subscription, kind)})"
             for kind in policies
         )
         if self._endpoint.kind is EndpointKind.PUBLISHER:
@@ -235,16 +267,16 @@ class EndpointWatch:
 
 def _type_warning(local: Endpoint, remote: Endpoint) -> str:
     if local.type_name == remote.type_name:
-        other = f"another definition of {remote.type_name} ({remote.type_hash})"
+        other = f"a different definition of {remote.type_name} ({remote.type_hash})"
     else:
         other = f"{remote.type_name}, not {local.type_name}"
     return (
         f"topic {local.topic}: the {remote.kind.name.lower()} of "
-        f"{remote.node_full_name} has {other}; they will exchange no messages"
+        f"{remote.node_full_name} has {other}; the endpoints exchange no messages"
     )
 
 
-def _shown(endpoint: Endpoint, kind: QoSPolicyKind) -> str:
+def _policy_text(endpoint: Endpoint, kind: QoSPolicyKind) -> str:
     qos = endpoint.qos
     values: dict[QoSPolicyKind, Any] = {
         QoSPolicyKind.RELIABILITY: qos.reliability.name,

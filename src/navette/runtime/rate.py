@@ -1,36 +1,30 @@
-"""Rate: keep a loop of one's own at a frequency."""
-
-from collections.abc import Callable
-from typing import Any
+"""Rate: run a loop at a fixed frequency."""
 
 from navette.runtime.context import Context
+from navette.runtime.destroyable import EntityOwner
 from navette.runtime.exceptions import ROSInterruptException
 from navette.runtime.ros_clock import Clock
 
 
 class Rate:
-    """``sleep()`` lets the rest of the current period pass. Made by ``create_rate``.
+    """Sleeps for the rest of each period. Created by :meth:`Node.create_rate`.
 
-    While it sleeps, events go on: from within a callback as well as from plain code
-    (``while ok(): …; rate.sleep()``), whether another thread spins or nobody does.
+    Events run during ``sleep()``, inside a callback as well as in plain code
+    (``while ok(): …; rate.sleep()``), whether or not another thread spins.
     """
 
     def __init__(
-        self,
-        period_ns: int,
-        clock: Clock,
-        context: Context,
-        on_destroy: Callable[["Rate"], None],
+        self, period_ns: int, clock: Clock, context: Context, owner: EntityOwner
     ) -> None:
         self._period_ns = period_ns
         self._clock = clock
         self._context = context
         self._next_ns = clock.now_ns + period_ns
         self._destroyed = False
-        self._on_destroy: Callable[[Any], None] = on_destroy
+        self._owner = owner
 
     def sleep(self) -> None:
-        """Return at the end of the period; at once if that is past.
+        """Return at the end of the period, or immediately if that has passed.
 
         Raises:
             ROSInterruptException: the context was shut down.
@@ -44,10 +38,10 @@ class Rate:
         if not self._context.ok():
             raise ROSInterruptException
         now = self._clock.now_ns
-        # Late by periods: skip them and keep the phase.
+        # Skip missed periods and keep the phase.
         missed = max(0, (now - self._next_ns) // self._period_ns)
         self._next_ns += (missed + 1) * self._period_ns
 
     def destroy(self) -> None:
         self._destroyed = True
-        self._on_destroy(self)
+        self._owner.forget(self)

@@ -1,7 +1,7 @@
-"""rclpy's clocks: what a node reads; jumps can be watched.
+"""rclpy's clocks, with callbacks for time jumps.
 
-Under a virtual or paced context every clock tells the context's time. Under the
-system clock, ROS time follows ``/clock`` where ``use_sim_time`` is set.
+Under a virtual or paced context every clock returns the context's time. Under the
+system clock, ROS time follows ``/clock`` if ``use_sim_time`` is set.
 """
 
 import heapq
@@ -13,12 +13,13 @@ from typing import Any
 
 from navette.runtime.clock import monotonic_ns
 from navette.runtime.context import Context, get_default_context
+from navette.runtime.events import Call
 from navette.runtime.exceptions import NotInitializedException
 from navette.runtime.time import ClockType, Duration, Time
 
 
 class ClockChange(IntEnum):
-    """What happened to a clock in a jump; values as in rcl."""
+    """Change of a clock's source in a jump; values as in rcl."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2
@@ -28,14 +29,14 @@ class ClockChange(IntEnum):
 
 @dataclass(frozen=True)
 class TimeJump:
-    """A jump of a clock."""
+    """A jump of a clock: the change of its source and of its time."""
 
     clock_change: ClockChange
     delta: Duration
 
 
 class JumpThreshold:
-    """Which jumps to report; backward thresholds are negative."""
+    """Jumps to report; a backward threshold is negative."""
 
     def __init__(
         self,
@@ -99,11 +100,11 @@ class JumpHandle:
 
 
 class Clock:
-    """Tells the time of a context.
+    """Clock of a context.
 
     Args:
         clock_type: ROS_TIME gives a :class:`ROSClock`.
-        context: the default one if not given.
+        context: the default context if None.
     """
 
     def __new__(cls, *args: Any, **kwargs: Any) -> "Clock":
@@ -133,7 +134,7 @@ class Clock:
 
     @property
     def now_ns(self) -> int:
-        """The time in nanoseconds, without an object around it."""
+        """Current time in nanoseconds; cheaper than :meth:`now`."""
         source = self._loop.clock
         if self._clock_type is ClockType.STEADY_TIME and not source.is_virtual:
             return monotonic_ns()
@@ -143,7 +144,7 @@ class Clock:
         return Time(nanoseconds=self.now_ns, clock_type=self._clock_type)
 
     def schedule(self, time_ns: int, entity: Any) -> int:
-        """Queue ``entity`` on the loop for a time of this clock; gives its token."""
+        """Queue ``entity`` on the loop for a time of this clock; return its token."""
         source = self._loop.clock
         if self._clock_type is ClockType.STEADY_TIME and not source.is_virtual:
             time_ns += source.now_ns - monotonic_ns()
@@ -161,47 +162,31 @@ class Clock:
         return JumpHandle(self, threshold, pre_callback, post_callback)
 
     def sleep_until(self, until: Time, context: Context | None = None) -> bool:
-        """Let time pass until ``until``; events run meanwhile. False on shutdown."""
+        """Run events until the time ``until``; False on shutdown."""
         if until.clock_type != self._clock_type:
             raise ValueError(
-                f"until is a {until.clock_type.name}, the clock {self._clock_type.name}"
+                f"until has the clock type {until.clock_type.name}, the clock has "
+                f"{self._clock_type.name}"
             )
         return self.sleep_until_ns(until.nanoseconds, context or self._context)
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
-        """Let ``rel_time`` pass; events run meanwhile. False on shutdown."""
+        """Run events for ``rel_time``; False on shutdown."""
         until_ns = self.now_ns + rel_time.nanoseconds
         return self.sleep_until_ns(until_ns, context or self._context)
 
     def sleep_until_ns(self, until_ns: int, context: Context) -> bool:
         if not context.ok():
             raise NotInitializedException("cannot sleep without a valid context")
-        alarm = _Alarm(context)
+        alarm = Call(context.loop.wake, context.loop.free_group, "sleep", "")
         alarm.token = self.schedule(until_ns, alarm)
         context.loop.run(done=lambda: self.now_ns >= until_ns)
         alarm.token = -1
         return context.ok() and self.now_ns >= until_ns
 
 
-class _Alarm:
-    """Wakes whoever sleeps until a time, in whatever thread."""
-
-    __slots__ = ("_loop", "group", "token")
-
-    def __init__(self, context: Context) -> None:
-        self._loop = context.loop
-        self.group = context.loop.free_group
-        self.token = 0
-
-    def run(self) -> None:
-        self._loop.wake()
-
-    def origin(self) -> tuple[str, str]:
-        return "", "sleep"
-
-
 class ROSClock(Clock):
-    """A node's clock; can be overridden by simulated time from ``/clock``."""
+    """Clock of a node; simulated time from ``/clock`` can override it."""
 
     def __init__(
         self,
@@ -212,11 +197,11 @@ class ROSClock(Clock):
         super().__init__(clock_type=clock_type, context=context)
         self._override_ns: int | None = None
         self._waiting: list[tuple[int, int, Any]] = []
-        self._tokens = -1  # a token of -1 means canceled
+        self._tokens = -1  # a token of -1 means cancelled
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the time comes from outside (``/clock``)."""
+        """Whether simulated time overrides the context's time."""
         return self._override_ns is not None
 
     @property
@@ -228,17 +213,17 @@ class ROSClock(Clock):
     def schedule(self, time_ns: int, entity: Any) -> int:
         if self._override_ns is None:
             return self._loop.schedule(time_ns, entity)
-        # Negative tokens never equal those of the loop's own heap.
+        # Negative tokens differ from those of the loop's heap.
         self._tokens -= 1
         heapq.heappush(self._waiting, (time_ns, -self._tokens, entity))
         return self._tokens
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Simulated time is now ``time``; what became due is queued."""
+        """Set the simulated time and queue the entities that are due."""
         self.set_override_ns(time.nanoseconds)
 
     def set_override_ns(self, time_ns: int) -> None:
-        """As :meth:`set_ros_time_override`; the first call activates it."""
+        """Set the simulated time in nanoseconds; the first call activates it."""
         before = self._override_ns
         change = ClockChange.ROS_TIME_NO_CHANGE
         if before is None:
@@ -264,7 +249,7 @@ class ROSClock(Clock):
         self._loop.wake()
 
     def clear_override(self) -> None:
-        """Back to the context's time."""
+        """Return to the context's time."""
         if self._override_ns is None:
             return
         delta = self._loop.clock.now_ns - self._override_ns

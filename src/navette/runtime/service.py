@@ -1,4 +1,4 @@
-"""Servers of services: a queue of requests and a callback that answers."""
+"""Service servers: a queue of requests, and a callback that returns responses."""
 
 from collections import deque
 from collections.abc import Callable, Coroutine
@@ -8,6 +8,7 @@ from navette.errors import MessageError
 from navette.msgs import type_name
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
+from navette.runtime.destroyable import EntityOwner
 from navette.runtime.events import Entity
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
@@ -17,23 +18,23 @@ from navette.transports import Endpoint, Request, RequestId, ServicePort
 
 
 class Service(ServiceEndpoint, Entity):
-    """Answers requests. Made by :meth:`Node.create_service`.
+    """Responds to requests. Created by :meth:`Node.create_service`.
 
     Args:
-        callback: ``callback(request, response)`` fills the response in and returns
-            it; a coroutine may do so later.
-        deferred: the callback is ``callback(request, request_id)`` instead and answers
-            with :meth:`send_response` when it likes.
+        callback: ``callback(request, response)`` fills in and returns the response;
+            may be a coroutine function.
+        deferred: the callback is ``callback(request, request_id)`` and responds at any
+            time with :meth:`send_response`.
     """
 
-    #: Also while a callback of its group waits for an answer.
+    #: Runs also while a callback of its group waits for a response.
     answers_calls = True
 
     __slots__ = (
         "_deferred",
         "_events",
         "_loop",
-        "_on_destroy",
+        "_owner",
         "_queue",
         "callback",
         "endpoint",
@@ -49,7 +50,7 @@ class Service(ServiceEndpoint, Entity):
         qos_profile: QoSProfile,
         loop: EventLoop,
         events: ServiceEvents,
-        on_destroy: Callable[["Service"], None],
+        owner: EntityOwner,
         *,
         deferred: bool = False,
     ) -> None:
@@ -61,9 +62,9 @@ class Service(ServiceEndpoint, Entity):
         self._deferred = deferred
         self._loop = loop
         self._events = events
-        # Without a bound: a request that is dropped is a client that waits for ever.
+        # Unbounded: the client of a dropped request would wait indefinitely.
         self._queue: deque[Request] = deque()
-        self._on_destroy = on_destroy
+        self._owner = owner
 
     def receive(self, request: Request) -> None:
         """Queue a request (the transport's sink)."""
@@ -73,8 +74,8 @@ class Service(ServiceEndpoint, Entity):
             self._loop.wake()
 
     def run(self) -> Any:
-        """Answer the oldest request of the queue."""
-        if not self._queue:  # destroyed while the event waited
+        """Process the oldest queued request."""
+        if not self._queue:  # destroyed while the event was queued
             return None
         request = self._queue.popleft()
         self._events.report(
@@ -83,24 +84,24 @@ class Service(ServiceEndpoint, Entity):
         try:
             result = self._call(request)
             if not isinstance(result, Coroutine):
-                self._answer(request.id, result)
+                self._respond(request.id, result)
                 return None
         except Exception as error:
             self._fail(request.id, error)
             raise
-        return self._answer_later(request.id, result)
+        return self._respond_later(request.id, result)
 
     def send_response(self, response: Any, header: RequestId) -> None:
-        """Answer the request with that id.
+        """Send the response to the request with that id.
 
         Raises:
-            MessageError: not of the service's response type (also a TypeError).
+            MessageError: ``response`` is of another type (also a TypeError).
         """
-        wanted = self.srv_type.Response
-        if not isinstance(response, wanted):
+        expected = self.srv_type.Response
+        if not isinstance(response, expected):
             raise MessageError(
                 f"service {self.srv_name}: the callback must return its "
-                f"{type_name(wanted)}, got {response!r}"
+                f"{type_name(expected)}, got {response!r}"
             )
         for port in self.ports:
             port.reply(header, response)
@@ -110,32 +111,32 @@ class Service(ServiceEndpoint, Entity):
         return self.endpoint.node_full_name, f"service {self.endpoint.topic}"
 
     def destroy(self) -> None:
-        """Leave the service; what is queued is not answered any more."""
+        """Leave the service; queued requests get no response."""
         for port in self.ports:
             port.close()
         self._queue.clear()
-        self._on_destroy(self)
+        self._owner.forget(self)
 
     def _call(self, request: Request) -> Any:
         if self._deferred:
             return self.callback(request.message, request.id)
         return self.callback(request.message, self.srv_type.Response())
 
-    def _answer(self, request_id: RequestId, response: Any) -> None:
+    def _respond(self, request_id: RequestId, response: Any) -> None:
         if not self._deferred:
             self.send_response(response, request_id)
 
-    async def _answer_later(
+    async def _respond_later(
         self, request_id: RequestId, result: Coroutine[Any, Any, Any]
     ) -> None:
         try:
-            self._answer(request_id, await result)
+            self._respond(request_id, await result)
         except Exception as error:
             self._fail(request_id, error)
             raise
 
     def _fail(self, request_id: RequestId, error: Exception) -> None:
-        """The exception goes its way here; the client must not wait for ever."""
+        """Report the failure to the client, which would otherwise wait indefinitely."""
         reason = f"{type(error).__name__}: {error}"
         for port in self.ports:
             port.fail(request_id, reason)

@@ -1,4 +1,4 @@
-"""What servers and clients of services have in common."""
+"""Common base of service servers and clients."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ from navette.transports import Endpoint
 
 
 class ServiceEndpoint(Destroyable):
-    """One end of a service: its names and its introspection."""
+    """A server or client of a service: names, type and introspection."""
 
     __slots__ = ()
 
@@ -25,8 +25,8 @@ class ServiceEndpoint(Destroyable):
 
     @property
     def srv_type(self) -> Any:
-        # Looked up when needed: making the classes of a node's parameter services
-        # would be most of the cost of the first node.
+        # Looked up on use: creating the classes of a node's parameter services would
+        # be most of the cost of the first node.
         return get_interface(self.endpoint.type_name)
 
     @property

@@ -1,21 +1,19 @@
-"""Events of a service for those who watch: ``<service>/_service_event``."""
+"""Service introspection: events published on ``<service>/_service_event``."""
 
-from collections.abc import Callable
 from enum import IntEnum
 from typing import Any
 
 from navette.msgs import get_interface
 from navette.msgs.service_msgs.msg import ServiceEventInfo
+from navette.runtime.node_topics import NodeTopics
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import QoSProfile
 from navette.runtime.ros_clock import Clock
 from navette.transports import Endpoint, RequestId
 
-MakePublisher = Callable[[Any, str, QoSProfile], Publisher[Any]]
-
 
 class ServiceIntrospectionState(IntEnum):
-    """How much is told; values as in rcl."""
+    """Content of the events; values as in rcl."""
 
     OFF = 0
     METADATA = 1
@@ -23,11 +21,11 @@ class ServiceIntrospectionState(IntEnum):
 
 
 class ServiceEvents:
-    """Publishes one end's events once :meth:`configure` has switched them on."""
+    """Publishes the events of one server or client after :meth:`configure`."""
 
-    def __init__(self, endpoint: Endpoint, make_publisher: MakePublisher) -> None:
+    def __init__(self, endpoint: Endpoint, topics: NodeTopics) -> None:
         self._endpoint = endpoint
-        self._make_publisher = make_publisher
+        self._topics = topics
         self._publisher: Publisher[Any] | None = None
         self._clock: Clock | None = None
         self._state = ServiceIntrospectionState.OFF
@@ -35,7 +33,7 @@ class ServiceEvents:
     def configure(
         self, clock: Clock, qos: QoSProfile, state: ServiceIntrospectionState
     ) -> None:
-        """Switch on or off; ``clock`` gives the stamps."""
+        """Set what is published; ``clock`` provides the stamps."""
         if self._publisher is not None:
             self._publisher.destroy()
             self._publisher = None
@@ -43,7 +41,7 @@ class ServiceEvents:
         if state is not ServiceIntrospectionState.OFF:
             event = get_interface(f"{self._endpoint.type_name}_Event")
             topic = f"{self._endpoint.topic}/_service_event"
-            self._publisher = self._make_publisher(event, topic, qos)
+            self._publisher = self._topics.create_publisher(event, topic, qos)
 
     def report(
         self,
@@ -53,7 +51,7 @@ class ServiceEvents:
         request: Any = None,
         response: Any = None,
     ) -> None:
-        """Tell of a request or response, if somebody wants to know."""
+        """Publish a request or response event, if introspection is on."""
         if self._publisher is None or self._clock is None:
             return
         info = ServiceEventInfo(
@@ -62,11 +60,11 @@ class ServiceEvents:
             client_gid=list(request_id.client_gid),
             sequence_number=request_id.sequence,
         )
-        shown = self._state is ServiceIntrospectionState.CONTENTS
+        has_contents = self._state is ServiceIntrospectionState.CONTENTS
         self._publisher.publish(
             self._publisher.msg_type(
                 info=info,
-                request=[request] if shown and request is not None else [],
-                response=[response] if shown and response is not None else [],
+                request=[request] if has_contents and request is not None else [],
+                response=[response] if has_contents and response is not None else [],
             )
         )

@@ -1,4 +1,4 @@
-"""Subscriptions: a queue of the newest samples and a callback."""
+"""Subscriptions: a queue of the newest samples, and a callback."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -8,12 +8,13 @@ from typing import Any, Generic, TypedDict, TypeVar
 from navette.msgs import serialize
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.content_filter import ContentFilterOptions
-from navette.runtime.destroyable import Destroyable
+from navette.runtime.destroyable import Destroyable, EntityOwner
 from navette.runtime.events import Entity
-from navette.runtime.handles import SubscriptionHandle
+from navette.runtime.handles import Handle
 from navette.runtime.loop import EventLoop
 from navette.runtime.qos import QoSProfile
 from navette.runtime.qos_events import EventHandler
+from navette.runtime.qos_watch import EndpointWatch
 from navette.runtime.signatures import takes_arguments
 from navette.transports import (
     INFINITE_NS,
@@ -27,8 +28,20 @@ from navette.transports import (
 MsgT = TypeVar("MsgT")
 
 
+class SubscriptionHandle(Handle):
+    """Handle of a subscription, for polling."""
+
+    entity: "Subscription[Any]"
+
+    def take_message(
+        self, msg_type: type, raw: bool
+    ) -> "tuple[Any, MessageInfo] | None":
+        """Remove and return the oldest queued sample (bytes if ``raw``), or None."""
+        return self.entity.take_with_info(raw=raw)
+
+
 class MessageInfo(TypedDict):
-    """What a callback's second argument tells about the sample; stamps in ns."""
+    """Second argument of a callback: stamps (ns) and sequence numbers of a sample."""
 
     source_timestamp: int
     received_timestamp: int
@@ -37,26 +50,27 @@ class MessageInfo(TypedDict):
 
 
 class Subscription(Destroyable, Entity, Generic[MsgT]):
-    """Calls back for each sample. Made by :meth:`Node.create_subscription`."""
+    """Runs a callback for each sample. Created by :meth:`Node.create_subscription`."""
 
     class CallbackType(Enum):
-        """Whether the callback wants the :class:`MessageInfo`."""
+        """Whether the callback takes a :class:`MessageInfo`."""
 
         MessageOnly = 0
         WithMessageInfo = 1
 
     __slots__ = (
         "_callback",
+        "_direct_limit",
         "_filter",
         "_filter_options",
-        "_informed",
         "_loop",
-        "_on_destroy",
+        "_owner",
         "_plain",
         "_queue",
         "_ready",
         "_received",
-        "_room",
+        "_takes_info",
+        "_watch",
         "answers_calls",
         "endpoint",
         "event_handlers",
@@ -75,7 +89,8 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         loop: EventLoop,
-        on_destroy: Callable[["Subscription[Any]"], None],
+        owner: EntityOwner,
+        watch: EndpointWatch,
         *,
         raw: bool = False,
         shared: bool = False,
@@ -88,17 +103,17 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         self.shared = shared
         self.answers_calls = False
         self.ports: list[SubscriptionPort] = []
-        #: What it calls back for.
-        self.event_handlers: list[EventHandler] = []
-        #: How many samples may wait; 0 where each has to be looked at first.
-        self._room = endpoint.qos.queue_length or INFINITE_NS
+        self.event_handlers: list[EventHandler] = watch.event_handlers
+        # Number of samples queued without inspection; 0 with a content filter.
+        self._direct_limit = endpoint.qos.queue_length or INFINITE_NS
         self._filter: Callable[[Any], bool] | None = None
         self._filter_options = ContentFilterOptions("", [])
         self._queue: deque[Item] = deque(maxlen=endpoint.qos.queue_length)
         self._loop = loop
         self._ready = loop.ready
         self._received = 0
-        self._on_destroy = on_destroy
+        self._owner = owner
+        self._watch = watch
         self.callback = callback
 
     @property
@@ -108,8 +123,8 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
     @callback.setter
     def callback(self, callback: Callable[..., Any]) -> None:
         self._callback = callback
-        self._informed = takes_arguments(callback, 2)
-        self._plain = not self.raw and not self._informed
+        self._takes_info = takes_arguments(callback, 2)
+        self._plain = not self.raw and not self._takes_info
 
     @property
     def topic_name(self) -> str:
@@ -120,10 +135,8 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         return self.endpoint.topic
 
     def get_publisher_count(self) -> int:
-        """How many publishers are heard."""
+        """Return the number of matched publishers."""
         return sum(port.matched_count for port in self.ports)
-
-    # -- content filter --------------------------------------------------------
 
     @property
     def is_cft_enabled(self) -> bool:
@@ -131,60 +144,58 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         return self._filter is not None
 
     def get_content_filter(self) -> ContentFilterOptions:
-        """The filter that is set; an empty expression is none."""
+        """Return the content filter; an empty expression means no filter."""
         return self._filter_options
 
     def set_content_filter(
         self, filter_expression: str, expression_parameters: Sequence[str] = ()
     ) -> None:
-        """Queue only samples for which the expression holds; empty: all.
+        """Queue only samples for which the expression is true; all if it is empty.
 
         Raises:
-            ContentFilterError: the expression or a parameter cannot be used.
+            ContentFilterError: the expression or a parameter is not valid.
         """
         parameters = list(expression_parameters)
-        wanted: Callable[[Any], bool] | None = None
+        passes: Callable[[Any], bool] | None = None
         if filter_expression:
             from navette.runtime.filter_expression import compile_filter
 
-            wanted = compile_filter(filter_expression, parameters, self.msg_type)
+            passes = compile_filter(filter_expression, parameters, self.msg_type)
         self._filter_options = ContentFilterOptions(filter_expression, parameters)
-        self._filter = wanted
-        self._room = 0 if wanted else self._queue.maxlen or INFINITE_NS
+        self._filter = passes
+        self._direct_limit = 0 if passes else self._queue.maxlen or INFINITE_NS
 
-    def _passes(self, message: Any, wanted: Callable[[Any], bool]) -> bool:
+    def _passes(self, message: Any, passes: Callable[[Any], bool]) -> bool:
         message = self._unwrapped(message)
-        return message is not None and wanted(message)
-
-    # -- inside ----------------------------------------------------------------
+        return message is not None and passes(message)
 
     def receive(self, item: Item) -> None:
-        """Queue a sample (the transport's sink); a full queue loses its oldest."""
+        """Queue a sample (the transport's sink); a full queue drops its oldest."""
         queue = self._queue
-        if len(queue) < self._room:
+        if len(queue) < self._direct_limit:
             queue.append(item)
             self._ready.append(self)
             if self._loop.waiting:
                 self._loop.wake()
         elif self._filter is None or self._passes(item[0], self._filter):
-            self._receive_slowly(item)
+            self._replace_oldest(item)
 
-    def _receive_slowly(self, item: Item) -> None:
-        """Into a queue that is full, or behind a filter."""
+    def _replace_oldest(self, item: Item) -> None:
+        """Queue a sample that passed the filter or finds the queue full."""
         queue = self._queue
         is_full = len(queue) == queue.maxlen
-        queue.append(item)  # and the oldest falls out of a full one, in one step
-        # Another thread that drives may have taken a sample just before: then the
-        # queue was not full, and this one needs an event. One too many is harmless.
+        queue.append(item)  # drops the oldest of a full queue in the same step
+        # A driving thread may have taken a sample just before. Then the queue was not
+        # full and this sample needs an event. A surplus event has no effect.
         if not is_full or self._loop.is_driven_elsewhere:
             self._ready.append(self)
             if self._loop.waiting:
                 self._loop.wake()
 
     def run(self) -> Any:
-        """Call back with the oldest sample of the queue."""
+        """Run the callback with the oldest queued sample."""
         queue = self._queue
-        if not queue:  # destroyed while the event waited, or one event too many
+        if not queue:  # destroyed while the event was queued, or a surplus event
             return None
         if self._plain:
             message = queue.popleft()[0]
@@ -197,7 +208,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         return self._run_with_info(queue.popleft())
 
     def take(self) -> MsgT | None:
-        """The oldest sample of the queue, without a callback; None if it is empty."""
+        """Remove and return the oldest queued sample; None if the queue is empty."""
         while self._queue:
             message = self._unwrapped(self._queue.popleft()[0])
             if message is not None:
@@ -207,11 +218,11 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
 
     @property
     def has_samples(self) -> bool:
-        """Whether something waits in the queue."""
+        """Whether samples are queued."""
         return bool(self._queue)
 
     def take_with_info(self, *, raw: bool = False) -> tuple[Any, MessageInfo] | None:
-        """As :meth:`take`, with what is known of the sample; its bytes if ``raw``."""
+        """As :meth:`take`, with the sample's info; the serialised bytes if ``raw``."""
         while self._queue:
             item = self._queue.popleft()
             message = self._opened(item[0], raw=raw)
@@ -221,27 +232,28 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
 
     @property
     def handle(self) -> SubscriptionHandle:
-        """To poll by, as rclpy's inside does."""
+        """Handle for polling with rclpy's internal wait set."""
         return SubscriptionHandle(self)
 
     def origin(self) -> tuple[str, str]:
         return self.endpoint.node_full_name, f"topic {self.endpoint.topic}"
 
     def destroy(self) -> None:
-        """Leave the topic and forget what is queued."""
+        """Leave the topic and drop the queued samples."""
         for port in self.ports:
             port.close()
         self._queue.clear()
-        self._on_destroy(self)
+        self._watch.stop()
+        self._owner.forget(self)
 
     def _unwrapped(self, message: Any) -> Any:
-        """The message itself; None if it expired or is not what it should be."""
+        """Return the message; None if it expired or cannot be decoded."""
         if message.__class__ is Expiring:
             message = message.at(self._loop.clock.now_ns)
         return message.decode() if message.__class__ is Encoded else message
 
     def _opened(self, message: Any, *, raw: bool) -> Any:
-        """The message or its bytes; None if it expired or is not what it should be."""
+        """Return the message or its bytes; None if it expired or cannot be decoded."""
         if not raw:
             return self._unwrapped(message)
         if message.__class__ is Expiring:
@@ -255,7 +267,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         if message is None:
             return None
         info = self._info_of(item)
-        if not self._informed:
+        if not self._takes_info:
             return self._callback(message)
         return self._callback(message, info)
 

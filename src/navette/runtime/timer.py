@@ -1,24 +1,19 @@
-"""Timers: a callback every period of a clock."""
+"""Timers: a callback once per period of a clock."""
 
 from collections.abc import Callable
 from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.destroyable import Destroyable
+from navette.runtime.destroyable import Destroyable, EntityOwner
 from navette.runtime.events import Entity
-from navette.runtime.ros_clock import (
-    Clock,
-    ClockChange,
-    JumpThreshold,
-    TimeJump,
-)
+from navette.runtime.ros_clock import Clock, ClockChange, JumpThreshold, TimeJump
 from navette.runtime.signatures import takes_arguments
 from navette.runtime.time import ClockType, Duration, Time
 
 
 class TimerInfo:
-    """When a timer should have been called and when it was."""
+    """Expected and actual time of a timer's call."""
 
     def __init__(
         self,
@@ -36,9 +31,9 @@ class TimerInfo:
 
 
 class Timer(Destroyable, Entity):
-    """Calls back every ``timer_period_ns`` of its clock; skips beats it is late for.
+    """Runs a callback every ``timer_period_ns`` of its clock; skips missed periods.
 
-    Made by :meth:`Node.create_timer`.
+    Created by :meth:`Node.create_timer`.
     """
 
     __slots__ = (
@@ -48,9 +43,9 @@ class Timer(Destroyable, Entity):
         "_last_ns",
         "_next_ns",
         "_node_name",
-        "_on_destroy",
+        "_owner",
         "_period_ns",
-        "_wants_info",
+        "_takes_info",
         "token",
     )
 
@@ -62,15 +57,15 @@ class Timer(Destroyable, Entity):
         clock: Clock,
         *,
         node_name: str = "",
-        on_destroy: Callable[["Timer"], None] | None = None,
+        owner: EntityOwner | None = None,
         autostart: bool = True,
     ) -> None:
         self._callback = callback
-        self._wants_info = callback is not None and takes_arguments(callback, 1)
+        self._takes_info = callback is not None and takes_arguments(callback, 1)
         self.group = callback_group
         self._clock = clock
         self._node_name = node_name
-        self._on_destroy = on_destroy
+        self._owner = owner
         self._period_ns = _checked_period(timer_period_ns)
         self._last_ns = clock.now_ns
         self._next_ns = self._last_ns + self._period_ns
@@ -96,7 +91,7 @@ class Timer(Destroyable, Entity):
 
     @timer_period_ns.setter
     def timer_period_ns(self, value: int) -> None:
-        """Counts from the next call on (call :meth:`reset` to start over)."""
+        """Set the period from the next call on (:meth:`reset` applies it now)."""
         self._period_ns = _checked_period(int(value))
 
     @property
@@ -106,63 +101,64 @@ class Timer(Destroyable, Entity):
     @callback.setter
     def callback(self, callback: Callable[..., Any]) -> None:
         self._callback = callback
-        self._wants_info = takes_arguments(callback, 1)
+        self._takes_info = takes_arguments(callback, 1)
 
     def is_canceled(self) -> bool:
         return self.token == -1
 
     def is_ready(self) -> bool:
-        """Whether it is due."""
+        """Return whether the timer is due."""
         return self.token != -1 and self._clock.now_ns >= self._next_ns
 
     def cancel(self) -> None:
-        """Stop calling back until :meth:`reset`."""
+        """Stop the timer until :meth:`reset`."""
         self.token = -1
 
     def reset(self) -> None:
-        """Start over: the next call is one period from now."""
+        """Restart the timer: the next call is one period from now."""
         self._last_ns = self._clock.now_ns
         self._next_ns = self._last_ns + self._period_ns
         self._arm()
 
     def time_since_last_call(self) -> int:
-        """Nanoseconds since the last call (or the start)."""
+        """Return the nanoseconds since the last call or the start."""
         return self._clock.now_ns - self._last_ns
 
     def time_until_next_call(self) -> int | None:
-        """Nanoseconds until the next call (negative = late); None if canceled."""
+        """Return the nanoseconds until the next call (< 0: late); None if cancelled."""
         if self.token == -1:
             return None
         return self._next_ns - self._clock.now_ns
 
     def destroy(self) -> None:
-        """Stop for good."""
+        """Stop the timer and remove it from its node."""
         self.token = -1
         self._jump_handle.unregister()
-        if self._on_destroy is not None:
-            self._on_destroy(self)
+        if self._owner is not None:
+            self._owner.forget(self)
 
     def origin(self) -> tuple[str, str]:
         return self._node_name, f"timer of {self._period_ns / 1e9:g} s"
 
     def run(self) -> Any:
-        if self.token == -1:  # canceled while it waited in the queue
+        if self.token == -1:  # cancelled while the event was queued
             return None
         now = self._clock.now_ns
-        if now < self._next_ns:  # reset, or the clock set back, while it waited
+        if now < self._next_ns:  # reset, or clock set back, while queued
             self._arm()
             return None
         expected = self._next_ns
         self._last_ns = now
         self._next_ns = expected + self._period_ns
-        if self._next_ns <= now:  # late by a period or more: skip, keep the phase
+        if self._next_ns <= now:  # late: skip missed periods, keep the phase
             missed = (now - self._next_ns) // self._period_ns + 1
             self._next_ns += missed * self._period_ns
-        # Armed before the callback: what that schedules for the same time is later.
+        # Scheduled before the callback, so that events which the callback schedules
+        # for the same time run after the timer.
         self._arm()
         if self._callback is None:
             return None
-        if not self._wants_info:
+        if not self._takes_info:
             return self._callback()
         return self._callback(
             TimerInfo(
@@ -176,7 +172,7 @@ class Timer(Destroyable, Entity):
         self.token = self._clock.schedule(self._next_ns, self)
 
     def _on_jump(self, jump: TimeJump) -> None:
-        """Keep the pace when the clock is set back or its source changes."""
+        """Restart the period when the clock is set back or its source changes."""
         if self.token == -1:
             return
         now = self._clock.now_ns
@@ -188,7 +184,9 @@ class Timer(Destroyable, Entity):
 
 
 def _checked_period(period_ns: int) -> int:
-    # A period of zero would keep a virtual clock from ever going on.
+    # With a period of zero, virtual time would never advance.
     if period_ns <= 0:
-        raise InvalidValueError(f"timer period {period_ns / 1e9:g} s: wanted > 0")
+        raise InvalidValueError(
+            f"timer period must be > 0 s, got {period_ns / 1e9:g} s"
+        )
     return period_ns

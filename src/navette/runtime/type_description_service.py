@@ -1,6 +1,6 @@
-"""``~/get_type_description``: every node tells others what its types are (REP 2016)."""
+"""Service ``~/get_type_description``: definitions of message types (REP 2016)."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.errors import FileFormatError, InvalidNameError, UnknownNameError
 from navette.msgs import (
@@ -11,35 +11,34 @@ from navette.msgs import (
     type_hash,
 )
 from navette.msgs.rcl_interfaces.msg import ParameterDescriptor
-
-if TYPE_CHECKING:
-    from navette.runtime.node import Node
+from navette.runtime.node_parameters import NodeParameters
+from navette.runtime.node_services import NodeServices
 
 START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
 _PACKAGE = "type_description_interfaces"
 
 
 class TypeDescriptionService:
-    """Serves it, unless the parameter ``start_type_description_service`` is false.
+    """Serves all types known to this process.
 
-    It knows every type that is defined here, those that the node uses among them.
+    Disabled by the parameter ``start_type_description_service``.
     """
 
-    def __init__(self, node: "Node") -> None:
+    def __init__(self, parameters: NodeParameters, services: NodeServices) -> None:
         name = START_TYPE_DESCRIPTION_SERVICE_PARAM
-        if not node.has_parameter(name):
+        if not parameters.has_parameter(name):
             descriptor = ParameterDescriptor(
                 description="Whether to serve ~/get_type_description.", read_only=True
             )
-            node.declare_parameter(name, True, descriptor)
-        self.enabled: bool = node.get_parameter(name).value
+            parameters.declare_parameter(name, True, descriptor)
+        self.enabled: bool = parameters.get_parameter(name).value
         if self.enabled:
             type_name = f"{_PACKAGE}/srv/GetTypeDescription"
-            node.serve(type_name, "~/get_type_description", describe)
+            services.serve(type_name, "~/get_type_description", describe)
 
 
 def describe(request: Any, response: Any) -> Any:
-    """Fill in the response, or why there is none."""
+    """Fill in the type description or the failure reason."""
     try:
         found = type_hash(request.type_name)
     except (InvalidNameError, UnknownNameError, FileFormatError) as error:
@@ -47,7 +46,7 @@ def describe(request: Any, response: Any) -> Any:
         return response
     if request.type_hash not in ("", found):
         response.failure_reason = (
-            f"{request.type_name} is {found} here, not {request.type_hash}"
+            f"the type hash of {request.type_name} is {found}, not {request.type_hash}"
         )
         return response
     description = type_description(request.type_name)
@@ -60,7 +59,7 @@ def describe(request: Any, response: Any) -> Any:
 
 
 def _sources(description: Any) -> list[Any]:
-    """The text of the type's own file and of the files of what it refers to."""
+    """Return the definition texts of the type and of the types it refers to."""
     source = get_interface(f"{_PACKAGE}/msg/TypeSource")
     every = [description.type_description, *description.referenced_type_descriptions]
     return [source(type_name=each.type_name, **_file(each.type_name)) for each in every]
@@ -68,6 +67,6 @@ def _sources(description: Any) -> list[Any]:
 
 def _file(name: str) -> dict[str, str]:
     text = interface_text(name)
-    if text is None:  # a part of a service or an action: made from it
+    if text is None:  # a part of a service or an action has no file
         return {"encoding": "implicit", "raw_file_contents": ""}
     return {"encoding": name.split("/")[1], "raw_file_contents": text}

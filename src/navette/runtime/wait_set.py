@@ -1,19 +1,14 @@
-"""What a program's own waitable waits for, under the names of rclpy's wait set."""
+"""Wait sets of a program's own waitables, under rclpy's names."""
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.events import Entity
 from navette.runtime.handles import Handle
-from navette.runtime.loop import EventLoop
-
-if TYPE_CHECKING:
-    from navette.runtime.waitable import Waitable
 
 
 class NumberOfEntities:
-    """How many things of each kind are waited for."""
+    """Number of entities of each kind that a waitable waits for."""
 
     def __init__(
         self,
@@ -47,34 +42,34 @@ class NumberOfEntities:
 
 
 class WaitSet:
-    """Notes which of the things in it are due.
+    """Records which of its guard conditions and timers are due.
 
-    Each is handed over with its callback: it is this set's from then on.
+    The set replaces the callback of each entity that is added to it.
     """
 
-    def __init__(self, wake: Any) -> None:
+    def __init__(self, wake: Callable[[], object]) -> None:
         self._wake = wake
         self._counts: dict[str, int] = {}
         self._ready: set[tuple[str, int]] = set()
 
     def add_guard_condition(self, guard: Any) -> int:
-        """Wait for its trigger; gives its index."""
+        """Add a guard condition, due when triggered; return its index."""
         return self._add("guard_condition", guard)
 
     def add_timer(self, timer: Any) -> int:
-        """Wait until it is due; gives its index."""
+        """Add a timer; return its index."""
         return self._add("timer", timer)
 
     def is_ready(self, entity_type: str, index: int | None) -> bool:
-        """Whether that one is due (``"guard_condition"`` or ``"timer"``)."""
+        """Return whether a ``"guard_condition"`` or ``"timer"`` is due."""
         return (entity_type, index) in self._ready
 
     def get_ready_entities(self, entity_type: str) -> list[int]:
-        """The indices of those that are due."""
+        """Return the indices of the due entities of that type."""
         return sorted(index for kind, index in self._ready if kind == entity_type)
 
     def clear(self) -> None:
-        """Nothing is due any more."""
+        """Mark all entities as not due."""
         self._ready.clear()
 
     def _add(self, kind: str, entity: Any) -> int:
@@ -82,44 +77,9 @@ class WaitSet:
         self._counts[kind] = index + 1
         if isinstance(entity, Handle):
             entity = entity.entity
-        entity.callback = partial(self._note, kind, index)
+        entity.callback = partial(self._mark_due, kind, index)
         return index
 
-    def _note(self, kind: str, index: int) -> None:
+    def _mark_due(self, kind: str, index: int) -> None:
         self._ready.add((kind, index))
         self._wake()
-
-
-class WaitableEvents(Entity):
-    """Runs a program's own waitable when what it waits for is due."""
-
-    __slots__ = ("_is_queued", "_loop", "_node_name", "_waitable", "wait_set")
-
-    def __init__(
-        self,
-        waitable: "Waitable[Any]",
-        group: CallbackGroup,
-        loop: EventLoop,
-        node_name: str,
-    ) -> None:
-        self.group = group
-        self._waitable = waitable
-        self._loop = loop
-        self._node_name = node_name
-        self._is_queued = False
-        self.wait_set = WaitSet(self._queue)
-
-    def run(self) -> Any:
-        self._is_queued = False
-        if not self._waitable.is_ready(self.wait_set):
-            return None
-        self.wait_set.clear()
-        return self._waitable.execute(self._waitable.take_data())
-
-    def origin(self) -> tuple[str, str]:
-        return self._node_name, f"waitable {type(self._waitable).__name__}"
-
-    def _queue(self) -> None:
-        if not self._is_queued:
-            self._is_queued = True
-            self._loop.ready.append(self)

@@ -69,7 +69,7 @@ def test_signals_end_it_with_the_shells_exit_codes(number: int, code: int) -> No
 
     def wait() -> None:
         with Context(clock=SystemClock()) as context, connect(context) as node:
-            node.call_soon(lambda: os.kill(os.getpid(), number), "test")
+            node.context.loop.call_soon(lambda: os.kill(os.getpid(), number), "test")
             wait_for(node, lambda: False, 5.0)
 
     with pytest.raises(typer.Exit) as ended:

@@ -75,4 +75,4 @@ def test_what_cannot_be_decoded_is_reported_and_left_out(
             publisher.publish_encoded(serialize(String(data="good")))
             graph.run_for(0.1)
         assert heard == ["good"]
-        assert "/t: not delivered" in caplog.text
+        assert "/t: message not delivered" in caplog.text

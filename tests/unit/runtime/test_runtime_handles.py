@@ -8,7 +8,7 @@ from navette.msgs import serialize
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Context, Node, QoSProfile
 from navette.runtime.guard_condition import GuardCondition
-from navette.runtime.handles import PollSet
+from navette.runtime.poll_set import PollSet
 from navette.runtime.time import Duration
 from navette.testing import GraphHarness
 

@@ -244,4 +244,4 @@ def test_two_nodes_of_one_name_are_warned_about(
 ) -> None:
     Node("twin", context=graph.context)
     Node("twin", context=graph.context)
-    assert "there is a node /twin already" in capsys.readouterr().err
+    assert "another node is named /twin" in capsys.readouterr().err

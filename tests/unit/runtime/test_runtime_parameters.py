@@ -134,7 +134,7 @@ def test_unknown_parameter_lists_the_known_ones(node: Node) -> None:
         node.get_parameter("sped")
     with pytest.raises(ParameterNotDeclaredException):
         node.set_parameters([Parameter("sped", value=1.0)])
-    with pytest.raises(TypeError, match="wanted a Parameter"):
+    with pytest.raises(TypeError, match="expected a Parameter"):
         node.set_parameters(["speed"])  # type: ignore[list-item]
 
 

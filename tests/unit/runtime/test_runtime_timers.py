@@ -180,5 +180,5 @@ def test_shutdown_ends_a_sleep(graph: GraphHarness) -> None:
 
 
 def test_wrong_rate_is_refused(graph: GraphHarness) -> None:
-    with pytest.raises(InvalidValueError, match="rate 0"):
+    with pytest.raises(InvalidValueError, match="rate must be > 0 Hz, got 0"):
         graph.node.create_rate(0)

@@ -89,7 +89,7 @@ def test_types_made_at_run_time(ask: Ask) -> None:
     [
         ("std_msgs/msg/Strung", "", "Strung"),
         ("nonsense", "", "nonsense"),
-        ("std_msgs/msg/String", "RIHS01_00", "is RIHS01_.* here, not RIHS01_00"),
+        ("std_msgs/msg/String", "RIHS01_00", "is RIHS01_.*, not RIHS01_00"),
     ],
 )
 def test_what_cannot_be_told_is_said(

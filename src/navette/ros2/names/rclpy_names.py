@@ -47,12 +47,11 @@ _ORIGINS = {
         InvalidNodeNameException, InvalidParameterException,
         InvalidParameterTypeException, InvalidParameterValueException,
         InvalidServiceNameException, InvalidTopicNameException, NameValidationException,
-        ParameterException, ParameterImmutableException,
+        NodeNameNonExistentError, ParameterException, ParameterImmutableException,
         ParameterUninitializedException, RCLError, ShutdownException, TimeoutException
     """,
     "navette.runtime.executor": "await_or_execute, EventsExecutor, TimeoutObject",
     "navette.runtime.guard_condition": "GuardCondition",
-    "navette.runtime.handles": "PollSet as WaitSet",
     "navette.runtime.lifecycle": """
         LifecycleNodeMixin, LifecycleState, ManagedEntity, NodeMixin,
         SimpleManagedEntity, State
@@ -65,7 +64,6 @@ _ORIGINS = {
         validate_node_name, validate_topic_name
     """,
     "navette.runtime.node": "HIDDEN_NODE_PREFIX",
-    "navette.runtime.node_graph": "NodeNameNonExistentError",
     "navette.runtime.parameter": """
         AllowableParameterValue, get_parameter_value, parameter_dict_from_yaml_file,
         PARAMETER_SEPARATOR_STRING, parameter_value_to_python, validate_parameter_name
@@ -74,6 +72,7 @@ _ORIGINS = {
         ParameterCallbackHandle, ParameterEventCallbackHandle
     """,
     "navette.runtime.parameter_service": "ParameterService",
+    "navette.runtime.poll_set": "PollSet as WaitSet",
     "navette.runtime.program_log": """
         clear_config, get_logger, get_logger_effective_level, get_logger_level,
         get_logging_directory, get_logging_severity_from_string, initialize,

@@ -1,4 +1,4 @@
-"""Actions: goals that take time, with feedback, cancelling and a result."""
+"""Actions: long-running goals with feedback, cancelling and a result."""
 
 from navette.runtime.action.client import ActionClient
 from navette.runtime.action.goal_states import CancelResponse, GoalEvent, GoalResponse

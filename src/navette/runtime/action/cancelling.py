@@ -1,4 +1,4 @@
-"""Which goals a request to cancel means (action_msgs/srv/CancelGoal)."""
+"""Select the goals of a cancel request (action_msgs/srv/CancelGoal)."""
 
 from collections.abc import Mapping
 
@@ -10,15 +10,15 @@ from navette.runtime.time import stamp_to_ns
 
 
 def goals_to_cancel(
-    wanted: GoalInfo, goals: Mapping[bytes, ServerGoalHandle]
+    requested: GoalInfo, goals: Mapping[bytes, ServerGoalHandle]
 ) -> tuple[int, list[ServerGoalHandle]]:
-    """Return code and the goals that the request names and that may be cancelled.
+    """Return the return code and the cancellable goals that the request selects.
 
-    No id and no time: all goals. A time: those accepted until then, and the one with
-    the id if there is one. An id alone: that goal.
+    Without id and time, the request selects all goals; with a time, the goals accepted
+    until then and the goal with the id, if given; with an id alone, that goal.
     """
-    key = bytes(wanted.goal_id.uuid)
-    until_ns = stamp_to_ns(wanted.stamp)
+    key = bytes(requested.goal_id.uuid)
+    until_ns = stamp_to_ns(requested.stamp)
     codes = CancelGoal.Response
     if any(key) and not until_ns:
         if key not in goals:

@@ -1,4 +1,4 @@
-"""Clients of actions: goals out, feedback and results in."""
+"""Action clients: send goals, receive feedback and results."""
 
 import uuid
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from navette.runtime.action.goal_states import STATUS_NAMES, is_active
 from navette.runtime.action.result_request import ResultRequest
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.exceptions import ROSInterruptException
-from navette.runtime.future import Answer, Future
+from navette.runtime.future import Future, ResponseFuture
 from navette.runtime.node import Node
 from navette.runtime.qos import (
     QoSProfile,
@@ -28,7 +28,7 @@ from navette.runtime.waitable import Waitable
 
 
 class ClientGoalHandle:
-    """A goal as its client sees it."""
+    """Goal handle of an action client."""
 
     def __init__(
         self, action_client: "ActionClient", goal_id: UUID, goal_response: Any
@@ -36,7 +36,7 @@ class ClientGoalHandle:
         self._action_client = action_client
         self._goal_id = goal_id
         self._goal_response = goal_response
-        #: As the status topic tells.
+        #: The last status received on the status topic.
         self.status: int = GoalStatus.STATUS_UNKNOWN
 
     def __eq__(self, other: object) -> bool:
@@ -59,7 +59,7 @@ class ClientGoalHandle:
 
     @property
     def stamp(self) -> TimeMsg:
-        """When the server accepted it."""
+        """Time at which the server accepted the goal."""
         stamp: TimeMsg = self._goal_response.stamp
         return stamp
 
@@ -68,24 +68,24 @@ class ClientGoalHandle:
         return bool(self._goal_response.accepted)
 
     def cancel_goal_async(self) -> Future[Any]:
-        """Ask the server to cancel; the future gets its CancelGoal response."""
+        """Request cancelling; the future gets the CancelGoal response."""
         return self._action_client.request_cancel(self)
 
     def get_result_async(self) -> Future[Any]:
-        """Ask for the result; the future gets a response with status and result."""
+        """Request the result; the future gets a response with status and result."""
         return self._action_client.request_result(self)
 
     def cancel_goal(self) -> Any:
-        """As :meth:`cancel_goal_async`; lets events run until it is answered."""
+        """Request cancelling and run events until the response arrives."""
         return self._action_client.wait_for(self.cancel_goal_async())
 
     def get_result(self) -> Any:
-        """As :meth:`get_result_async`; lets events run until it is there."""
+        """Request the result and run events until it arrives."""
         return self._action_client.wait_for(self.get_result_async())
 
 
 class ActionClient(Waitable[Any]):
-    """Sends goals to an action's server."""
+    """Sends goals to an action server."""
 
     def __init__(
         self,
@@ -144,7 +144,7 @@ class ActionClient(Waitable[Any]):
             callback_group=callback_group,
             shared=True,
         )
-        # Whoever waits for a result, holding its group, hears of it meanwhile.
+        # Processed also while a callback of the same group waits for the result.
         self._feedback.answers_calls = self._status.answers_calls = True
         node.add_waitable(self)
 
@@ -153,27 +153,25 @@ class ActionClient(Waitable[Any]):
         """Full name."""
         return self._feedback.topic_name.removesuffix("/_action/feedback")
 
-    # -- goals -----------------------------------------------------------------
-
     def send_goal_async(
         self,
         goal: Any,
         feedback_callback: Callable[[Any], Any] | None = None,
         goal_uuid: UUID | None = None,
     ) -> Future[ClientGoalHandle]:
-        """Send a goal; the future gets a handle once the server has answered.
+        """Send a goal; the future gets a handle when the server has responded.
 
         Args:
             feedback_callback: called with the action's feedback messages.
-            goal_uuid: id of the goal; made if not given.
+            goal_uuid: id of the goal; generated if None.
 
         Raises:
-            MessageError: not of the action's goal type (also a TypeError).
+            MessageError: ``goal`` is of another type (also a TypeError).
         """
-        wanted = self._action_type.Goal
-        if not isinstance(goal, wanted):
+        expected = self._action_type.Goal
+        if not isinstance(goal, expected):
             raise MessageError(
-                f"action {self.action_name}: expected {type_name(wanted)}, got "
+                f"action {self.action_name}: expected {type_name(expected)}, got "
                 f"{type(goal).__name__}"
             )
         goal_id = self._new_id() if goal_uuid is None else goal_uuid
@@ -181,22 +179,22 @@ class ActionClient(Waitable[Any]):
         if feedback_callback is not None:
             self._feedback_callbacks[key] = feedback_callback
         request = self._action_type.Impl.SendGoalService.Request
-        answered = self._goal_client.call_async(request(goal_id=goal_id, goal=goal))
-        future: Future[ClientGoalHandle] = Answer()
+        response = self._goal_client.call_async(request(goal_id=goal_id, goal=goal))
+        future: Future[ClientGoalHandle] = ResponseFuture()
 
-        def take(_: object) -> None:
-            if answered.cancelled():
+        def complete(_: object) -> None:
+            if response.cancelled():
                 future.cancel()
-            elif answered.exception() is not None:
-                future.set_exception(answered.exception())
+            elif response.exception() is not None:
+                future.set_exception(response.exception())
             else:
-                future.set_result(self._handle(goal_id, answered.result()))
+                future.set_result(self._handle(goal_id, response.result()))
 
-        answered.add_done_callback(take)
+        response.add_done_callback(complete)
         return future
 
     def send_goal(self, goal: Any, **kwargs: Any) -> Any:
-        """Send a goal and let events run until its result is there; gives that."""
+        """Send a goal, run events until its result arrives, and return the result."""
         handle = self.wait_for(self.send_goal_async(goal, **kwargs))
         return handle.get_result()
 
@@ -221,24 +219,22 @@ class ActionClient(Waitable[Any]):
         return future
 
     def wait_for(self, future: Future[Any]) -> Any:
-        """Let events run until the future is done; gives its result.
+        """Run events until the future is done; return its result.
 
         Raises:
             ROSInterruptException: the context was shut down or the client destroyed.
-            TimeoutError: under a virtual clock nothing is left that could answer.
+            TimeoutError: no event is left that could complete it (virtual clock).
         """
         self._loop.run(done=future.done, calling=True)
         if future.cancelled():
             raise ROSInterruptException
         if not future.done():
-            servers = "" if self.server_is_ready() else " (there is no server)"
-            raise TimeoutError(f"action {self.action_name}: no answer{servers}")
+            servers = "" if self.server_is_ready() else " (the action has no server)"
+            raise TimeoutError(f"action {self.action_name}: no response{servers}")
         return future.result()
 
-    # -- the server ------------------------------------------------------------
-
     def server_is_ready(self) -> bool:
-        """Whether all the services and topics of a server are there."""
+        """Return whether all services and topics of a server exist."""
         clients = (self._goal_client, self._cancel_client, self._result_client)
         topics = (self._feedback, self._status)
         return all(client.service_is_ready() for client in clients) and all(
@@ -246,7 +242,7 @@ class ActionClient(Waitable[Any]):
         )
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Let events run until there is a server; False after the timeout."""
+        """Run events until a server is ready; False after the timeout."""
         until_ns = None
         if timeout_sec is not None:
             until_ns = self._loop.clock.now_ns + seconds_to_ns(float(timeout_sec))
@@ -254,14 +250,12 @@ class ActionClient(Waitable[Any]):
         return self.server_is_ready()
 
     def destroy(self) -> None:
-        """Leave the graph; futures under way are cancelled."""
+        """Leave the graph and cancel pending requests."""
         for each in (self._goal_client, self._cancel_client, self._result_client):
             self._node.destroy_client(each)
         self._node.destroy_subscription(self._feedback)
         self._node.destroy_subscription(self._status)
         self._node.remove_waitable(self)
-
-    # -- inside ----------------------------------------------------------------
 
     def _handle(self, goal_id: UUID, response: Any) -> ClientGoalHandle:
         handle = ClientGoalHandle(self, goal_id, response)
@@ -286,7 +280,7 @@ class ActionClient(Waitable[Any]):
                     del self._goals[key]
 
     def _new_id(self) -> UUID:
-        """Random; under a virtual clock the same ones in every run."""
+        """Return a random id; under a virtual clock, the same ids in every run."""
         self._sent += 1
         if not self._loop.clock.is_virtual:
             return UUID(uuid=list(uuid.uuid4().bytes))

@@ -1,4 +1,4 @@
-"""The states of a goal, and which event leads from which to which.
+"""States of a goal and the events that change them.
 
 https://design.ros2.org/articles/actions.html, "Goal States".
 """
@@ -10,21 +10,21 @@ from navette.runtime.exceptions import RCLError
 
 
 class GoalResponse(Enum):
-    """What a goal callback says."""
+    """Return value of a goal callback."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """What a cancel callback says."""
+    """Return value of a cancel callback."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class GoalEvent(Enum):
-    """What happens to a goal; values as in rcl_action."""
+    """Event that changes a goal's state; values as in rcl_action."""
 
     EXECUTE = 0
     CANCEL_GOAL = 1
@@ -62,26 +62,26 @@ _TRANSITIONS: dict[int, dict[GoalEvent, int]] = {
 
 
 def next_status(status: int, event: GoalEvent) -> int:
-    """The status after ``event``.
+    """Return the status after ``event``.
 
     Raises:
-        RCLError: the event cannot happen in that state; names those that can.
+        RCLError: the event is invalid in that state; lists the valid events.
     """
     allowed = _TRANSITIONS.get(status, {})
     if event not in allowed:
         listed = ", ".join(each.name for each in allowed) or "none"
         raise RCLError(
-            f"goal in state {STATUS_NAMES[status]} cannot take the event {event.name}; "
-            f"possible: {listed}"
+            f"event {event.name} is invalid for a goal in state "
+            f"{STATUS_NAMES[status]}; valid events: {listed}"
         )
     return allowed[event]
 
 
 def is_active(status: int) -> bool:
-    """Whether the goal has not ended."""
+    """Return whether the status is not terminal."""
     return status in _TRANSITIONS
 
 
 def is_cancelable(status: int) -> bool:
-    """Whether it may still be asked to cancel."""
+    """Return whether a goal with this status can be cancelled."""
     return GoalEvent.CANCEL_GOAL in _TRANSITIONS.get(status, {})

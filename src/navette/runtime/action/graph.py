@@ -1,21 +1,21 @@
-"""Which actions are there, and who serves or uses them."""
+"""Graph queries for actions."""
 
+from navette.runtime.graph_queries import NamesAndTypes
 from navette.runtime.node import Node
-from navette.runtime.node_graph import NamesAndTypes
 
 _TOPIC = "/_action/feedback"
 _TYPE = "_FeedbackMessage"
 
 
 def get_action_names_and_types(node: Node) -> NamesAndTypes:
-    """All actions with a server or a client."""
+    """Return all actions that have a server or a client."""
     return _actions(node.get_topic_names_and_types())
 
 
 def get_action_server_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """The actions that a node serves."""
+    """Return the actions that a node serves."""
     return _actions(
         node.get_publisher_names_and_types_by_node(
             remote_node_name, remote_node_namespace
@@ -26,7 +26,7 @@ def get_action_server_names_and_types_by_node(
 def get_action_client_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """The actions that a node is a client of."""
+    """Return the actions that a node is a client of."""
     return _actions(
         node.get_subscriber_names_and_types_by_node(
             remote_node_name, remote_node_namespace
@@ -35,7 +35,7 @@ def get_action_client_names_and_types_by_node(
 
 
 def _actions(topics: NamesAndTypes) -> NamesAndTypes:
-    """Every action has a feedback topic, of a type made from the action's."""
+    """Select the feedback topics and return their action names and types."""
     return [
         (topic.removesuffix(_TOPIC), [name.removesuffix(_TYPE) for name in types])
         for topic, types in topics

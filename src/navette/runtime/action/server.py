@@ -1,4 +1,4 @@
-"""Servers of actions: three services, two topics, and the goals in between."""
+"""Action servers: three services, two topics, and the state of the goals."""
 
 from collections.abc import Callable
 from typing import Any
@@ -40,17 +40,17 @@ __all__ = [
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
-    """Execute the goal."""
+    """Execute the goal immediately."""
     goal_handle.execute()
 
 
 def default_goal_callback(goal_request: Any) -> GoalResponse:
-    """Accept all goals."""
+    """Accept the goal."""
     return GoalResponse.ACCEPT
 
 
 def default_cancel_callback(cancel_request: Any) -> CancelResponse:
-    """No cancelling."""
+    """Reject the cancel request."""
     return CancelResponse.REJECT
 
 
@@ -59,10 +59,10 @@ class ActionServer(Waitable[Any]):
 
     Args:
         execute_callback: ``callback(goal_handle) -> Result``, for each goal.
-        goal_callback: ``callback(goal) -> GoalResponse``.
-        handle_accepted_callback: ``callback(goal_handle)``; the default executes it.
-        cancel_callback: ``callback(goal_handle) -> CancelResponse``.
-        result_timeout: seconds for which a result is kept; negative = for ever.
+        goal_callback: ``callback(goal) -> GoalResponse``; default: accept.
+        handle_accepted_callback: ``callback(goal_handle)``; default: execute the goal.
+        cancel_callback: ``callback(goal_handle) -> CancelResponse``; default: reject.
+        result_timeout: seconds for which a result is stored; negative: no limit.
     """
 
     def __init__(
@@ -143,12 +143,10 @@ class ActionServer(Waitable[Any]):
         """Full name."""
         return self._feedback.topic_name.removesuffix("/_action/feedback")
 
-    # -- callbacks -------------------------------------------------------------
-
     def register_handle_accepted_callback(
         self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Called with each accepted goal; None = execute it at once."""
+        """Set the callback for accepted goals; None: execute them immediately."""
         self._handle_accepted_callback = (
             handle_accepted_callback or default_handle_accepted_callback
         )
@@ -156,27 +154,25 @@ class ActionServer(Waitable[Any]):
     def register_goal_callback(
         self, goal_callback: Callable[[Any], Any] | None
     ) -> None:
-        """Decides on each goal; None = accept all."""
+        """Set the callback that accepts or rejects goals; None: accept all."""
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_cancel_callback(
         self, cancel_callback: Callable[[Any], Any] | None
     ) -> None:
-        """Decides on each request to cancel; None = refuse all."""
+        """Set the callback that decides on cancel requests; None: reject all."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def register_execute_callback(
         self, execute_callback: Callable[[ServerGoalHandle], Any]
     ) -> None:
-        """Executes each goal and returns its result."""
+        """Set the callback that executes a goal and returns its result."""
         if not callable(execute_callback):
             raise TypeError(
                 "failed to register goal execution callback: "
                 f"{execute_callback!r} is not callable"
             )
         self._execute_callback = execute_callback
-
-    # -- what goal handles tell ------------------------------------------------
 
     def notify_execute(
         self,
@@ -193,7 +189,7 @@ class ActionServer(Waitable[Any]):
         )
 
     def notify_goal_done(self, goal_handle: ServerGoalHandle) -> None:
-        """Keep the goal and its result for a while only."""
+        """Schedule the removal of the goal and its result."""
         if self._result_timeout_ns < 0:
             return
         key = bytes(goal_handle.goal_id.uuid)
@@ -209,7 +205,7 @@ class ActionServer(Waitable[Any]):
         self._feedback.publish(message(goal_id=goal_id, feedback=feedback))
 
     def publish_status(self) -> None:
-        """The states of all goals that are known."""
+        """Publish the states of all stored goals."""
         self._status.publish(
             GoalStatusArray(
                 status_list=[
@@ -220,16 +216,16 @@ class ActionServer(Waitable[Any]):
         )
 
     def set_result(self, goal_handle: ServerGoalHandle, result: Any) -> None:
-        """Answer those who wait for the goal's result; the first result counts.
+        """Respond to the requests for the goal's result; only the first result counts.
 
         Raises:
-            MessageError: not of the action's result type (also a TypeError).
+            MessageError: ``result`` is of another type (also a TypeError).
         """
-        wanted = self._action_type.Result
-        if not isinstance(result, wanted):
+        expected = self._action_type.Result
+        if not isinstance(result, expected):
             raise MessageError(
                 f"action {self.action_name}: the execute callback must return its "
-                f"{type_name(wanted)}, got {result!r}"
+                f"{type_name(expected)}, got {result!r}"
             )
         if not goal_handle.result.done():
             response = self._action_type.Impl.GetResultService.Response
@@ -238,7 +234,7 @@ class ActionServer(Waitable[Any]):
             )
 
     def destroy(self) -> None:
-        """Leave the graph and forget all goals."""
+        """Leave the graph and destroy all goals."""
         for call in self._expiries.values():
             call.cancel()
         for goal in self._goals.values():
@@ -249,8 +245,6 @@ class ActionServer(Waitable[Any]):
         self._node.destroy_publisher(self._status)
         self._node.remove_waitable(self)
 
-    # -- requests --------------------------------------------------------------
-
     async def _on_goal(self, request: Any, request_id: RequestId) -> None:
         key = bytes(request.goal_id.uuid)
         response = self._action_type.Impl.SendGoalService.Response()
@@ -259,7 +253,8 @@ class ActionServer(Waitable[Any]):
             response.accepted = answer is GoalResponse.ACCEPT
             if not isinstance(answer, GoalResponse):
                 self._logger.warning(
-                    f"goal callback returned {answer!r}, no GoalResponse: rejected"
+                    f"goal rejected: the goal callback returned {answer!r}, not a "
+                    "GoalResponse"
                 )
         if not response.accepted:
             self._goal_service.send_response(response, request_id)
@@ -278,15 +273,15 @@ class ActionServer(Waitable[Any]):
         try:
             result = await await_or_execute(callback, goal)
             if result is not None or not goal.result.done():
-                self._end(goal, result)
+                self._finish(goal, result)
         except Exception:
-            # It goes its way; the client must not wait for ever.
+            # Re-raised after the client got a result: it must not wait indefinitely.
             if goal.is_active:
                 goal.abort()
             self.set_result(goal, self._action_type.Result())
             raise
 
-    def _end(self, goal: ServerGoalHandle, result: Any) -> None:
+    def _finish(self, goal: ServerGoalHandle, result: Any) -> None:
         if goal.is_active:
             self._logger.warning(
                 "Goal state not set, assuming aborted. "
@@ -303,7 +298,7 @@ class ActionServer(Waitable[Any]):
         canceling = []
         for goal in candidates:
             answer = await await_or_execute(self._cancel_callback, goal)
-            # The callback may have taken its time, and the goal may have ended.
+            # The goal may have ended while the callback awaited.
             if answer is CancelResponse.ACCEPT and goal.is_active:
                 goal.update_state(GoalEvent.CANCEL_GOAL)
                 canceling.append(goal.goal_info)

@@ -1,7 +1,7 @@
-"""A goal as its server sees it."""
+"""Goal handle of an action server."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from navette.errors import MessageError
 from navette.msgs import type_name
@@ -10,22 +10,37 @@ from navette.msgs.unique_identifier_msgs.msg import UUID
 from navette.runtime.action.goal_states import GoalEvent, is_active, next_status
 from navette.runtime.future import Future
 
-if TYPE_CHECKING:
-    from navette.runtime.action.server import ActionServer
+
+class GoalOwner(Protocol):
+    """The part of an action server that its goal handles use."""
+
+    @property
+    def action_type(self) -> Any: ...
+    @property
+    def action_name(self) -> str: ...
+    def notify_execute(
+        self,
+        goal_handle: "ServerGoalHandle",
+        execute_callback: Callable[..., Any] | None,
+    ) -> None: ...
+    def notify_goal_done(self, goal_handle: "ServerGoalHandle") -> None: ...
+    def publish_feedback(self, goal_id: UUID, feedback: Any) -> None: ...
+    def publish_status(self) -> None: ...
+    def set_result(self, goal_handle: "ServerGoalHandle", result: Any) -> None: ...
 
 
 class ServerGoalHandle:
-    """An accepted goal: its request, its state, its feedback."""
+    """An accepted goal: its request, state and feedback."""
 
     def __init__(
-        self, action_server: "ActionServer", goal_info: GoalInfo, goal_request: Any
+        self, action_server: GoalOwner, goal_info: GoalInfo, goal_request: Any
     ) -> None:
         self._action_server = action_server
         self._goal_info = goal_info
         self._goal_request = goal_request
         self._status = GoalStatus.STATUS_ACCEPTED
         self._destroyed = False
-        #: The response to get_result, once there is one.
+        #: The response to get_result requests.
         self.result: Future[Any] = Future()
 
     def __eq__(self, other: object) -> bool:
@@ -52,7 +67,7 @@ class ServerGoalHandle:
 
     @property
     def is_active(self) -> bool:
-        """Whether it has not ended."""
+        """Whether the goal has not reached a terminal state."""
         return not self._destroyed and is_active(self._status)
 
     @property
@@ -64,8 +79,8 @@ class ServerGoalHandle:
         return GoalStatus.STATUS_UNKNOWN if self._destroyed else self._status
 
     def execute(self, execute_callback: Callable[..., Any] | None = None) -> None:
-        """Run the execute callback (the server's if not given) as a task."""
-        # A goal may be asked to cancel before it starts: the callback sees to that.
+        """Run the execute callback (default: the server's) as a task."""
+        # Cancelling may be requested before the start; the callback handles that.
         if not self.is_cancel_requested:
             self.update_state(GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
@@ -74,37 +89,37 @@ class ServerGoalHandle:
         """Send feedback to the client.
 
         Raises:
-            MessageError: not of the action's feedback type (also a TypeError).
+            MessageError: ``feedback`` is of another type (also a TypeError).
         """
-        wanted = self._action_server.action_type.Feedback
-        if not isinstance(feedback, wanted):
+        expected = self._action_server.action_type.Feedback
+        if not isinstance(feedback, expected):
             raise MessageError(
                 f"action {self._action_server.action_name}: expected "
-                f"{type_name(wanted)}, got {type(feedback).__name__}"
+                f"{type_name(expected)}, got {type(feedback).__name__}"
             )
         if not self._destroyed:
             self._action_server.publish_feedback(self.goal_id, feedback)
 
     def succeed(self, response: Any = None) -> None:
-        """It is reached; the result comes from here or from the execute callback."""
+        """Mark the goal as reached; default result: that of the execute callback."""
         self.update_state(GoalEvent.SUCCEED)
         self._respond(response)
 
     def abort(self, response: Any = None) -> None:
-        """It cannot be reached."""
+        """Mark the goal as aborted; default result: that of the execute callback."""
         self.update_state(GoalEvent.ABORT)
         self._respond(response)
 
     def canceled(self, response: Any = None) -> None:
-        """It was given up because the client asked for it."""
+        """Mark the goal as cancelled on the client's request."""
         self.update_state(GoalEvent.CANCELED)
         self._respond(response)
 
     def update_state(self, event: GoalEvent) -> None:
-        """Take an event and publish the new state.
+        """Apply an event and publish the new state.
 
         Raises:
-            RCLError: the event is not possible in the goal's state.
+            RCLError: the event is invalid in the goal's state.
         """
         if self._destroyed:
             return
@@ -114,7 +129,7 @@ class ServerGoalHandle:
             self._action_server.notify_goal_done(self)
 
     def destroy(self) -> None:
-        """Forget the goal; what is done to it from now on has no effect."""
+        """Invalidate the handle; later calls have no effect."""
         self._destroyed = True
 
     def _respond(self, response: Any) -> None:

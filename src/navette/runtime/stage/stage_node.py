@@ -175,9 +175,9 @@ class StageNode(Node):
         return receive
 
     def _check_unknown_overrides(self) -> None:
-        for name, override in self._overrides.items():
+        for name, override in self._node_parameters.overrides.items():
             if not self.has_parameter(name) and not override.is_for_all:
-                known = ", ".join(sorted(self._store.values))
+                known = ", ".join(sorted(self.known_parameters() or []))
                 raise ParameterError(
                     f"{override.origin}: node {self.get_fully_qualified_name()} has "
                     f"no parameter {name!r}; known: {known}"

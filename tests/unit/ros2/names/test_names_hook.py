@@ -146,7 +146,7 @@ def test_internal_names_of_rclpy_that_programs_use() -> None:
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     from navette.runtime import exceptions
-    from navette.runtime.handles import PollSet
+    from navette.runtime.poll_set import PollSet
 
     assert RCLError is rclpy_implementation.RCLError is exceptions.RCLError
     assert InvalidHandle is exceptions.InvalidHandle

@@ -1,8 +1,8 @@
-"""The graph queries of :class:`Node`, as rclpy has them."""
+"""Graph queries of a node, with rclpy's names."""
 
-from navette.errors import UnknownNameError
-from navette.runtime.context import Context
-from navette.runtime.graph import names_and_types
+from navette.runtime.exceptions import NodeNameNonExistentError
+from navette.runtime.graph import Graph, names_and_types
+from navette.runtime.loop import EventLoop
 from navette.runtime.names import NodeRemapper, full_node_name, normalize_namespace
 from navette.runtime.topic_endpoint_info import ServiceEndpointInfo, TopicEndpointInfo
 from navette.transports import Endpoint, EndpointKind
@@ -10,33 +10,31 @@ from navette.transports import Endpoint, EndpointKind
 NamesAndTypes = list[tuple[str, list[str]]]
 
 
-class NodeNameNonExistentError(UnknownNameError):
-    """Asked about a node that is not there."""
+class GraphQueries:
+    """Base class of :class:`Node`: which nodes, topics and services exist."""
 
-
-class NodeGraph:
-    """Who is there, and what do they say. Mixed into :class:`Node`."""
-
-    _context: Context
-    _remapper: NodeRemapper
+    def __init__(self, graph: Graph, loop: EventLoop, remapper: NodeRemapper) -> None:
+        self._node_graph = graph
+        self._node_loop = loop
+        self._remapper = remapper
 
     def get_node_names(self) -> list[str]:
-        return [info.name for info in self._context.graph.nodes()]
+        return [info.name for info in self._node_graph.nodes()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
-        return [info.full_name for info in self._context.graph.nodes()]
+        return [info.full_name for info in self._node_graph.nodes()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        return [(info.name, info.namespace) for info in self._context.graph.nodes()]
+        return [(info.name, info.namespace) for info in self._node_graph.nodes()]
 
     def get_node_names_and_namespaces_with_enclaves(
         self,
     ) -> list[tuple[str, str, str]]:
-        nodes = self._context.graph.nodes()
+        nodes = self._node_graph.nodes()
         return [(info.name, info.namespace, info.enclave) for info in nodes]
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
-        return list(self._context.graph.topics().items())
+        return list(self._node_graph.topics().items())
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
@@ -49,7 +47,7 @@ class NodeGraph:
         return self._by_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
-        return list(self._context.graph.services().items())
+        return list(self._node_graph.services().items())
 
     def get_service_names_and_types_by_node(
         self, node_name: str, node_namespace: str
@@ -98,30 +96,30 @@ class NodeGraph:
         return [ServiceEndpointInfo.of(endpoint) for endpoint in found]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Let events run until the node is there; False after ``timeout`` seconds."""
-        wanted = "/" + fully_qualified_node_name.lstrip("/")
-        loop = self._context.loop
+        """Run events until the node exists; False after ``timeout`` seconds."""
+        name = "/" + fully_qualified_node_name.lstrip("/")
+        loop = self._node_loop
         loop.run(
             until_ns=loop.clock.now_ns + round(timeout * 1e9),
-            done=lambda: wanted in self.get_fully_qualified_node_names(),
+            done=lambda: name in self.get_fully_qualified_node_names(),
         )
-        return wanted in self.get_fully_qualified_node_names()
+        return name in self.get_fully_qualified_node_names()
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Full name after expansion and remapping."""
+        """Return the full name after expansion and remapping."""
         return self._remapper.resolve(topic, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Full name after expansion and remapping."""
+        """Return the full name after expansion and remapping."""
         return self._remapper.resolve(service, is_service=True, only_expand=only_expand)
 
     def _on_topic(self, kind: EndpointKind, topic_name: str) -> list[Endpoint]:
         topic = self.resolve_topic_name(topic_name)
-        return self._context.graph.endpoints(topic, kind=kind)
+        return self._node_graph.endpoints(topic, kind=kind)
 
     def _on_service(self, kind: EndpointKind, service_name: str) -> list[Endpoint]:
         service = self.resolve_service_name(service_name)
-        return self._context.graph.service_endpoints(service, kind=kind)
+        return self._node_graph.service_endpoints(service, kind=kind)
 
     def _by_node(
         self, kind: EndpointKind, node_name: str, node_namespace: str
@@ -130,7 +128,7 @@ class NodeGraph:
         known = self.get_fully_qualified_node_names()
         if full_name not in known:
             raise NodeNameNonExistentError.of("node", full_name, known)
-        graph = self._context.graph
+        graph = self._node_graph
         if kind in (EndpointKind.SERVICE, EndpointKind.CLIENT):
             endpoints = graph.service_endpoints(kind=kind, node=full_name)
         else:
