@@ -27,7 +27,7 @@ from navette.runtime.network import (
     chosen_transport,
     join_network,
 )
-from navette.runtime.overrides import NodeWithParameters, ParameterOverrides
+from navette.runtime.overrides import ParameterOverrides, ParameterOwner
 from navette.transports import InProcessTransport
 
 _LONGEST_CALLBACK_S = 2.0
@@ -204,9 +204,7 @@ class Context:
     def get_domain_id(self) -> int:
         return self._domain_id
 
-    def check_overrides(
-        self, nodes: Sequence[NodeWithParameters] | None = None
-    ) -> None:
+    def check_overrides(self, nodes: Sequence[ParameterOwner] | None = None) -> None:
         """Raise if a parameter override matches no node; call when all nodes exist."""
         self.overrides.check(self.nodes if nodes is None else nodes)
 

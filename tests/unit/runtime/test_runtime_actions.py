@@ -384,9 +384,7 @@ def test_wrong_use_is_named(make: Make, graph: GraphHarness) -> None:
     goal = ServerGoalHandle(pair.server, GoalInfo(), Fibonacci.Goal())
     with pytest.raises(TypeError, match=r"expected .*_Feedback, got Fibonacci_Goal"):
         goal.publish_feedback(Fibonacci.Goal())
-    with pytest.raises(
-        RCLError, match=r"SUCCEED is invalid .* ACCEPTED; valid"
-    ):
+    with pytest.raises(RCLError, match=r"SUCCEED is invalid .* ACCEPTED; valid"):
         goal.succeed()
     with pytest.raises(RCLError, match="valid events: none"):
         next_status(S.STATUS_ABORTED, GoalEvent.EXECUTE)
