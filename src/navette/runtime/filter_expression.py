@@ -13,8 +13,8 @@ from lark import Lark, Token, Transformer, UnexpectedInput, UnexpectedToken, v_a
 from lark.exceptions import VisitError
 
 from navette.errors import InvalidValueError
-from navette.msgs import get_interface
-from navette.msgs.interface import FieldType, MessageSpec
+from navette.msgs import type_name
+from navette.msgs.field_path import parse_field_path
 from navette.runtime.exceptions import RCLError
 
 Condition = Callable[[Any], bool]
@@ -149,7 +149,7 @@ class _Compiler(Transformer[Token, Any]):
     def __init__(self, parameters: Sequence[str], message_class: type) -> None:
         super().__init__()
         self._parameters = parameters
-        self._class = message_class
+        self._type_name = type_name(message_class)
 
     def disjunction(self, *conditions: Condition) -> Condition:
         return lambda m: any(holds(m) for holds in conditions)
@@ -205,25 +205,15 @@ class _Compiler(Transformer[Token, Any]):
     def boolean(self, text: Token) -> _Term:
         return _constant("bool", text, text.upper() == "TRUE")
 
-    def field(self, path: Token) -> _Term:
-        spec: MessageSpec = self._class._spec_  # type: ignore[attr-defined]
-        getters: list[Callable[[Any], Any]] = []
-        type_ = FieldType(spec.name)
-        for part in path.split("."):
-            name, _, index = part.rstrip("]").partition("[")
-            type_ = _field_type(type_, name, path)
-            getters.append(operator.attrgetter(name))
-            if index:
-                if type_.is_scalar:
-                    raise ValueError(f"{path}: {name} is not an array")
-                getters.append(operator.itemgetter(int(index)))
-                type_ = FieldType(type_.base, string_bound=type_.string_bound)
-        if not type_.is_scalar or type_.is_message:
-            raise ValueError(f"{path} is a {type_}, not a number, string or bool")
-        if type_.base == "byte":
-            getters.append(operator.itemgetter(0))
+    def field(self, text: Token) -> _Term:
+        path = parse_field_path(text, self._type_name)
+        if not path.type.is_scalar or path.type.is_message:
+            raise ValueError(f"{text} is a {path.type}, not a number, string or bool")
+        base, get = path.type.base, path.of
         kind = {"string": "string", "wstring": "string", "bool": "bool"}
-        return _Term(kind.get(type_.base, "number"), _chain(getters), path)
+        if base == "byte":
+            return _Term("number", lambda m: get(m)[0], text)
+        return _Term(kind.get(base, "number"), get, text)
 
 
 def _constant(kind: str, text: str, value: Any) -> _Term:
@@ -252,26 +242,3 @@ def _like_pattern(text: str) -> str:
     """Translate SQL's LIKE: ``%`` matches any characters, ``_`` one."""
     signs = {"%": ".*", "_": "."}
     return "".join(signs.get(c) or re.escape(c) for c in text)
-
-
-def _field_type(owner: FieldType, name: str, path: str) -> FieldType:
-    if not owner.is_message or not owner.is_scalar:
-        raise ValueError(f"{path}: {owner} has no field {name!r}")
-    spec: MessageSpec = get_interface(owner.base)._spec_  # type: ignore[attr-defined]
-    types = {field.name: field.type for field in spec.fields}
-    if name not in types:
-        known = ", ".join(types) or "none"
-        raise ValueError(f"{spec.name} has no field {name!r}; known: {known}")
-    return types[name]
-
-
-def _chain(getters: list[Callable[[Any], Any]]) -> Callable[[Any], Any]:
-    if len(getters) == 1:
-        return getters[0]
-
-    def get(value: Any) -> Any:
-        for getter in getters:
-            value = getter(value)
-        return value
-
-    return get

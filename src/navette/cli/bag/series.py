@@ -10,9 +10,9 @@ from typing import Any
 from navette.bags import BagReader, BagTopic
 from navette.bags.bag import OnDamage
 from navette.bags.message_types import Decoder
-from navette.cli.topic.field_path import FieldPath, parse_field_path
 from navette.errors import InvalidValueError, MessageError, UnknownNameError
 from navette.geometry import yaw_of
+from navette.msgs.field_path import FieldPath, parse_field_path
 
 _STAMPS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 _QUATERNION = "geometry_msgs/msg/Quaternion"

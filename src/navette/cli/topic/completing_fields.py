@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 def complete_fields(ctx: typer.Context, incomplete: str) -> list[str]:
     """Paths to the fields of a topic's messages: the next names, and those below."""
     from navette.cli.message_types import full_type_name, installed_class
-    from navette.cli.topic.field_path import field_paths
     from navette.msgs import type_name
+    from navette.msgs.field_path import field_paths
 
     def types(here: "Node") -> Iterable[str]:
         topic = here.resolve_topic_name(str(ctx.params.get("topic") or ""))

@@ -11,12 +11,12 @@ from navette.cli.message_types import topic_class
 from navette.cli.output import is_terminal, note, show
 from navette.cli.session import endpoints, fail, wait_for
 from navette.cli.topic.echo_options import EchoOptions
-from navette.cli.topic.field_path import FieldPath, parse_field_path
 from navette.cli.topic.filtering import message_filter
 from navette.cli.topic.printing import SEPARATOR, text_of
 from navette.cli.topic.qos_choice import fitting_profile, wished_profile
 from navette.cli.topic.qos_options import QosWishes
 from navette.msgs import type_name
+from navette.msgs.field_path import FieldPath, parse_field_path
 from navette.runtime import Node, QoSProfile
 from navette.runtime.qos_events import SubscriptionEventCallbacks
 from navette.transports import EndpointKind

@@ -5,9 +5,9 @@ from typing import Any
 
 from navette.cli.message_yaml import yaml_of
 from navette.cli.output import harmless, json_text, styled
-from navette.cli.topic.field_path import FieldPath
 from navette.cli.topic.style import Style
 from navette.msgs import Message, to_dict
+from navette.msgs.field_path import FieldPath
 from navette.ros2.packages.rosidl_runtime_py.convert import (
     message_to_csv,
     value_to_csv,

@@ -1,8 +1,10 @@
-"""``pose.position.x``, ``ranges[0]``, ``poses[-1].pose``: a part of a message."""
+"""Paths to parts of messages: ``pose.position.x``, ``ranges[0]``, ``poses[-1]``."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
+from operator import attrgetter, itemgetter
 from typing import Any
 
 from navette.errors import MessageError
@@ -10,7 +12,7 @@ from navette.msgs.interface import Field, FieldType
 from navette.msgs.registry import get_message_spec
 
 _STEP = re.compile(r"\.?(?P<name>[A-Za-z]\w*)|\[(?P<index>-?\d{1,9}|-?\d*:-?\d*)\]")
-_LONGEST = 1000
+_MAX_LENGTH = 1000
 
 Step = str | int | slice
 
@@ -23,28 +25,38 @@ class FieldPath:
     steps: tuple[Step, ...]
     type: FieldType
 
-    def of(self, message: Any) -> Any:
-        """The part.
+    @cached_property
+    def of(self) -> Callable[[Any], Any]:
+        """Function from a message to the part.
 
-        Raises:
-            IndexError: a sequence is too short in this message.
+        It raises IndexError for a message whose sequence is too short.
         """
-        for step in self.steps:
-            message = getattr(message, step) if isinstance(step, str) else message[step]
-        return message
+        getters: list[Callable[[Any], Any]] = [
+            attrgetter(step) if isinstance(step, str) else itemgetter(step)
+            for step in self.steps
+        ]
+        if all(isinstance(step, str) for step in self.steps):
+            return attrgetter(".".join(map(str, self.steps)))
+
+        def part(message: Any) -> Any:
+            for get in getters:
+                message = get(message)
+            return message
+
+        return part
 
 
 def parse_field_path(text: str, type_name: str) -> FieldPath:
-    """Read a path and check it against the message's definition.
+    """Parse a path and check it against the definition of the message.
 
     Raises:
-        MessageError: the path has the wrong form, or leads nowhere; says where.
+        MessageError: the path is malformed, or there is no such field or element.
     """
     found = FieldType(type_name)
     steps: list[Step] = []
     position = 0
     text = text.strip()
-    while position < len(text) <= _LONGEST:
+    while position < len(text) <= _MAX_LENGTH:
         match = _STEP.match(text, position)
         if match is None:
             break
@@ -53,18 +65,18 @@ def parse_field_path(text: str, type_name: str) -> FieldPath:
         position = match.end()
     if not steps or position < len(text):
         raise MessageError(
-            f"field {text[:60]!r}: wanted a path such as pose.position.x or ranges[0]"
+            f"field {text[:60]!r} is not a path such as pose.position.x or ranges[0]"
         )
     return FieldPath(text, tuple(steps), found)
 
 
-def field_paths(begun: str, type_name: str) -> Iterator[str]:
-    """Paths that go on from one that somebody has begun to type, two names deep.
+def field_paths(prefix: str, type_name: str) -> Iterator[str]:
+    """Complete a path: fields of the message at its last dot, and their fields.
 
     Raises:
-        MessageError: what stands before its last dot leads nowhere.
+        MessageError: the path before its last dot is wrong.
     """
-    before = begun.rpartition(".")[0]
+    before = prefix.rpartition(".")[0]
     owner = parse_field_path(before, type_name).type if before else FieldType(type_name)
     for field in _fields(owner):
         path = f"{before}.{field.name}" if before else field.name
@@ -74,7 +86,7 @@ def field_paths(begun: str, type_name: str) -> Iterator[str]:
 
 
 def _fields(owner: FieldType) -> tuple[Field, ...]:
-    """Those of a message; of many messages none."""
+    """Fields of a message; none for other types and for sequences."""
     is_one = owner.is_message and owner.is_scalar
     return get_message_spec(owner.base).fields if is_one else ()
 
@@ -85,7 +97,7 @@ def _step(
     if match["name"] is not None:
         return match["name"], _field(match["name"], owner, so_far)
     if owner.is_scalar:
-        raise MessageError(f"field {so_far!r}: {owner} has no elements")
+        raise MessageError(f"field {so_far!r}: {owner} is not an array")
     first, colon, last = match["index"].partition(":")
     if colon:
         ends = [int(end) if end.strip("-") else None for end in (first, last)]
@@ -96,7 +108,8 @@ def _step(
 def _field(name: str, owner: FieldType, so_far: str) -> FieldType:
     if not owner.is_scalar:
         raise MessageError(
-            f"field {so_far!r}: {owner} is many; take one, as in [0], before .{name}"
+            f"field {so_far!r}: {owner} is an array; add an index, as in [0], "
+            f"before .{name}"
         )
     if not owner.is_message:
         raise MessageError(f"field {so_far!r}: {owner} has no fields")
@@ -105,4 +118,4 @@ def _field(name: str, owner: FieldType, so_far: str) -> FieldType:
         if field.name == name:
             return field.type
     known = ", ".join(field.name for field in fields) or "none"
-    raise MessageError(f"field {so_far!r}: {owner} has no such field; it has {known}")
+    raise MessageError(f"field {so_far!r}: {owner} has no such field; known: {known}")
