@@ -1,7 +1,7 @@
-"""What to do now: path, odometry and costmap → command."""
+"""Control: path, odometry and costmap in, velocity command out."""
 
 from navette.navigation.control.command_gate import CommandGate, InputAges
-from navette.navigation.control.limits import STOP, Command, MotionLimits
+from navette.navigation.control.limits import STOP, VelocityCommand
 from navette.navigation.control.obstacles import obstacle_points
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
@@ -14,9 +14,8 @@ __all__ = [
     "FollowerOutput",
     "ControlState",
     "ControlParams",
-    "Command",
+    "VelocityCommand",
     "STOP",
-    "MotionLimits",
     "CommandGate",
     "InputAges",
     "obstacle_points",

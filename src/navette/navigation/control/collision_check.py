@@ -1,9 +1,9 @@
 """Predict the commanded motion and keep the body clear of the obstacles.
 
 The clearance is exact: signed distance from obstacle points (cell centres, less half
-a cell) to the outline, at each predicted pose. A sampled distance field, as the
-planner uses for its thousands of poses, jumps by a cell when the body moves by a
-millimetre; "moving away is allowed" could not be told from that.
+a cell) to the outline, at each predicted pose. A sampled distance field, as the planner
+uses for its thousands of poses, changes by a cell when the body moves by a millimetre,
+which is too coarse to decide whether a motion leads away from an obstacle.
 """
 
 import math
@@ -14,91 +14,79 @@ from numba import njit
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.control.limits import Command
+from navette.navigation.control.limits import VelocityCommand
+from navette.navigation.control.params import ControlParams
 
 Array = NDArray[np.float64]
 
-_STEP_M = 0.05  # no point of the body moves farther between predicted poses
-_SLACK_M = 0.02  # a body closer than the margin may come this much closer yet …
+_STEP_M = 0.05  # largest motion of a body point between predicted poses
+_SLACK_M = 0.02  # a body within the margin may come this much closer …
 _FLOOR_M = 0.02  # … but not below this
 _MAX_POSES = 400
 _COSTMAP_AGE_S = 0.25  # obstacles are gathered once and used until the next costmap
 
 
 class Verdict(NamedTuple):
-    """``scale`` of the command that is safe; ``clearance`` of the body now, metres."""
+    """Safe ``scale`` of the command, and present ``clearance`` of the body (m)."""
 
     scale: float
     clearance: float
 
 
 class CollisionCheck:
-    """Scales a command so that the robot can stop before it comes too close.
+    """Scale a command so that the robot can stop before the collision margin."""
 
-    Args:
-        footprint: outline about the axle.
-        margin: clearance (m) that the motion must keep.
-        horizon: clearance (m) beyond which the exact value does not matter.
-        reaction: seconds until a new command shows in the motion.
-        deceleration, turn_deceleration: brakes, m/s² and rad/s².
-    """
-
-    def __init__(
-        self,
-        footprint: Footprint,
-        *,
-        margin: float,
-        horizon: float,
-        reaction: float,
-        deceleration: float,
-        turn_deceleration: float,
-    ) -> None:
+    def __init__(self, params: ControlParams) -> None:
+        self._params = params
+        footprint = Footprint.from_flat(params.footprint_m)
         self._outline = np.array(footprint.vertices, np.float64)
         self._radius = footprint.circumscribed_radius
-        self._margin = margin
-        self._horizon = max(horizon, margin + 0.1)
-        self._reaction = reaction
-        self._deceleration = deceleration
-        self._turn_deceleration = turn_deceleration
+        # Clearance beyond which the exact value does not matter.
+        self._horizon = max(params.slow_clearance_m, params.collision_margin_m + 0.1)
         self._points = np.empty((0, 2))
         self._half_cell = 0.0
 
     def set_obstacles(self, points: Array, half_cell: float) -> None:
-        """Obstacle cell centres (N, 2), metres, map; half a cell's edge."""
+        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
         self._points = np.ascontiguousarray(points, np.float64)
         self._half_cell = half_cell
 
     def reach(self, speed: float) -> float:
-        """Distance (m) around the robot within which obstacles matter."""
-        stop = speed * (self._reaction + speed / (2 * self._deceleration))
+        """Return the distance (m) around the robot within which obstacles matter."""
+        params = self._params
+        stop = speed * (params.reaction_s + speed / (2 * params.deceleration_mps2))
         return self._radius + stop + self._horizon + _STEP_M + speed * _COSTMAP_AGE_S
 
-    def check(self, pose: Pose2, motion: Command) -> Verdict:
-        """How much of ``motion`` may be commanded at ``pose`` (map).
+    def check(self, pose: Pose2, motion: VelocityCommand) -> Verdict:
+        """Return the share of ``motion`` that is safe at ``pose`` (map).
 
-        Keeping the command for the reaction time t_r and braking then on the same
-        arc uses the arc up to ``k t_r + k² t_b / 2`` seconds of full motion, where k
-        scales the command and t_b is the braking time from full; solved for k with
-        the part of the arc that is free.
+        The robot keeps the command for the reaction time t_r and then brakes on the
+        same arc. Scaled by k, this takes ``k t_r + k² t_b / 2`` seconds of the full
+        motion, where t_b is the braking time from full; solved for k with the part
+        of the arc that is free.
         """
         v, omega = motion
-        brake = max(abs(v) / self._deceleration, abs(omega) / self._turn_deceleration)
+        params = self._params
+        brake = max(
+            abs(v) / params.deceleration_mps2,
+            abs(omega) / params.turn_acceleration_radps2,
+        )
         if brake == 0.0:
             return Verdict(1.0, self.clearance(pose))
-        needed = self._reaction + brake / 2
+        needed = params.reaction_s + brake / 2
         free, clearance = self._free(pose, v, omega, needed)
         if free >= needed:
             return Verdict(1.0, clearance)
-        root = math.sqrt(self._reaction**2 + 2 * brake * free)
-        return Verdict((root - self._reaction) / brake, clearance)
+        root = math.sqrt(params.reaction_s**2 + 2 * brake * free)
+        return Verdict((root - params.reaction_s) / brake, clearance)
 
     def turn_is_free(self, pose: Pose2, turn: float) -> bool:
-        """Whether turning in place by ``turn`` rad keeps the body clear."""
+        """Return whether turning in place by ``turn`` rad keeps the body clear."""
         free, _ = self._free(pose, 0.0, math.copysign(1.0, turn), abs(turn))
         return free >= abs(turn)
 
     def clearance(self, pose: Pose2) -> float:
-        """Clearance (m) of the body at ``pose``, at most the horizon."""
+        """Return the clearance (m) of the body at ``pose``, at most the horizon."""
         return self._free(pose, 0.0, 0.0, 0.0)[1]
 
     def _free(
@@ -111,13 +99,20 @@ class CollisionCheck:
             self._outline,
             np.array((pose.x, pose.y, pose.yaw, v, omega, duration)),
             poses,
-            np.array((self._radius, self._half_cell, self._margin, self._horizon)),
+            np.array(
+                (
+                    self._radius,
+                    self._half_cell,
+                    self._params.collision_margin_m,
+                    self._horizon,
+                )
+            ),
         )
 
 
 @njit("float64(float64[:, ::1], float64, float64)", cache=True)
 def signed_distance(outline: Array, x: float, y: float) -> float:
-    """Distance of (x, y) to the polygon (K, 2), negative inside; metres."""
+    """Return the distance (m) of (x, y) to the polygon (K, 2), negative inside."""
     best = np.inf
     inside = False
     count = outline.shape[0]
@@ -150,7 +145,7 @@ def body_distance(
     radius: float,
     horizon: float,
 ) -> float:
-    """Least signed distance (m) of the body at a pose to the points, ≤ horizon."""
+    """Return the least signed distance (m) from the body to the points, ≤ horizon."""
     c, s = math.cos(yaw), math.sin(yaw)
     best = horizon
     for i in range(points.shape[0]):
@@ -170,17 +165,17 @@ def body_distance(
 def free_motion(
     points: Array, outline: Array, motion: Array, poses: int, body: Array
 ) -> tuple[float, float]:
-    """How long a motion of constant speed and turn rate stays clear.
+    """Return how long a motion of constant speed and turn rate stays clear.
 
     Args:
         points: obstacles (N, 2), metres, map.
         outline: polygon (K, 2), metres, base.
         motion: x, y, yaw (map), v, ω and duration (s) of the motion.
-        poses: how many poses to predict over the duration.
+        poses: number of poses to predict over the duration.
         body: circumscribed radius, half a cell, margin, horizon; metres.
 
     Returns:
-        Seconds of the motion that are free, and the clearance now (m, ≤ horizon).
+        Seconds of free motion, and the present clearance (m, ≤ horizon).
     """
     x, y, yaw, v, omega, duration = motion
     radius, half_cell, margin, horizon = body
@@ -189,7 +184,7 @@ def free_motion(
     now = body_distance(points, outline, x, y, yaw, reach, far) - half_cell
     least = margin
     if now < margin:
-        # Too close already: away and along is allowed, nearer hardly.
+        # Within the margin: motion away and along is allowed, closer almost not.
         least = max(_FLOOR_M, now - _SLACK_M) if now > _FLOOR_M else now - 1e-3
     for i in range(1, poses + 1):
         t = duration * i / poses

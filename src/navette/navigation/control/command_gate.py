@@ -1,9 +1,10 @@
-"""The last stage before the robot: what does not belong there does not pass."""
+"""The last check before the robot: refuse invalid commands and stale inputs."""
 
 import math
 from dataclasses import dataclass
 
-from navette.navigation.control.limits import Command, MotionLimits
+from navette.navigation.control.limits import VelocityCommand
+from navette.navigation.control.params import ControlParams
 from navette.navigation.control.states import ControlState
 
 _ROUNDING = 1e-6
@@ -23,34 +24,36 @@ FRESH = InputAges()
 
 @dataclass(frozen=True)
 class CommandGate:
-    """Refuses commands that are not finite or over a limit, and stale inputs.
+    """Refuse commands that are not finite or over a limit, and stale inputs.
 
-    It does not repair: a command over the limits is a mistake upstream, and the
-    robot stops, with the reason as state. A timeout of ``inf`` switches a check off.
+    The gate repairs nothing: a command over the limits is a fault upstream, so the
+    robot stops and the state names the reason.
     """
 
-    limits: MotionLimits
-    odometry_timeout: float
-    costmap_timeout: float
-    planner_timeout: float
+    params: ControlParams
 
     def stale(self, ages: InputAges) -> ControlState | None:
-        """Name of the state for the first input that is too old, or None."""
-        if not ages.odometry_s <= self.odometry_timeout:
+        """Return the state for the first input that is too old, or None.
+
+        Written so that an age of NaN counts as stale.
+        """
+        params = self.params
+        if not ages.odometry_s <= params.odometry_timeout_s:
             return ControlState.STALE_ODOMETRY
-        if not ages.costmap_s <= self.costmap_timeout:
+        if params.collision_check and not ages.costmap_s <= params.costmap_timeout_s:
             return ControlState.STALE_COSTMAP
-        if not ages.planner_s <= self.planner_timeout:
+        planner_timeout_s = params.planner_timeout_s or math.inf
+        if not ages.planner_s <= planner_timeout_s:
             return ControlState.STALE_PATH
         return None
 
-    def refusal(self, command: Command) -> ControlState | None:
-        """Name of the state for a command that must not pass, or None."""
+    def refusal(self, command: VelocityCommand) -> ControlState | None:
+        """Return the state for a command that must not pass, or None."""
         if not (math.isfinite(command.speed) and math.isfinite(command.turn_rate)):
             return ControlState.COMMAND_NOT_FINITE
         if (
-            abs(command.speed) > self.limits.speed + _ROUNDING
-            or abs(command.turn_rate) > self.limits.turn_rate + _ROUNDING
+            abs(command.speed) > self.params.max_speed_mps + _ROUNDING
+            or abs(command.turn_rate) > self.params.max_turn_rate_radps + _ROUNDING
         ):
             return ControlState.COMMAND_OVER_LIMIT
         return None

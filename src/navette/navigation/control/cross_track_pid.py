@@ -3,48 +3,50 @@
 import math
 
 from navette.geometry import Pose2
+from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_pieces import DrivePiece
-from navette.navigation.control.path_progress import PathPoint
+from navette.navigation.control.piece_progress import PathPoint
 
-_PREVIEW_S = 0.15  # the drive answers about this late: feed the curvature forward
+_PREVIEW_S = 0.15  # delay of the drive: feed the curvature forward
 _MAX_CURVATURE = 4.0  # 1/m
-_MAX_INTEGRAL = 0.5  # 1/m, the share of the integral
+_MAX_INTEGRAL = 0.5  # 1/m, contribution of the integral
 
 
 class CrossTrackPid:
-    """Steers ``κ = κ_path − kp e − ki ∫e ds − kd sin ψ``.
+    """Steer ``κ = κ_path − kp e − ki ∫e ds − kd sin ψ``.
 
-    Everything is counted per metre, not per second: since de/ds = sin ψ, the heading
-    error ψ is the derivative term, and the gains hold at every speed. The error then
-    obeys e″ + kd e′ + kp e = 0: critically damped at kd² = 4 kp.
+    All gains are per metre, not per second: since de/ds = sin ψ, the heading error ψ is
+    the derivative term, and the gains hold at every speed. The error obeys
+    e″ + kd e′ + kp e = 0, which is critically damped at kd² = 4 kp.
     """
 
-    def __init__(self, kp: float, ki: float, kd: float) -> None:
-        self._kp, self._ki, self._kd = kp, ki, kd
-        self._share = 0.0
+    def __init__(self, params: ControlParams) -> None:
+        self._params = params
+        self._integral = 0.0
         self._s: float | None = None
 
     def reset(self) -> None:
-        """Forget the integral."""
-        self._share = 0.0
+        """Clear the integral."""
+        self._integral = 0.0
         self._s = None
 
     def curvature(
         self, piece: DrivePiece, at: PathPoint, pose: Pose2, speed: float
     ) -> float:
-        """Curvature (1/m, of the robot, left positive driving forward) to steer."""
+        """Return the curvature (1/m) to steer; left is positive driving forward."""
+        params = self._params
         moved = 0.0 if self._s is None else max(0.0, at.s - self._s)
         self._s = at.s
-        share = self._share + self._ki * at.cross_track * moved
-        self._share = min(_MAX_INTEGRAL, max(-_MAX_INTEGRAL, share))
+        integral = self._integral + params.pid_ki_per_m3 * at.cross_track * moved
+        self._integral = min(_MAX_INTEGRAL, max(-_MAX_INTEGRAL, integral))
         preview = piece.index_at(at.s + _PREVIEW_S * abs(speed))
         kappa = (
             piece.curvature[preview]
-            - self._kp * at.cross_track
-            - self._share
-            - self._kd * math.sin(at.heading_error)
+            - params.pid_kp_per_m2 * at.cross_track
+            - self._integral
+            - params.pid_kd_per_m * math.sin(at.heading_error)
         )
         kappa = min(_MAX_CURVATURE, max(-_MAX_CURVATURE, kappa))
-        # Seen along the travel left is left either way; a robot that backs up has
-        # v < 0 and turns by v κ, so its curvature has the other sign.
+        # Along the travel, left is left in both directions. In reverse v < 0 and the
+        # turn rate is v κ, so the robot's curvature has the opposite sign.
         return kappa * piece.direction

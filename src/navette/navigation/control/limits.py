@@ -1,72 +1,64 @@
 """Velocity, acceleration and wheel-speed limits of a differential drive."""
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
-
-class Command(NamedTuple):
-    """What the robot is told: forward speed (m/s) and turn rate (rad/s)."""
-
-    speed: float
-    turn_rate: float
+from navette.navigation.control.params import ControlParams
 
 
-STOP = Command(0.0, 0.0)
-
-
-@dataclass(frozen=True)
-class MotionLimits:
-    """Bounds on commands, SI. A wheel separation or speed of 0 lifts that bound."""
+class VelocityCommand(NamedTuple):
+    """Commanded forward speed (m/s) and turn rate (rad/s)."""
 
     speed: float
     turn_rate: float
-    acceleration: float
-    deceleration: float
-    turn_acceleration: float
-    wheel_separation: float = 0.0
-    wheel_speed: float = 0.0
-
-    def clamp(self, command: Command) -> Command:
-        """The nearest allowed command of the same curvature.
-
-        A wheel's rim moves at ``v ± ω·b/2``; where one would be too fast, both v and
-        ω shrink by the same factor, so that the robot keeps to its arc.
-        """
-        v, omega = command
-        rim = abs(v) + abs(omega) * self.wheel_separation / 2
-        factor = min(
-            1.0,
-            self.speed / abs(v) if v else 1.0,
-            self.turn_rate / abs(omega) if omega else 1.0,
-            self.wheel_speed / rim if self.wheel_speed and rim else 1.0,
-        )
-        return Command(v * factor, omega * factor)
-
-    def towards(self, last: Command, wanted: Command, dt: float) -> Command:
-        """From the last command towards the wanted one within the accelerations."""
-        wanted = self.clamp(wanted)
-        v = ramp(last.speed, wanted.speed, self.acceleration, self.deceleration, dt)
-        step = self.turn_acceleration * dt
-        omega = last.turn_rate + min(
-            step, max(-step, wanted.turn_rate - last.turn_rate)
-        )
-        return self.clamp(Command(v, omega))
-
-    def brake(self, last: Command, dt: float) -> Command:
-        """Slow down on the present arc: turn rate falls in step with the speed."""
-        v = ramp(last.speed, 0.0, self.acceleration, self.deceleration, dt)
-        if last.speed == 0.0:
-            step = self.turn_acceleration * dt
-            left = max(0.0, abs(last.turn_rate) - step)
-            return self.clamp(Command(0.0, math.copysign(left, last.turn_rate)))
-        return self.clamp(Command(v, last.turn_rate * v / last.speed))
 
 
-def ramp(last: float, wanted: float, rise: float, fall: float, dt: float) -> float:
-    """``wanted``, or as near as ``rise`` (away from 0) and ``fall`` (to 0) allow."""
-    if last * wanted < 0:
-        wanted = 0.0  # through standstill first: braking and starting differ
-    growing = abs(wanted) > abs(last)
-    step = (rise if growing else fall) * dt
-    return last + min(step, max(-step, wanted - last))
+STOP = VelocityCommand(0.0, 0.0)
+
+
+def clamp(command: VelocityCommand, params: ControlParams) -> VelocityCommand:
+    """Return the nearest allowed command of the same curvature.
+
+    A wheel's rim moves at ``v ± ω·b/2``. Where one would be too fast, v and ω shrink by
+    the same factor, so that the robot stays on its arc.
+    """
+    v, omega = command
+    rim = abs(v) + abs(omega) * params.wheel_separation_m / 2
+    wheel = params.max_wheel_speed_mps
+    factor = min(
+        1.0,
+        params.max_speed_mps / abs(v) if v else 1.0,
+        params.max_turn_rate_radps / abs(omega) if omega else 1.0,
+        wheel / rim if wheel and rim else 1.0,
+    )
+    return VelocityCommand(v * factor, omega * factor)
+
+
+def approach(
+    last: VelocityCommand, target: VelocityCommand, params: ControlParams, dt: float
+) -> VelocityCommand:
+    """Step from the last command towards ``target`` within the accelerations."""
+    target = clamp(target, params)
+    v = _ramp(last.speed, target.speed, params, dt)
+    step = params.turn_acceleration_radps2 * dt
+    omega = last.turn_rate + min(step, max(-step, target.turn_rate - last.turn_rate))
+    return clamp(VelocityCommand(v, omega), params)
+
+
+def brake(last: VelocityCommand, params: ControlParams, dt: float) -> VelocityCommand:
+    """Slow down on the present arc: the turn rate falls in proportion to the speed."""
+    if last.speed == 0.0:
+        step = params.turn_acceleration_radps2 * dt
+        left = max(0.0, abs(last.turn_rate) - step)
+        return clamp(VelocityCommand(0.0, math.copysign(left, last.turn_rate)), params)
+    v = _ramp(last.speed, 0.0, params, dt)
+    return clamp(VelocityCommand(v, last.turn_rate * v / last.speed), params)
+
+
+def _ramp(last: float, target: float, params: ControlParams, dt: float) -> float:
+    if last * target < 0:
+        target = 0.0  # stop first: braking and starting have different limits
+    growing = abs(target) > abs(last)
+    rate = params.acceleration_mps2 if growing else params.deceleration_mps2
+    step = rate * dt
+    return last + min(step, max(-step, target - last))

@@ -1,8 +1,8 @@
 """The node ``control``: path, odometry and costmap in, velocity commands out.
 
-It publishes nothing before its first path. On /cmd_vel it falls silent a few zeros
-after it came to rest, so that a person can drive; with a path it publishes at every
-tick, zeros where an input is stale. When it is destroyed it sends a last zero.
+The node publishes no command before its first path. With a path it publishes at every
+step, zeros while an input is stale. At rest it publishes ``idle_zeros`` zero commands
+and then none, so that an operator can drive. When destroyed it publishes a zero.
 """
 
 import math
@@ -36,25 +36,25 @@ from navette.runtime.time import stamp_to_ns
 _NEVER = -(1 << 62)
 _LONGEST_PREDICTION_S = 0.25
 _TICKS_PER_REPORT = 5
-# What a planner says of itself until its first goal.
+# Status of a planner before its first goal.
 _NO_GOAL_YET = "waiting_for_goal"
 
 
 class ControlNode(StageNode):
-    """Follows /path until its end; stops on anything it cannot trust."""
+    """Follow /path to its end; stop on stale or invalid inputs."""
 
     PARAMS = ControlParams
     INPUTS = (
         Input(
             topic=topics.PATH.name,
             type=topics.PATH.type,
-            role="what to follow; an empty path stops",
+            role="path to follow; an empty path stops",
             callback="on_path",
         ),
         Input(
             topic=topics.ODOMETRY.name,
             type=topics.ODOMETRY.type,
-            role="where the robot is and how it moves",
+            role="pose and velocity",
             rate_hz=10.0,
             timeout_s=0.14,
             callback="on_odometry",
@@ -62,7 +62,7 @@ class ControlNode(StageNode):
         Input(
             topic=topics.COSTMAP.name,
             type=topics.COSTMAP.type,
-            role="obstacles that the body must clear",
+            role="obstacles to keep clear of",
             rate_hz=10.0,
             timeout_s=0.19,
             callback="on_costmap",
@@ -70,7 +70,7 @@ class ControlNode(StageNode):
         Input(
             topic=topics.PLANNER_STATUS.name,
             type=topics.PLANNER_STATUS.type,
-            role="sign of life of whoever made the path",
+            role="liveliness of the planner",
             rate_hz=2.0,
             timeout_s=2.0,
             depth=1,
@@ -88,7 +88,7 @@ class ControlNode(StageNode):
         status_output(topics.CONTROL_STATUS.name),
     )
 
-    _zeros_left = 0  # also while half made
+    _zeros_left = 0  # destroy_node() may run before __init__ ends
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("control", **kwargs)
@@ -96,48 +96,48 @@ class ControlNode(StageNode):
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
         self._follower = PathFollower(params)
         self._path = np.empty((0, 3))
-        self._costmap: OccupancyGrid | None = None  # not placed yet
-        self._base_T_costmap: tuple[str, Pose2] | None = None  # fixed, by frame
-        self._costmap_ns = self._placed_ns = _NEVER  # arrival of the newest, the placed
+        self._costmap: OccupancyGrid | None = None  # newest, not placed yet
+        self._base_T_costmap: tuple[str, Pose2] | None = None  # with its frame
+        self._costmap_ns = self._placed_ns = _NEVER  # arrivals of newest and placed
         self._odometry: Odometry | None = None  # newest, not used yet
-        self._odometry_ns = self._located_ns = _NEVER  # arrival of it, of the one used
+        self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
         self._planner_ns = _NEVER
-        self._planner_said = ""
+        self._planner_state = ""
         self._ticks_to_report = 0
         self._status = StatusReporter(self, topics.CONTROL_STATUS.name)
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
 
     def on_path(self, msg: Path) -> None:
-        """Take over a new path, or say why not."""
+        """Follow a new path, or report why it is refused."""
         self._planner_ns = self._now_ns
         self._zeros_left = self.params.idle_zeros
         self._path = np.empty((0, 3))
         frame = msg.header.frame_id
         if msg.poses and frame != self.params.map_frame:
             self.get_logger().error(
-                f"path in frame {frame!r}: wanted {self.params.map_frame!r}"
+                f"path in frame {frame!r}; wanted map_frame, {self.params.map_frame!r}"
             )
             self._follower.reset(ControlState.UNKNOWN_FRAME)
             return
-        self._take_path(_poses(msg))
+        self._set_path(_poses(msg))
 
     def on_odometry(self, msg: Odometry) -> None:
-        """Keep the newest for the next tick; odometry may come much more often."""
+        """Store the newest message for the next step."""
         self._odometry = msg
         self._odometry_ns = self._now_ns
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
-        """Keep the newest costmap until the pose at its stamp is known."""
+        """Store the newest costmap until the pose at its stamp is available."""
         self._costmap = msg
         self._costmap_ns = self._now_ns
 
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
-        """The planner is alive; one that begins anew knows nothing of the path."""
+        """Note that the planner is alive; drop the path if the planner restarted."""
         self._planner_ns = self._now_ns
-        before, self._planner_said = self._planner_said, msg.message
-        began_anew = msg.message == _NO_GOAL_YET and before not in ("", _NO_GOAL_YET)
-        if began_anew and self._follower.has_path:
-            self.get_logger().warning("the planner was started anew: path dropped")
+        before, self._planner_state = self._planner_state, msg.message
+        restarted = msg.message == _NO_GOAL_YET and before not in ("", _NO_GOAL_YET)
+        if restarted and self._follower.has_path:
+            self.get_logger().warning("the planner restarted: path dropped")
             self.on_path(Path())
 
     def on_params_changed(self, old: ControlParams) -> None:
@@ -154,10 +154,10 @@ class ControlNode(StageNode):
         self._follower = PathFollower(params)
         self._placed_ns = _NEVER
         if drove:
-            self._take_path(self._path)
+            self._set_path(self._path)
 
     def on_time_jump(self) -> None:
-        """Nothing that came before holds: stop, and wait for the next path."""
+        """Drop all inputs, stop, and wait for the next path."""
         self._tracker.reset()
         self._follower = PathFollower(self.params)
         self._path = np.empty((0, 3))
@@ -167,7 +167,7 @@ class ControlNode(StageNode):
         self._planner_ns = _NEVER
 
     def destroy_node(self) -> None:
-        """Stop the robot, then end."""
+        """Stop the robot, then destroy the node."""
         if self._zeros_left and self.context.ok():
             self.publish(topics.CMD_VEL.name, Twist())
             self._zeros_left = 0
@@ -177,7 +177,7 @@ class ControlNode(StageNode):
     def _now_ns(self) -> int:
         return self.get_clock().now_ns
 
-    def _take_path(self, poses: np.ndarray[Any, np.dtype[np.float64]]) -> None:
+    def _set_path(self, poses: np.ndarray[Any, np.dtype[np.float64]]) -> None:
         try:
             self._follower.set_path(poses)
         except InvalidValueError as error:
@@ -187,7 +187,7 @@ class ControlNode(StageNode):
         self._path = poses
 
     def _tick(self) -> None:
-        """Locate the robot, place the costmap, ask the follower, publish."""
+        """Locate the robot, place the costmap, step the follower, publish."""
         self._locate()
         self._place_costmap()
         speed, turn_rate = self._tracker.velocity
@@ -210,12 +210,12 @@ class ControlNode(StageNode):
         )
 
     def _age_s(self, arrival_ns: int) -> float:
-        """Seconds since an arrival; infinite for never and after time jumped back."""
+        """Return seconds since an arrival; infinite for never and after a jump back."""
         age_ns = self._now_ns - arrival_ns
         return age_ns / 1e9 if arrival_ns != _NEVER and age_ns >= 0 else math.inf
 
     def _pose_at(self, stamp_ns: int) -> Pose2 | None:
-        """Pose of the base at a stamp: from the history, or a short way ahead of it."""
+        """Return the pose of the base at a stamp, interpolated or predicted."""
         newest, latest_ns = self._tracker.latest, self._tracker.stamp_ns
         if newest is None or latest_ns is None:
             return None
@@ -225,12 +225,12 @@ class ControlNode(StageNode):
         return advanced(newest, *self._tracker.velocity, seconds)
 
     def _pose_now(self) -> Pose2 | None:
-        """Pose of the base at this tick; odometry from ahead of the clock as it is."""
+        """Return the pose now, or that of odometry stamped ahead of the clock."""
         stamp_ns = self._tracker.stamp_ns
         return None if stamp_ns is None else self._pose_at(max(self._now_ns, stamp_ns))
 
     def _place_costmap(self) -> None:
-        """Turn the newest costmap into obstacles, once its place is known."""
+        """Convert the newest costmap to obstacles once its pose is available."""
         msg, params = self._costmap, self.params
         if msg is None or not (params.collision_check and self._follower.has_path):
             return
@@ -242,7 +242,7 @@ class ControlNode(StageNode):
         try:
             cells, spec = grid_from_message(msg)
         except InvalidValueError as error:
-            # Nothing is placed: the last good one ages, and then the robot stops.
+            # The last valid costmap ages until the robot stops.
             self.get_logger().error(
                 f"costmap not used: {error}", throttle_duration_sec=1.0
             )
@@ -251,15 +251,15 @@ class ControlNode(StageNode):
             cells,
             spec,
             map_T_frame,
-            lethal=params.lethal_cost,
+            lethal_cost=params.lethal_cost,
             around=around,
-            reach=self._follower.obstacle_reach_m,
+            reach_m=self._follower.obstacle_reach_m,
         )
         self._follower.set_obstacles(points, spec.resolution / 2)
         self._placed_ns = self._costmap_ns
 
     def _placement(self, msg: OccupancyGrid) -> Pose2 | None:
-        """Pose of the costmap's frame on the map at the costmap's stamp."""
+        """Return map_T_frame of the costmap at its stamp."""
         frame = msg.header.frame_id
         if frame == self.params.map_frame:
             return Pose2(0.0, 0.0, 0.0)
@@ -272,7 +272,7 @@ class ControlNode(StageNode):
         return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
 
     def _send(self, output: FollowerOutput) -> None:
-        """Publish the command; at rest a few zeros and then nothing."""
+        """Publish the command; at rest, ``idle_zeros`` zeros and then nothing."""
         if output.state.rests:
             if not self._zeros_left:
                 return
@@ -282,7 +282,7 @@ class ControlNode(StageNode):
         self.publish(topics.CMD_VEL.name, twist)
 
     def _report(self, output: FollowerOutput) -> None:
-        """Publish the state: at once when it changes, with figures now and then."""
+        """Publish the state at once when it changes, and every few steps."""
         self._ticks_to_report -= 1
         if self._ticks_to_report > 0 and self._status.state == output.state:
             return
@@ -312,6 +312,6 @@ def _pose(msg: Pose) -> Pose2:
 
 
 def _poses(msg: Path) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Poses (N, 3) x, y, yaw of a path."""
+    """Return poses (N, 3) x, y, yaw of a path."""
     rows = [_pose(stamped.pose) for stamped in msg.poses]
     return np.array(rows, np.float64).reshape(-1, 3)

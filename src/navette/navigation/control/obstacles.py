@@ -1,4 +1,4 @@
-"""From a costmap to the obstacle points around the robot."""
+"""Obstacle points around the robot, from a costmap."""
 
 import math
 from typing import Any
@@ -17,24 +17,24 @@ def obstacle_points(
     spec: GridSpec,
     map_T_grid: Pose2,
     *,
-    lethal: int,
+    lethal_cost: int,
     around: Pose2,
-    reach: float,
+    reach_m: float,
 ) -> NDArray[np.float64]:
-    """Centres (N, 2), metres, map, of the lethal cells within reach of a pose.
+    """Return centres (N, 2), metres, map, of the lethal cells within reach of a pose.
 
     Args:
         cost: (H, W), or flat in that order; 0 … 100, −1 unknown. Unknown cells
-            are no obstacles here: behind every hit the grid is unknown, and the
-            body's own place may be as well.
+            do not count as obstacles: the grid is unknown behind every hit, and may
+            be unknown under the body.
         spec: geometry of ``cost`` in its frame.
         map_T_grid: pose of that frame in the map at the costmap's stamp.
-        lethal: value from which a cell counts.
-        around: pose (map) in whose surroundings obstacles matter.
-        reach: distance from it, metres.
+        lethal_cost: value from which a cell is an obstacle.
+        around: centre of the region (map).
+        reach_m: radius of the region.
 
     Raises:
-        InvalidValueError: ``cost`` has not as many cells as ``spec`` says.
+        InvalidValueError: the size of ``cost`` does not match ``spec``.
     """
     if cost.size != spec.width * spec.height:
         raise InvalidValueError(
@@ -44,10 +44,10 @@ def obstacle_points(
     origin_T_around = map_T_origin.inverse() @ around
     return _gather(
         cost.reshape(spec.shape),
-        lethal,
+        lethal_cost,
         origin_T_around.x / spec.resolution,
         origin_T_around.y / spec.resolution,
-        reach / spec.resolution,
+        reach_m / spec.resolution,
         spec.resolution,
         *map_T_origin,
     )
@@ -65,7 +65,7 @@ def _gather(
     y: float,
     yaw: float,
 ) -> NDArray[np.float64]:
-    """Lethal cells within ``reach`` of (column, row), both in cells, as points.
+    """Return lethal cells within ``reach`` of (column, row), all in cells, as points.
 
     ``x, y, yaw``: pose of the grid's corner in the frame of the points.
     """

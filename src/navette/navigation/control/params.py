@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint
-from navette.navigation.control.limits import MotionLimits
 from navette.params import Params, param
 
 METHODS = ("pure_pursuit", "cross_track_pid")
@@ -13,11 +12,11 @@ METHODS = ("pure_pursuit", "cross_track_pid")
 
 @dataclass(frozen=True, kw_only=True)
 class ControlParams(Params):
-    """What the controller may do, how close it keeps to the path, when it stops."""
+    """Limits, path tracking, collision check and timeouts of the controller."""
 
     map_frame: str = param("map", "frame of /path and of the pose that is steered")
     base_frame: str = param("base_link", "frame that is steered: the axle's midpoint")
-    method: str = param("pure_pursuit", "how to steer along the path", choices=METHODS)
+    method: str = param("pure_pursuit", "steering method", choices=METHODS)
     rate_hz: float = param(20.0, "commands per second", unit="Hz", at_least=10.0)
 
     cruise_speed_mps: float = param(
@@ -27,28 +26,31 @@ class ControlParams(Params):
         0.3, "speed on a straight, free path driven backwards", unit="m/s", above=0.0
     )
     max_speed_mps: float = param(
-        2.0, "no command is faster, either way", unit="m/s", above=0.0
+        2.0, "limit of the commanded speed, forward and reverse", unit="m/s", above=0.0
     )
     max_turn_rate_radps: float = param(
-        1.0, "no command turns faster", unit="rad/s", above=0.0
+        1.0, "limit of the commanded turn rate", unit="rad/s", above=0.0
     )
     acceleration_mps2: float = param(
-        1.0, "growth of the commanded speed", unit="m/s²", above=0.0
+        1.0, "limit on increasing the commanded speed", unit="m/s²", above=0.0
     )
     deceleration_mps2: float = param(
-        1.0, "decrease of the commanded speed", unit="m/s²", above=0.0
+        1.0, "limit on decreasing the commanded speed", unit="m/s²", above=0.0
     )
     turn_acceleration_radps2: float = param(
-        2.0, "change of the commanded turn rate", unit="rad/s²", above=0.0
+        2.0, "limit on changing the commanded turn rate", unit="rad/s²", above=0.0
     )
     lateral_acceleration_mps2: float = param(
-        1.0, "speed² · curvature in bends", unit="m/s²", above=0.0
+        1.0, "limit of speed² · curvature in bends", unit="m/s²", above=0.0
     )
     wheel_separation_m: float = param(
-        0.0, "between the drive wheels; 0: no wheel-speed limit", unit="m", at_least=0.0
+        0.0,
+        "distance between the drive wheels; 0: no wheel-speed limit",
+        unit="m",
+        at_least=0.0,
     )
     max_wheel_speed_mps: float = param(
-        0.0, "rim speed of a drive wheel; 0: no limit", unit="m/s", at_least=0.0
+        0.0, "limit of a drive wheel's rim speed; 0: no limit", unit="m/s", at_least=0.0
     )
 
     lookahead_m: float = param(
@@ -58,10 +60,10 @@ class ControlParams(Params):
         0.0, "lookahead grows to speed times this; 0: fixed", unit="s", at_least=0.0
     )
     lookahead_min_m: float = param(
-        0.35, "lookahead in the sharpest bends", unit="m", above=0.0
+        0.35, "least lookahead, in the sharpest bends", unit="m", above=0.0
     )
     path_tolerance_m: float = param(
-        0.05, "how far corners may be rounded off the path", unit="m", above=0.0
+        0.05, "deviation allowed when rounding corners", unit="m", above=0.0
     )
     pid_kp_per_m2: float = param(
         2.5, "curvature per cross-track error", unit="1/m²", at_least=0.0
@@ -79,19 +81,22 @@ class ControlParams(Params):
         above=0.1, at_most=math.pi,
     )  # fmt: skip
     corner_rotate_rad: float = param(
-        0.9, "corners sharper than this are turned in place", unit="rad",
+        0.9, "corner angle above which the robot turns in place", unit="rad",
         above=0.1, at_most=math.pi,
     )  # fmt: skip
     turn_tolerance_rad: float = param(
-        0.04, "heading error at which a turn in place is done", unit="rad",
+        0.04, "heading error at which a turn in place is complete", unit="rad",
         above=0.0, at_most=0.3,
     )  # fmt: skip
     goal_tolerance_m: float = param(
-        0.1, "distance to the end of the path that counts as reached", unit="m",
+        0.1, "distance to the path's end at which it is reached", unit="m",
         above=0.0,
     )  # fmt: skip
     max_deviation_m: float = param(
-        1.0, "farther from the path the robot stops (off_path)", unit="m", above=0.0
+        1.0,
+        "distance from the path at which the robot stops (off_path)",
+        unit="m",
+        above=0.0,
     )
 
     footprint_m: tuple[float, ...] = param(
@@ -100,31 +105,31 @@ class ControlParams(Params):
     )  # fmt: skip
     collision_check: bool = param(True, "check each command against the latest costmap")
     collision_margin_m: float = param(
-        0.05, "clearance of the body that the motion must keep", unit="m", at_least=0.0
+        0.05, "clearance that every commanded motion keeps", unit="m", at_least=0.0
     )
     slow_clearance_m: float = param(
         0.3, "clearance below which the robot slows down; 0: never", unit="m",
         at_least=0.0,
     )  # fmt: skip
     reaction_s: float = param(
-        0.2, "time until a new command shows in the motion", unit="s", at_least=0.0
+        0.2, "delay from command to motion", unit="s", at_least=0.0
     )
     lethal_cost: int = param(
         100, "costmap value from which a cell is an obstacle", at_least=1, at_most=100
     )
 
     odometry_timeout_s: float = param(
-        0.14, "odometry older than this stops the robot", unit="s", above=0.0
+        0.14, "age of odometry that stops the robot", unit="s", above=0.0
     )
     costmap_timeout_s: float = param(
-        0.19, "costmap older than this stops the robot", unit="s", above=0.0
+        0.19, "age of the costmap that stops the robot", unit="s", above=0.0
     )
     planner_timeout_s: float = param(
         2.0, "no /path or /planner/status for this long stops the robot; 0: never",
         unit="s", at_least=0.0,
     )  # fmt: skip
     idle_zeros: int = param(
-        5, "zero commands before an idle controller falls silent", at_least=1
+        5, "zero commands published after the robot came to rest", at_least=1
     )
 
     def check(self) -> None:
@@ -143,15 +148,3 @@ class ControlParams(Params):
             Footprint.from_flat(self.footprint_m)
         except InvalidValueError as error:
             raise ParameterError(f"parameter 'footprint_m': {error}") from error
-
-    def limits(self) -> MotionLimits:
-        """The part that bounds commands."""
-        return MotionLimits(
-            speed=self.max_speed_mps,
-            turn_rate=self.max_turn_rate_radps,
-            acceleration=self.acceleration_mps2,
-            deceleration=self.deceleration_mps2,
-            turn_acceleration=self.turn_acceleration_radps2,
-            wheel_separation=self.wheel_separation_m,
-            wheel_speed=self.max_wheel_speed_mps,
-        )

@@ -1,7 +1,7 @@
-"""Split a path with headings into pieces: drive forward, drive back, turn in place.
+"""Split a path with headings into pieces: drive forward, reverse, turn in place.
 
-A pose whose heading opposes the travel means reverse; equal position with another
-heading means a turn in place. Corners too sharp to be rounded become turns as well.
+A heading opposite to the direction of travel means reverse. Poses at one position with
+different headings mean a turn in place. Corners too sharp to be rounded become turns.
 """
 
 import math
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import angle_difference, wrap_angle
-from navette.navigation.control.path_shape import (
+from navette.navigation.control.params import ControlParams
+from navette.navigation.control.polyline import (
     Points,
     resample,
     round_corners,
@@ -27,14 +28,14 @@ _LONGEST_M = 1e5
 _STEP_LEG_M = 0.25
 _STEP_ANGLE_RAD = 0.6  # less than the 45° of an 8-connected step
 _SAME_PLACE_M = 0.005
-_SIMPLIFY_M = 0.01  # well below a cell: keeps arcs, drops the points between corners
+_SIMPLIFY_M = 0.01  # well below a cell: keeps arcs, drops points between corners
 
 
 @dataclass(frozen=True)
 class DrivePiece:
     """A stretch driven without stopping, sampled every :data:`SAMPLE_M` or less.
 
-    Lists, not arrays: each tick reads a few dozen single values.
+    Lists, not arrays: each step reads a few dozen single values.
     """
 
     direction: int  # +1 forward, −1 reverse
@@ -50,12 +51,12 @@ class DrivePiece:
         return self.s[-1]
 
     def index_at(self, s: float) -> int:
-        """Index of the sample at or before arc length ``s``."""
+        """Return the index of the sample at or before arc length ``s``."""
         last = len(self.s) - 1
         return min(last, max(0, int(s / self.s[-1] * last)))
 
     def point_at(self, s: float) -> tuple[float, float]:
-        """Point (m, map) at arc length ``s``; past the end straight on."""
+        """Return the point (m, map) at arc length ``s``, extended beyond the end."""
         i = min(self.index_at(s), len(self.s) - 2)
         t = s - self.s[i]
         c, d = math.cos(self.heading[i]), math.sin(self.heading[i])
@@ -64,7 +65,7 @@ class DrivePiece:
 
 @dataclass(frozen=True)
 class TurnPiece:
-    """A turn in place to ``yaw`` (rad, map); ``turn`` is the way planned, signed."""
+    """A turn in place to ``yaw`` (rad, map); ``turn`` is the planned, signed angle."""
 
     yaw: float
     turn: float
@@ -73,13 +74,11 @@ class TurnPiece:
 Piece = DrivePiece | TurnPiece
 
 
-def split_path(
-    poses: NDArray[np.float64], *, tolerance: float, sharp: float
-) -> list[Piece]:
-    """Path poses (N, 3) x, y, yaw (m, rad, map) → pieces in driving order.
+def split_path(poses: NDArray[np.float64], params: ControlParams) -> list[Piece]:
+    """Split path poses (N, 3) x, y, yaw (m, rad, map) into pieces in driving order.
 
-    Corners up to ``sharp`` rad are rounded within ``tolerance`` metres, sharper ones
-    are turned in place.
+    Corners up to ``corner_rotate_rad`` are rounded within ``path_tolerance_m``; the
+    robot turns in place at sharper ones.
 
     Raises:
         InvalidValueError: not (N, 3) or not finite.
@@ -91,7 +90,7 @@ def split_path(
             pieces.append(run)
         else:
             direction, points = run
-            pieces += _drive(points, direction, tolerance, sharp)
+            pieces += _drive(points, direction, params)
     return pieces
 
 
@@ -109,15 +108,15 @@ def _check(poses: NDArray[np.float64]) -> None:
 
 
 def _directions(poses: NDArray[np.float64]) -> list[int]:
-    """Of each step between poses: +1 forward, −1 reverse, 0 turn in place."""
+    """Return for each step between poses: +1 forward, −1 reverse, 0 turn in place."""
     steps = np.diff(poses[:, :2], axis=0)
     moves = np.hypot(steps[:, 0], steps[:, 1]) > _SAME_PLACE_M
     travel = np.arctan2(steps[:, 1], steps[:, 0])
     along = np.cos(travel - poses[:-1, 2])
     agreement = np.maximum(np.abs(along), np.abs(np.cos(travel - poses[1:, 2])))
     if np.any(agreement[moves] < 0.5):
-        # Headings across the travel: the sender left them out (all zero, say), so
-        # they cannot mean reverse either.
+        # Headings across the travel: the publisher did not set them (all are zero,
+        # for example), so they cannot mean reverse either.
         along = np.ones_like(along)
         return [int(m) for m in moves]
     both = along + np.cos(travel - poses[1:, 2])
@@ -129,7 +128,7 @@ def _directions(poses: NDArray[np.float64]) -> list[int]:
 def _runs(
     poses: NDArray[np.float64], directions: list[int]
 ) -> list[TurnPiece | tuple[int, Points]]:
-    """Consecutive steps of one direction together, turns summed up."""
+    """Group consecutive steps of one direction; sum up turns."""
     runs: list[TurnPiece | tuple[int, Points]] = []
     start = 0
     for i in range(1, len(directions) + 1):
@@ -149,20 +148,19 @@ def _runs(
     return runs
 
 
-def _drive(
-    points: Points, direction: int, tolerance: float, sharp: float
-) -> list[Piece]:
-    """One run of one direction: drive pieces with turns at its sharp corners."""
+def _drive(points: Points, direction: int, params: ControlParams) -> list[Piece]:
+    """Return drive pieces of one direction, with turns at the sharp corners."""
+    tolerance = params.path_tolerance_m
     corners = simplify(points, _SIMPLIFY_M)
     if _has_steps(corners):
         corners = simplify(points, 2 * tolerance)
     angles = turn_angles(corners)
     pieces: list[Piece] = []
-    for part in split_at(corners, np.abs(angles) > sharp):
+    for part in split_at(corners, np.abs(angles) > params.corner_rotate_rad):
         piece = sample_piece(round_corners(part, tolerance), direction)
         if pieces:
             before = pieces[-1]
-            assert isinstance(before, DrivePiece), "turns only stand between drives"
+            assert isinstance(before, DrivePiece), "turns occur between drives only"
             turn = angle_difference(piece.heading[0], before.heading[-1])
             facing = piece.heading[0] + (math.pi if direction < 0 else 0.0)
             pieces.append(TurnPiece(wrap_angle(facing), turn))
@@ -171,9 +169,9 @@ def _drive(
 
 
 def _has_steps(corners: Points) -> bool:
-    """Whether the way points go from cell to cell, as a raw grid search gives them.
+    """Return whether the waypoints step from cell to cell, as from a raw grid search.
 
-    Rounding each step of such a stair would be a crawl, turning at each a standstill.
+    Rounding each step of such a staircase is slow; turning at each means stopping.
     """
     legs = np.hypot(*np.diff(corners, axis=0).T)
     short = np.minimum(legs[:-1], legs[1:]) < _STEP_LEG_M
@@ -181,7 +179,7 @@ def _has_steps(corners: Points) -> bool:
 
 
 def sample_piece(points: Points, direction: int) -> DrivePiece:
-    """Polyline (M, 2), metres → evenly sampled piece with heading and curvature."""
+    """Sample a polyline (M, 2), metres, evenly; add heading and curvature."""
     xy, s = resample(points, SAMPLE_M)
     change = turn_angles(xy)
     steps = np.diff(xy, axis=0)

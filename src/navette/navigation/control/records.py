@@ -1,4 +1,4 @@
-"""What goes into and comes out of the controller's steps."""
+"""Inputs and outputs of a controller step."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from navette.geometry import Pose2
 from navette.navigation.control.command_gate import FRESH, InputAges
-from navette.navigation.control.limits import Command
+from navette.navigation.control.limits import VelocityCommand
 from navette.navigation.control.states import ControlState
 
 FARTHEST_M = 1e8  # from the map's origin; UTM northings reach 1e7
@@ -16,9 +16,9 @@ UNKNOWN_POSE = Pose2(math.nan, math.nan, math.nan)
 
 @dataclass(frozen=True)
 class FollowerInputs:
-    """What one step sees: pose of the base in the map, motion (m/s, rad/s), ages.
+    """Pose of the base in the map, motion (m/s, rad/s), and ages of the inputs.
 
-    A robot whose place is not known (:data:`UNKNOWN_POSE`) is not moved.
+    With :data:`UNKNOWN_POSE` the robot stays stopped.
     """
 
     pose: Pose2
@@ -28,7 +28,7 @@ class FollowerInputs:
 
     @property
     def plausible(self) -> bool:
-        """Whether every number is finite and can be that of a robot."""
+        """Whether all values are finite and physically possible."""
         return (
             math.hypot(self.pose.x, self.pose.y) <= FARTHEST_M
             and abs(self.pose.yaw) <= FARTHEST_M
@@ -37,9 +37,9 @@ class FollowerInputs:
 
 
 class FollowerOutput(NamedTuple):
-    """The command with its state; errors are those of the robot on its piece."""
+    """Command and state, with the tracking errors on the current piece."""
 
-    command: Command
+    command: VelocityCommand
     state: ControlState
     cross_track_m: float
     heading_error_rad: float
@@ -47,9 +47,9 @@ class FollowerOutput(NamedTuple):
     clearance_m: float
 
 
-class Wanted(NamedTuple):
-    """What a piece asks for, before accelerations and obstacles."""
+class StepDecision(NamedTuple):
+    """Command of a piece before acceleration limits and obstacles are applied."""
 
-    command: Command
+    command: VelocityCommand
     state: ControlState
     brakes: bool = False  # slow down on the present arc instead of steering

@@ -1,40 +1,42 @@
 """Turn in place: accelerate, hold, brake to stop at the heading."""
 
 import math
-from collections.abc import Callable
 
-from navette.geometry import Pose2, angle_difference, wrap_angle
-from navette.navigation.control.limits import STOP, Command, MotionLimits
-from navette.navigation.control.records import FollowerInputs, Wanted
+from navette.geometry import angle_difference, wrap_angle
+from navette.navigation.control.controller_parts import ControllerParts
+from navette.navigation.control.limits import STOP, VelocityCommand
+from navette.navigation.control.params import ControlParams
+from navette.navigation.control.records import FollowerInputs, StepDecision
 from navette.navigation.control.states import ControlState
 
 STANDSTILL_MPS = 0.1  # slower than this the robot may turn in place or reverse
-_DONE_RADPS = 0.2  # a turn is done when it has slowed down to this
+_DONE_RADPS = 0.2  # a turn is complete below this rate
 _BRAKE_SHARE = 0.7  # of the turn acceleration, planned for braking
 _SETTLE_S = 0.3
-_DELAY_S = 0.1  # the drive answers about this late
+_DELAY_S = 0.1  # delay of the drive
 
 
-def turn_rate(error: float, rate: float, max_rate: float, acceleration: float) -> float:
-    """Turn rate (rad/s) that takes the heading ``error`` (rad, signed) to zero.
+def turn_rate(error: float, rate: float, params: ControlParams) -> float:
+    """Return the turn rate (rad/s) that reduces the heading ``error`` (rad) to zero.
 
-    ``|ω| ≤ sqrt(2 α |e|)``, the rate from which braking at α ends at the heading. The
-    error is taken as it will be when the command acts, and the root's infinite slope
-    at zero is cut off by ``e / 0.3 s``; both keep a lagging drive from overshooting.
+    ``|ω| ≤ sqrt(2 α |e|)`` is the rate from which braking at α ends at the heading. The
+    error is predicted to when the command acts, and the root's infinite slope at zero
+    is limited by ``e / 0.3 s``; both keep a lagging drive from overshooting.
     """
     ahead = error - rate * _DELAY_S
     if ahead * error < 0:
         return 0.0
     size = min(
-        math.sqrt(2 * _BRAKE_SHARE * acceleration * abs(ahead)), abs(error) / _SETTLE_S
+        math.sqrt(2 * _BRAKE_SHARE * params.turn_acceleration_radps2 * abs(ahead)),
+        abs(error) / _SETTLE_S,
     )
-    return math.copysign(min(size, max_rate), error)
+    return math.copysign(min(size, params.max_turn_rate_radps), error)
 
 
 def remaining_turn(target: float, yaw: float, direction: int) -> float:
-    """Signed turn (rad) left from ``yaw`` to ``target`` in ``direction`` (+1 left).
+    """Return the signed turn (rad) to ``target`` in ``direction`` (+1 left).
 
-    Half a radian too far counts as an overshoot to be turned back, not as a lap.
+    Up to half a radian beyond the target counts as overshoot, to be turned back.
     """
     error = wrap_angle(target - yaw)
     if error * direction < -0.5:
@@ -43,11 +45,11 @@ def remaining_turn(target: float, yaw: float, direction: int) -> float:
 
 
 def choose_direction(target: float, yaw: float, rate: float, planned: float) -> int:
-    """+1 (left) or −1 (right) for a turn from ``yaw`` to ``target``, rad.
+    """Return +1 (left) or −1 (right) for a turn from ``yaw`` to ``target``, rad.
 
-    The short way, except that a turn ``planned`` (signed, 0: no plan) the long way
-    keeps to its plan, and one of about half a lap keeps to the present ``rate``:
-    replanning must not swing the robot to and fro.
+    The shorter direction, with two exceptions that keep replanning from swinging the
+    robot back and forth: a turn ``planned`` (signed, 0: no plan) in the longer
+    direction keeps it, and a turn of about 180° keeps the direction of ``rate``.
     """
     error = angle_difference(target, yaw)
     if planned and error * planned < 0 and math.tau - abs(error) < abs(planned) + 0.5:
@@ -62,65 +64,54 @@ class TurnInPlace:
 
     Args:
         target: heading to reach, rad, map.
-        planned: the turn as planned (rad, signed), 0 if only the target counts.
-        tolerance: heading error (rad) that counts as done.
-        is_free: whether the body may turn by so much (rad, signed) at a pose.
-        either_way: turn the other way round where the preferred one is not free.
+        planned: the planned turn (rad, signed), 0 if only the target matters.
+        parts: parameters and shared parts of the controller.
+        both_directions: turn in the other direction if the preferred one is blocked.
     """
 
     def __init__(
         self,
         target: float,
         planned: float,
+        parts: ControllerParts,
         *,
-        tolerance: float,
-        limits: MotionLimits,
-        is_free: Callable[[Pose2, float], bool],
-        either_way: bool = True,
+        both_directions: bool = True,
     ) -> None:
         self._target = target
         self._planned = planned
-        self._tolerance = tolerance
-        self._limits = limits
-        self._is_free = is_free
-        self.either_way = either_way
+        self._parts = parts
+        self.both_directions = both_directions
         self._direction = 0
 
-    def step(self, inputs: FollowerInputs, turn_gain: float) -> Wanted | None:
-        """The turn's next command, or None when the heading is reached.
-
-        ``turn_gain`` is the measured share of a commanded turn rate.
-        """
+    def step(self, inputs: FollowerInputs) -> StepDecision | None:
+        """Return the next command of the turn, or None when the heading is reached."""
+        params = self._parts.params
         error = angle_difference(self._target, inputs.pose.yaw)
         settled = abs(inputs.turn_rate) < _DONE_RADPS
-        if abs(error) <= self._tolerance and settled:
+        if abs(error) <= params.turn_tolerance_rad and settled:
             return None
         if abs(inputs.speed) > STANDSTILL_MPS:
-            return Wanted(STOP, ControlState.TURNING, brakes=True)
+            return StepDecision(STOP, ControlState.TURNING, brakes=True)
         if self._direction == 0 and not self._choose(inputs):
-            return Wanted(STOP, ControlState.BLOCKED, brakes=True)
+            return StepDecision(STOP, ControlState.BLOCKED, brakes=True)
         error = remaining_turn(self._target, inputs.pose.yaw, self._direction)
-        rate = turn_rate(
-            error,
-            inputs.turn_rate,
-            self._limits.turn_rate,
-            self._limits.turn_acceleration,
-        )
-        return Wanted(Command(0.0, rate / turn_gain), ControlState.TURNING)
+        rate = turn_rate(error, inputs.turn_rate, params)
+        command = VelocityCommand(0.0, rate / self._parts.turn_gain.value)
+        return StepDecision(command, ControlState.TURNING)
 
     def reconsider(self) -> None:
-        """The chosen way turned out blocked: choose again at the next step."""
+        """Choose the direction again at the next step: the chosen one is blocked."""
         self._direction = 0
 
     def _choose(self, inputs: FollowerInputs) -> bool:
-        """Pick a direction whose sweep is free, the preferred one first."""
+        """Choose a direction whose sweep is free, the preferred one first."""
         yaw = inputs.pose.yaw
         preferred = choose_direction(self._target, yaw, inputs.turn_rate, self._planned)
-        for direction in (preferred, -preferred)[: 2 if self.either_way else 1]:
+        for direction in (preferred, -preferred)[: 2 if self.both_directions else 1]:
             turn = remaining_turn(self._target, yaw, direction)
             if direction * turn < 0:
                 turn += direction * math.tau
-            if self._is_free(inputs.pose, turn):
+            if self._parts.collision.turn_is_free(inputs.pose, turn):
                 self._direction = direction
                 return True
         return False

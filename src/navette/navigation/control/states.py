@@ -1,10 +1,10 @@
-"""The named states of the controller, as they go on the wire."""
+"""Named states of the controller, as published."""
 
 from enum import StrEnum
 
 
 class ControlState(StrEnum):
-    """What the controller does, or why it does not move."""
+    """Activity of the controller, or the reason why the robot is stopped."""
 
     IDLE = "idle"
     FOLLOWING = "following"
@@ -23,12 +23,12 @@ class ControlState(StrEnum):
 
     @property
     def moves(self) -> bool:
-        """Whether the robot is on its way along a path."""
+        """Whether the robot is driving along a path."""
         return self in (ControlState.FOLLOWING, ControlState.TURNING)
 
     @property
     def rests(self) -> bool:
-        """Whether there is nothing to do until a new path arrives."""
+        """Whether the controller waits for a new path."""
         return self in _RESTING
 
 

@@ -1,5 +1,6 @@
 """Predicted motion against obstacles, and the last gate."""
 
+import itertools
 import math
 
 import numpy as np
@@ -8,11 +9,11 @@ import pytest
 from navette.geometry import Footprint, Pose2
 from navette.grids import GridSpec
 from navette.navigation.control import (
-    Command,
     CommandGate,
+    ControlParams,
     ControlState,
     InputAges,
-    MotionLimits,
+    VelocityCommand,
     obstacle_points,
 )
 from navette.navigation.control.collision_check import CollisionCheck, signed_distance
@@ -23,12 +24,14 @@ ORIGIN = Pose2(0.0, 0.0, 0.0)
 
 def checker(*points: tuple[float, float]) -> CollisionCheck:
     check = CollisionCheck(
-        BODY,
-        margin=0.1,
-        horizon=0.5,
-        reaction=0.2,
-        deceleration=1.0,
-        turn_deceleration=2.0,
+        ControlParams(
+            footprint_m=tuple(itertools.chain(*BODY.vertices)),
+            collision_margin_m=0.1,
+            slow_clearance_m=0.5,
+            reaction_s=0.2,
+            deceleration_mps2=1.0,
+            turn_acceleration_radps2=2.0,
+        )
     )
     check.set_obstacles(np.array(points, np.float64).reshape(-1, 2), 0.05)
     return check
@@ -47,14 +50,14 @@ def test_clearance_is_from_the_body_to_the_edge_of_the_cell() -> None:
     assert checker().clearance(ORIGIN) == pytest.approx(0.5)
 
 
-def test_a_free_motion_is_not_touched() -> None:
-    assert checker((0.0, 5.0)).check(ORIGIN, Command(1.0, 0.2)).scale == 1.0
-    assert checker().check(ORIGIN, Command(1.0, 0.2)).scale == 1.0
+def test_a_free_motion_is_unchanged() -> None:
+    assert checker((0.0, 5.0)).check(ORIGIN, VelocityCommand(1.0, 0.2)).scale == 1.0
+    assert checker().check(ORIGIN, VelocityCommand(1.0, 0.2)).scale == 1.0
 
 
 @pytest.mark.parametrize("gap", [0.4, 0.6, 1.0])
 def test_the_scaled_speed_can_still_stop_at_the_margin(gap: float) -> None:
-    scale, _ = checker((1.55 + gap, 0.0)).check(ORIGIN, Command(2.0, 0.0))
+    scale, _ = checker((1.55 + gap, 0.0)).check(ORIGIN, VelocityCommand(2.0, 0.0))
     v = 2.0 * scale
     stop = 0.2 * v + v * v / 2
     assert gap - 0.1 - 0.12 <= stop <= gap - 0.1 + 1e-6
@@ -69,19 +72,19 @@ def test_a_turn_is_checked_over_its_whole_sweep() -> None:
 
 def test_moving_away_is_never_forbidden() -> None:
     close = checker((1.57, 0.0))
-    assert close.check(ORIGIN, Command(0.5, 0.0)).scale == 0.0
-    assert close.check(ORIGIN, Command(-0.5, 0.0)).scale == 1.0
+    assert close.check(ORIGIN, VelocityCommand(0.5, 0.0)).scale == 0.0
+    assert close.check(ORIGIN, VelocityCommand(-0.5, 0.0)).scale == 1.0
     inside = checker((1.3, 0.0))
-    assert inside.check(ORIGIN, Command(-0.5, 0.0)).scale == 1.0
-    assert inside.check(ORIGIN, Command(0.5, 0.0)).scale == 0.0
+    assert inside.check(ORIGIN, VelocityCommand(-0.5, 0.0)).scale == 1.0
+    assert inside.check(ORIGIN, VelocityCommand(0.5, 0.0)).scale == 0.0
 
 
 def test_passing_along_a_wall_closer_than_the_margin_is_allowed() -> None:
     wall = [(0.1 * i, 0.62) for i in range(-20, 60)]
     check = checker(*wall)
     assert check.clearance(ORIGIN) == pytest.approx(0.07)
-    assert check.check(ORIGIN, Command(0.5, 0.0)).scale == 1.0
-    assert check.check(ORIGIN, Command(0.5, 0.5)).scale < 0.5
+    assert check.check(ORIGIN, VelocityCommand(0.5, 0.0)).scale == 1.0
+    assert check.check(ORIGIN, VelocityCommand(0.5, 0.5)).scale < 0.5
 
 
 def test_the_reach_covers_braking_from_the_speed() -> None:
@@ -98,39 +101,46 @@ def test_obstacle_points_are_lethal_cells_placed_in_the_map(yaw: float) -> None:
     cost[0, 0] = 100
     map_T_grid = Pose2(20.0, 10.0, yaw)
     points = obstacle_points(
-        cost, spec, map_T_grid, lethal=100, around=map_T_grid, reach=3.0
+        cost, spec, map_T_grid, lethal_cost=100, around=map_T_grid, reach_m=3.0
     )
     expected = map_T_grid @ Pose2(2.05, 1.05, 0.0)
     assert points == pytest.approx(np.array([[expected.x, expected.y]]))
 
 
-def test_a_robot_off_the_grid_sees_no_obstacles() -> None:
+def test_off_the_grid_there_are_no_obstacle_points() -> None:
     spec = GridSpec(0.1, 10, 10)
     cost = np.full(spec.shape, 100, np.int8)
     far = Pose2(-50.0, 80.0, 0.0)
-    points = obstacle_points(cost, spec, ORIGIN, lethal=100, around=far, reach=3.0)
+    points = obstacle_points(
+        cost, spec, ORIGIN, lethal_cost=100, around=far, reach_m=3.0
+    )
     assert points.shape == (0, 2)
 
 
-LIMITS = MotionLimits(1.0, 2.0, 1.0, 1.0, 1.0)
 GATE = CommandGate(
-    LIMITS, odometry_timeout=0.3, costmap_timeout=0.3, planner_timeout=2.0
+    ControlParams(
+        max_speed_mps=1.0,
+        max_turn_rate_radps=2.0,
+        odometry_timeout_s=0.3,
+        costmap_timeout_s=0.3,
+        planner_timeout_s=2.0,
+    )
 )
 
 
 @pytest.mark.parametrize(
     ("command", "reason"),
     [
-        (Command(1.0, 2.0), None),
-        (Command(-1.0, -2.0), None),
-        (Command(1.01, 0.0), ControlState.COMMAND_OVER_LIMIT),
-        (Command(0.0, -2.01), ControlState.COMMAND_OVER_LIMIT),
-        (Command(math.nan, 0.0), ControlState.COMMAND_NOT_FINITE),
-        (Command(0.0, math.inf), ControlState.COMMAND_NOT_FINITE),
+        (VelocityCommand(1.0, 2.0), None),
+        (VelocityCommand(-1.0, -2.0), None),
+        (VelocityCommand(1.01, 0.0), ControlState.COMMAND_OVER_LIMIT),
+        (VelocityCommand(0.0, -2.01), ControlState.COMMAND_OVER_LIMIT),
+        (VelocityCommand(math.nan, 0.0), ControlState.COMMAND_NOT_FINITE),
+        (VelocityCommand(0.0, math.inf), ControlState.COMMAND_NOT_FINITE),
     ],
 )
-def test_the_gate_refuses_what_it_must(
-    command: Command, reason: ControlState | None
+def test_the_gate_refuses_invalid_commands(
+    command: VelocityCommand, reason: ControlState | None
 ) -> None:
     assert GATE.refusal(command) is reason
 

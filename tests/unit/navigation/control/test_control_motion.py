@@ -1,11 +1,19 @@
 """Limits, turning in place, speed along the path, the learned turn gain."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from navette.navigation.control.limits import STOP, Command, MotionLimits
+from navette.navigation.control.limits import (
+    STOP,
+    VelocityCommand,
+    approach,
+    brake,
+    clamp,
+)
+from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_pieces import sample_piece
 from navette.navigation.control.rotate import (
     choose_direction,
@@ -15,54 +23,58 @@ from navette.navigation.control.rotate import (
 from navette.navigation.control.speed_profile import approach_speed, speed_profile
 from navette.navigation.control.turn_gain import TurnGain
 
-LIMITS = MotionLimits(
-    speed=1.0,
-    turn_rate=1.0,
-    acceleration=0.5,
-    deceleration=1.0,
-    turn_acceleration=2.0,
-    wheel_separation=1.2,
-    wheel_speed=1.2,
+PARAMS = ControlParams(
+    cruise_speed_mps=1.0,
+    max_speed_mps=1.0,
+    max_turn_rate_radps=1.0,
+    acceleration_mps2=0.5,
+    deceleration_mps2=1.0,
+    turn_acceleration_radps2=2.0,
+    wheel_separation_m=1.2,
+    max_wheel_speed_mps=1.2,
 )
 
 
 def test_clamping_keeps_the_arc() -> None:
-    clamped = LIMITS.clamp(Command(4.0, 2.0))
+    clamped = clamp(VelocityCommand(4.0, 2.0), PARAMS)
     assert clamped.speed == pytest.approx(2 * clamped.turn_rate)
     assert clamped.speed <= 1.0
 
 
 def test_no_wheel_turns_faster_than_it_can() -> None:
-    v, omega = LIMITS.clamp(Command(1.0, 1.0))
+    v, omega = clamp(VelocityCommand(1.0, 1.0), PARAMS)
     assert v + omega * 0.6 == pytest.approx(1.2)
     assert v == pytest.approx(omega)
 
 
 def test_speed_grows_and_falls_at_its_own_rates() -> None:
-    assert LIMITS.towards(Command(0.2, 0), Command(1, 0), 0.1).speed == pytest.approx(
-        0.25
-    )
-    assert LIMITS.towards(Command(0.8, 0), Command(0, 0), 0.1).speed == pytest.approx(
-        0.7
-    )
+    assert approach(
+        VelocityCommand(0.2, 0), VelocityCommand(1, 0), PARAMS, 0.1
+    ).speed == pytest.approx(0.25)
+    assert approach(
+        VelocityCommand(0.8, 0), VelocityCommand(0, 0), PARAMS, 0.1
+    ).speed == pytest.approx(0.7)
 
 
 def test_reversing_goes_through_standstill() -> None:
-    assert LIMITS.towards(Command(0.05, 0), Command(-1, 0), 0.1).speed == 0.0
+    assert (
+        approach(VelocityCommand(0.05, 0), VelocityCommand(-1, 0), PARAMS, 0.1).speed
+        == 0.0
+    )
 
 
 def test_braking_stays_on_the_arc() -> None:
-    braked = LIMITS.brake(Command(0.8, 0.4), 0.1)
+    braked = brake(VelocityCommand(0.8, 0.4), PARAMS, 0.1)
     assert braked == pytest.approx((0.7, 0.35))
-    assert LIMITS.brake(Command(0.05, 0.4), 0.1) == STOP
-    assert LIMITS.brake(Command(0.0, -0.5), 0.1) == pytest.approx((0.0, -0.3))
+    assert brake(VelocityCommand(0.05, 0.4), PARAMS, 0.1) == STOP
+    assert brake(VelocityCommand(0.0, -0.5), PARAMS, 0.1) == pytest.approx((0.0, -0.3))
 
 
 def test_the_turn_rate_law_brakes_in_time() -> None:
-    assert turn_rate(3.0, 0.0, 1.0, 2.0) == 1.0
-    assert turn_rate(-3.0, 0.0, 1.0, 2.0) == -1.0
-    assert 0 < turn_rate(0.1, 0.0, 1.0, 2.0) < 0.4
-    assert turn_rate(0.05, 1.0, 1.0, 2.0) == 0.0
+    assert turn_rate(3.0, 0.0, PARAMS) == 1.0
+    assert turn_rate(-3.0, 0.0, PARAMS) == -1.0
+    assert 0 < turn_rate(0.1, 0.0, PARAMS) < 0.4
+    assert turn_rate(0.05, 1.0, PARAMS) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -71,19 +83,19 @@ def test_the_turn_rate_law_brakes_in_time() -> None:
         (1.0, 0.0, 0.0, 0.0, 1),
         (-1.0, 0.0, 0.0, 0.0, -1),
         (3.0, -3.0, 0.0, 0.0, -1),
-        (math.pi - 0.1, 0.0, -0.5, 0.0, -1),  # half a lap: keep turning
-        (-math.pi / 2, 0.0, 0.0, 1.5 * math.pi, 1),  # planned the long way
-        (-0.2, 0.0, 0.0, 1.0, -1),  # past the target already
-        (-0.6, 0.0, 0.0, 1.0, -1),  # not a lap for a turn planned short
+        (math.pi - 0.1, 0.0, -0.5, 0.0, -1),  # 180°: keep turning
+        (-math.pi / 2, 0.0, 0.0, 1.5 * math.pi, 1),  # planned the longer direction
+        (-0.2, 0.0, 0.0, 1.0, -1),  # beyond the target already
+        (-0.6, 0.0, 0.0, 1.0, -1),  # not 360° for a short planned turn
     ],
 )
-def test_the_way_round(
+def test_the_direction_of_a_turn(
     target: float, yaw: float, rate: float, planned: float, direction: int
 ) -> None:
     assert choose_direction(target, yaw, rate, planned) == direction
 
 
-def test_what_is_left_of_a_turn() -> None:
+def test_the_remaining_turn() -> None:
     assert remaining_turn(1.0, 0.0, 1) == pytest.approx(1.0)
     assert remaining_turn(1.0, 0.0, -1) == pytest.approx(1.0 - math.tau)
     assert remaining_turn(1.0, 1.2, 1) == pytest.approx(-0.2)
@@ -97,7 +109,7 @@ def arc(radius: float) -> np.ndarray:
 
 def test_the_robot_is_slow_before_the_bend() -> None:
     piece = sample_piece(arc(0.5), 1)
-    speeds = np.array(speed_profile(piece, 1.0, 1.0, LIMITS))
+    speeds = np.array(speed_profile(piece, PARAMS))
     s = np.array(piece.s)
     assert speeds[0] == 1.0
     assert np.all(speeds[(s > 4.1) & (s < 4.5)] <= 0.8 * 0.5 * 1.03)
@@ -106,19 +118,21 @@ def test_the_robot_is_slow_before_the_bend() -> None:
 
 def test_wheel_speed_and_lateral_acceleration_bound_the_speed_in_bends() -> None:
     piece = sample_piece(arc(1.0), 1)
-    assert min(speed_profile(piece, 1.0, 0.1, LIMITS)) == pytest.approx(
-        math.sqrt(0.1), rel=0.02
+    gentle = replace(PARAMS, lateral_acceleration_mps2=0.1)
+    assert min(speed_profile(piece, gentle)) == pytest.approx(math.sqrt(0.1), rel=0.02)
+    slow_wheels = replace(
+        PARAMS,
+        max_turn_rate_radps=5.0,
+        max_wheel_speed_mps=0.8,
+        lateral_acceleration_mps2=9.0,
     )
-    slow_wheels = MotionLimits(1.0, 5.0, 1.0, 1.0, 2.0, 1.2, 0.8)
-    assert min(speed_profile(piece, 1.0, 9.0, slow_wheels)) == pytest.approx(
-        0.5, rel=0.02
-    )
+    assert min(speed_profile(piece, slow_wheels)) == pytest.approx(0.5, rel=0.02)
 
 
 def test_the_approach_ends_in_zero() -> None:
-    assert approach_speed(0.0, 0.0, 1.0) == 0.0
-    assert approach_speed(-0.1, 0.5, 1.0) == 0.0
-    assert approach_speed(2.0, 0.0, 1.0) == pytest.approx(math.sqrt(3.2))
+    assert approach_speed(0.0, 0.0, PARAMS) == 0.0
+    assert approach_speed(-0.1, 0.5, PARAMS) == 0.0
+    assert approach_speed(2.0, 0.0, PARAMS) == pytest.approx(math.sqrt(3.2))
 
 
 @pytest.mark.parametrize("turning", [0.75, 0.85, 1.0])
@@ -126,13 +140,13 @@ def test_the_turn_gain_is_learned(turning: float) -> None:
     gain = TurnGain()
     rate = 0.0
     for k in range(200):
-        told = 0.8 * math.sin(0.05 * k)
-        gain.update(told, rate, 0.05)
-        rate += (turning * told - rate) * 0.05 / 0.15
+        commanded = 0.8 * math.sin(0.05 * k)
+        gain.update(commanded, rate, 0.05)
+        rate += (turning * commanded - rate) * 0.05 / 0.15
     assert gain.value == pytest.approx(turning, abs=0.04)
 
 
-def test_a_stuck_or_straight_robot_teaches_no_nonsense() -> None:
+def test_the_turn_gain_stays_bounded_for_a_stuck_or_straight_robot() -> None:
     gain = TurnGain()
     for _ in range(100):
         gain.update(0.0, 0.3, 0.05)

@@ -25,8 +25,3 @@ def test_a_wrong_value_is_named(changes: dict[str, object], named: str) -> None:
 def test_a_wrong_footprint_is_refused(footprint: tuple[float, ...]) -> None:
     with pytest.raises(InvalidValueError, match="footprint"):
         ControlParams(footprint_m=footprint)
-
-
-def test_limits_carry_the_wheel_coupling() -> None:
-    limits = ControlParams(wheel_separation_m=1.2, max_wheel_speed_mps=2.0).limits()
-    assert (limits.wheel_separation, limits.wheel_speed) == (1.2, 2.0)

@@ -7,13 +7,14 @@ import pytest
 from control_plant import tangent_path
 
 from navette.errors import InvalidValueError
+from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_pieces import (
     DrivePiece,
     Piece,
     TurnPiece,
     split_path,
 )
-from navette.navigation.control.path_shape import (
+from navette.navigation.control.polyline import (
     resample,
     round_corners,
     simplify,
@@ -22,7 +23,7 @@ from navette.navigation.control.path_shape import (
 
 
 def split(poses: np.ndarray) -> list[Piece]:
-    return split_path(poses, tolerance=0.05, sharp=0.9)
+    return split_path(poses, ControlParams())
 
 
 def kinds(pieces: list[Piece]) -> list[str]:

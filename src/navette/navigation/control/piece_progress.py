@@ -1,4 +1,4 @@
-"""Where along a piece the robot is: arc length that never jumps across a loop."""
+"""Progress of the robot along a piece, without jumps where the path crosses itself."""
 
 import math
 from typing import NamedTuple
@@ -11,11 +11,13 @@ _AHEAD_M = 0.8  # per tick; 2 m/s at 10 Hz is 0.2 m
 
 
 class PathPoint(NamedTuple):
-    """The robot seen from the nearest point of its piece.
+    """Position of the robot relative to the nearest point of its piece.
 
-    ``sample`` index of the sample before it; ``s`` arc length (m); ``cross_track`` (m)
-    left of the travel positive; ``heading_error`` (rad) the robot's direction of travel
-    minus the path's.
+    Attributes:
+        sample: index of the sample before the nearest point.
+        s: arc length of the nearest point (m).
+        cross_track: offset (m), positive left of the direction of travel.
+        heading_error: the robot's direction of travel minus the path's (rad).
     """
 
     sample: int
@@ -24,8 +26,8 @@ class PathPoint(NamedTuple):
     heading_error: float
 
 
-class PathProgress:
-    """Follows the nearest point of one piece within a window of arc length."""
+class PieceProgress:
+    """Track the nearest point of one piece within a window of arc length."""
 
     def __init__(self, piece: DrivePiece, start_window_m: float) -> None:
         self.piece = piece
@@ -33,7 +35,7 @@ class PathProgress:
         self._ahead = start_window_m
 
     def update(self, pose: Pose2) -> PathPoint:
-        """The nearest point at most :data:`_AHEAD_M` beyond the last one."""
+        """Return the nearest point, at most :data:`_AHEAD_M` beyond the last one."""
         piece = self.piece
         first = piece.index_at(self._s - _BACK_M)
         last = piece.index_at(self._s + self._ahead) + 1
@@ -48,7 +50,7 @@ class PathProgress:
         return point
 
     def _on_segment(self, nearest: int, pose: Pose2) -> PathPoint:
-        """Refine the nearest sample to a point on the segment behind or ahead."""
+        """Refine the nearest sample to a point on the segment before or after it."""
         piece = self.piece
         i = min(nearest, len(piece.x) - 2)
         along, left = self._local(i, pose)

@@ -1,4 +1,4 @@
-"""From a list of way points to a drivable curve: simplified, rounded, sampled."""
+"""Polylines: simplify waypoints, round corners, sample evenly."""
 
 import math
 from collections.abc import Iterator
@@ -10,10 +10,10 @@ Points = NDArray[np.float64]
 
 
 def simplify(points: Points, tolerance: float) -> Points:
-    """Way points (N, 2), metres → those (M, 2) that carry the shape.
+    """Reduce waypoints (N, 2), metres, to (M, 2) of the same shape.
 
-    Every dropped point lies within ``tolerance`` metres of the chord that replaces
-    it (Douglas and Peucker 1973).
+    Every dropped point lies within ``tolerance`` metres of the chord that replaces it
+    (Douglas and Peucker 1973).
     """
     keep = np.zeros(len(points), bool)
     keep[[0, -1]] = True
@@ -32,7 +32,7 @@ def simplify(points: Points, tolerance: float) -> Points:
 
 
 def _distance_to_chord(points: Points) -> NDArray[np.float64]:
-    """Distance of the inner points to the segment from the first to the last."""
+    """Return the distance of the inner points to the segment from first to last."""
     start, chord = points[0], points[-1] - points[0]
     inner = points[1:-1] - start
     length2 = float(chord @ chord)
@@ -44,7 +44,7 @@ def _distance_to_chord(points: Points) -> NDArray[np.float64]:
 
 
 def turn_angles(points: Points) -> NDArray[np.float64]:
-    """Change of direction (rad, left positive) at each inner point: (M,2) → (M−2,)."""
+    """Return the turn (rad, left positive) at each inner point: (M, 2) → (M−2,)."""
     steps = np.diff(points, axis=0)
     headings = np.arctan2(steps[:, 1], steps[:, 0])
     change = np.diff(headings)
@@ -55,7 +55,7 @@ def round_corners(points: Points, deviation: float) -> Points:
     """Replace each corner of (M, 2) by an arc within ``deviation`` of the corner.
 
     A fillet of radius R in a corner of angle θ passes it at R·(1/cos(θ/2) − 1) and
-    touches the legs R·tan(θ/2) before and after; it takes at most half of each leg.
+    touches the legs R·tan(θ/2) before and after; it uses at most half of each leg.
     """
     if len(points) < 3:
         return points
@@ -75,12 +75,12 @@ def round_corners(points: Points, deviation: float) -> Points:
 
 
 def _fillet(corner: Points, touch: float, angle: float) -> Points:
-    """Points of the arc in the corner a–b–c that starts ``touch`` metres before b."""
+    """Return the arc in the corner a–b–c that starts ``touch`` metres before b."""
     a, b, _ = corner
     into = (b - a) / math.dist(a, b)
     left = np.array([-into[1], into[0]]) * math.copysign(1.0, angle)
     radius = touch / math.tan(abs(angle) / 2)
-    # Finer than the later samples, else the curvature sampled comes in lumps.
+    # Finer than the later samples, else the sampled curvature is uneven.
     count = 1 + max(
         2, math.ceil(abs(angle) / 0.1), math.ceil(abs(angle) * radius / 0.02)
     )
@@ -92,7 +92,7 @@ def _fillet(corner: Points, touch: float, angle: float) -> Points:
 
 
 def resample(points: Points, spacing: float) -> tuple[Points, NDArray[np.float64]]:
-    """Evenly spaced points on a polyline and their arc length, both ends kept."""
+    """Return evenly spaced points on a polyline and their arc lengths."""
     legs = np.hypot(*np.diff(points, axis=0).T)
     arc = np.concatenate(([0.0], np.cumsum(legs)))
     count = max(1, math.ceil(arc[-1] / spacing))
@@ -103,7 +103,7 @@ def resample(points: Points, spacing: float) -> tuple[Points, NDArray[np.float64
 
 
 def split_at(points: Points, corners: NDArray[np.bool_]) -> Iterator[Points]:
-    """Cut (M, 2) at the marked inner points (M−2,); parts share the cut point."""
+    """Split (M, 2) at the marked inner points (M−2,); parts share the split point."""
     start = 0
     for i in np.flatnonzero(corners) + 1:
         yield points[start : i + 1]

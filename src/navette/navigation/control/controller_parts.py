@@ -1,0 +1,40 @@
+"""Parts of the controller that all pieces of all paths share."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from navette.geometry import Pose2
+from navette.navigation.control.collision_check import CollisionCheck
+from navette.navigation.control.cross_track_pid import CrossTrackPid
+from navette.navigation.control.params import ControlParams
+from navette.navigation.control.path_pieces import DrivePiece
+from navette.navigation.control.piece_progress import PathPoint
+from navette.navigation.control.pure_pursuit import PurePursuit
+from navette.navigation.control.turn_gain import TurnGain
+
+
+class Steering(Protocol):
+    """A path-tracking method."""
+
+    def reset(self) -> None: ...
+
+    def curvature(
+        self, piece: DrivePiece, at: PathPoint, pose: Pose2, speed: float
+    ) -> float:
+        """Return the curvature (1/m) to steer; left is positive driving forward."""
+
+
+@dataclass(frozen=True)
+class ControllerParts:
+    """Parameters and stateful parts; built once for a set of parameters."""
+
+    params: ControlParams
+    steering: Steering
+    collision: CollisionCheck
+    turn_gain: TurnGain
+
+    @classmethod
+    def of(cls, params: ControlParams) -> "ControllerParts":
+        pursues = params.method == "pure_pursuit"
+        steering = PurePursuit(params) if pursues else CrossTrackPid(params)
+        return cls(params, steering, CollisionCheck(params), TurnGain())
