@@ -92,7 +92,6 @@ PENDING: tuple[str, ...] = (
     "src/navette/errors.py",
     "src/navette/geometry",
     "src/navette/msgs",
-    "src/navette/navigation/control",
     "src/navette/navigation/costmap",
     "src/navette/navigation/localization/distance",
     "src/navette/navigation/localization/ekf",
@@ -159,7 +158,6 @@ PENDING_NAMES: frozenset[str] = frozenset(
     {
         "Answer",
         "Choice",
-        "Client",
         "Command",
         "Entity",
         "Entry",
@@ -174,22 +172,16 @@ PENDING_NAMES: frozenset[str] = frozenset(
         "Listed",
         "Motion",
         "NodeWithParameters",
-        "PathProgress",
-        "Patience",
         "Playback",
-        "Process",
         "Progress",
         "Report",
-        "Request",
         "RobotState",
         "Scan",
         "Scene",
         "Sensor",
         "Session",
         "Snapshot",
-        "State",
         "Topic",
-        "Wanted",
     }
 )
 
