@@ -1,6 +1,6 @@
 """The node runtime: rclpy's API on one deterministic executor.
 
-What few programs need (actions, lifecycle nodes, …) is loaded when first used.
+Rarely used parts (actions, lifecycle nodes, …) are imported on first use.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -201,7 +201,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Load what is not needed by most."""
+    """Import a rarely used name."""
     from navette.runtime.lazy_exports import find
 
     value = globals()[name] = find(name)

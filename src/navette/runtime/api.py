@@ -1,4 +1,4 @@
-"""rclpy's module-level functions: init, spin, shutdown and company."""
+"""rclpy's module-level functions: init, spin, shutdown and others."""
 
 import sys
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from navette.runtime.signals import (
 
 
 class InitContextManager:
-    """What :func:`init` returns: ``with init(): …`` shuts down at the end."""
+    """Result of :func:`init`; ``with init(): …`` shuts down at the end."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -49,16 +49,16 @@ def init(
     signal_handler_options: SignalHandlerOptions | None = None,
     clock: ContextClock | None = None,
 ) -> InitContextManager:
-    """Make the context valid; read ``args`` (``sys.argv`` if None).
+    """Initialise the context with ``args`` (``sys.argv`` if None).
 
     Args:
-        signal_handler_options: default: all for the default context, else none.
+        signal_handler_options: default: all for the default context, otherwise none.
         clock: how time passes (default: the system clock).
     """
     if context is None:
         if signal_handler_options is None:
             signal_handler_options = SignalHandlerOptions.ALL
-        # A default context that was shut down cannot come back: take a new one.
+        # A context that was shut down cannot be reused.
         context = get_default_context()
         if context.was_shut_down:
             reset_default_context()
@@ -72,20 +72,23 @@ def init(
 
 
 def ok(*, context: Context | None = None) -> bool:
-    """Whether the context is initialised and not shut down."""
+    """Return whether the context is initialised and not shut down."""
     return (context or get_default_context()).ok()
 
 
 def shutdown(
     *, context: Context | None = None, uninstall_handlers: bool | None = None
 ) -> None:
-    """Shut the context down; its nodes are destroyed, its spins return.
+    """Shut the context down: destroy its nodes and end its spins.
+
+    Without effect after a shutdown by a signal.
 
     Args:
-        uninstall_handlers: of signals; default: those of the default context.
+        uninstall_handlers: whether to remove the signal handlers; default: only for
+            the default context.
 
     Raises:
-        RCLError: the program has done so already (after a signal did, nothing happens).
+        RCLError: the program has shut the context down before.
     """
     (context or get_default_context()).shutdown()
     if uninstall_handlers is None:
@@ -97,18 +100,18 @@ def shutdown(
 def try_shutdown(
     *, context: Context | None = None, uninstall_handlers: bool | None = None
 ) -> None:
-    """Shut down if it is valid."""
+    """Shut down if the context is valid."""
     if ok(context=context):
         shutdown(context=context, uninstall_handlers=uninstall_handlers)
 
 
 def create_node(node_name: str, **kwargs: Any) -> Node:
-    """A :class:`Node`, with its keyword arguments."""
+    """Create a :class:`Node` with its keyword arguments."""
     return Node(node_name, **kwargs)
 
 
 def get_global_executor(context: Context | None = None) -> Executor:
-    """The executor behind :func:`spin`; one a context."""
+    """Return the executor of :func:`spin`; each context has one."""
     context = context or get_default_context()
     if context.executor is None:
         context.executor = SingleThreadedExecutor(context=context)
@@ -118,7 +121,7 @@ def get_global_executor(context: Context | None = None) -> Executor:
 
 def _executor_of(node: Node) -> Executor:
     if not isinstance(node, Node):
-        raise TypeError(f"wanted a node to spin, made of a node class; got {node!r}")
+        raise TypeError(f"node must be a Node, got {node!r}")
     executor: Executor | None = node.executor
     return executor or get_global_executor(node.context)
 
@@ -156,7 +159,7 @@ def spin_until_future_complete(
     executor: Executor | None = None,
     timeout_sec: float | None = None,
 ) -> None:
-    """Run until ``future`` is done or the time is over; also from a callback."""
+    """Run until ``future`` is done or the timeout expires; also in a callback."""
     executor = executor or _executor_of(node)
     was_added = executor.add_node(node)
     try:
@@ -167,5 +170,5 @@ def spin_until_future_complete(
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """``args`` (``sys.argv`` if None) without the ROS arguments."""
+    """Return ``args`` (``sys.argv`` if None) without the ROS arguments."""
     return _remove_ros_args(sys.argv if args is None else args)

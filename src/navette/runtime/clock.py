@@ -1,7 +1,8 @@
-"""Where time comes from: virtual, paced or the machine's. The only wall clock here.
+"""Clocks of a context: virtual, paced or system time.
 
-The loop asks its clock to go to the time of the next event. A virtual clock is
-there at once; a paced one waits in between; the system clock goes by itself.
+The loop advances its clock to the time of the next event. A virtual clock
+jumps there, a paced clock waits first, and with the system clock the loop waits. Other
+modules of the runtime do not read the wall clock.
 """
 
 import threading
@@ -10,14 +11,14 @@ from abc import ABC, abstractmethod
 
 from navette.errors import InvalidValueError
 
-# Waits are cut into pieces: an interrupt (Ctrl-C) is then seen on every platform.
+# Upper limit of one wait, so that an interrupt (Ctrl-C) is handled on every platform.
 _LONGEST_WAIT_S = 0.25
-# A paced run that fell behind further than this does not hurry to catch up.
+# A paced clock that lags by more than this does not catch up.
 _MAX_CATCH_UP_S = 0.25
 
 
 class Wakeup:
-    """Lets another thread end a wait."""
+    """Event with which another thread ends a wait."""
 
     __slots__ = ("_event",)
 
@@ -35,7 +36,7 @@ class Wakeup:
         return self._event.is_set()
 
     def wait(self, timeout_s: float | None) -> bool:
-        """True if woken; False once ``timeout_s`` (None = for ever) is over."""
+        """Return True if woken, False after ``timeout_s`` (None: no limit)."""
         deadline = None if timeout_s is None else time.perf_counter() + timeout_s
         while True:
             left = _LONGEST_WAIT_S
@@ -48,12 +49,12 @@ class Wakeup:
 
 
 class ContextClock(ABC):
-    """The time of a context, in integer nanoseconds."""
+    """Time of a context, in integer nanoseconds."""
 
-    #: Whether time stands still between events (nothing happens by waiting).
+    #: Whether time advances by events only, not by waiting.
     is_virtual: bool = False
-    #: Whether other processes are on it: something may always come, and a run that has
-    #: nothing left to do waits for it.
+    #: Whether other processes share the clock, so that a run without events waits for
+    #: theirs instead of ending.
     is_shared: bool = False
 
     @property
@@ -63,11 +64,11 @@ class ContextClock(ABC):
 
     @abstractmethod
     def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
-        """Wait until ``target_ns`` (None = for ever); False if woken before."""
+        """Wait until ``target_ns`` (None: no limit); False if woken before."""
 
 
 class SystemClock(ContextClock):
-    """The machine's clock: nanoseconds since 1970."""
+    """The system clock: nanoseconds since 1970."""
 
     @property
     def now_ns(self) -> int:
@@ -81,14 +82,14 @@ class SystemClock(ContextClock):
 
 
 class VirtualClock(ContextClock):
-    """Time that jumps to the next event: as fast as the machine can."""
+    """Simulated time that jumps to the next event."""
 
     is_virtual = True
     now_ns: int = 0
 
     def __init__(self, start_ns: int = 0) -> None:
         if start_ns < 0:
-            raise InvalidValueError(f"start {start_ns} ns: wanted >= 0")
+            raise InvalidValueError(f"start time must be >= 0 ns, got {start_ns} ns")
         self.now_ns = start_ns
 
     def go_to(self, target_ns: int | None, wakeup: Wakeup) -> bool:
@@ -99,11 +100,11 @@ class VirtualClock(ContextClock):
 
 
 class PacedClock(VirtualClock):
-    """Virtual time that runs at ``factor`` times wall time: the same events, later.
+    """Virtual time that advances at ``factor`` times wall time.
 
     Args:
         factor: seconds of virtual time per second of wall time, > 0.
-        start_ns: where virtual time starts.
+        start_ns: initial virtual time.
     """
 
     def __init__(self, factor: float = 1.0, start_ns: int = 0) -> None:
@@ -126,7 +127,7 @@ class PacedClock(VirtualClock):
 
     @property
     def paused(self) -> bool:
-        """While true, virtual time stands; other threads' calls still run."""
+        """Whether virtual time is stopped; calls of other threads still run."""
         return self._paused
 
     @paused.setter
@@ -136,7 +137,7 @@ class PacedClock(VirtualClock):
 
     @property
     def real_time_factor(self) -> float:
-        """Virtual over wall time since the first wait; 0.0 before it."""
+        """Virtual time divided by wall time since the first wait; 0.0 before."""
         if self._first is None:
             return 0.0
         wall_s = time.perf_counter() - self._first[0]
@@ -166,18 +167,18 @@ class PacedClock(VirtualClock):
     def _checked(factor: float) -> float:
         if not 0.0 < factor < float("inf"):
             raise InvalidValueError(
-                f"real-time factor {factor!r}: wanted a finite value > 0"
+                f"real-time factor must be finite and > 0, got {factor!r}"
             )
         return float(factor)
 
 
 def monotonic_ns() -> int:
-    """The machine's steady clock, for STEADY_TIME and for measuring."""
+    """Return the machine's steady clock, for STEADY_TIME and measurements."""
     return time.perf_counter_ns()
 
 
 class Stopwatch:
-    """Wall time since its making, for progress reports and limits."""
+    """Wall time since construction, for progress reports and limits."""
 
     def __init__(self) -> None:
         self._start_ns = time.perf_counter_ns()

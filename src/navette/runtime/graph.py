@@ -1,4 +1,4 @@
-"""Who is there: nodes, topics, endpoints; with a hook for viewers and recorders."""
+"""Graph of nodes, topics and endpoints, with callbacks for changes."""
 
 import itertools
 import threading
@@ -18,11 +18,15 @@ IncompatibleHook = Callable[[Endpoint, Endpoint, tuple[QoSPolicyKind, ...]], Non
 
 
 class Graph(TransportObserver):
-    """Everything that the context's transports can see."""
+    """Nodes and endpoints that the context's transports have discovered.
+
+    Each ``on_…`` method registers a callback and returns a function that removes it.
+    Callbacks run during the change and must not modify the graph.
+    """
 
     def __init__(self) -> None:
         self.transports: list[Transport] = []
-        #: Held while transports are chosen.
+        #: Held while transports are selected.
         self.joining = threading.Lock()
         self._nodes: list[NodeInfo] = []
         self._on_change: list[Callable[[], None]] = []
@@ -32,62 +36,55 @@ class Graph(TransportObserver):
         self._on_match: list[Callable[[Endpoint, Endpoint, bool], None]] = []
         self._on_liveliness: list[Callable[[Endpoint, bool], None]] = []
         self._on_assertion: list[Callable[[Endpoint, Endpoint], None]] = []
-        #: Gids of the publishers that assert themselves and whose lease holds.
+        #: Gids of the publishers with manual liveliness and a valid lease.
         self.manually_alive: set[bytes] = set()
         self._gids = itertools.count(1)
 
-    # -- hooks -----------------------------------------------------------------
-
     def on_change(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call back after any node or endpoint came or went; returns an undo.
-
-        The callback is called from within the change: look, do not alter the graph.
-        """
+        """Call ``callback()`` after a node or endpoint was added or removed."""
         self._on_change.append(callback)
         return lambda: self._on_change.remove(callback)
 
     def on_incompatible(self, callback: IncompatibleHook) -> Callable[[], None]:
-        """Call back with publisher, subscription and policies that do not fit."""
+        """Call back with publisher, subscription and the incompatible policies."""
         self._on_incompatible.append(callback)
         return lambda: self._on_incompatible.remove(callback)
 
     def on_incompatible_type(
         self, callback: Callable[[Endpoint, Endpoint], None]
     ) -> Callable[[], None]:
-        """Call back with an endpoint here and a remote one of another type."""
+        """Call back with a local endpoint and a remote endpoint of another type."""
         self._on_incompatible_type.append(callback)
         return lambda: self._on_incompatible_type.remove(callback)
 
     def on_lost(self, callback: Callable[[Endpoint, int], None]) -> Callable[[], None]:
-        """Call back with a subscription here and how many samples it missed."""
+        """Call back with a local subscription and its number of lost samples."""
         self._on_lost.append(callback)
         return lambda: self._on_lost.remove(callback)
 
     def on_match(
         self, callback: Callable[[Endpoint, Endpoint, bool], None]
     ) -> Callable[[], None]:
-        """Call back with publisher, subscription and whether they matched or left."""
+        """Call back with publisher, subscription and whether they (still) match."""
         self._on_match.append(callback)
         return lambda: self._on_match.remove(callback)
 
     def on_liveliness(
         self, callback: Callable[[Endpoint, bool], None]
     ) -> Callable[[], None]:
-        """Call back with a publisher and whether its lease holds or has lapsed."""
+        """Call back with a publisher and whether its lease is valid."""
         self._on_liveliness.append(callback)
         return lambda: self._on_liveliness.remove(callback)
 
     def on_assertion(
         self, callback: Callable[[Endpoint, Endpoint], None]
     ) -> Callable[[], None]:
-        """Call back with a remote publisher that asserts itself and who heard it."""
+        """Call back with a remote publisher's assertion and the local subscription."""
         self._on_assertion.append(callback)
         return lambda: self._on_assertion.remove(callback)
 
-    # -- what transports and nodes report --------------------------------------
-
     def add_transport(self, transport: Transport) -> None:
-        """One that the ports of all endpoints to come are opened on too."""
+        """Add a transport, on which all future endpoints open a port."""
         self.transports.append(transport)
         transport.observe(self)
 
@@ -110,9 +107,9 @@ class Graph(TransportObserver):
             self.graph_changed()
 
     def with_gid(self, endpoint: Endpoint) -> Endpoint:
-        """The endpoint with the 16-byte id by which it is known, also to remote ones.
+        """Return the endpoint with its 16-byte gid, also used by remote endpoints.
 
-        In process alone: the same ids in the same order in every run.
+        Without a network transport, every run assigns the same gids in the same order.
         """
         for transport in self.transports:
             gid = transport.gid_for(endpoint)
@@ -138,7 +135,7 @@ class Graph(TransportObserver):
             callback(publisher, subscription)
 
     def report_liveliness(self, publisher: Endpoint, *, alive: bool) -> None:
-        """A publisher's lease holds from now on, or has lapsed."""
+        """Record and report that a publisher's lease was renewed or has expired."""
         if alive:
             self.manually_alive.add(publisher.gid)
         else:
@@ -163,10 +160,8 @@ class Graph(TransportObserver):
         for callback in tuple(self._on_incompatible_type):
             callback(local, remote)
 
-    # -- queries ---------------------------------------------------------------
-
     def nodes(self) -> list[NodeInfo]:
-        """Those here, then remote ones; two nodes of one name are listed twice."""
+        """Return local nodes, then remote nodes; equal names are listed repeatedly."""
         remote = (info for t in self.transports for info in t.remote_nodes())
         return [*self._nodes, *remote]
 
@@ -177,7 +172,12 @@ class Graph(TransportObserver):
         kind: EndpointKind | None = None,
         node: str | None = None,
     ) -> list[Endpoint]:
-        """Endpoints by full topic name, kind, full node name; by topic, then age."""
+        """Return the matching endpoints of topics, sorted by topic and gid.
+
+        Args:
+            topic: full name.
+            node: full name.
+        """
         every = (e for t in self.transports for e in t.endpoints())
         return _selected(every, topic, kind, node)
 
@@ -188,16 +188,16 @@ class Graph(TransportObserver):
         kind: EndpointKind | None = None,
         node: str | None = None,
     ) -> list[Endpoint]:
-        """Servers and clients, chosen and sorted as :meth:`endpoints`."""
+        """Return the matching servers and clients, sorted by service and gid."""
         every = (e for t in self.transports for e in t.service_endpoints())
         return _selected(every, service, kind, node)
 
     def topics(self) -> dict[str, list[str]]:
-        """Full topic name → type names, sorted by name."""
+        """Return full topic name → type names, sorted by name."""
         return names_and_types(e for t in self.transports for e in t.endpoints())
 
     def services(self) -> dict[str, list[str]]:
-        """Full name of each served service → type names, sorted by name."""
+        """Return full name of each served service → type names, sorted by name."""
         return names_and_types(self.service_endpoints(kind=EndpointKind.SERVICE))
 
 
@@ -218,7 +218,7 @@ def _selected(
 
 
 def names_and_types(endpoints: Iterable[Endpoint]) -> dict[str, list[str]]:
-    """Topic → sorted type names of the given endpoints."""
+    """Return topic → sorted type names of the endpoints."""
     found: dict[str, set[str]] = {}
     for endpoint in endpoints:
         found.setdefault(endpoint.topic, set()).add(endpoint.type_name)

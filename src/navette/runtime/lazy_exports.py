@@ -1,4 +1,4 @@
-"""The public names of the runtime that are loaded when first used, by module."""
+"""Public names of the runtime whose modules are imported on first use."""
 
 from typing import Any
 
@@ -10,10 +10,10 @@ _SERIALIZATION = frozenset({"deserialize_message", "serialize_message"})
 
 
 def find(name: str) -> Any:
-    """The thing of that name.
+    """Import and return the object of that name.
 
     Raises:
-        AttributeError: there is none.
+        AttributeError: the name is unknown.
     """
     module: Any
     if name in _ACTION:

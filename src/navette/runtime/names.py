@@ -26,7 +26,7 @@ _MAX_NODE_NAME = 255
 
 
 def validate_node_name(node_name: str) -> bool:
-    """True, or raise naming the first offending character."""
+    """Return True, or raise with the position of the first invalid character."""
     if not node_name:
         raise InvalidNodeNameException(node_name, "must not be empty", 0)
     if len(node_name) > _MAX_NODE_NAME:
@@ -46,7 +46,7 @@ def validate_node_name(node_name: str) -> bool:
 
 
 def validate_namespace(namespace: str) -> bool:
-    """True, or raise; a namespace is ``/`` or ``/a/b`` without a trailing slash."""
+    """Return True, or raise; a namespace is ``/`` or ``/a/b`` (no trailing slash)."""
     if not namespace.startswith("/"):
         raise InvalidNamespaceException(namespace, "must start with '/'", 0)
     if namespace != "/":
@@ -55,7 +55,7 @@ def validate_namespace(namespace: str) -> bool:
 
 
 def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """True, or raise; a full name starts with ``/`` and has no ``~`` or ``{}``."""
+    """Return True, or raise; a full name is ``/…`` without ``~`` and ``{}``."""
     kind = InvalidServiceNameException if is_service else InvalidTopicNameException
     if not name.startswith("/"):
         raise kind(name, "a full name must start with '/'", 0)
@@ -64,7 +64,7 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """True, or raise; relative, private and substituted names are allowed."""
+    """Return True, or raise; allows relative and private names and substitutions."""
     kind = InvalidServiceNameException if is_service else InvalidTopicNameException
     if not name:
         raise kind(name, "must not be empty", 0)
@@ -87,7 +87,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def topic_or_service_is_hidden(name: str) -> bool:
-    """Whether any part of the name starts with an underscore."""
+    """Return whether any part of the name starts with an underscore."""
     tokens = name.split(TOPIC_SEPARATOR_STRING)
     return any(token.startswith(HIDDEN_TOPIC_PREFIX) for token in tokens)
 
@@ -107,7 +107,7 @@ def _check_tokens(name: str, kind: type[NameValidationException]) -> None:
 def expand_topic_name(
     topic_name: str, node_name: str, node_namespace: str, *, is_service: bool = False
 ) -> str:
-    """The full name of ``topic_name`` as used by the node."""
+    """Return the full name of ``topic_name`` in the node's namespace."""
     validate_topic_name(topic_name, is_service=is_service)
     known = {"node": node_name, "ns": node_namespace, "namespace": node_namespace}
 
@@ -132,18 +132,18 @@ def expand_topic_name(
 
 
 def full_node_name(node_name: str, namespace: str) -> str:
-    """``/ns/node``."""
+    """Return ``/ns/node``."""
     return f"{namespace.rstrip('/')}/{node_name}"
 
 
 def normalize_namespace(namespace: str) -> str:
-    """With a leading and without a trailing slash; empty is the root."""
+    """Return the namespace with a leading and no trailing slash; ``/`` if empty."""
     return "/" + namespace.strip("/") if namespace.strip("/") else "/"
 
 
 @dataclass(frozen=True)
 class RemapRule:
-    """``from:=to``, for all nodes or only those named ``node``."""
+    """Rule ``from:=to`` for all nodes, or for the nodes named ``node``."""
 
     match: str
     replacement: str
@@ -151,14 +151,14 @@ class RemapRule:
 
     @classmethod
     def parse(cls, text: str) -> "RemapRule":
-        """From ``[node:]from:=to``.
+        """Parse ``[node:]from:=to``.
 
         Raises:
-            InvalidValueError: not of that form.
+            InvalidValueError: the text has another form.
         """
         left, separator, right = text.partition(":=")
         if not separator or not left or not right:
-            raise InvalidValueError(f"remapping {text!r}: wanted [node:]from:=to")
+            raise InvalidValueError(f"remapping {text!r} must be [node:]from:=to")
         for scheme in ("rostopic://", "rosservice://"):
             left, right = left.removeprefix(scheme), right.removeprefix(scheme)
         node, colon, match = left.rpartition(":")
@@ -177,24 +177,24 @@ class RemapRule:
             validate_topic_name(self.match)
             validate_topic_name(self.replacement)
 
-    def concerns(self, node_name: str) -> bool:
-        """Whether the rule is for a node of that (original) name."""
+    def applies_to(self, node_name: str) -> bool:
+        """Return whether the rule applies to a node with that original name."""
         return self.node is None or self.node == node_name
 
 
 class NodeRemapper:
-    """The rules for one node, local before global; the first that matches wins."""
+    """Remapping rules of one node, local before global; the first match applies."""
 
     def __init__(self, rules: list[RemapRule], node_name: str, namespace: str) -> None:
-        mine = [rule for rule in rules if rule.concerns(node_name)]
-        self.node_name = _first(mine, ("__node", "__name")) or node_name
-        self.namespace = normalize_namespace(_first(mine, ("__ns",)) or namespace)
-        self._rules = [rule for rule in mine if not rule.match.startswith("__")]
+        own = [rule for rule in rules if rule.applies_to(node_name)]
+        self.node_name = _first(own, ("__node", "__name")) or node_name
+        self.namespace = normalize_namespace(_first(own, ("__ns",)) or namespace)
+        self._rules = [rule for rule in own if not rule.match.startswith("__")]
 
     def resolve(
         self, name: str, *, is_service: bool = False, only_expand: bool = False
     ) -> str:
-        """Full name after expansion and remapping."""
+        """Return the full name after expansion and remapping."""
         expanded = self._expand(name, is_service=is_service)
         if not only_expand:
             for rule in self._rules:

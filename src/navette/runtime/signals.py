@@ -1,8 +1,8 @@
-"""What signals do to a program's contexts.
+"""Signal handling of a program's contexts.
 
-SIGINT raises KeyboardInterrupt, as Python does, whatever the options say: contexts stay
-valid, so that a program can still publish a last command. SIGTERM shuts down the
-contexts: spins end and ``ok()`` is false. Handlers that others installed stay in place.
+SIGINT raises KeyboardInterrupt, as in plain Python, for all options: contexts stay
+valid, so that a program can publish a last command. SIGTERM shuts down the contexts:
+spins end and ``ok()`` is false. Handlers of the program stay in place.
 """
 
 import signal
@@ -15,7 +15,7 @@ from navette.runtime.guard_condition import GuardCondition
 
 
 class SignalHandlerOptions(IntEnum):
-    """Which signals are looked after; numbers as in rclpy."""
+    """Signals to handle; values as in rclpy."""
 
     NO = 0
     SIGINT = 1
@@ -24,7 +24,7 @@ class SignalHandlerOptions(IntEnum):
 
 
 class _Installed:
-    """What is in place in this process."""
+    """Installed handlers of this process."""
 
     options = SignalHandlerOptions.NO
     is_ours = False
@@ -33,10 +33,10 @@ class _Installed:
 def install_signal_handlers(
     options: SignalHandlerOptions = SignalHandlerOptions.ALL,
 ) -> None:
-    """Let SIGTERM shut down the contexts, if the options say so.
+    """Let SIGTERM shut down the contexts, if the options include it.
 
-    Only where nobody handles it yet, and in the main thread: elsewhere Python allows
-    no handlers.
+    Without effect if the program has its own handler, and outside the main thread,
+    where Python does not allow handlers.
     """
     _Installed.options = SignalHandlerOptions(options)
     if not options & SignalHandlerOptions.SIGTERM:
@@ -64,15 +64,15 @@ def get_current_signal_handlers_options() -> SignalHandlerOptions:
 
 
 def _on_sigterm(number: int, frame: FrameType | None) -> None:
-    # A second one ends the process, should the program not end by itself.
+    # A second SIGTERM ends a process that does not end by itself.
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     _Installed.is_ours = False
     contexts = [each for each in current_scope.get().contexts if each.ok()]
-    if not contexts:  # another thread has shut them down, and had to leave us here
+    if not contexts:  # another thread shut them down, but could not uninstall
         signal.raise_signal(number)
     for context in contexts:
         context.try_shutdown()
 
 
-#: rclpy's guard condition that a signal triggers; here a signal wakes every wait.
+#: rclpy's guard condition for signals; in Navette, signals wake every wait.
 SignalHandlerGuardCondition = GuardCondition

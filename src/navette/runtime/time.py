@@ -12,7 +12,7 @@ _MAX_NS = 2**63 - 1
 
 
 class ClockType(IntEnum):
-    """Which time a clock tells; values as in rcl."""
+    """Kind of time of a clock; values as in rcl."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
@@ -21,14 +21,14 @@ class ClockType(IntEnum):
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
-    """Seconds as nanoseconds; -1 = for ever (None or negative)."""
+    """Convert seconds to nanoseconds; None or negative: -1, meaning no limit."""
     if timeout_sec is None or timeout_sec < 0:
         return -1
     return int(float(timeout_sec) * NS_PER_S)
 
 
 def seconds_to_ns(seconds: float) -> int:
-    """Whole nanoseconds nearest to ``seconds``; exact for an ``int``."""
+    """Round ``seconds`` to whole nanoseconds; exact for an ``int``."""
     if isinstance(seconds, int):
         return seconds * NS_PER_S
     whole = int(seconds)
@@ -105,7 +105,7 @@ class Duration:
     @classmethod
     def from_msg(cls, msg: DurationMsg) -> "Duration":
         if not isinstance(msg, DurationMsg):
-            raise TypeError(f"wanted a builtin_interfaces/msg/Duration, got {msg!r}")
+            raise TypeError(f"expected a builtin_interfaces/msg/Duration, got {msg!r}")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec)
 
 
@@ -113,7 +113,7 @@ Infinite = Duration(nanoseconds=INFINITE_NS)
 
 
 class Time:
-    """A point in time of a clock; only times of the same clock type compare."""
+    """A point in time of a clock; only times of one clock type can be compared."""
 
     __slots__ = ("_clock_type", "_ns")
 
@@ -127,9 +127,9 @@ class Time:
         if not isinstance(clock_type, ClockType):
             raise TypeError(f"clock_type must be a ClockType, got {clock_type!r}")
         if seconds < 0:
-            raise ValueError(f"seconds value must not be negative, got {seconds}")
+            raise ValueError(f"seconds must not be negative, got {seconds}")
         if nanoseconds < 0:
-            raise ValueError(f"nanoseconds value must not be negative: {nanoseconds}")
+            raise ValueError(f"nanoseconds must not be negative, got {nanoseconds}")
         total = seconds_to_ns(seconds) + int(nanoseconds)
         if total > _MAX_NS:
             raise OverflowError(f"{total} ns does not fit into 64 bits of nanoseconds")
@@ -200,7 +200,7 @@ class Time:
         cls, msg: TimeMsg, clock_type: ClockType = ClockType.ROS_TIME
     ) -> "Time":
         if not isinstance(msg, TimeMsg):
-            raise TypeError(f"wanted a builtin_interfaces/msg/Time, got {msg!r}")
+            raise TypeError(f"expected a builtin_interfaces/msg/Time, got {msg!r}")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)
 
     def _moved(self, by_ns: int) -> "Time":
@@ -212,7 +212,7 @@ class Time:
     def _check_comparable(self, other: "Time") -> None:
         if self._clock_type != other._clock_type:
             raise TypeError(
-                "times of different clocks do not compare: "
+                "cannot compare times of different clock types: "
                 f"{self._clock_type.name} and {other._clock_type.name}"
             )
 
@@ -224,11 +224,11 @@ class Time:
 
 
 def stamp_to_ns(stamp: TimeMsg) -> int:
-    """Nanoseconds of a message's stamp; much cheaper than a :class:`Time`."""
+    """Convert a message's stamp to nanoseconds; cheaper than :class:`Time`."""
     return stamp.sec * NS_PER_S + stamp.nanosec
 
 
 def ns_to_stamp(stamp_ns: int) -> TimeMsg:
-    """A message's stamp from nanoseconds."""
+    """Convert nanoseconds to a message's stamp."""
     seconds, nanoseconds = divmod(stamp_ns, NS_PER_S)
     return TimeMsg(sec=seconds, nanosec=nanoseconds)

@@ -1,4 +1,4 @@
-"""Publishers, subscriptions, clients and servers as graph queries list them."""
+"""Results of graph queries: endpoints of topics and services."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -12,7 +12,7 @@ from navette.transports import Endpoint, EndpointKind, HistoryPolicy
 
 
 class EndpointTypeEnum(IntEnum):
-    """What an endpoint does; values as in rmw."""
+    """Kind of an endpoint; values as in rmw."""
 
     INVALID = 0
     PUBLISHER = 1
@@ -33,7 +33,7 @@ _TYPES = {
 
 @dataclass
 class TopicEndpointInfo:
-    """Whose endpoint of a topic it is, of which type, with which QoS."""
+    """Node, type and QoS of a publisher or subscription."""
 
     node_name: str = ""
     node_namespace: str = ""
@@ -45,7 +45,7 @@ class TopicEndpointInfo:
 
     @classmethod
     def of(cls, endpoint: Endpoint) -> Self:
-        """That of an endpoint of the graph."""
+        """Convert an endpoint of the graph."""
         return cls(
             node_name=endpoint.node_name,
             node_namespace=endpoint.node_namespace,
@@ -72,10 +72,10 @@ class TopicEndpointInfo:
 
 @dataclass
 class ServiceEndpointInfo:
-    """Whose end of a service it is, of which type, with which QoS.
+    """Node, type and QoS of a server or client.
 
-    There may be two ids and profiles where requests and responses are topics of their
-    own; here there is one.
+    The lists have one element. rmw implementations that use separate topics for
+    requests and responses have two.
     """
 
     node_name: str = ""
@@ -89,7 +89,7 @@ class ServiceEndpointInfo:
 
     @classmethod
     def of(cls, endpoint: Endpoint) -> Self:
-        """That of a server or client of the graph."""
+        """Convert a server or client of the graph."""
         return cls(
             node_name=endpoint.node_name,
             node_namespace=endpoint.node_namespace,
@@ -117,11 +117,11 @@ class ServiceEndpointInfo:
 
 
 def _type_hash(endpoint: Endpoint) -> TypeHash:
-    """Unknown where nothing here defines the type."""
+    """Return the announced or local type hash; empty if the type is unknown."""
     try:
         return TypeHash.parse(endpoint.type_hash or type_hash(endpoint.type_name))
     except (UnknownNameError, ValueError):
-        return TypeHash()  # or announced by a release that knew no hashes
+        return TypeHash()  # also for peers of ROS 2 releases without type hashes
 
 
 def _gid_text(gid: list[int]) -> str:

@@ -18,10 +18,10 @@ def wait_for_message(
     qos_profile: QoSProfile | int = 1,
     time_to_wait: float = -1,
 ) -> tuple[bool, MsgT | None]:
-    """(True, the next message), or (False, None) after ``time_to_wait`` seconds.
+    """Return (True, next message), or (False, None) after ``time_to_wait`` seconds.
 
-    Events run meanwhile, also if the node was added to no executor. A negative time
-    waits for ever (under a virtual clock: until nothing is left to happen).
+    Events run during the wait, even if the node has no executor. A negative time means
+    no limit (under a virtual clock: until no event is left).
     """
     received: list[MsgT] = []
     subscription: Any = node.create_subscription(
@@ -33,7 +33,7 @@ def wait_for_message(
     )
 
     def done() -> bool:
-        # The node may be in no executor: then its callbacks do not run.
+        # Polled, because callbacks do not run while the node has no executor.
         while (message := subscription.take()) is not None:
             received.append(message)
         return bool(received)
