@@ -32,7 +32,7 @@ def sample(count: int = 6) -> list[BagMessage]:
 
 
 def write_sample(path: Path, count: int = 6, *, compression: str = "") -> Path:
-    """The sample as a recording whose name says the format."""
+    """Write the sample as a recording; the suffix determines the format."""
     writer = open_writer(path, compression=compression)
     for message in sample(count):
         writer.write(message)
@@ -41,7 +41,7 @@ def write_sample(path: Path, count: int = 6, *, compression: str = "") -> Path:
 
 
 def shrink_pages(path: Path) -> None:
-    """SQLite with its smallest pages: a tenth of the bytes, all of them in use."""
+    """SQLite with its smallest pages: a tenth of the size, all bytes in use."""
     database = sqlite3.connect(path)
     database.execute("PRAGMA page_size = 512")
     database.execute("VACUUM")

@@ -250,7 +250,7 @@ def test_wrong_uses(tmp_path: Path) -> None:
     for arguments, reason in (
         ([], "name topics, or --all"),
         (["-a", "-o", "a.mcap"], "exists already"),
-        (["-a", "-x", "["], "is no regular expression"),
+        (["-a", "-x", "["], "is not a regular expression"),
         (["-a", "--compression", "bz2", "-o", "b"], "compression"),
     ):
         run = subprocess.run(

@@ -1,4 +1,4 @@
-"""Damaged recordings give the good part or a named error: every offset, each format."""
+"""Damaged recordings give the intact part or a named error, in each format."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +11,7 @@ from navette.bags.checking import check_bag
 from navette.errors import FileFormatError
 
 ROS1_PADDING = range(120, 4000)
-"""Blanks between a ROS 1 bag's first record and its data."""
+"""Padding between the first record of a ROS 1 bag and its data."""
 
 
 @pytest.fixture(scope="module", params=["mcap", "bag", "db3"])
@@ -35,7 +35,7 @@ def offsets(path: Path) -> Iterator[int]:
 
 
 def read_good_part(path: Path) -> tuple[list[BagMessage], list[Damage]] | None:
-    """What can be had of a file; None where it is refused."""
+    """Return the readable messages of a file; None if it is refused."""
     lost: list[Damage] = []
     try:
         with open_bag(path) as reader:
@@ -44,7 +44,7 @@ def read_good_part(path: Path) -> tuple[list[BagMessage], list[Damage]] | None:
         return None
 
 
-def test_truncated_anywhere(sound: Path, tmp_path: Path) -> None:
+def test_files_truncated_anywhere(sound: Path, tmp_path: Path) -> None:
     whole = sound.read_bytes()
     path = tmp_path / sound.name
     wanted = [(m.topic.name, m.stamp_ns, m.data) for m in sample()]
@@ -59,7 +59,7 @@ def test_truncated_anywhere(sound: Path, tmp_path: Path) -> None:
     assert most == len(wanted), "cutting the index alone loses nothing"
 
 
-def test_bits_flipped_anywhere(sound: Path, tmp_path: Path) -> None:
+def test_files_with_flipped_bits(sound: Path, tmp_path: Path) -> None:
     whole = sound.read_bytes()
     path = tmp_path / sound.name
     wanted = {(m.topic.name, m.stamp_ns, m.data) for m in sample()}
@@ -95,7 +95,7 @@ def test_empty_and_foreign_files(tmp_path: Path) -> None:
         with pytest.raises(FileFormatError, match="is empty"):
             open_bag(path)
         path.write_bytes(b"something else " * 100)
-        with pytest.raises(FileFormatError, match=r"is no|cannot be unpacked"):
+        with pytest.raises(FileFormatError, match=r"is not|cannot be decompressed"):
             open_bag(path)
     with pytest.raises(FileFormatError, match="cannot be opened"):
         open_bag(tmp_path / "nowhere.mcap")

@@ -1,4 +1,4 @@
-"""Bags: what was said on the topics, in a file."""
+"""Bags: recorded messages in files; read, write, check, edit, compare and play."""
 
 from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage
 from navette.bags.opening import open_bag

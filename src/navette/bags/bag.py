@@ -1,4 +1,4 @@
-"""A recording as its readers give it, whatever the file's format."""
+"""Interface of an open recording, independent of the file format."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
@@ -11,9 +11,9 @@ from navette.bags.qos import OfferedQos
 
 @dataclass(frozen=True)
 class BagTopic:
-    """A topic with one type; two types under one name are two of these.
+    """A topic with one type; one name with two types gives two of these.
 
-    ROS 1 types are given in ROS 2's words.
+    ROS 1 types have ROS 2's names.
     """
 
     name: str
@@ -21,29 +21,29 @@ class BagTopic:
     """``pkg/msg/Name``."""
 
     definition: str = ""
-    """``ros2msg`` text of the type as it was recorded; "" where the file has none."""
+    """Recorded ``ros2msg`` definition of the type; "" if the file has none."""
 
     type_hash: str = ""
-    """``RIHS01_…`` as the file gives it, or ""."""
+    """``RIHS01_…`` as recorded, or ""."""
 
     qos: tuple[OfferedQos, ...] = ()
-    """What its publishers offered; () where the file does not say."""
+    """QoS offered by the publishers; () if not recorded."""
 
     encoding: str = "cdr"
-    """How the messages are encoded; everything that ROS records comes as ``cdr``."""
+    """Encoding of the messages; ``cdr`` for everything recorded by ROS."""
 
     @property
     def latched(self) -> bool:
-        """Whether who comes late was to get the last messages."""
+        """Whether late subscribers received the last messages (transient local)."""
         return any(each.durability == "transient_local" for each in self.qos)
 
 
 class BagMessage(NamedTuple):
-    """A message as it was on the wire: CDR with its 4-byte header."""
+    """A serialized message: CDR with its 4-byte header."""
 
     topic: BagTopic
     stamp_ns: int
-    """When it was heard."""
+    """Time of reception."""
     data: bytes
 
 
@@ -53,7 +53,7 @@ class Damage:
 
     path: Path
     position: int
-    """Byte of the file."""
+    """Offset in the file, bytes."""
     reason: str
 
     def __str__(self) -> str:
@@ -66,9 +66,8 @@ OnDamage = Callable[[Damage], None]
 class BagReader(Protocol):
     """An open recording; a context manager that closes it.
 
-    Opening reads an index at most (or, where there is none, scans the file without
-    unpacking it); messages are read as they are asked for, and only so much is held in
-    memory as lies in chunks that overlap in time.
+    Opening reads the index only (or, without one, scans the file without decompressing
+    it). Messages are read on demand; memory holds only chunks that overlap in time.
     """
 
     path: Path
@@ -79,7 +78,7 @@ class BagReader(Protocol):
 
     @property
     def version(self) -> str:
-        """Of the file's format, as its own tools say it."""
+        """Version of the file format, as reported by its own tools."""
 
     @property
     def topics(self) -> tuple[BagTopic, ...]:
@@ -87,15 +86,15 @@ class BagReader(Protocol):
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """What was found wrong on opening; what is sound can be read all the same."""
+        """Problems found on opening; intact parts can be read."""
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The files that hold messages."""
+        """The files with messages."""
 
     @property
     def size(self) -> int:
-        """Bytes of the files."""
+        """Total size of the files, bytes."""
 
     @property
     def start_ns(self) -> int:
@@ -110,7 +109,7 @@ class BagReader(Protocol):
         """Number of chunks (or files, or messages) by kind: ``none``, ``zstd``, …"""
 
     def counts(self) -> Mapping[BagTopic, int]:
-        """Number of messages by topic; may have to look through the whole file."""
+        """Number of messages by topic; may scan the whole file."""
 
     def stamps(self) -> Iterator[tuple[BagTopic, int]]:
         """Topic and stamp of every message, in no particular order; fast."""
@@ -123,13 +122,13 @@ class BagReader(Protocol):
         end_ns: int | None = None,
         on_damage: OnDamage | None = None,
     ) -> Iterator[BagMessage]:
-        """The messages in the order of their stamps, equal ones as they lie.
+        """Iterate over the messages by stamp, equal stamps in file order.
 
         Args:
             topics: names to read; all if None.
             start_ns: first stamp.
-            end_ns: last stamp, which is still given.
-            on_damage: told of parts that cannot be read, which are then left out;
+            end_ns: last stamp, included.
+            on_damage: called for parts that cannot be read, which are then skipped;
                 without it they are an error.
 
         Raises:
@@ -137,7 +136,7 @@ class BagReader(Protocol):
         """
 
     def close(self) -> None:
-        """Close the files; twice is harmless."""
+        """Close the files; a second call has no effect."""
 
     def __enter__(self) -> Self: ...
 

@@ -1,4 +1,4 @@
-"""A bag's file in pieces: lengths checked, and a way on behind what is broken."""
+"""Checked reads from a bag file, and resynchronisation after damaged records."""
 
 import re
 import struct
@@ -12,10 +12,10 @@ _MOST_PROBLEMS = 100
 
 
 class BinaryFile:
-    """Reads pieces of the file; a piece that is not there is a named error.
+    """Reads parts of a file; a part outside it is a FileFormatError.
 
     Raises:
-        FileFormatError: there is no such file, or it cannot be read.
+        FileFormatError: the file does not exist or cannot be read.
     """
 
     def __init__(self, path: Path) -> None:
@@ -29,10 +29,10 @@ class BinaryFile:
             ) from error
 
     def read(self, position: int, length: int) -> bytes:
-        """Exactly ``length`` bytes."""
+        """Read exactly ``length`` bytes."""
         if position < 0 or length < 0 or position + length > self.size:
             raise self.error(
-                position, f"wants {length} bytes; the file ends at {self.size}"
+                position, f"{length} bytes expected, but the file ends at {self.size}"
             )
         self._stream.seek(position)
         found = self._stream.read(length)
@@ -46,11 +46,11 @@ class BinaryFile:
         pattern: re.Pattern[bytes],
         wanted: Callable[[int], int | None],
     ) -> int | None:
-        """What ``wanted`` makes of the first match at or behind ``start`` it takes.
+        """Return the first accepted match at or after ``start``.
 
         Args:
-            pattern: of at most eight bytes.
-            wanted: given a match's position, what was looked for; None if it is not.
+            pattern: at most eight bytes.
+            wanted: converts a match's position to the result; None rejects it.
         """
         position = start
         while position < self.size:
@@ -61,11 +61,11 @@ class BinaryFile:
                     return found
             if position + len(block) >= self.size:
                 break
-            position += len(block) - 8  # a match may lie across
+            position += len(block) - 8  # a match may span two blocks
         return None
 
     def error(self, position: int, reason: str) -> FileFormatError:
-        """Names file and byte."""
+        """Return an error with file and offset."""
         return FileFormatError(self.path, f"byte {position}: {reason}")
 
     def close(self) -> None:
@@ -80,12 +80,12 @@ def walk(
     next_sound: Callable[[int], int | None],
     problems: list[str],
 ) -> None:
-    """Go from record to record to the end.
+    """Visit all records up to the end of the file.
 
     Args:
-        visit: takes in the record there; the position behind it, None at the end.
-        next_sound: where it goes on behind a broken record; None if nowhere.
-        problems: what is wrong on the way is added.
+        visit: processes the record at a position; returns the next, None at the end.
+        next_sound: position to resume after a damaged record; None if there is none.
+        problems: receives a text for each damaged part.
     """
     position = start
     while position < file.size:
@@ -93,10 +93,10 @@ def walk(
             after = visit(position)
         except (FileFormatError, DecodeError) as error:
             after = next_sound(position + 1)
-            where = "the rest is lost" if after is None else f"on at {after}"
-            problems.append(f"broken record ({reason_of(error)}); {where}")
+            where = "the rest is lost" if after is None else f"resumed at {after}"
+            problems.append(f"damaged record ({reason_of(error)}); {where}")
             if len(problems) > _MOST_PROBLEMS:
-                problems.append("too much is broken; given up")
+                problems.append("too many damaged records; gave up")
                 return
         if after is None:
             return
@@ -104,5 +104,5 @@ def walk(
 
 
 def reason_of(error: FileFormatError | DecodeError | struct.error) -> str:
-    """Without the file's name."""
+    """Return the reason without the file name."""
     return error.reason if isinstance(error, FileFormatError) else str(error)

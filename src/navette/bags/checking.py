@@ -1,4 +1,4 @@
-"""Says what is wrong with a recording."""
+"""Check a recording for errors."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -22,17 +22,17 @@ OnBytes = Callable[[int], None]
 
 
 class Severity(Enum):
-    """What a finding means for who reads the recording."""
+    """Consequence of a finding for readers of the recording."""
 
     ERROR = "error"
     """Messages are lost, or a reader may refuse the file."""
     WARNING = "warning"
-    """All messages are there, but something about them is odd."""
+    """All messages are present, but something is unusual."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """Something that is wrong."""
+    """One problem of a recording."""
 
     severity: Severity
     text: str
@@ -40,7 +40,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class CheckReport:
-    """What was found, and what could be read."""
+    """Findings, and the number of messages read."""
 
     path: Path
     findings: tuple[Finding, ...]
@@ -53,7 +53,7 @@ class CheckReport:
 
 
 class _Findings:
-    """Collects; of many alike, the first and how many more."""
+    """Collects findings; of many similar ones the first few and their number."""
 
     def __init__(self) -> None:
         self.found: list[Finding] = []
@@ -67,14 +67,14 @@ class _Findings:
 
     def _add(self, severity: Severity, kind: str, text: str) -> None:
         if any(text in known.text for known in self.found):
-            return  # the same fault met a second time
+            return  # the same problem, found a second time
         self._more[kind] += 1
         if self._more[kind] <= _MOST:
             self.found.append(Finding(severity, text))
 
     def finished(self) -> tuple[Finding, ...]:
         more = [
-            Finding(Severity.WARNING, f"{count - _MOST} more of the kind: {kind}")
+            Finding(Severity.WARNING, f"{count - _MOST} more of this kind: {kind}")
             for kind, count in self._more.items()
             if count > _MOST
         ]
@@ -84,11 +84,11 @@ class _Findings:
 def check_bag(
     path: Path | str, *, decode: bool = False, on_bytes: OnBytes | None = None
 ) -> CheckReport:
-    """Read all of a recording and compare it with what it says of itself.
+    """Read a whole recording and compare it with its index and statistics.
 
     Args:
-        decode: also read every message as its type.
-        on_bytes: told how many bytes were gone through since it was last told.
+        decode: also deserialize every message.
+        on_bytes: called with the number of bytes read since the last call.
     """
     findings = _Findings()
     path = Path(path)
@@ -144,7 +144,7 @@ def _check_counts(
         if said != counted[topic]:
             findings.error(
                 "counts",
-                f"{topic.name}: {counted[topic]} messages, the file says {said}",
+                f"{topic.name}: {counted[topic]} messages, the statistics state {said}",
             )
 
 
@@ -175,16 +175,14 @@ def _check_chunk(
     where = f"byte {chunk.position}: chunk"
     unknown = {e.channel for e in entries if reader.topic_of(e.channel) is None}
     for channel in sorted(unknown):
-        findings.error(
-            "channel", f"{where}: messages of channel {channel}, never named"
-        )
+        findings.error("channel", f"{where}: messages of undefined channel {channel}")
     if entries:
         first = min(entry.stamp_ns for entry in entries)
         last = max(entry.stamp_ns for entry in entries)
         if (first, last) != (chunk.start_ns, chunk.end_ns):
             findings.error(
                 "times",
-                f"{where}: stamps {first}…{last}, its head says "
+                f"{where}: stamps {first}…{last}, but its header states "
                 f"{chunk.start_ns}…{chunk.end_ns}",
             )
     try:
@@ -199,12 +197,13 @@ def _check_chunk(
     if there != said:
         missing, wrong = (there - said).total(), (said - there).total()
         findings.error(
-            "index", f"{where}: its index lacks {missing} messages, {wrong} are wrong"
+            "index",
+            f"{where}: its index lacks {missing} messages, {wrong} entries are wrong",
         )
 
 
 def _check_index(reader: McapReader | Ros1Reader, findings: _Findings) -> None:
-    """Whether index and records tell of the same chunks."""
+    """Compare the chunks of the index with those of the records."""
     if not reader.is_indexed:
         return
     walked = reader.walked()
@@ -213,14 +212,16 @@ def _check_index(reader: McapReader | Ros1Reader, findings: _Findings) -> None:
     named = {chunk.position: chunk for chunk in reader.chunks}
     there = {chunk.position: chunk for chunk in walked.chunks}
     for position in sorted(there.keys() - named.keys()):
-        findings.error("index", f"byte {position}: a chunk that the index lacks")
+        findings.error("index", f"byte {position}: the index lacks this chunk")
     for position in sorted(named.keys() & there.keys()):
         if _span(named[position]) != _span(there[position]):
             findings.error(
-                "times", f"byte {position}: chunk: its head and the index disagree"
+                "times", f"byte {position}: chunk: header and index disagree"
             )
     for position in sorted(named.keys() - there.keys()):
-        findings.error("index", f"byte {position}: the index names a chunk, it is none")
+        findings.error(
+            "index", f"byte {position}: the index lists a chunk, but there is none"
+        )
 
 
 def _span(chunk: Chunk) -> tuple[int, int, int]:
@@ -246,7 +247,7 @@ def _check_messages(reader: BagReader, findings: _Findings) -> None:
 
 
 def out_of_order(reader: BagReader) -> Iterator[str]:
-    """Topics whose stamps go back in the order in which they were written."""
+    """Find topics whose stamps decrease in file order."""
     last: dict[BagTopic, int] = {}
     back: Counter[BagTopic] = Counter()
     for topic, stamp in reader.stamps():
@@ -254,4 +255,4 @@ def out_of_order(reader: BagReader) -> Iterator[str]:
             back[topic] += 1
         last[topic] = stamp
     for topic, count in back.items():
-        yield f"{topic.name}: time goes back {count} times in the order of the file"
+        yield f"{topic.name}: the stamps decrease {count} times in file order"

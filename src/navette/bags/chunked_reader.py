@@ -1,4 +1,4 @@
-"""What readers of files of chunks have in common."""
+"""Base class of the readers of chunked files."""
 
 from abc import ABC, abstractmethod
 from collections import Counter
@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Self
 
 from navette.bags.bag import BagMessage, BagTopic, Damage, OnDamage
-from navette.bags.chunks import Choice, Chunk, ChunkMerge, Entry
+from navette.bags.chunks import Chunk, ChunkMerge, ChunkQuery, Entry
 from navette.bags.compression import is_zstd, unpack_zstd_message
 from navette.errors import DecodeError, FileFormatError
 
@@ -17,11 +17,10 @@ FOREVER_NS = 2**63 - 1
 
 
 class ChunkedReader(ABC):
-    """A :class:`~navette.bags.bag.BagReader` over the index of a file of chunks.
+    """A :class:`~navette.bags.bag.BagReader` over the index of a chunked file.
 
-    A derived class fills ``path``, ``topics``, ``chunks``, ``problems`` and the
-    channels (:meth:`_add_channel`) when it is made, and gives bytes and messages of
-    chunks.
+    A derived class sets ``path``, ``topics``, ``chunks``, ``problems`` and the channels
+    (:meth:`_add_channel`) in its constructor, and reads bytes and messages of chunks.
     """
 
     storage = ""
@@ -37,7 +36,7 @@ class ChunkedReader(ABC):
         self._convert_of: dict[int, Convert] = {}
         self._known_counts: dict[BagTopic, int] | None = None
 
-    # -- what a format brings ----------------------------------------------------
+    # -- implemented by each format ----------------------------------------------
 
     @abstractmethod
     def _read_chunk(self, chunk: Chunk) -> bytes: ...
@@ -47,12 +46,12 @@ class ChunkedReader(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Close the file; twice is harmless."""
+        """Close the file; a second call has no effect."""
 
     def _add_channel(
         self, number: int, topic: BagTopic, convert: Convert | None = None
     ) -> None:
-        """Channels of the same topic and type are one topic to who reads."""
+        """Register a channel; channels with the same topic and type share a topic."""
         same = next((t for t in self.topics if t == topic), None)
         if same is None:
             self.topics = (*self.topics, topic)
@@ -60,23 +59,23 @@ class ChunkedReader(ABC):
         if convert is not None:
             self._convert_of[number] = convert
 
-    # -- what all of them do -----------------------------------------------------
+    # -- common to all formats ---------------------------------------------------
 
     def topic_of(self, channel: int) -> BagTopic | None:
-        """The topic of a channel; None if nobody named it."""
+        """Return the topic of a channel; None for an undefined channel."""
         return self._topic_of.get(channel)
 
     def entries(self, chunk: Chunk) -> list[Entry]:
-        """The messages of a chunk, as they lie.
+        """Return the messages of a chunk in file order.
 
         Raises:
-            FileFormatError: it is damaged.
+            FileFormatError: the chunk is damaged.
         """
         return self._entries(chunk, self._read_chunk(chunk))
 
     @abstractmethod
     def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
-        """Stamps by channel as an index has them; None where there is none.
+        """Return stamps by channel from the index; None without an index.
 
         Raises:
             FileFormatError: the index is damaged.
@@ -98,7 +97,7 @@ class ChunkedReader(ABC):
         try:
             indexed = self.index_of(chunk)
         except FileFormatError:
-            indexed = None  # the messages themselves may be sound
+            indexed = None  # the messages themselves may be intact
         if indexed is not None:
             return indexed
         found: dict[int, list[int]] = {}
@@ -107,7 +106,7 @@ class ChunkedReader(ABC):
         return found
 
     def _filled(self) -> Iterator[Chunk]:
-        """Chunks that hold messages; others have no times."""
+        """Chunks with messages; others have no times."""
         return (c for c in self.chunks if c.channels or c.start_ns or c.end_ns)
 
     @property
@@ -134,7 +133,7 @@ class ChunkedReader(ABC):
             try:
                 by_channel = self._stamps_of(chunk)
             except FileFormatError:
-                continue  # messages() tells of it; here, what is sound counts
+                continue  # reported by messages(); only intact chunks count here
             for channel, stamps in by_channel.items():
                 topic = self._topic_of.get(channel)
                 if topic is not None:
@@ -154,13 +153,13 @@ class ChunkedReader(ABC):
             for number, topic in self._topic_of.items()
             if topics is None or topic.name in topics
         )
-        choice = Choice(
+        query = ChunkQuery(
             channels if topics is not None else None,
             -FOREVER_NS if start_ns is None else start_ns,
             FOREVER_NS if end_ns is None else end_ns,
         )
         merge = ChunkMerge(self._read_chunk, self._entries, on_damage)
-        for entry, data in merge.messages(self.chunks, choice):
+        for entry, data in merge.messages(self.chunks, query):
             message = self._message(entry, data, on_damage)
             if message is not None:
                 yield message
@@ -172,7 +171,7 @@ class ChunkedReader(ABC):
         convert = self._convert_of.get(entry.channel)
         try:
             if topic is None:
-                raise DecodeError(f"a message of channel {entry.channel}, never named")
+                raise DecodeError(f"a message of undefined channel {entry.channel}")
             if convert is not None:
                 data = convert(data)
             elif is_zstd(data):  # rosbag2 with compression_mode "message"

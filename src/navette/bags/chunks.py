@@ -1,9 +1,9 @@
-"""Messages of a file of chunks, in the order of time.
+"""Merge the chunks of a file in time order.
 
-Chunks may overlap in time, and inside a chunk messages lie as they came. So chunks are
-opened when their time has come, and merged with those still open. The bytes of open
-chunks are kept up to a limit and read again beyond it: a file in which everything
-overlaps is slow, not fatal.
+Chunks may overlap in time, and messages inside a chunk are in order of reception. A
+chunk is opened when its first stamp is reached, and merged with those already open.
+The bytes of open chunks are cached up to a limit and read again beyond it: a file whose
+chunks all overlap is slow to read, but does not exhaust memory.
 """
 
 from collections import OrderedDict, deque
@@ -20,10 +20,10 @@ CACHE_BYTES = 128 << 20
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """A piece of a file that is read at once.
+    """A part of a file that is read as a whole.
 
-    ``channels`` are those that have messages in it, None where nobody says. A bare
-    chunk is a stretch of records that no chunk of the file encloses.
+    ``channels`` are those with messages in it, None if unknown. A bare chunk is a
+    sequence of records outside any chunk of the file.
     """
 
     number: int
@@ -37,7 +37,7 @@ class Chunk:
 
 
 class Entry(NamedTuple):
-    """Where a message lies in the bytes of its chunk."""
+    """Position of a message in the bytes of its chunk."""
 
     stamp_ns: int
     channel: int
@@ -45,15 +45,15 @@ class Entry(NamedTuple):
     end: int
 
 
-class Choice(NamedTuple):
-    """What is wanted: channels (None: all) and stamps from first to last."""
+class ChunkQuery(NamedTuple):
+    """Selected channels (None: all) and range of stamps."""
 
     channels: frozenset[int] | None
     first_ns: int
     last_ns: int
 
     def may_be_in(self, chunk: Chunk) -> bool:
-        """Whether the chunk has to be opened."""
+        """Whether the chunk may contain selected messages."""
         if chunk.end_ns < self.first_ns or chunk.start_ns > self.last_ns:
             return False
         if self.channels is None or chunk.channels is None:
@@ -61,7 +61,7 @@ class Choice(NamedTuple):
         return not self.channels.isdisjoint(chunk.channels)
 
     def takes(self, entry: Entry) -> bool:
-        """Whether the message is wanted."""
+        """Whether the message is selected."""
         if not self.first_ns <= entry.stamp_ns <= self.last_ns:
             return False
         return self.channels is None or entry.channel in self.channels
@@ -72,7 +72,7 @@ ListEntries = Callable[[Chunk, bytes], list[Entry]]
 
 
 class _Open(NamedTuple):
-    """An open chunk in the heap: its next message first."""
+    """An open chunk in the heap, ordered by its next message."""
 
     stamp_ns: int
     number: int
@@ -85,8 +85,9 @@ class ChunkMerge:
     """Reads chunks in time order.
 
     Args:
-        read: the bytes of a chunk, unpacked; raises FileFormatError.
-        list_entries: the messages in them, as they lie; raises FileFormatError.
+        read: returns the uncompressed bytes of a chunk; raises FileFormatError.
+        list_entries: returns the messages in them in file order; raises
+            FileFormatError.
         on_damage: see :meth:`BagReader.messages`.
     """
 
@@ -105,33 +106,33 @@ class ChunkMerge:
         self._size = 0
 
     def messages(
-        self, chunks: Sequence[Chunk], choice: Choice
+        self, chunks: Sequence[Chunk], query: ChunkQuery
     ) -> Iterator[tuple[Entry, bytes]]:
-        """The chosen messages: where each lay, and its bytes."""
-        wanted = [chunk for chunk in chunks if choice.may_be_in(chunk)]
+        """Iterate over the selected messages: position and bytes."""
+        wanted = [chunk for chunk in chunks if query.may_be_in(chunk)]
         waiting = deque(sorted(wanted, key=lambda c: (c.start_ns, c.number)))
         heap: list[_Open] = []
         while heap or waiting:
             while waiting and (not heap or waiting[0].start_ns <= heap[0].stamp_ns):
-                self._open(waiting.popleft(), choice, heap)
+                self._open(waiting.popleft(), query, heap)
             if not heap:
                 continue
             current = heappop(heap)
             limit = min(
-                heap[0].stamp_ns if heap else choice.last_ns + 1,
-                waiting[0].start_ns if waiting else choice.last_ns + 1,
+                heap[0].stamp_ns if heap else query.last_ns + 1,
+                waiting[0].start_ns if waiting else query.last_ns + 1,
             )
             yield from self._run(current, limit, heap)
 
     @property
     def cached(self) -> Collection[int]:
-        """Numbers of the chunks whose bytes are in memory."""
+        """Numbers of the chunks whose bytes are cached."""
         return self._cached.keys()
 
     def _run(
         self, current: _Open, limit_ns: int, heap: list[_Open]
     ) -> Iterator[tuple[Entry, bytes]]:
-        """From one chunk, until another one's time has come; at least one message."""
+        """Read from one chunk until another one is due; at least one message."""
         data = self._bytes_of(current.chunk)
         entries, place = current.entries, current.place
         while True:
@@ -146,10 +147,10 @@ class ChunkMerge:
                 heappush(heap, current._replace(stamp_ns=stamp_ns, place=place))
                 return
 
-    def _open(self, chunk: Chunk, choice: Choice, heap: list[_Open]) -> None:
+    def _open(self, chunk: Chunk, query: ChunkQuery, heap: list[_Open]) -> None:
         try:
             data = self._bytes_of(chunk)
-            entries = [e for e in self._list_entries(chunk, data) if choice.takes(e)]
+            entries = [e for e in self._list_entries(chunk, data) if query.takes(e)]
         except FileFormatError as error:
             if self._on_damage is None:
                 raise

@@ -1,4 +1,4 @@
-"""Unpacking of what bags hold, never into more than was announced."""
+"""Decompression of chunks and messages, bounded by the stated size."""
 
 import bz2
 from typing import Any
@@ -8,17 +8,17 @@ import zstandard
 from navette.errors import DecodeError
 
 LARGEST = 1 << 30
-"""No chunk and no message is unpacked into more bytes than this."""
+"""Maximum uncompressed size of a chunk or message, bytes."""
 
 
 def unpack(kind: str, data: bytes, size: int) -> bytes:
-    """The ``size`` bytes that ``data`` was packed from.
+    """Decompress ``data`` to exactly ``size`` bytes.
 
     Raises:
-        DecodeError: unknown kind, broken data, or another size.
+        DecodeError: unknown kind, damaged data, or another size.
     """
     if size > LARGEST:
-        raise DecodeError(f"{size} bytes in one piece; at most {LARGEST} are read")
+        raise DecodeError(f"{size} uncompressed bytes; at most {LARGEST} are allowed")
     if kind in ("", "none"):
         unpacked = data
     else:
@@ -30,31 +30,31 @@ def unpack(kind: str, data: bytes, size: int) -> bytes:
         try:
             unpacked = unpack_kind(data, size)
         except (zstandard.ZstdError, OSError, EOFError, RuntimeError, ValueError) as e:
-            raise DecodeError(f"broken {kind} data: {e}") from e
+            raise DecodeError(f"damaged {kind} data: {e}") from e
     if len(unpacked) != size:
-        raise DecodeError(f"{len(unpacked)} bytes where {size} were announced")
+        raise DecodeError(f"{len(unpacked)} bytes, but {size} were stated")
     return unpacked
 
 
 def is_zstd(data: bytes) -> bool:
-    """Whether a message is packed: CDR never begins like that."""
+    """Whether a message is compressed: CDR never begins with these bytes."""
     return data[:4] == b"\x28\xb5\x2f\xfd"
 
 
 def unpack_zstd_message(data: bytes) -> bytes:
-    """A message of a database whose messages are packed one by one."""
+    """Decompress a message of a database with per-message compression."""
     try:
         size = zstandard.frame_content_size(data)
     except zstandard.ZstdError as error:
-        raise DecodeError(f"broken zstd data: {error}") from error
+        raise DecodeError(f"damaged zstd data: {error}") from error
     return unpack("zstd", data, size) if size >= 0 else _zstd_of_any_size(data)
 
 
 def _zstd(data: bytes, size: int) -> bytes:
     announced = zstandard.frame_content_size(data)
     if announced not in (-1, size):
-        raise ValueError(f"{announced} bytes inside, {size} announced")
-    # One byte more: zero means "as the frame says" to the library.
+        raise ValueError(f"{announced} bytes in the frame, but {size} were stated")
+    # One byte more: for the library, zero means the size in the frame.
     unpacked: bytes = zstandard.ZstdDecompressor().decompress(
         data, max_output_size=size + 1
     )
@@ -66,7 +66,7 @@ def _zstd_of_any_size(data: bytes) -> bytes:
     try:
         unpacked: bytes = stream.read(LARGEST)
     except zstandard.ZstdError as error:
-        raise DecodeError(f"broken zstd data: {error}") from error
+        raise DecodeError(f"damaged zstd data: {error}") from error
     return unpacked
 
 

@@ -1,8 +1,8 @@
-"""Reads rosbag2's SQLite files, of every schema so far (Eloquent to Lyrical).
+"""Read rosbag2's SQLite files, all schemas from Eloquent to Lyrical.
 
-Source: rosbag2_storage_sqlite3. SQLite itself walks the index over stamps, so that the
-first message comes at once and nothing is held in memory. It is Python's own
-``sqlite3``; a database is never written to.
+Source: rosbag2_storage_sqlite3. SQLite iterates over the index of stamps, so that the
+first message is available at once and nothing is held in memory. Uses Python's
+``sqlite3``; databases are opened read-only.
 """
 
 import sqlite3
@@ -19,9 +19,9 @@ from navette.bags.qos import parse_qos
 from navette.errors import DecodeError, FileFormatError
 
 MAGIC = b"SQLite format 3\0"
-_SMALLEST_ROW = 16  # bytes that a row takes at least; bounds how many there can be
+_SMALLEST_ROW = 16  # minimum bytes of a row; bounds the number of rows
 _LOG_SUFFIX = "-wal"
-# A message of SQLite that holds bytes of a broken database may be no UTF-8.
+# Error texts of SQLite may contain damaged bytes that are not UTF-8.
 _ERRORS = (sqlite3.Error, UnicodeDecodeError, OverflowError)
 _DATA = "SELECT data FROM messages WHERE id = ?"
 
@@ -36,7 +36,7 @@ class Db3Reader:
     """An open ``.db3`` file; see :class:`~navette.bags.bag.BagReader`.
 
     Raises:
-        FileFormatError: no such file, or no recording of rosbag2.
+        FileFormatError: the file does not exist or is not a rosbag2 recording.
     """
 
     storage = "sqlite3"
@@ -101,7 +101,7 @@ class Db3Reader:
             for number, topic in self._topic_of.items()
             if topics is None or topic.name in topics
         }
-        last = 0, -(2**63)  # how far it has come: how many rows of the last stamp
+        last = 0, -(2**63)  # number of rows read of the last stamp
         try:
             for row, data in self._in_order(start_ns, end_ns):
                 last = (last[0] + 1 if row.stamp_ns == last[1] else 1), row.stamp_ns
@@ -117,7 +117,7 @@ class Db3Reader:
             yield from self._salvage(wanted, start_ns, end_ns, last, on_damage)
 
     def integrity(self) -> Iterator[str]:
-        """What SQLite finds wrong with the database."""
+        """Return the problems that SQLite finds in the database."""
         try:
             for (line,) in self._database.execute("PRAGMA integrity_check(20)"):
                 if line != "ok":
@@ -126,7 +126,7 @@ class Db3Reader:
             count = self._database.execute(f"{query} (SELECT id FROM topics)")
             (unknown,) = count.fetchone()
             if unknown:
-                yield f"{unknown} messages of a topic that is not there"
+                yield f"{unknown} messages of an undefined topic"
         except _ERRORS as error:
             yield str(error)
 
@@ -137,7 +137,7 @@ class Db3Reader:
         for table in ("messages", "topics"):
             if tables.get(table) != "table":
                 raise FileFormatError(
-                    self.path, f"is no recording of rosbag2: it has no table {table!r}"
+                    self.path, f"is not a rosbag2 recording: table {table!r} is missing"
                 )
         columns = self._columns("topics")
         if "schema" in tables:
@@ -211,7 +211,7 @@ class Db3Reader:
             for number, topic, stamp, data in self._database.execute(query, limits):
                 yield self._row(number, topic, stamp), data
             return
-        # To be sorted by SQLite first, which then must not drag the data along.
+        # SQLite sorts first, without the data column.
         query = f"SELECT id, topic_id, timestamp FROM messages {where}"
         for number, topic, stamp in self._database.execute(query, limits):
             yield self._row(number, topic, stamp), self._data(number)
@@ -258,7 +258,7 @@ class Db3Reader:
         last: tuple[int, int],
         on_damage: OnDamage,
     ) -> Iterator[BagMessage]:
-        """What can be fetched row by row after the index over stamps has failed."""
+        """Read row by row after the index of stamps failed."""
         rows = sorted(
             row
             for row in self._readable_rows()
@@ -289,14 +289,14 @@ class Db3Reader:
                 yield _Row(*found)
 
     def _rows(self, query: str) -> Iterator[Any]:
-        """Rows up to the first that cannot be read."""
+        """Iterate over rows up to the first that cannot be read."""
         try:
             yield from self._database.execute(query)
         except _ERRORS as error:
             self._problems.append(f"cannot be read to the end: {error}")
 
     def _attempt(self, query: str, number: int) -> Any:
-        """One row; None where it is not there or cannot be read."""
+        """Read one row; None if it does not exist or cannot be read."""
         try:
             return self._database.execute(query, (number,)).fetchone()
         except _ERRORS:
@@ -315,11 +315,11 @@ class Db3Reader:
 
 
 def _connect(path: Path, problems: list[str]) -> sqlite3.Connection:
-    """Read only; with what a killed recording left in the log beside the file."""
+    """Open read-only, including the write-ahead log of a killed recorder."""
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC:
-                raise FileFormatError(path, "is no SQLite database")
+                raise FileFormatError(path, "is not an SQLite database")
     except OSError as error:
         raise FileFormatError(path, f"cannot be opened: {error.strerror}") from error
     uri = f"file:{quote(str(path.absolute()))}?mode=ro"

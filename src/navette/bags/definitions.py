@@ -1,4 +1,4 @@
-"""Definitions in a file's own form, as ``ros2msg`` text."""
+"""Convert recorded definitions to ``ros2msg`` text."""
 
 from navette.errors import FileFormatError
 from navette.msgs.definition_sections import MAX_CHARACTERS
@@ -13,10 +13,10 @@ def ros2_name(name: str) -> str:
 
 
 def idl_to_msg(name: str, text: str) -> str:
-    """The ``ros2msg`` text of a type that is described in IDL.
+    """Convert an IDL definition to ``ros2msg`` text.
 
     Raises:
-        FileFormatError: the text is no IDL, or larger than definitions are.
+        FileFormatError: invalid IDL, or too large.
     """
     from rosbags.typesys import Stores, TypesysError, get_types_from_idl, get_typestore
 

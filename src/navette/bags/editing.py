@@ -1,4 +1,4 @@
-"""Makes a recording from others: convert, filter, merge, cut, recover."""
+"""Create a recording from others: convert, filter, merge, cut, recover."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -18,11 +18,11 @@ Progress = Callable[[BagMessage], None]
 
 
 @dataclass(frozen=True)
-class Choice:
-    """Which messages go into the new recording; with nothing said, all.
+class MessageFilter:
+    """Selection of messages for the new recording; all by default.
 
-    A topic is taken if it is named, matches the pattern or has one of the types (with
-    none of the three: every topic), unless it is excluded.
+    A topic is selected if it is named, matches the pattern or has one of the types
+    (without any of the three: every topic), unless it is excluded.
     """
 
     topics: tuple[str, ...] = ()
@@ -31,12 +31,12 @@ class Choice:
     exclude: str = ""
     start_ns: int | None = None
     end_ns: int | None = None
-    """The last stamp that is taken."""
+    """The last stamp, included."""
     expression: str = ""
-    """Python over ``topic`` (name), ``t`` (s), ``m`` (message)."""
+    """Python expression over ``topic`` (name), ``t`` (s), ``m`` (message)."""
 
     def takes(self, topic: BagTopic) -> bool:
-        """Whether the topic is taken at all."""
+        """Whether the topic is selected."""
         if self.exclude and _search(self.exclude, topic.name):
             return False
         if not (self.topics or self.types or self.regex):
@@ -54,12 +54,12 @@ def _search(pattern: str, text: str) -> bool:
         return re.search(pattern, text) is not None
     except re.error as error:
         raise InvalidValueError(
-            f"{pattern!r} is no regular expression: {error}"
+            f"{pattern!r} is not a regular expression: {error}"
         ) from None
 
 
 class _Condition:
-    """Condition on the messages of a bag, as ``rosbag filter`` takes it."""
+    """Condition on the messages of a bag, as in ``rosbag filter``."""
 
     def __init__(self, text: str) -> None:
         self._expression = Expression(text, names=("topic", "t", "m"))
@@ -80,7 +80,7 @@ class _Condition:
 
 
 class _Names(dict[str, Any]):
-    """Values of the names; ``m`` is decoded only if the expression reads it."""
+    """Variables of the expression; ``m`` is decoded only when it is read."""
 
     def __init__(self, condition: _Condition, message: BagMessage) -> None:
         super().__init__(topic=message.topic.name, t=message.stamp_ns / 1e9)
@@ -94,7 +94,7 @@ class _Names(dict[str, Any]):
 
 
 def join(paths: Sequence[Path]) -> BagReader:
-    """Several recordings as one, in the order of time.
+    """Merge several recordings in time order.
 
     Raises:
         FileFormatError: one of them cannot be read.
@@ -115,22 +115,22 @@ def join(paths: Sequence[Path]) -> BagReader:
 def copy(
     reader: BagReader,
     writer: TopicWriter,
-    choice: Choice | None = None,
+    selected: MessageFilter | None = None,
     *,
     on_message: Progress | None = None,
     on_damage: OnDamage | None = None,
 ) -> int:
-    """Write what is chosen; gives the number of messages.
+    """Write the selected messages; return their number.
 
-    The writer is closed, or abandoned where this fails.
+    The writer is closed, or abandoned after an error.
 
     Raises:
         FileFormatError: a part cannot be read (without ``on_damage``) or written.
         InvalidValueError: a pattern or an expression is wrong.
     """
-    choice = choice or Choice()
+    selected = selected or MessageFilter()
     try:
-        for message in _chosen(reader, choice, on_message, on_damage):
+        for message in _chosen(reader, selected, on_message, on_damage):
             writer.write(message)
     except BaseException:
         writer.abandon()
@@ -141,16 +141,16 @@ def copy(
 
 def _chosen(
     reader: BagReader,
-    choice: Choice,
+    selected: MessageFilter,
     on_message: Progress | None,
     on_damage: OnDamage | None,
 ) -> Iterator[BagMessage]:
-    expression = _Condition(choice.expression) if choice.expression else None
-    taken = {t: completed(t) for t in reader.topics if choice.takes(t)}
+    expression = _Condition(selected.expression) if selected.expression else None
+    taken = {t: completed(t) for t in reader.topics if selected.takes(t)}
     for message in reader.messages(
         {topic.name for topic in taken},
-        start_ns=choice.start_ns,
-        end_ns=choice.end_ns,
+        start_ns=selected.start_ns,
+        end_ns=selected.end_ns,
         on_damage=on_damage,
     ):
         if on_message is not None:

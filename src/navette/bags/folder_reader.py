@@ -1,4 +1,4 @@
-"""Reads the folders that rosbag2 writes: ``metadata.yaml`` and one or more files."""
+"""Read rosbag2 folders: ``metadata.yaml`` and one or more files."""
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 @dataclass(frozen=True)
 class Metadata:
-    """What ``metadata.yaml`` says, as far as it says it."""
+    """Content of ``metadata.yaml``; missing entries are empty."""
 
     version: str = ""
     files: tuple[str, ...] = ()
@@ -34,24 +34,24 @@ class Metadata:
 
 
 def read_metadata(folder: Path) -> Metadata:
-    """What the folder's metadata say.
+    """Read the metadata of a folder.
 
     Raises:
-        FileFormatError: they are not there, or not of rosbag2.
+        FileFormatError: missing, or not rosbag2 metadata.
     """
     path = folder / METADATA
     try:
         if path.stat().st_size > _LARGEST_METADATA:
-            raise FileFormatError(path, "is larger than metadata are")
+            raise FileFormatError(path, "is too large for metadata")
         found = yaml.load(path.read_text("utf-8", "replace"), _LOADER)
     except OSError as error:
         raise FileFormatError(path, f"cannot be read: {error.strerror}") from error
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise FileFormatError(path, f"is no YAML: {error}") from error
+        raise FileFormatError(path, f"is not YAML: {error}") from error
     try:
         return _parse(found["rosbag2_bagfile_information"])
     except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise FileFormatError(path, f"is no metadata of rosbag2: {error!r}") from error
+        raise FileFormatError(path, f"is not rosbag2 metadata: {error!r}") from error
 
 
 def _parse(found: Mapping[str, Any]) -> Metadata:
@@ -76,19 +76,19 @@ def _parse(found: Mapping[str, Any]) -> Metadata:
 
 
 def _word(found: object) -> str:
-    """A text or a number as text; a list of lists of lists might print for ever."""
+    """Convert text or a number to text; nested lists could print endlessly."""
     if found is None:
         return ""
     if isinstance(found, str | int):
         return str(found)
-    raise TypeError(f"{type(found).__name__} where a text should be")
+    raise TypeError(f"{type(found).__name__} instead of text")
 
 
 class FolderReader:
     """Several files as one recording; see :class:`~navette.bags.bag.BagReader`.
 
     Args:
-        readers: of the files, already open; closed with this one.
+        readers: open readers of the files; closed with this one.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class FolderReader:
         self.topics = tuple(dict.fromkeys(self._topic_of.values()))
 
     def _completed(self, topic: BagTopic) -> BagTopic:
-        """With what only the metadata say, and what other files say of the type."""
+        """Complete a topic with the metadata and the types of other files."""
         if not topic.qos and self._metadata.qos:
             qos = self._metadata.qos.get((topic.name, topic.type_name))
             topic = replace(topic, qos=parse_qos(qos))
@@ -131,11 +131,11 @@ class FolderReader:
 
     @property
     def readers(self) -> Sequence[BagReader]:
-        """Of the files, by their first stamps."""
+        """Return the files ordered by their first stamps."""
         return self._readers
 
     def topic_of(self, topic: BagTopic) -> BagTopic:
-        """The topic of the whole for that of a file."""
+        """Return the topic of the folder for a topic of a file."""
         return self._topic_of[topic]
 
     @property
@@ -199,7 +199,7 @@ class FolderReader:
         heap: list[tuple[int, int, BagMessage, Iterator[BagMessage]]] = []
         order = 0
         while heap or waiting:
-            # A file is opened when its first stamp has come.
+            # A file is opened when its first stamp is reached.
             while waiting and (not heap or waiting[-1].start_ns <= heap[0][0]):
                 rest = opened(waiting.pop())
                 order += 1

@@ -1,8 +1,8 @@
-"""A chunked MCAP file, written record by record.
+"""Write a chunked MCAP file record by record.
 
-Source: the MCAP specification, version 0 (foxglove/mcap, website/docs/spec). The
-records' forms are those of the ``mcap`` library; its own writer is not used because
-it takes four times as long per message.
+Source: the MCAP specification, version 0 (foxglove/mcap, website/docs/spec). Records
+are encoded by the ``mcap`` library; its own writer is not used because it takes four
+times as long per message.
 """
 
 import struct
@@ -34,15 +34,15 @@ _MESSAGE_HEAD = _MESSAGE.size - 9
 # Opcode, content length; channel, bytes of the entries that follow.
 _INDEX = struct.Struct("<BQHI")
 _FOOTER_START = struct.Struct("<BQQQ")
-# Bytes, at most: end of data, statistics, offsets and footer; an index of a chunk, and
-# what it and the statistics say of a channel.
+# Maximum bytes: end of data, statistics, offsets and footer; index of a chunk; entries
+# of a channel in the chunk index and statistics.
 _INDEX_BASE, _CHUNK_INDEX_BASE, _PER_CHANNEL = 256, 90, 10
 
 
 class McapFile:
-    """Writes to ``stream``; nothing of it depends on anything but what is added.
+    """Writes to ``stream``; the bytes depend only on the added messages.
 
-    Messages gather in a chunk until :meth:`end_chunk`.
+    Messages are collected in a chunk until :meth:`end_chunk`.
 
     Args:
         compression: of the chunks, one of :data:`COMPRESSIONS`.
@@ -64,12 +64,12 @@ class McapFile:
         self._compression = "" if compression == "none" else compression
         self._compress = _compressor(compression)
         self._chunk_indexes: list[ChunkIndex] = []
-        #: Messages by channel, of each finished chunk.
+        #: Messages by channel for each finished chunk.
         self._chunk_counts: list[dict[int, int]] = []
         self._parts: list[bytes] = []
         self._index: dict[int, list[int]] = {}
         self._index_size = _INDEX_BASE
-        #: Bytes of the chunk so far.
+        #: Size of the current chunk, bytes.
         self.chunk_size = 0
         self._write(MAGIC + _record(Header(profile=profile, library=library)))
         self._data_start = self._position
@@ -80,16 +80,16 @@ class McapFile:
 
     @property
     def size(self) -> int:
-        """Bytes written, and those of the chunk so far, which may become fewer."""
+        """Bytes written, plus the uncompressed current chunk."""
         return self._position + self.chunk_size
 
     @property
     def index_size(self) -> int:
-        """Bytes, at most, that :meth:`finish` writes behind the last chunk."""
+        """Upper bound of the bytes that :meth:`finish` writes after the last chunk."""
         return self._index_size
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
-        """Gives the schema's number for :meth:`add_channel`."""
+        """Return the schema id for :meth:`add_channel`."""
         number = len(self._schemas) + 1
         schema = Schema(id=number, name=name, encoding=encoding, data=data)
         self._schemas.append(schema)
@@ -99,7 +99,7 @@ class McapFile:
     def add_channel(
         self, topic: str, encoding: str, schema: int, metadata: dict[str, str]
     ) -> int:
-        """Gives the channel's number for :meth:`add_message`."""
+        """Return the channel id for :meth:`add_message`."""
         number = len(self._channels) + 1
         channel = Channel(
             id=number,
@@ -114,7 +114,7 @@ class McapFile:
         return number
 
     def add_message(self, channel: int, stamp_ns: int, payload: bytes) -> None:
-        """Logged and published at ``stamp_ns``; numbered from 1 in its channel."""
+        """Add a message with log and publish time ``stamp_ns``."""
         self._sequences[channel] = sequence = self._sequences[channel] + 1
         length = _MESSAGE_HEAD + len(payload)
         index = self._index.setdefault(channel, [])
@@ -126,7 +126,7 @@ class McapFile:
         self.chunk_size += 9 + length
 
     def end_chunk(self) -> None:
-        """Write the chunk and its index; without messages there is nothing to do."""
+        """Write the chunk and its index, if it has messages."""
         if not self._index:
             return
         content = b"".join(self._parts)
@@ -163,9 +163,9 @@ class McapFile:
         self._parts, self._index, self.chunk_size = [], {}, 0
 
     def keep(self, size: int) -> int:
-        """Forget what is not in the first ``size`` bytes of the file, whole chunks.
+        """Forget the chunks that are not within the first ``size`` bytes of the file.
 
-        Gives the bytes that are still meant: the file has to be cut there.
+        Returns the size of the remaining chunks, to which the file must be truncated.
         """
         self._parts, self._index, self.chunk_size = [], {}, 0
         while self._chunk_indexes and _end(self._chunk_indexes[-1]) > size:
@@ -183,7 +183,7 @@ class McapFile:
         """End the last chunk and write the summary; the stream stays open.
 
         Args:
-            stream: what to write to from here on, if not to that of before.
+            stream: replaces the stream for the rest of the file, if given.
         """
         self._stream = stream or self._stream
         self.end_chunk()
@@ -201,7 +201,7 @@ class McapFile:
         self._write(summary + _record(footer) + MAGIC)
 
     def _message_indexes(self, position: int) -> tuple[bytes, dict[int, int]]:
-        """Records that say where each channel's messages are in the chunk."""
+        """Return the message index records of the chunk."""
         parts: list[bytes] = []
         offsets: dict[int, int] = {}
         for channel, index in self._index.items():
@@ -250,7 +250,7 @@ class McapFile:
         )
 
     def _add_to_both(self, record: bytes) -> None:
-        """To the chunk, and what the index repeats."""
+        """Add a record to the chunk and to the summary."""
         self._parts.append(record)
         self.chunk_size += len(record)
         self._index_size += len(record) + _PER_CHANNEL
@@ -261,7 +261,7 @@ class McapFile:
 
 
 def _end(chunk: ChunkIndex) -> int:
-    """Where the chunk and its message indexes end."""
+    """Offset after the chunk and its message indexes."""
     return chunk.chunk_start_offset + chunk.chunk_length + chunk.message_index_length
 
 

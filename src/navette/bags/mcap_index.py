@@ -1,4 +1,4 @@
-"""What is where in an MCAP file: by its summary, or by going through its records."""
+"""Index of an MCAP file, from its summary or from a scan of its records."""
 
 import re
 import zlib
@@ -29,10 +29,10 @@ from navette.errors import DecodeError, FileFormatError
 _FOOTER_SIZE = HEAD.size + 20
 _LARGEST_SUMMARY = 1 << 30
 _BARE_BYTES = 1 << 20
-# Opcodes of the specification; those from 0x80 on are anybody's own.
+# Opcodes of the specification; those from 0x80 on are application-defined.
 _OPCODES = frozenset(range(1, 0x10)) | frozenset(range(0x80, 0x100))
 _COMPRESSION = re.compile(rb"\x04\0\0\0zstd|\x03\0\0\0lz4")
-# From a chunk's first byte to that: opcode, length, times, size, checksum.
+# Offset of the compression field in a chunk: opcode, length, times, size, checksum.
 _TO_COMPRESSION = 9 + 28
 
 
@@ -46,19 +46,21 @@ class McapIndex:
     channels: dict[int, Any] = field(default_factory=dict)
     chunks: list[Chunk] = field(default_factory=list)
     counts: dict[int, int] | None = None
-    """Messages by channel, where the summary or every chunk's index says."""
+    """Messages by channel, if the summary or all chunk indexes state them."""
     problems: list[str] = field(default_factory=list)
     from_summary: bool = False
 
 
 def read_index(file: RecordFile) -> McapIndex:
-    """The index by the quickest way there is.
+    """Build the index from the summary if possible, else by scanning.
 
     Raises:
-        FileFormatError: this is no MCAP file.
+        FileFormatError: not an MCAP file.
     """
     if file.size < len(MAGIC) or file.read(0, len(MAGIC)) != MAGIC:
-        raise FileFormatError(file.path, "is no MCAP file: it does not begin as one")
+        raise FileFormatError(
+            file.path, "is not an MCAP file: the magic bytes are missing"
+        )
     try:
         index = _read_summary(file)
     except (FileFormatError, DecodeError) as error:
@@ -73,10 +75,10 @@ def read_index(file: RecordFile) -> McapIndex:
 
 
 def _read_summary(file: RecordFile) -> McapIndex | None:
-    """None where the file has no summary, or one that does not name everything."""
+    """Read the summary; None if it is missing or incomplete."""
     tail = len(MAGIC) + _FOOTER_SIZE
     if file.size < len(MAGIC) + tail or file.read(file.size - 8, 8) != MAGIC:
-        raise FileFormatError(file.path, "the file does not end as it should")
+        raise FileFormatError(file.path, "the footer is missing")
     position = file.size - tail
     head = file.head(position)
     footer: Footer = parse(Footer, file.content(head))
@@ -91,7 +93,7 @@ def _read_summary(file: RecordFile) -> McapIndex | None:
     if footer.summary_crc:
         start = file.read(position, _FOOTER_SIZE - 4)
         if zlib.crc32(start, zlib.crc32(summary)) != footer.summary_crc:
-            raise file.error(footer.summary_start, "its checksum is another one")
+            raise file.error(footer.summary_start, "its checksum does not match")
     return _index_of_summary(file, footer.summary_start, summary)
 
 
@@ -116,7 +118,7 @@ def _index_of_summary(file: RecordFile, start: int, summary: bytes) -> McapIndex
 
 
 def _is_complete(index: McapIndex, statistics: Statistics) -> bool:
-    """Whether the summary alone is enough to read all messages."""
+    """Whether the summary is sufficient to read all messages."""
     counts = statistics.channel_message_counts
     return (
         len(index.chunks) == statistics.chunk_count
@@ -128,7 +130,7 @@ def _is_complete(index: McapIndex, statistics: Statistics) -> bool:
 
 
 def _read_header(file: RecordFile, index: McapIndex) -> int:
-    """Gives the position after it."""
+    """Check the header; return the position after it."""
     head = file.head(len(MAGIC))
     if head.opcode != Opcode.HEADER:
         index.problems.append("there is no header")
@@ -142,7 +144,7 @@ def _read_header(file: RecordFile, index: McapIndex) -> int:
 
 
 def _note(index: McapIndex, opcode: int, content: bytes) -> None:
-    """Keep a schema or a channel; the first of a number stays."""
+    """Store a schema or a channel; the first of an id wins."""
     if opcode == Opcode.SCHEMA:
         schema: Schema = parse(Schema, content)
         index.schemas.setdefault(schema.id, schema)
@@ -152,10 +154,10 @@ def _note(index: McapIndex, opcode: int, content: bytes) -> None:
 
 
 def scan(file: RecordFile) -> McapIndex:
-    """The index by going from record to record.
+    """Build the index by scanning the records.
 
-    Chunks are unpacked only where they hold what is not known yet. Behind a broken
-    record it goes on at the next chunk that can be found.
+    Chunks are decompressed only if they contain unknown schemas or channels. After a
+    damaged record the scan resumes at the next chunk that can be found.
     """
     index = McapIndex(counts={})
     walker = _Walk(file, index)
@@ -169,7 +171,7 @@ def scan(file: RecordFile) -> McapIndex:
 
 
 def _next_chunk(file: RecordFile, start: int) -> int | None:
-    """Where the next sound chunk head is, by the name of its compression."""
+    """Find the next intact chunk header by the name of its compression."""
 
     def chunk_of(position: int) -> int | None:
         candidate = position - _TO_COMPRESSION
@@ -181,21 +183,21 @@ def _next_chunk(file: RecordFile, start: int) -> int | None:
                 chunk_head(file, head)
                 return candidate
         except FileFormatError:
-            pass  # looked like one
+            pass  # false match
         return None
 
     return file.find(start, _COMPRESSION, chunk_of)
 
 
 class _Walk:
-    """Collects the index while records pass by."""
+    """Collects the index during a scan."""
 
     def __init__(self, file: RecordFile, index: McapIndex) -> None:
         self._file = file
         self._index = index
 
     def visit(self, position: int) -> int | None:
-        """Take in one record; the position behind it, None at the end of the data."""
+        """Process one record; return the next position, None at the end of the data."""
         head = self._file.head(position)
         if head.opcode in (Opcode.DATA_END, Opcode.FOOTER):
             return None
@@ -214,7 +216,7 @@ class _Walk:
         try:
             by_channel = read_message_indexes(self._file, head.end)
         except (FileFormatError, DecodeError):
-            by_channel = {}  # what follows is broken; the chunk itself may be sound
+            by_channel = {}  # the indexes are damaged; the chunk itself may be intact
         known = by_channel.keys() <= self._index.channels.keys()
         chunk = Chunk(
             len(self._index.chunks),
@@ -236,7 +238,7 @@ class _Walk:
                 self._index.counts[channel] = count + len(stamps)
 
     def _look_into(self, chunk: Chunk) -> None:
-        """For schemas and channels."""
+        """Search a chunk for schemas and channels."""
         try:
             data = read_chunk(self._file, chunk)
             for opcode, begin, end in records_in(self._file.path, chunk, data):
@@ -248,9 +250,9 @@ class _Walk:
             self._index.problems.append(f"byte {chunk.position}: chunk: {error}")
 
     def _message(self, head: Head) -> None:
-        """Messages outside chunks: neighbours together make a bare chunk."""
+        """Add a message outside chunks; adjacent ones form a bare chunk."""
         if head.end - head.begin < MESSAGE.size:
-            raise self._file.error(head.position, "message without a head")
+            raise self._file.error(head.position, "message without a header")
         channel, _, stamp, _ = MESSAGE.unpack(self._file.read(head.begin, MESSAGE.size))
         chunks, counts = self._index.chunks, self._index.counts
         length = head.end - head.position
@@ -287,7 +289,7 @@ class _Walk:
 
 
 def read_message_indexes(file: RecordFile, position: int) -> dict[int, list[int]]:
-    """Stamps by channel from the indexes that follow a chunk; {} if there are none."""
+    """Return stamps by channel from the indexes after a chunk; {} without any."""
     found: dict[int, list[int]] = {}
     while position + HEAD.size <= file.size:
         head = file.head(position)

@@ -1,4 +1,4 @@
-"""Reads ``.mcap``: with or without summary, index and chunks; ROS 2's and ROS 1's."""
+"""Read ``.mcap`` files, with or without summary and chunks, of ROS 2 and ROS 1."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -19,10 +19,10 @@ class McapReader(ChunkedReader):
     """An open ``.mcap`` file.
 
     Args:
-        ignore_summary: go through the records even if there is a summary.
+        ignore_summary: scan the records even if there is a summary.
 
     Raises:
-        FileFormatError: no such file, or no MCAP.
+        FileFormatError: the file does not exist or is not MCAP.
     """
 
     storage = "mcap"
@@ -71,11 +71,11 @@ class McapReader(ChunkedReader):
 
     @property
     def is_indexed(self) -> bool:
-        """Whether the file was opened by its summary."""
+        """Whether the summary was used."""
         return self.index.from_summary
 
     def walked(self) -> McapIndex:
-        """What is found by going through the records instead."""
+        """Return the index from a scan of the records."""
         return scan(self._file)
 
     def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
@@ -91,7 +91,7 @@ class McapReader(ChunkedReader):
 def _topic(
     channel: Any, schema: Any, problems: list[str]
 ) -> tuple[BagTopic, Convert | None]:
-    """A channel in our words, and how its messages become CDR."""
+    """Convert a channel to a topic, with the conversion of its messages to CDR."""
     qos = parse_qos(channel.metadata.get("offered_qos_profiles", ""))
     name = schema.name if schema is not None else ""
     text = schema.data.decode("utf-8", "replace") if schema is not None else ""

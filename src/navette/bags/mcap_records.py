@@ -1,8 +1,7 @@
-"""Records of an MCAP file, read one by one with every length checked.
+"""Read the records of an MCAP file, with all lengths checked.
 
-Source: the MCAP specification, version 0. The contents of schemas, channels and
-statistics are read by the ``mcap`` library; heads, chunks and indexes here, because
-they are many.
+Source: the MCAP specification, version 0. The ``mcap`` library decodes schemas,
+channels and statistics; the numerous headers, chunks and indexes are decoded here.
 """
 
 import struct
@@ -31,7 +30,7 @@ _STRING = struct.Struct("<I")
 
 
 class Head(NamedTuple):
-    """Where a record is: its content begins at ``begin`` and ends before ``end``."""
+    """Position of a record; its content spans ``begin`` to ``end`` (exclusive)."""
 
     opcode: int
     position: int
@@ -40,10 +39,10 @@ class Head(NamedTuple):
 
 
 class RecordFile(BinaryFile):
-    """An MCAP file's records."""
+    """Record-wise access to an MCAP file."""
 
     def head(self, position: int) -> Head:
-        """The record that begins there."""
+        """Read the record header at a position."""
         opcode, length = HEAD.unpack(self.read(position, HEAD.size))
         begin = position + HEAD.size
         if length > self.size - begin:
@@ -53,23 +52,23 @@ class RecordFile(BinaryFile):
         return Head(opcode, position, begin, begin + length)
 
     def content(self, head: Head, limit: int = LARGEST) -> bytes:
-        """What is in the record."""
+        """Read the content of a record."""
         if head.end - head.begin > limit:
             raise self.error(head.position, f"record of {head.end - head.begin} bytes")
         return self.read(head.begin, head.end - head.begin)
 
 
 def parse(kind: Any, content: bytes) -> Any:
-    """A record of the library's class.
+    """Decode a record with the library's class.
 
     Raises:
-        DecodeError: the content is none.
+        DecodeError: the content is invalid.
     """
     try:
         return kind.read(ReadDataStream(BytesIO(content)))
     except (McapError, struct.error, ValueError, MemoryError, OverflowError) as error:
         reason = str(error) or type(error).__name__
-        raise DecodeError(f"no {kind.__name__}: {reason}") from None
+        raise DecodeError(f"not a valid {kind.__name__}: {reason}") from None
 
 
 def chunk_head(file: RecordFile, head: Head) -> tuple[int, int, int, int, str, int]:

@@ -1,4 +1,4 @@
-"""Recorded bytes as messages."""
+"""Deserialization of recorded messages."""
 
 from typing import Any
 
@@ -8,37 +8,39 @@ from navette.msgs import Message, deserialize, get_interface, register_definitio
 
 
 def message_class(topic: BagTopic) -> type[Message]:
-    """The class by which a topic's messages are read.
+    """Return the message class of a topic.
 
-    It is made from the recording's own definition, so the type need not be installed.
-    Where the installed type of that name has other fields (a recording of another
-    release), the class is one of its own name.
+    The class is generated from the recorded definition, so the type need not be
+    installed. If the installed type of that name has other fields (a recording of
+    another release), the class has its own name.
 
     Raises:
-        FileFormatError: the definition is broken, or the messages are not ROS's.
-        UnknownNameError: the recording has no definition, and nobody else has one.
+        FileFormatError: invalid definition, or the messages are not ROS messages.
+        UnknownNameError: neither the recording nor the installation has a definition.
     """
     if topic.encoding != "cdr":
-        raise FileFormatError(topic.name, f"{topic.encoding} messages are not ROS's")
+        raise FileFormatError(
+            topic.name, f"{topic.encoding} messages are not ROS messages"
+        )
     if topic.definition:
         found = register_definition(topic.type_name, topic.definition, private=True)
     else:
         found = get_interface(topic.type_name)
     if not issubclass(found, Message):
-        raise FileFormatError(topic.name, f"{topic.type_name} is no message")
+        raise FileFormatError(topic.name, f"{topic.type_name} is not a message type")
     return found
 
 
 class Decoder:
-    """Reads messages of one topic."""
+    """Deserializes the messages of one topic."""
 
     def __init__(self, topic: BagTopic) -> None:
         self.message_class = message_class(topic)
 
     def __call__(self, data: bytes) -> Any:
-        """The message.
+        """Deserialize a message.
 
         Raises:
-            DecodeError: the bytes are none.
+            DecodeError: invalid bytes.
         """
         return deserialize(data, self.message_class)

@@ -1,4 +1,4 @@
-"""Writes rosbag2's ``metadata.yaml`` (version 8, Jazzy)."""
+"""Write rosbag2's ``metadata.yaml`` (version 8, Jazzy)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class FileFacts:
 def write_metadata(
     folder: Path, files: Sequence[FileFacts], topics: Sequence[tuple[BagTopic, int]]
 ) -> None:
-    """Say what is in a folder of ``.mcap`` files; replaced in one step.
+    """Write the metadata of a folder of ``.mcap`` files atomically.
 
     Raises:
         OSError: the disk is full.

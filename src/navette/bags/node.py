@@ -1,9 +1,9 @@
-"""The node ``recorder``: writes what is said on the topics into a bag.
+"""The node ``recorder``: record topics into a bag.
 
-It subscribes to every chosen topic as soon as the graph shows it, with queues that
-lose nothing, and writes each message at the node clock's time. Chunks end by size
-and by a timer on the same clock, so that the same run gives the same bytes, and a
-killed process loses at most ``flush_period_s`` of the robot's time.
+The node subscribes to every selected topic as soon as it appears in the graph, with
+unbounded queues, and writes each message with the time of the node's clock. Chunks end
+by size and by a timer of the same clock, so that the same run produces the same bytes,
+and a killed process loses at most ``flush_period_s`` of the robot's time.
 """
 
 from collections import deque
@@ -44,7 +44,7 @@ from navette.runtime.timer import Timer
 if TYPE_CHECKING:
     from navette.transports import Endpoint
 
-# Takes what any publisher offers, latched messages too, and drops nothing.
+# Compatible with every publisher, receives latched messages, drops nothing.
 _QOS = QoSProfile(
     history=QoSHistoryPolicy.KEEP_ALL,
     reliability=QoSReliabilityPolicy.BEST_AVAILABLE,
@@ -54,22 +54,22 @@ _QOS = QoSProfile(
 
 
 _MOST_EARLY = 1000
-"""Messages that are kept while simulated time has not begun."""
+"""Maximum number of messages stored before simulated time begins."""
 
 
 class RecorderNode(StageNode):
-    """Records from its making until :meth:`close`.
+    """Records from construction until :meth:`close`.
 
-    A disk that fills up ends the recording, with an error in the log and in
-    :attr:`error`; the robot keeps driving. Services: ``~/pause`` (SetBool), and where
-    it keeps the last seconds, ``~/snapshot`` (Trigger) writes them.
+    A full disk ends the recording, with an error in the log and in :attr:`error`; the
+    robot continues. Services: ``~/pause`` (SetBool) and, with snapshots,
+    ``~/snapshot`` (Trigger), which writes the last seconds.
 
     Args:
-        path: the ``.mcap`` file; one that exists is replaced. Where files are split,
-            and for snapshots, a new folder for them.
+        path: the ``.mcap`` file; an existing bag is replaced. For split files and
+            snapshots: a new folder.
 
     Raises:
-        FileFormatError: the file cannot be made; names path and reason.
+        FileFormatError: the file cannot be created; names path and reason.
     """
 
     PARAMS: ClassVar[type[Params]] = RecorderParams
@@ -90,7 +90,7 @@ class RecorderNode(StageNode):
         parameter_overrides: Sequence[Parameter[Any]] | None = None,
     ) -> None:
         self.path = Path(path)
-        #: What ended the recording early, if anything did.
+        #: The error that ended the recording, or None.
         self.error: FileFormatError | None = None
         self._recording: Recording | None = None
         self._stop_listening: Callable[[], None] = _nothing
@@ -103,7 +103,7 @@ class RecorderNode(StageNode):
             self.destroy_node()
             raise
         self._recorded: set[tuple[str, str]] = set()
-        #: Topics that should be recorded and whose type nobody has defined so far.
+        #: Selected topics whose type is not defined yet.
         self.undefined: dict[str, str] = {}
         self._message_count = 0
         self._payload_bytes = 0
@@ -128,11 +128,11 @@ class RecorderNode(StageNode):
 
     @property
     def topics(self) -> list[str]:
-        """Topics that are listened to, sorted."""
+        """Subscribed topics, sorted."""
         return sorted({topic for topic, _ in self._recorded} - self.undefined.keys())
 
     def close(self) -> None:
-        """Finish the file and leave the graph; twice is harmless."""
+        """Finish the file and leave the graph; a second call has no effect."""
         self.destroy_node()
 
     def destroy_node(self) -> None:
@@ -144,16 +144,16 @@ class RecorderNode(StageNode):
             self._recording = None
 
     def on_params_changed(self, old: RecorderParams) -> None:
-        """More topics are taken up at once; those recorded already stay."""
+        """Record newly selected topics at once; topics already recorded stay."""
         if self.params.flush_period_s != old.flush_period_s:
             self.destroy_timer(self._flush_timer)
             self._flush_timer = self._new_flush_timer()
         self.refresh()
 
-    # -- which topics ----------------------------------------------------------
+    # -- topics ----------------------------------------------------------------
 
     def _on_graph_change(self) -> None:
-        """Called from within a change, maybe of many: look once, and later."""
+        """Schedule one update for any number of graph changes."""
         if not self._refreshing:
             self._refreshing = True
             self.context.loop.call_soon_threadsafe(
@@ -161,7 +161,7 @@ class RecorderNode(StageNode):
             )
 
     def refresh(self) -> None:
-        """Take up topics that are new, or whose type has become known."""
+        """Subscribe to topics that are new, or whose type has become known."""
         self._refreshing = False
         if self._recording is None:
             return
@@ -193,19 +193,19 @@ class RecorderNode(StageNode):
             topic,
             partial(self._record, recorded),
             _QOS,
-            raw=True,  # who is far away has packed it already
+            raw=True,  # messages of other processes are serialized already
             shared=True,
         )
 
     def _announce(self, recorded: RecordedTopic) -> None:
-        """At the first message: its publishers, and what they offer, are known."""
+        """Register a topic at its first message, when its publishers' QoS is known."""
         endpoints = self.context.graph.endpoints(recorded.topic.name)
-        # Ids of endpoints of other processes are chance.
+        # Ids of endpoints of other processes are random.
         endpoints.sort(key=lambda endpoint: endpoint.node_full_name)
         offers = tuple(_offer(e) for e in endpoints if e.kind.name == "PUBLISHER")
         recorded.topic = replace(recorded.topic, qos=offers)
 
-    # -- what is said ----------------------------------------------------------
+    # -- messages --------------------------------------------------------------
 
     def _record(self, recorded: RecordedTopic, payload: bytes) -> None:
         if self._recording is None or self.params.paused:
@@ -223,7 +223,7 @@ class RecorderNode(StageNode):
             self._end_early(error)
 
     def _waits_for_clock(self, recorded: RecordedTopic, payload: bytes) -> bool:
-        """Keep what is heard before the first simulated time; it has no stamp yet."""
+        """Store a message received before the first simulated time, without a stamp."""
         if not self._clock.ros_time_is_active:
             return False
         if self._clock.now_ns == 0:
@@ -235,8 +235,7 @@ class RecorderNode(StageNode):
         return False
 
     def _new_flush_timer(self) -> Timer:
-        # Simulated time may stand still; what was said must reach the disk all the
-        # same.
+        # Simulated time may stop; received messages must reach the disk anyway.
         clock = None
         if self._clock.ros_time_is_active:
             clock = Clock(clock_type=ClockType.STEADY_TIME, context=self.context)
@@ -247,13 +246,15 @@ class RecorderNode(StageNode):
             self._on_disk(self._recording.flush)
 
     def take_snapshot(self) -> Path | None:
-        """Write the last seconds into a new file; None if there is nothing to write.
+        """Write the last seconds to a new file; None if there are no messages.
 
         Raises:
-            FileFormatError: this recorder writes all the time, or the disk is full.
+            FileFormatError: this recorder takes no snapshots, or the disk is full.
         """
         if not isinstance(self._recording, Snapshots):
-            raise FileFormatError(self.path, "is no recording of snapshots")
+            raise FileFormatError(
+                self.path, "this recorder takes no snapshots (see snapshot_duration_s)"
+            )
         try:
             return self._recording.take()
         except OSError as error:
@@ -268,7 +269,7 @@ class RecorderNode(StageNode):
             response.message = str(error)
             return response
         response.success = path is not None
-        response.message = "nothing was said" if path is None else str(path)
+        response.message = "no message was received" if path is None else str(path)
         self.get_logger().info(f"snapshot: {response.message}")
         return response
 
@@ -279,14 +280,14 @@ class RecorderNode(StageNode):
         return response
 
     def _on_disk(self, work: Callable[[], None]) -> None:
-        """Do ``work``; a disk that fails ends the recording, not the run."""
+        """Run ``work``; a disk error ends the recording, not the run."""
         try:
             work()
         except OSError as error:
             self._end_early(error)
 
     def _end_early(self, error: OSError) -> None:
-        assert self._recording is not None, "without a file there is no work"
+        assert self._recording is not None, "the recorder has a file"
         self._recording.abandon()
         self._recording = None
         reason = error.strerror or str(error)
@@ -327,4 +328,4 @@ def _offer(endpoint: "Endpoint") -> OfferedQos:
 
 
 def _nothing() -> None:
-    """Nobody is listened to."""
+    """No graph subscription to end."""

@@ -1,4 +1,4 @@
-"""Opens a recording, whatever its format."""
+"""Open a recording of any format."""
 
 import shutil
 from collections.abc import Callable
@@ -22,13 +22,13 @@ PACKED = ".zstd"
 
 
 def open_bag(path: Path | str) -> BagReader:
-    """The recording in a ``.mcap``, ``.bag`` or ``.db3`` file, or a rosbag2 folder.
+    """Open a ``.mcap``, ``.bag`` or ``.db3`` file, or a rosbag2 folder.
 
-    What a file is, its first bytes say. A file without an index is gone through once;
-    what is wrong with it is then in ``problems``, and what is sound can be read.
+    The first bytes determine the format. A file without an index is scanned once;
+    damaged parts are listed in ``problems``, intact parts can be read.
 
     Raises:
-        FileFormatError: there is nothing, or no recording that can be read.
+        FileFormatError: the path does not exist or is not a readable recording.
     """
     path = Path(path)
     if path.is_dir():
@@ -37,7 +37,7 @@ def open_bag(path: Path | str) -> BagReader:
 
 
 def is_bag(path: Path) -> bool:
-    """Whether a file or folder looks like a recording, by its name."""
+    """Whether a file or folder is a recording, by its name."""
     if path.is_dir():
         return (path / METADATA).is_file()
     name = path.name.removesuffix(PACKED).removesuffix(".active")
@@ -45,7 +45,7 @@ def is_bag(path: Path) -> bool:
 
 
 def holds_bag(path: Path) -> bool:
-    """Whether a file begins as a recording, or is empty: what may be replaced."""
+    """Whether a file is empty or a recording (by its first bytes) and replaceable."""
     with path.open("rb") as file:
         start = file.read(16)
     return not start or start.startswith((DB3_MAGIC, b"#ROS", MCAP_MAGIC))
@@ -74,12 +74,14 @@ def _open_file(path: Path) -> BagReader:
     }
     reader = known.get(path.suffix)
     if reader is not None:
-        return reader(path)  # says what is wrong with the beginning
-    raise FileFormatError(path, "is no recording: wanted .mcap, .bag, .db3 or a folder")
+        return reader(path)  # raises an error about the first bytes
+    raise FileFormatError(
+        path, "is not a recording; supported: .mcap, .bag, .db3 or a rosbag2 folder"
+    )
 
 
 def _open_packed(path: Path) -> BagReader:
-    """A file that rosbag2 compressed as a whole: it has to be unpacked beside."""
+    """Decompress a file that rosbag2 compressed as a whole to a temporary file."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(TemporaryDirectory(prefix="navette-bag-")))
         unpacked = folder / path.name.removesuffix(PACKED)
@@ -88,13 +90,13 @@ def _open_packed(path: Path) -> BagReader:
                 stream = zstandard.ZstdDecompressor().stream_reader(packed)
                 shutil.copyfileobj(stream, out, 1 << 20)
         except (zstandard.ZstdError, OSError) as error:
-            raise FileFormatError(path, f"cannot be unpacked: {error}") from error
+            raise FileFormatError(path, f"cannot be decompressed: {error}") from error
         reader = stack.enter_context(_open_file(unpacked))
         return _Unpacked(path, reader, stack.pop_all())
 
 
 class _Unpacked(FolderReader):
-    """One file that was compressed as a whole; its unpacked copy goes with it."""
+    """A decompressed file; the temporary copy is deleted with it."""
 
     def __init__(self, path: Path, reader: BagReader, stack: ExitStack) -> None:
         metadata = Metadata(reader.version, compression="zstd (file)")
@@ -123,7 +125,9 @@ def _open_folder(folder: Path) -> BagReader:
     files = [each for each in folder.iterdir() if each.is_file() and is_bag(each)]
     names = metadata.files or tuple(sorted(each.name for each in files))
     if not names:
-        raise FileFormatError(folder, "holds no recording: no metadata.yaml, no files")
+        raise FileFormatError(
+            folder, "is not a recording: it has neither metadata.yaml nor bag files"
+        )
     with ExitStack() as stack:
         readers: list[BagReader] = []
         for name in names:

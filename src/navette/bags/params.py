@@ -9,41 +9,46 @@ from navette.params import Params, param
 
 @dataclass(frozen=True, kw_only=True)
 class RecorderParams(Params):
-    """What is recorded, and how much a killed process may lose."""
+    """Selection of topics, file splitting and flushing."""
 
     topics: tuple[str, ...] = param(
-        (), "full names of topics to record; none (and no regex or type) is all"
+        (), "full names of topics to record; all if no topic, regex or type is given"
     )
     types: tuple[str, ...] = param((), "record topics of these types")
     regex: str = param("", "record topics whose full name matches this pattern")
-    exclude: str = param("", "leave out topics whose full name matches this pattern")
-    exclude_types: tuple[str, ...] = param((), "leave out topics of these types")
+    exclude: str = param(
+        "", "do not record topics whose full name matches this pattern"
+    )
+    exclude_types: tuple[str, ...] = param((), "do not record topics of these types")
     images: bool = param(False, "record raw images too (each camera then renders)")
     hidden: bool = param(False, "record hidden topics too (/_…)")
     flush_period_s: float = param(
         0.25,
-        "time after which what was recorded is safe on disk",
+        "longest time before received messages are written to disk",
         unit="s",
         at_least=0.01,
         at_most=10.0,
     )
-    compression: str = param("zstd", "of the file's chunks", choices=COMPRESSIONS)
+    compression: str = param("zstd", "compression of the chunks", choices=COMPRESSIONS)
     max_bag_size_bytes: int = param(
-        0, "size at which a new file begins; 0 for one file", unit="B", at_least=0
+        0, "size at which a new file is started; 0 for one file", unit="B", at_least=0
     )
     max_bag_duration_s: float = param(
-        0.0, "length at which a new file begins; 0 for one file", unit="s", at_least=0.0
+        0.0,
+        "duration after which a new file is started; 0 for one file",
+        unit="s",
+        at_least=0.0,
     )
     snapshot_duration_s: float = param(
         0.0,
-        "keep this much in memory and write it only when asked; 0 to write always",
+        "duration kept in memory and written on request; 0 writes continuously",
         unit="s",
         at_least=0.0,
     )
     snapshot_bytes: int = param(
-        512 * 2**20, "most that a snapshot keeps in memory", unit="B", at_least=1024
+        512 * 2**20, "maximum memory of a snapshot", unit="B", at_least=1024
     )
-    paused: bool = param(False, "record nothing for the time being")
+    paused: bool = param(False, "pause the recording")
 
     @property
     def selection(self) -> TopicSelection:
@@ -58,5 +63,5 @@ class RecorderParams(Params):
         )
 
     def check(self) -> None:
-        """Patterns must compile."""
+        """Check that the patterns compile."""
         self.selection  # noqa: B018 - raises

@@ -1,4 +1,4 @@
-"""Quality of service as text, in the form that rosbag2 stores in a bag."""
+"""Quality of service as text, in the format of rosbag2."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ _INFINITE_NS = 2**63 - 1
 
 @dataclass(frozen=True)
 class OfferedQos:
-    """What one publisher offers; policy names as in ROS 2, lower case."""
+    """QoS offered by one publisher; policy names as in ROS 2, lower case."""
 
     history: str = "keep_last"
     depth: int = 10
@@ -49,7 +49,7 @@ def _duration(name: str, duration_ns: int) -> tuple[str, str, str]:
     return f"  {name}:", f"    sec: {seconds}", f"    nsec: {nanoseconds}"
 
 
-# Numbers of older releases (rmw/types.h); rosbag2 wrote them up to Iron.
+# Numbers of rmw/types.h, written by rosbag2 up to Iron.
 _NAMES = {
     "history": ("system_default", "keep_last", "keep_all", "unknown"),
     "reliability": (
@@ -80,10 +80,9 @@ _MOST_OFFERS = 1000
 
 
 def parse_qos(text: object) -> tuple[OfferedQos, ...]:
-    """What :func:`qos_text` or any release of rosbag2 wrote.
+    """Parse the output of :func:`qos_text` or of any rosbag2 release.
 
-    What is not understood is taken for the default: it is advice, and no reason to
-    refuse a bag.
+    Invalid values become the default: QoS is a hint and never a reason to refuse a bag.
     """
     if isinstance(text, str):
         if not text or len(text) > _LONGEST_TEXT:
@@ -124,7 +123,7 @@ def _policy(name: str, found: Mapping[str, Any]) -> str:
 
 
 def _nanoseconds(found: object) -> int:
-    """Infinite unless it says otherwise; 0 s is how older releases wrote infinite."""
+    """Parse a duration; infinite by default, and for 0 s of older releases."""
     if not isinstance(found, dict):
         return _INFINITE_NS
     seconds, rest = found.get("sec"), found.get("nsec")

@@ -1,4 +1,4 @@
-"""Where a recording goes: one file, files of a size or length, or the last seconds."""
+"""Targets of a recording: one file, split files, or snapshots of the last seconds."""
 
 from collections import Counter, deque
 from dataclasses import dataclass, field
@@ -12,11 +12,11 @@ from navette.errors import FileFormatError
 
 
 class RecordedTopic:
-    """A topic of a recording; its identity is its channel."""
+    """A topic of a recording; compared by identity."""
 
     __slots__ = ("count", "topic")
 
-    #: Messages so far, of the whole recording.
+    #: Messages in the whole recording so far.
     count: int
 
     def __init__(self, topic: BagTopic) -> None:
@@ -26,14 +26,14 @@ class RecordedTopic:
 
 @dataclass
 class Facts:
-    """What is in one file."""
+    """Statistics of one file."""
 
     start_ns: int = 0
     end_ns: int = 0
     count: int = 0
 
     def add(self, stamp_ns: int) -> None:
-        """One more message."""
+        """Count a message."""
         self.start_ns = min(self.start_ns, stamp_ns) if self.count else stamp_ns
         self.end_ns = max(self.end_ns, stamp_ns) if self.count else stamp_ns
         self.count += 1
@@ -43,9 +43,9 @@ class SingleFile:
     """One ``.mcap`` file.
 
     Raises:
-        FileFormatError: it cannot be made; names path and reason.
+        FileFormatError: the file cannot be created; names path and reason.
 
-    A full or vanished disk shows as ``OSError`` from any method but :meth:`abandon`.
+    All methods except :meth:`abandon` raise ``OSError`` if the disk is full or gone.
     """
 
     def __init__(self, path: Path, *, compression: str = "zstd") -> None:
@@ -56,7 +56,7 @@ class SingleFile:
 
     @property
     def size(self) -> int:
-        """Bytes so far."""
+        """Size so far, bytes."""
         return self._writer.size
 
     def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
@@ -75,11 +75,11 @@ class SingleFile:
         self.facts.add(stamp_ns)
 
     def flush(self) -> None:
-        """What was written outlives this process."""
+        """Flush, so that written messages survive the end of this process."""
         self._writer.flush()
 
     def close(self) -> None:
-        """Finish the file; twice is harmless."""
+        """Finish the file; a second call has no effect."""
         self._writer.close()
 
     def abandon(self) -> None:
@@ -88,10 +88,10 @@ class SingleFile:
 
 
 class Folder:
-    """A folder of files as rosbag2 makes it: ``NAME/NAME_0.mcap``, …, metadata.yaml.
+    """A folder as of rosbag2: ``NAME/NAME_0.mcap``, …, metadata.yaml.
 
     Raises:
-        FileFormatError: the folder is there already, or cannot be made.
+        FileFormatError: the folder exists already, or cannot be created.
     """
 
     def __init__(self, path: Path, *, compression: str = "zstd") -> None:
@@ -100,24 +100,26 @@ class Folder:
         try:
             path.mkdir()
         except FileExistsError:
-            raise FileFormatError(path, "exists already; it is not replaced") from None
+            raise FileFormatError(path, "exists already and is not replaced") from None
         except OSError as error:
-            raise FileFormatError(path, f"cannot be made: {error.strerror}") from error
+            raise FileFormatError(
+                path, f"cannot be created: {error.strerror}"
+            ) from error
         self.files: list[SingleFile] = []
         self._counts: Counter[RecordedTopic] = Counter()
 
     def next_file(self) -> SingleFile:
-        """A new file; those before it stay as they are."""
+        """Start a new file."""
         name = f"{self.path.name}_{len(self.files)}.mcap"
         self.files.append(SingleFile(self.path / name, compression=self._compression))
         return self.files[-1]
 
     def note(self, recorded: RecordedTopic) -> None:
-        """A message of the topic was written."""
+        """Count a message of the topic."""
         self._counts[recorded] += 1
 
     def write_metadata(self) -> None:
-        """Say what is in the folder so far."""
+        """Write the metadata of the folder."""
         files = [
             FileFacts(f.path.name, f.facts.start_ns, f.facts.end_ns, f.facts.count)
             for f in self.files
@@ -127,7 +129,7 @@ class Folder:
 
 
 class SplitFiles:
-    """Files that end at a size or a length.
+    """Files split by size or duration.
 
     Args:
         max_size: bytes of a file, 0 for no limit.
@@ -150,7 +152,7 @@ class SplitFiles:
         self._is_closed = False
 
     def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
-        """Append a message, to a new file if the present one is full."""
+        """Append a message, to a new file if the current one is full."""
         if self._is_full(stamp_ns, len(payload)):
             self._file.close()
             self._file = self._folder.next_file()
@@ -168,11 +170,11 @@ class SplitFiles:
         return bool(self._max_duration_ns) and length_ns >= self._max_duration_ns
 
     def flush(self) -> None:
-        """What was written outlives this process."""
+        """Flush, so that written messages survive the end of this process."""
         self._file.flush()
 
     def close(self) -> None:
-        """Finish the last file and the metadata; twice is harmless."""
+        """Finish the last file and the metadata; a second call has no effect."""
         if not self._is_closed:
             self._is_closed = True
             self._file.close()
@@ -192,14 +194,14 @@ class _Kept:
 
 
 class Snapshots:
-    """Keeps the last seconds in memory and writes them when asked.
+    """Keeps the last seconds in memory and writes them on request.
 
-    The last message of a latched topic is kept however old it is: without the map,
-    the seconds would say little.
+    The last message of a latched topic is kept regardless of its age, for example the
+    map.
 
     Args:
-        duration_ns: how much is kept.
-        max_bytes: and no more than that.
+        duration_ns: duration to keep.
+        max_bytes: memory limit.
     """
 
     def __init__(
@@ -219,7 +221,7 @@ class Snapshots:
         self._size = 0
 
     def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
-        """Keep a message for a while."""
+        """Store a message; drop those that are too old."""
         self._kept.append(_Kept(recorded, stamp_ns, payload))
         self._size += len(payload)
         oldest_ns = stamp_ns - self._duration_ns
@@ -232,7 +234,7 @@ class Snapshots:
                 break
 
     def take(self) -> Path | None:
-        """Write what is kept into a new file; None if there is nothing.
+        """Write the stored messages to a new file; None without messages.
 
         Raises:
             OSError: the disk is full.
@@ -252,10 +254,10 @@ class Snapshots:
         return file.path
 
     def flush(self) -> None:
-        """Nothing is on disk until a snapshot is taken."""
+        """Nothing to flush: snapshots are written on request."""
 
     def close(self) -> None:
-        """What is kept and was not asked for is dropped."""
+        """Drop the stored messages."""
         self._kept.clear()
         self._latched.clear()
 

@@ -1,4 +1,4 @@
-"""Room on the disk that is kept for the end of a file."""
+"""Disk space reserved for the end of a file."""
 
 import os
 from contextlib import suppress
@@ -10,10 +10,10 @@ _STEP_BYTES = 8 * 1024
 
 
 class Reserve:
-    """A file without a name that takes up space until it is given back.
+    """An unnamed temporary file that occupies space until it is released.
 
-    With the process, however that ends, it is gone. Where no such file can be made
-    nothing is kept.
+    The operating system deletes it when the process ends. If it cannot be created,
+    nothing is reserved.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -22,10 +22,10 @@ class Reserve:
         self.size = 0
 
     def grow(self, size: int) -> None:
-        """Keep at least ``size`` bytes.
+        """Reserve at least ``size`` bytes.
 
         Raises:
-            OSError: the disk is full; what was kept before still is.
+            OSError: the disk is full; the earlier reservation stays.
         """
         if size <= self.size:
             return
@@ -38,11 +38,11 @@ class Reserve:
             return
         wanted = (size // _STEP_BYTES + 1) * _STEP_BYTES
         while self.size < wanted:
-            # Not zeros: file systems that compress would keep no room for them.
+            # Not zeros, which a compressing file system would not store.
             self.size += self._file.write(os.urandom(wanted - self.size))
 
     def release(self) -> None:
-        """Give the room back."""
+        """Release the space."""
         if self._file is not None:
             self._file.close()
         self._file, self.size = None, 0

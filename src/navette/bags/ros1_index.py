@@ -1,4 +1,4 @@
-"""What is where in a ROS 1 bag: by its index, or by going through its records."""
+"""Index of a ROS 1 bag, from its index records or from a scan."""
 
 import re
 import struct
@@ -52,17 +52,21 @@ class BagIndex:
 
 
 def read_index(file: BagFile) -> BagIndex:
-    """The index by the quickest way there is.
+    """Read the index if possible, else scan the records.
 
     Raises:
-        FileFormatError: this is no ROS 1 bag, or one of another version.
+        FileFormatError: not a ROS 1 bag, or another version.
     """
     start = file.read(0, min(len(MAGIC), file.size))
     if start != MAGIC:
         if start.startswith((b"#ROSBAG V", b"#ROSRECORD")):
             version = start.split(b"\n")[0].decode("ascii", "replace")
-            raise FileFormatError(file.path, f"{version}; only version 2.0 is read")
-        raise FileFormatError(file.path, "is no ROS 1 bag: it does not begin as one")
+            raise FileFormatError(
+                file.path, f"{version}; only version 2.0 is supported"
+            )
+        raise FileFormatError(
+            file.path, "is not a ROS 1 bag: the magic bytes are missing"
+        )
     try:
         index = _read_index_section(file)
     except (FileFormatError, DecodeError, struct.error) as error:
@@ -113,7 +117,7 @@ def _connection(record: Record, data: bytes) -> Connection:
 
 
 def _topic_name(name: str) -> str:
-    """As rosbag gives it, but for slashes that are doubled or at the end."""
+    """Return the name as in rosbag, without double or trailing slashes."""
     parts = [part for part in name.split("/") if part]
     return ("/" if name.startswith("/") else "") + "/".join(parts)
 
@@ -138,11 +142,11 @@ def _chunk_of_info(
 
 
 def scan(file: BagFile) -> BagIndex:
-    """The index by going from record to record.
+    """Build the index by scanning the records.
 
-    The last chunk of a recording that was killed has no length yet: its records are
-    met as if they were outside of any chunk. Behind a broken record it goes on at the
-    next chunk that can be found.
+    The last chunk of a killed recorder has no length yet: its records are found as if
+    they were outside any chunk. After a damaged record the scan resumes at the next
+    chunk that can be found.
     """
     index = BagIndex()
     walker = _Walk(file, index)
@@ -151,10 +155,10 @@ def scan(file: BagFile) -> BagIndex:
 
 
 def _next_chunk(file: BagFile, start: int) -> int | None:
-    """Where the next sound chunk begins, by the field that says it is one."""
+    """Find the next intact chunk by its op field."""
 
     def chunk_of(position: int) -> int | None:
-        # The field may be any of the header's three.
+        # The field may be any of the three header fields.
         first = max(start, position - _LONGEST_HEADER)
         return next(
             (c for c in range(position - 4, first - 1, -1) if _is_chunk(file, c)), None
@@ -172,14 +176,14 @@ def _is_chunk(file: BagFile, position: int) -> bool:
 
 
 class _Walk:
-    """Collects the index while records pass by."""
+    """Collects the index during a scan."""
 
     def __init__(self, file: BagFile, index: BagIndex) -> None:
         self._file = file
         self._index = index
 
     def visit(self, position: int) -> int:
-        """Take in one record; the position behind it."""
+        """Process one record; return the next position."""
         record = self._file.record(position)
         if record.op == Op.CHUNK:
             self._chunk(record)

@@ -1,7 +1,7 @@
-"""Messages of ROS 1 in ROS 2's form, and back.
+"""Convert messages between ROS 1 and ROS 2 serialization.
 
-The bytes are turned by ``rosbags``, from a definition that was read and bounded by
-:mod:`navette.msgs`: what a file claims never reaches a code generator as it is.
+``rosbags`` converts the bytes, with definitions parsed and bounded by
+:mod:`navette.msgs`, so that untrusted text never reaches a code generator.
 """
 
 import struct
@@ -18,7 +18,7 @@ class Ros1Type:
 
     Args:
         name: ``pkg/Type``.
-        text: its definition with what it contains, as in the file.
+        text: its definition with nested definitions, as recorded.
 
     Raises:
         FileFormatError: the definition cannot be read.
@@ -27,7 +27,7 @@ class Ros1Type:
     def __init__(self, name: str, text: str) -> None:
         self.type_name, mapped = ros1_definition(name, text)
         known = load_private_definition(self.type_name, mapped)
-        #: ``ros2msg`` text with everything that it contains, under ROS 2's names.
+        #: ``ros2msg`` definition with nested definitions, with ROS 2's names.
         self.definition = mapped if known != self.type_name else definition_text(known)
 
     @cached_property
@@ -39,10 +39,10 @@ class Ros1Type:
         return store
 
     def to_cdr(self, data: bytes) -> bytes:
-        """A message of the file as CDR with its header.
+        """Convert a recorded message to CDR with its header.
 
         Raises:
-            DecodeError: the bytes are no message of this type.
+            DecodeError: the bytes are not a message of this type.
         """
         from rosbags.serde import SerdeError
         from rosbags.typesys import TypesysError
@@ -54,13 +54,13 @@ class Ros1Type:
             *(ValueError, LookupError, TypeError, OverflowError),
         ) as error:
             raise DecodeError(
-                f"{len(data)} bytes are no ROS 1 {self.type_name}: {error}"
+                f"{len(data)} bytes are not a ROS 1 {self.type_name}: {error}"
             ) from error
 
 
 @lru_cache(maxsize=256)
 def ros1_type(name: str, text: str) -> Ros1Type:
-    """The type of a name and a definition; made once, which takes milliseconds.
+    """Return the type of a name and a definition; cached, since it takes milliseconds.
 
     Raises:
         FileFormatError: the definition cannot be read.

@@ -1,4 +1,4 @@
-"""Reads ROS 1's ``.bag``, indexed or not; messages come as ROS 2's."""
+"""Read ROS 1 ``.bag`` files, indexed or not, as ROS 2 messages."""
 
 import struct
 from collections.abc import Mapping, Sequence
@@ -26,10 +26,10 @@ class Ros1Reader(ChunkedReader):
     """An open ``.bag`` file.
 
     Args:
-        ignore_index: go through the records even if there is an index.
+        ignore_index: scan the records even if there is an index.
 
     Raises:
-        FileFormatError: no such file, or no ROS 1 bag of version 2.0.
+        FileFormatError: the file does not exist or is not a ROS 1 bag, version 2.0.
     """
 
     storage = "rosbag1"
@@ -76,15 +76,15 @@ class Ros1Reader(ChunkedReader):
 
     @property
     def is_indexed(self) -> bool:
-        """Whether the file was opened by its index."""
+        """Whether the index was used."""
         return self.index.from_index
 
     def walked(self) -> BagIndex:
-        """What is found by going through the records instead."""
+        """Return the index from a scan of the records."""
         return scan(self._file)
 
     def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
-        """From the index records that follow the chunk."""
+        """Read the index records after the chunk."""
         found: dict[int, list[int]] = {}
         if chunk.bare:
             return None

@@ -1,4 +1,4 @@
-"""Records of a ROS 1 bag, version 2.0, with every length checked.
+"""Read the records of a ROS 1 bag, version 2.0, with all lengths checked.
 
 Source: wiki.ros.org/Bags/Format/2.0.
 """
@@ -35,7 +35,7 @@ class Op(IntEnum):
 
 
 class Record(NamedTuple):
-    """A record's header and where its data is."""
+    """Header of a record and the position of its data."""
 
     op: int
     fields: Fields
@@ -45,10 +45,10 @@ class Record(NamedTuple):
 
 
 class BagFile(BinaryFile):
-    """A ROS 1 bag's records."""
+    """Record-wise access to a ROS 1 bag."""
 
     def record(self, position: int, *, wanted: Op | None = None) -> Record:
-        """The record that begins there; its data is not read."""
+        """Read the record header at a position; the data is not read."""
         (length,) = _UINT32.unpack(self.read(position, 4))
         if length > _LARGEST_HEADER:
             raise self.error(position, f"record header of {length} bytes")
@@ -69,15 +69,15 @@ class BagFile(BinaryFile):
         return Record(op, fields, position, begin, begin + size)
 
     def data(self, record: Record) -> bytes:
-        """What is in the record."""
+        """Read the data of a record."""
         return self.read(record.begin, record.end - record.begin)
 
 
 def parse_fields(header: bytes | memoryview) -> Fields:
-    """The fields of a record's header.
+    """Parse the fields of a record header.
 
     Raises:
-        DecodeError: a field ends outside, or has no name.
+        DecodeError: a field exceeds the header, or has no name.
     """
     header = bytes(header)
     fields: Fields = {}
@@ -91,37 +91,37 @@ def parse_fields(header: bytes | memoryview) -> Fields:
         position += length
         name, equals, value = field.partition(b"=")
         if position > size or not equals:
-            raise DecodeError("record header with a field that is none")
+            raise DecodeError("record header with an invalid field")
         fields[name] = value
     return fields
 
 
 def uint8(fields: Fields, name: bytes) -> int:
-    """A field of one byte."""
+    """Read a one-byte field."""
     return _field(fields, name, 1)[0]
 
 
 def uint32(fields: Fields, name: bytes) -> int:
-    """A field of four bytes."""
+    """Read a four-byte field."""
     number: int = _UINT32.unpack(_field(fields, name, 4))[0]
     return number
 
 
 def uint64(fields: Fields, name: bytes) -> int:
-    """A field of eight bytes."""
+    """Read an eight-byte field."""
     number: int = _UINT64.unpack(_field(fields, name, 8))[0]
     return number
 
 
 def time_ns(fields: Fields, name: bytes) -> int:
-    """A field with a time, in nanoseconds."""
+    """Read a time field, in nanoseconds."""
     seconds, rest = _TIME.unpack(_field(fields, name, 8))
     stamp: int = seconds * 1_000_000_000 + rest
     return stamp
 
 
 def text(fields: Fields, name: bytes) -> str:
-    """A field with text; whatever is no UTF-8 is replaced."""
+    """Read a text field; invalid UTF-8 is replaced."""
     if name not in fields:
         raise DecodeError(f"record without {name.decode()!r}")
     return fields[name].decode("utf-8", "replace")
@@ -135,10 +135,10 @@ def _field(fields: Fields, name: bytes, size: int) -> bytes:
 
 
 def read_chunk(file: BagFile, chunk: Chunk) -> bytes:
-    """The records in a chunk, unpacked.
+    """Return the uncompressed records of a chunk.
 
     Raises:
-        FileFormatError: there is no chunk, or it is damaged.
+        FileFormatError: missing or damaged chunk.
     """
     if chunk.bare:
         return file.read(chunk.position, chunk.length)
@@ -147,14 +147,14 @@ def read_chunk(file: BagFile, chunk: Chunk) -> bytes:
         size = uint32(record.fields, b"size")
         kind = text(record.fields, b"compression")
         if record.end - record.begin > LARGEST:
-            raise DecodeError(f"{record.end - record.begin} packed bytes")
+            raise DecodeError(f"{record.end - record.begin} compressed bytes")
         return unpack(kind, file.data(record), size)
     except DecodeError as error:
         raise file.error(chunk.position, f"chunk: {error}") from error
 
 
 def records_in(path: Path, chunk: Chunk, data: bytes) -> Iterator[Record]:
-    """The records in a chunk's bytes; positions count from the chunk's first."""
+    """Iterate over the records in a chunk's bytes; positions are relative to it."""
     view = memoryview(data)
     position, size = 0, len(data)
     while position < size:
@@ -181,7 +181,7 @@ def _record_at(data: memoryview, position: int, size: int) -> Record:
 
 
 def message_entries(path: Path, chunk: Chunk, data: bytes) -> list[Entry]:
-    """The messages in a chunk's bytes, as they lie."""
+    """Iterate over the messages in a chunk's bytes, in file order."""
     entries: list[Entry] = []
     for record in records_in(path, chunk, data):
         if record.op == Op.MESSAGE:

@@ -1,4 +1,4 @@
-"""Writes ``.db3`` and ``.bag`` through ``rosbags``, whose formats these are."""
+"""Write ``.db3`` and ``.bag`` files through ``rosbags``."""
 
 import sqlite3
 import struct
@@ -17,19 +17,20 @@ _HEADER = "std_msgs/msg/Header"
 
 
 def store_of(topic: BagTopic, path: Path) -> Any:
-    """The type store of ``rosbags`` that holds a topic's type.
+    """Return a ``rosbags`` type store with a topic's type.
 
     Raises:
-        FileFormatError: the definition is missing or broken.
+        FileFormatError: missing or invalid definition.
     """
     from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 
     if not topic.definition:
         raise FileFormatError(
             path,
-            f"{topic.name}: nobody defines {topic.type_name}, and this file must",
+            f"{topic.name}: {topic.type_name} has no definition, which this format "
+            "requires",
         )
-    read_definition(topic.type_name, topic.definition)  # refuses what is hostile
+    read_definition(topic.type_name, topic.definition)  # refuses hostile definitions
     store = get_typestore(Stores.EMPTY)
     try:
         store.register(get_types_from_msg(topic.definition, topic.type_name))
@@ -44,9 +45,9 @@ class Db3Writer:
     """Writes rosbag2's SQLite, schema 4.
 
     Args:
-        path: a name that ends in ``.db3`` gives that file alone; another one a folder
-            with ``metadata.yaml``.
-        compression: ``none``, or ``zstd`` of the whole file (in a folder only).
+        path: a name with the suffix ``.db3`` is a single file, others are a folder with
+            ``metadata.yaml``.
+        compression: ``none``, or ``zstd`` of the whole file (folders only).
     """
 
     def __init__(self, path: Path, *, compression: str = "none") -> None:
@@ -63,7 +64,7 @@ class Db3Writer:
             )
         self._channels: dict[BagTopic, Any] = {}
         try:
-            # Made beside its place: what is there is whole, or is not there.
+            # Written beside the target, so that the target is complete or absent.
             self._temporary = TemporaryDirectory(prefix=".navette-", dir=path.parent)
             folder = Path(self._temporary.name) / path.stem
             self._writer = Writer(
@@ -82,7 +83,7 @@ class Db3Writer:
         """Append a message.
 
         Raises:
-            FileFormatError: its type has no definition, or the disk is full.
+            FileFormatError: the type has no definition, or the disk is full.
         """
         channel = self._channels.get(message.topic)
         if channel is None:
@@ -94,7 +95,7 @@ class Db3Writer:
         self.message_count += 1
 
     def add_topic(self, topic: BagTopic) -> None:
-        """Announce a topic, also one without messages."""
+        """Add a topic, possibly without messages."""
         if topic not in self._channels:
             self._channels[topic] = self._add(topic)
 
@@ -115,7 +116,7 @@ class Db3Writer:
             raise FileFormatError(self.path, f"{topic.name}: {error}") from error
 
     def close(self) -> None:
-        """Finish the file and put it into its place."""
+        """Finish the file and move it to its target."""
         try:
             self._writer.close()
             self._made.replace(self.path)
@@ -125,7 +126,7 @@ class Db3Writer:
             self._temporary.cleanup()
 
     def abandon(self) -> None:
-        """Leave nothing behind."""
+        """Delete the unfinished file."""
         with suppress(sqlite3.Error, OSError):
             self._writer.abort()
         self._temporary.cleanup()
@@ -156,7 +157,7 @@ def _qos(offer: Any) -> Any:
 
 
 class Ros1Writer:
-    """Writes a ROS 1 bag, version 2.0; types get ROS 1's words again.
+    """Writes a ROS 1 bag, version 2.0, with ROS 1 type names.
 
     Args:
         compression: ``none``, ``lz4`` or ``bz2``.
@@ -188,7 +189,7 @@ class Ros1Writer:
         """Append a message.
 
         Raises:
-            FileFormatError: type or stamp cannot be had in ROS 1, or the disk is full.
+            FileFormatError: type or stamp has no ROS 1 form, or the disk is full.
         """
         from rosbags.serde import SerdeError
 
@@ -196,7 +197,7 @@ class Ros1Writer:
         channel, convert = self._channels[message.topic]
         try:
             if not 0 <= message.stamp_ns < _FIRST_TOO_LATE_NS:
-                raise ValueError("its stamps go from 1970 to 2106")
+                raise ValueError("ROS 1 stamps range from 1970 to 2106")
             data = convert(message.data, message.topic.type_name)
             self._writer.write(channel, message.stamp_ns, data)
         except OSError as error:
@@ -205,19 +206,20 @@ class Ros1Writer:
             raise FileFormatError(
                 self.path,
                 f"{message.topic.name} at {message.stamp_ns} ns: message or stamp "
-                f"cannot be had in ROS 1: {error}",
+                f"cannot be represented in ROS 1: {error}",
             ) from error
         self.message_count += 1
 
     def add_topic(self, topic: BagTopic) -> None:
-        """Announce a topic, also one without messages."""
+        """Add a topic, possibly without messages."""
         if topic not in self._channels:
             self._channels[topic] = self._add(topic)
 
     def _add(self, topic: BagTopic) -> tuple[Any, Callable[..., Any]]:
         if topic.encoding != "cdr":
             raise FileFormatError(
-                self.path, f"{topic.name}: {topic.encoding} messages are not ROS's"
+                self.path,
+                f"{topic.name}: {topic.encoding} messages are not ROS messages",
             )
         source = store_of(topic, self.path)
         channel = self._writer.add_connection(
@@ -230,7 +232,7 @@ class Ros1Writer:
         return channel, source.cdr_to_ros1
 
     def close(self) -> None:
-        """Finish the file and put it into its place."""
+        """Finish the file and move it to its target."""
         try:
             self._writer.close()
             self._part.replace(self.path)
@@ -238,17 +240,17 @@ class Ros1Writer:
             raise FileFormatError(self.path, f"cannot be written: {error}") from error
 
     def abandon(self) -> None:
-        """Leave nothing behind."""
+        """Delete the unfinished file."""
         with suppress(OSError):
             self._writer.close()
         self._part.unlink(missing_ok=True)
 
 
 def _ros1_store(source: Any) -> Any:
-    """The same types in ROS 1's words.
+    """Convert types to ROS 1 definitions.
 
-    ROS 1 tells types apart by a checksum over their text: where it has the type, and
-    on the wire it is the same, its own text has to be used (``D``, not ``d``).
+    ROS 1 identifies types by a checksum of their text: if it has the type with the same
+    serialization, its own text must be used (field name ``D``, not ``d``).
     """
     from rosbags.typesys import Stores, get_typestore
 
@@ -263,7 +265,7 @@ def _ros1_store(source: Any) -> Any:
 
 
 def _is_alike(ours: Any, theirs: Any, name: str) -> bool:
-    """Whether both mean the same by a name, up to names of fields."""
+    """Whether both define a type identically, except for field names."""
     if name == _HEADER:
         return True
     if name not in ours or name not in theirs:
@@ -276,7 +278,7 @@ def _is_alike(ours: Any, theirs: Any, name: str) -> bool:
 
 
 def _names_in(kind: Any) -> list[str]:
-    """Types of messages that a field's type refers to, as ``rosbags`` describes it."""
+    """Message types that a field's type refers to, in ``rosbags``' description."""
     from rosbags.interfaces import Nodetype
 
     if kind[0] == Nodetype.NAME:

@@ -1,4 +1,4 @@
-"""Which topics a recording takes."""
+"""Selection of the topics to record."""
 
 import re
 from dataclasses import dataclass
@@ -10,14 +10,14 @@ IMAGE_TYPE = "sensor_msgs/msg/Image"
 
 @dataclass(frozen=True)
 class TopicSelection:
-    """By name, by pattern, or all; raw images and hidden topics only when asked.
+    """Selects topics by name or pattern; raw images and hidden topics on request.
 
     A topic is recorded if it is named in ``topics``, matches ``regex`` or has one of
     ``types`` (with none of the three: every topic), and neither matches ``exclude`` nor
     has one of ``exclude_types``. Patterns are Python's and are searched anywhere in
-    the full name. A subscribed camera has to render, so raw images need ``images``,
+    the full name. A subscribed camera has to render, so raw images require ``images``
     or their name in ``topics``; hidden topics (a part of the name starts with an
-    underscore) need ``hidden``, or their name.
+    underscore) require ``hidden`` or their name.
     """
 
     topics: tuple[str, ...] = ()
@@ -35,7 +35,8 @@ class TopicSelection:
                 re.compile(pattern)
             except re.error as error:
                 raise ParameterError(
-                    f"parameter {name!r}: {pattern!r} is no regular expression: {error}"
+                    f"parameter {name!r}: {pattern!r} is not a regular "
+                    f"expression: {error}"
                 ) from None
 
     def takes(self, topic: str, type_name: str) -> bool:

@@ -1,4 +1,4 @@
-"""What is in a recording, in figures."""
+"""Statistics of a recording."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,18 +17,18 @@ _BATCH = 65536
 
 @dataclass(frozen=True)
 class TopicSummary:
-    """One topic in figures."""
+    """Statistics of one topic."""
 
     topic: BagTopic
     count: int
     rate_hz: float | None
     """Median rate; None with fewer than two messages (or all at one time)."""
     mean_rate_hz: float | None
-    """Over the time from its first to its last message."""
+    """Mean rate between the first and the last message."""
     longest_gap_s: float | None
     """Longest time between two messages."""
     gap_start_s: float | None
-    """When that gap began, in seconds since the recording's first message."""
+    """Start of that gap, in seconds since the first message of the recording."""
     known: bool
     """Whether the type is installed, with the same fields."""
 
@@ -50,7 +50,7 @@ class TopicSummary:
 
 @dataclass(frozen=True)
 class BagSummary:
-    """A recording in figures; stamps in nanoseconds, sizes in bytes."""
+    """Statistics of a recording; stamps in nanoseconds, sizes in bytes."""
 
     path: Path
     storage: str
@@ -88,10 +88,10 @@ class BagSummary:
 def summarise(
     reader: BagReader, on_stamps: Callable[[int], None] | None = None
 ) -> BagSummary:
-    """The figures of an open recording; reads stamps, not messages.
+    """Compute the statistics of an open recording from its stamps.
 
     Args:
-        on_stamps: told how many stamps were read since it was last told.
+        on_stamps: called with the number of stamps read since the last call.
     """
     stamps = _stamps_by_topic(reader, on_stamps)
     counts = reader.counts()
@@ -117,7 +117,7 @@ def summarise(
 def _stamps_by_topic(
     reader: BagReader, on_stamps: Callable[[int], None] | None
 ) -> dict[BagTopic, list[np.ndarray[Any, np.dtype[np.int64]]]]:
-    """Eight bytes a message: the stamps of 100 million messages fit into memory."""
+    """Stamps in 8 bytes each: those of 100 million messages fit into memory."""
     pending: dict[BagTopic, list[int]] = {}
     found: dict[BagTopic, list[np.ndarray[Any, np.dtype[np.int64]]]] = {}
     number = 0
@@ -135,7 +135,7 @@ def _stamps_by_topic(
 
 
 def _array(stamps: list[int]) -> np.ndarray[Any, np.dtype[np.int64]]:
-    # A stamp beyond int64 is damage; clipping keeps the others.
+    # A stamp beyond int64 is damaged; clipping keeps the others.
     return np.array([min(stamp, 2**63 - 1) for stamp in stamps], np.int64)
 
 
@@ -161,7 +161,7 @@ def _summarise_topic(
 
 
 def is_installed(topic: BagTopic) -> bool:
-    """Whether Navette has the type as it was recorded."""
+    """Whether the installed type equals the recorded one."""
     try:
         get_interface(topic.type_name)
         if topic.type_hash.startswith("RIHS01_"):

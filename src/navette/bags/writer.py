@@ -1,13 +1,13 @@
-"""Bag files: MCAP with ROS 2's profile, as rosbag2 writes it.
+"""Write bag files: MCAP with the ``ros2`` profile, as rosbag2 does.
 
-Source: the MCAP specification and its ``ros2`` profile (foxglove/mcap). Made so that
-the same messages give the same bytes: no wall clock, no random number and no
-version of a library goes into the file; chunks end by size and by :meth:`flush`,
-which the caller must tie to message time.
+Source: the MCAP specification and its ``ros2`` profile (foxglove/mcap). The same
+messages produce the same bytes: the file contains no wall time, random number or
+library version; chunks end by size and by :meth:`flush`, which the caller must tie to
+message time.
 
-Why chunks and not records of their own: compressed chunks are four to ten times
-smaller, and a chunk is what readers seek by. What is not yet in a finished chunk is
-lost with the process, so flush often.
+Compressed chunks are four to ten times smaller than single records, and readers seek by
+chunk. Messages that are not in a finished chunk are lost with the process, so flush
+often.
 """
 
 from contextlib import suppress
@@ -20,11 +20,11 @@ from navette.bags.reserve import Reserve
 from navette.errors import FileFormatError, InvalidValueError
 
 _CHUNK_BYTES = 256 * 1024
-# Larger than any chunk: a chunk and its index reach the system in one piece.
+# Larger than any chunk: a chunk and its index are written in one call.
 _BUFFER_BYTES = 4 * 2**20
 _LIBRARY = "navette"
 _MOST_SACRIFICED = 4
-"""Chunks given up for the index when the disk is full and the reserve too small."""
+"""Chunks dropped for the index if the disk is full and the reserve too small."""
 
 
 class BagWriter:
@@ -35,11 +35,10 @@ class BagWriter:
 
     Raises:
         InvalidValueError: another compression.
-        FileFormatError: the file cannot be made, or is there and is something else
-            than a bag; names path and reason.
+        FileFormatError: the file cannot be created, or exists and is not a bag; names
+            path and reason.
 
-    Later a full or vanished disk shows as ``OSError`` from any method but
-    :meth:`abandon`.
+    All methods except :meth:`abandon` raise ``OSError`` if the disk is full or gone.
     """
 
     def __init__(self, path: Path, *, compression: str = "zstd") -> None:
@@ -51,7 +50,7 @@ class BagWriter:
         self.path = path
         try:
             if _is_something_else(path):
-                raise FileFormatError(path, "exists and is no bag; it is not replaced")
+                raise FileFormatError(path, "exists, is not a bag and is not replaced")
             self._file = path.open("wb", buffering=_BUFFER_BYTES)
         except OSError as error:
             reason = error.strerror or str(error)
@@ -88,7 +87,7 @@ class BagWriter:
         return self._mcap.add_channel(topic, encoding, schema, metadata)
 
     def write(self, channel: int, stamp_ns: int, payload: bytes) -> None:
-        """Append a message: CDR with its 4-byte header, and when it was heard."""
+        """Append a message: CDR with its 4-byte header, and the time of reception."""
         self._mcap.add_message(channel, stamp_ns, payload)
         if self._mcap.chunk_size > _CHUNK_BYTES:
             self.flush()
@@ -100,34 +99,34 @@ class BagWriter:
 
     @property
     def size(self) -> int:
-        """Bytes of finished chunks, and of messages that wait for theirs."""
+        """Bytes of finished chunks and of the current one."""
         return self._mcap.size
 
     def flush(self) -> None:
-        """Finish the chunk and hand it to the system: it outlives this process."""
+        """Finish the chunk and write it, so that it survives this process."""
         self._mcap.end_chunk()
         self._file.flush()
         self._reserve.grow(self._mcap.index_size)
 
     def close(self) -> None:
-        """Write the index and close; closing twice is harmless."""
+        """Write the index and close; a second call has no effect."""
         if not self._file.closed:
             self._reserve.release()
             self._mcap.finish()
             self._file.close()
 
     def abandon(self) -> None:
-        """Close after an ``OSError``; what was flushed stays readable.
+        """Close after an ``OSError``; flushed messages stay readable.
 
-        Room for the index is kept from the start: it is there on a full disk, too.
+        Space for the index is reserved from the start, also for a full disk.
         """
         if self._file.closed:
             self._reserve.release()
             return
-        with suppress(OSError):  # the same error again; it is known already
+        with suppress(OSError):  # the same error again
             self._file.close()
         self._reserve.release()
-        with suppress(OSError):  # without an index it can be read all the same
+        with suppress(OSError):  # readable without an index
             self._finish_what_is_there()
 
     def _finish_what_is_there(self) -> None:
@@ -140,14 +139,14 @@ class BagWriter:
                 try:
                     self._mcap.finish(cast(IO[bytes], _Whole(file)))
                 except OSError:
-                    size -= 1  # the chunk that ends there goes next
+                    size -= 1  # drop the chunk that ends there next
                 else:
                     return
             file.truncate(self._mcap.keep(size))
 
 
 class _Whole:
-    """Writes all or raises: a raw file may write less than it is given."""
+    """Writes all bytes or raises: a raw file may write only a part."""
 
     def __init__(self, file: FileIO) -> None:
         self._file = file
@@ -160,7 +159,7 @@ class _Whole:
 
 
 def _is_something_else(path: Path) -> bool:
-    """Whether a mistyped path would cost a file that no recording made."""
+    """Whether the path is an existing file that is not a recording."""
     if not path.is_file() or path.stat().st_size == 0:
         return False
     with path.open("rb") as file:

@@ -1,4 +1,4 @@
-"""Writes a recording in any of the formats that are read."""
+"""Write a recording in any of the supported formats."""
 
 import shutil
 from pathlib import Path
@@ -18,7 +18,7 @@ _BY_SUFFIX = {".mcap": "mcap", ".db3": "sqlite3", ".bag": "rosbag1"}
 
 
 class TopicWriter(Protocol):
-    """A recording that is being written."""
+    """Writer of a recording."""
 
     path: Path
 
@@ -27,20 +27,20 @@ class TopicWriter(Protocol):
         """Messages written so far."""
 
     def add_topic(self, topic: BagTopic) -> None:
-        """Announce a topic, also one without messages."""
+        """Add a topic, possibly without messages."""
 
     def write(self, message: BagMessage) -> None:
-        """Append a message; its topic is announced if it was not yet."""
+        """Append a message; adds its topic if necessary."""
 
     def close(self) -> None:
         """Finish the file."""
 
     def abandon(self) -> None:
-        """Give up: no new file, and the one that it was to replace stays."""
+        """Delete the unfinished file; a file to be replaced stays."""
 
 
 class McapWriter:
-    """Writes ``.mcap`` with ROS 2's profile; in its place once it is whole."""
+    """Writes ``.mcap`` with the ``ros2`` profile; moved to its target when complete."""
 
     def __init__(self, path: Path, *, compression: str = "zstd") -> None:
         self.path = path
@@ -86,16 +86,16 @@ class McapWriter:
             ) from error
 
     def abandon(self) -> None:
-        """Leave nothing behind."""
+        """Delete the unfinished file."""
         self._writer.abandon()
         self._part.unlink(missing_ok=True)
 
 
 def storage_of(path: Path, storage: str = "") -> str:
-    """The format by which a file is written: as said, or as its name says.
+    """Return the storage format, as given or by the file name.
 
     Raises:
-        InvalidValueError: neither says it.
+        InvalidValueError: neither determines it.
     """
     if storage:
         if storage not in STORAGES:
@@ -105,7 +105,7 @@ def storage_of(path: Path, storage: str = "") -> str:
     found = _BY_SUFFIX.get(path.suffix)
     if found is None:
         raise InvalidValueError(
-            f"{path}: a name that ends in .mcap, .db3 or .bag says the format, "
+            f"{path}: use a name that ends in .mcap, .db3 or .bag, "
             f"or --storage: {', '.join(STORAGES)}"
         )
     return found
@@ -114,27 +114,27 @@ def storage_of(path: Path, storage: str = "") -> str:
 def open_writer(
     path: Path, *, storage: str = "", compression: str = "", overwrite: bool = False
 ) -> TopicWriter:
-    """A new recording.
+    """Create a new recording.
 
     Args:
-        storage: ``mcap``, ``sqlite3`` or ``rosbag1``; by default as the name says.
-        compression: ``none``, ``zstd``, ``lz4``, ``bz2``, as far as the format has it;
+        storage: ``mcap``, ``sqlite3`` or ``rosbag1``; by default from the file name.
+        compression: ``none``, ``zstd``, ``lz4`` or ``bz2``, if the format supports it;
             by default zstd for ``.mcap`` and none for others.
 
     Raises:
-        FileFormatError: it exists already, or cannot be made.
-        InvalidValueError: a storage or compression that is not known.
+        FileFormatError: the file exists already, or cannot be created.
+        InvalidValueError: unknown storage or compression.
     """
     storage = storage_of(path, storage)
     if path.exists():
         if not overwrite:
             raise FileFormatError(path, "exists already; --overwrite replaces it")
         if not is_bag(path) or (path.is_file() and not holds_bag(path)):
-            raise FileFormatError(path, "exists and is no bag; it is not replaced")
+            raise FileFormatError(path, "exists, is not a bag and is not replaced")
         if path.is_dir():
             shutil.rmtree(path)
     if not path.absolute().parent.is_dir():
-        raise FileFormatError(path, "cannot be written: no such folder")
+        raise FileFormatError(path, "cannot be written: the folder does not exist")
     if storage == "mcap":
         return McapWriter(path, compression=compression or COMPRESSIONS[0])
     if storage == "sqlite3":
@@ -143,7 +143,7 @@ def open_writer(
 
 
 def completed(topic: BagTopic) -> BagTopic:
-    """With the definition that Navette knows, where the recording has none."""
+    """Add Navette's definition to a topic without a recorded one."""
     if topic.definition or topic.encoding != "cdr":
         return topic
     try:

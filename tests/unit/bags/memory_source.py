@@ -1,4 +1,4 @@
-"""A recording in memory, for playing."""
+"""A recording in memory, for playback."""
 
 from collections.abc import Collection, Iterator
 
@@ -11,7 +11,7 @@ LATCHED = OfferedQos(depth=1, durability="transient_local")
 
 
 class MemorySource:
-    """Messages of topics, sorted by stamp; counts how much was read."""
+    """Messages of topics, sorted by stamp; counts the reads."""
 
     def __init__(self, messages: Collection[BagMessage]) -> None:
         self._messages = sorted(messages, key=lambda m: m.stamp_ns)

@@ -1,4 +1,4 @@
-"""Recordings made from others, and what is found wrong with damaged ones."""
+"""Converted, filtered and merged recordings; checks of damaged ones."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ import pytest
 from bag_samples import CHATTER, POINT, START_NS, STEP_NS, sample, write_sample
 from navette.bags import BagMessage, BagTopic, BagWriter, open_bag
 from navette.bags.checking import Severity, check_bag
-from navette.bags.editing import Choice, copy, join
+from navette.bags.editing import MessageFilter, copy, join
 from navette.bags.message_types import Decoder
 from navette.bags.writing import open_writer
 from navette.errors import FileFormatError, InvalidValueError
@@ -22,8 +22,10 @@ def names_and_stamps(path: Path) -> list[tuple[str, int, bytes]]:
         return [(m.topic.name, m.stamp_ns, m.data) for m in reader.messages()]
 
 
-def made_of(source: Path, target: Path, choice: Choice | None = None) -> list[int]:
-    """Numbers of the sample's messages that are in the new recording."""
+def made_of(
+    source: Path, target: Path, choice: MessageFilter | None = None
+) -> list[int]:
+    """Return the numbers of the sample's messages in the new recording."""
     with open_bag(source) as reader:
         copy(reader, open_writer(target), choice)
     return [(stamp - START_NS) // STEP_NS for _, stamp, _ in names_and_stamps(target)]
@@ -31,7 +33,7 @@ def made_of(source: Path, target: Path, choice: Choice | None = None) -> list[in
 
 @pytest.mark.parametrize("source", FORMATS)
 @pytest.mark.parametrize("target", FORMATS)
-def test_every_format_into_every_other(
+def test_every_format_is_converted_to_every_other(
     tmp_path: Path, source: str, target: str
 ) -> None:
     first = write_sample(tmp_path / f"a.{source}", 30)
@@ -46,33 +48,33 @@ def test_every_format_into_every_other(
 def test_a_part_of_a_recording(tmp_path: Path) -> None:
     bag = write_sample(tmp_path / "a.mcap", 10)
 
-    def taken(choice: Choice) -> list[int]:
+    def taken(choice: MessageFilter) -> list[int]:
         (tmp_path / "b.mcap").unlink(missing_ok=True)
         return made_of(bag, tmp_path / "b.mcap", choice)
 
     odd, even = [1, 3, 5, 7, 9], [0, 2, 4, 6, 8]
-    assert taken(Choice(topics=("/point",))) == odd
-    assert taken(Choice(types=("std_msgs/String",))) == even
-    assert taken(Choice(regex="^/cha")) == even
-    assert taken(Choice(exclude="chat")) == odd
-    assert taken(Choice(start_ns=START_NS + 7 * STEP_NS)) == [7, 8, 9]
-    assert taken(Choice(end_ns=START_NS + STEP_NS)) == [0, 1]
+    assert taken(MessageFilter(topics=("/point",))) == odd
+    assert taken(MessageFilter(types=("std_msgs/String",))) == even
+    assert taken(MessageFilter(regex="^/cha")) == even
+    assert taken(MessageFilter(exclude="chat")) == odd
+    assert taken(MessageFilter(start_ns=START_NS + 7 * STEP_NS)) == [7, 8, 9]
+    assert taken(MessageFilter(end_ns=START_NS + STEP_NS)) == [0, 1]
     where = "topic == '/point' and m.point.x > 4 or t < 0"
-    assert taken(Choice(expression=where)) == [5, 7, 9]
-    assert taken(Choice(expression="len(topic) == 6")) == odd
+    assert taken(MessageFilter(expression=where)) == [5, 7, 9]
+    assert taken(MessageFilter(expression="len(topic) == 6")) == odd
 
 
 @pytest.mark.parametrize(
     ("choice", "reason"),
     [
-        (Choice(regex="["), "is no regular expression"),
-        (Choice(expression="m +"), "expression 'm \\+'"),
-        (Choice(expression="m.nothing"), "/chatter at .*'nothing' of String"),
+        (MessageFilter(regex="["), "is not a regular expression"),
+        (MessageFilter(expression="m +"), "expression 'm \\+'"),
+        (MessageFilter(expression="m.nothing"), "/chatter at .*'nothing' of String"),
     ],
 )
 @pytest.mark.parametrize("name", ["b.bag", "b.mcap", "b.db3"])
-def test_wrong_choices_leave_nothing(
-    tmp_path: Path, choice: Choice, reason: str, name: str
+def test_invalid_filters_leave_no_file(
+    tmp_path: Path, choice: MessageFilter, reason: str, name: str
 ) -> None:
     bag = write_sample(tmp_path / "a.mcap")
     with pytest.raises(InvalidValueError, match=reason):
@@ -81,15 +83,19 @@ def test_wrong_choices_leave_nothing(
 
 
 @pytest.mark.parametrize("name", ["b.bag", "b.mcap", "b.db3"])
-def test_what_fails_replaces_nothing(tmp_path: Path, name: str) -> None:
+def test_a_failure_does_not_replace_a_file(tmp_path: Path, name: str) -> None:
     bag, before = write_sample(tmp_path / "a.mcap"), write_sample(tmp_path / name)
     data = before.read_bytes()
     with open_bag(bag) as reader, pytest.raises(InvalidValueError):
-        copy(reader, open_writer(before, overwrite=True), Choice(expression="m.no"))
+        copy(
+            reader,
+            open_writer(before, overwrite=True),
+            MessageFilter(expression="m.no"),
+        )
     assert before.read_bytes() == data
 
 
-def test_merged_in_the_order_of_time(tmp_path: Path) -> None:
+def test_merged_recordings_are_in_time_order(tmp_path: Path) -> None:
     for name, part in (("a.bag", sample(9)[::3]), ("b.db3", sample(9)[1::3])):
         writer = open_writer(tmp_path / name)
         for message in part:
@@ -103,13 +109,13 @@ def test_merged_in_the_order_of_time(tmp_path: Path) -> None:
         assert {t.name for t in reader.topics} == {"/chatter", "/point"}
 
 
-def test_nothing_is_replaced_unasked(tmp_path: Path) -> None:
+def test_files_are_not_replaced_without_overwrite(tmp_path: Path) -> None:
     bag = write_sample(tmp_path / "a.mcap")
     with pytest.raises(FileFormatError, match="exists already"):
         open_writer(bag)
     for name in ("b.mcap", "b.bag", "b.db3"):
         (tmp_path / name).write_text("a letter", "utf-8")
-        with pytest.raises(FileFormatError, match="exists and is no bag"):
+        with pytest.raises(FileFormatError, match="exists, is not a bag"):
             open_writer(tmp_path / name, overwrite=True)
     with pytest.raises(FileFormatError, match="no such folder"):
         open_writer(tmp_path / "no" / "c.bag")
@@ -120,9 +126,9 @@ def test_nothing_is_replaced_unasked(tmp_path: Path) -> None:
             open_writer(tmp_path / name, compression=compression)
 
 
-def test_what_cannot_be_had_in_ros1_is_said(tmp_path: Path) -> None:
+def test_messages_without_a_ros1_form_are_refused(tmp_path: Path) -> None:
     writer = open_writer(tmp_path / "a.bag")
-    with pytest.raises(FileFormatError, match="cannot be had in ROS 1"):
+    with pytest.raises(FileFormatError, match="cannot be represented in ROS 1"):
         writer.write(sample(1)[0]._replace(stamp_ns=-1))
     with pytest.raises(FileFormatError, match="nobody defines editing_none/msg/X"):
         writer.write(BagMessage(BagTopic("/x", "editing_none/msg/X"), 1, b""))
@@ -132,8 +138,8 @@ def test_what_cannot_be_had_in_ros1_is_said(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_ros1_knows_the_types_by_their_checksums(tmp_path: Path) -> None:
-    """Fields have other names there, and a checksum over the text tells types apart."""
+def test_ros1_identifies_types_by_their_checksums(tmp_path: Path) -> None:
+    """Field names differ in ROS 1, which identifies types by a checksum of the text."""
     from rosbags.rosbag1 import Reader
 
     from navette.bags.writing import completed
@@ -155,7 +161,7 @@ def test_ros1_knows_the_types_by_their_checksums(tmp_path: Path) -> None:
 
 
 def flushed(path: Path, count: int) -> Path:
-    """A chunk for each ten messages, so that there is something to save."""
+    """One chunk per ten messages, so that chunks can be recovered."""
     writer = BagWriter(path)
     channels = {
         topic: writer.add_channel(topic.name, topic.type_name, topic.definition)
@@ -169,7 +175,7 @@ def flushed(path: Path, count: int) -> Path:
     return path
 
 
-def test_what_is_good_is_saved(tmp_path: Path) -> None:
+def test_intact_messages_are_recovered(tmp_path: Path) -> None:
     whole = flushed(tmp_path / "a.mcap", 100)
     data = bytearray(whole.read_bytes())
     with open_bag(whole) as reader:
@@ -195,8 +201,8 @@ def test_what_is_good_is_saved(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", ["mcap", "bag"])
-def test_behind_a_broken_record_it_goes_on(tmp_path: Path, suffix: str) -> None:
-    """The length of the third chunk is nonsense, and there is no index."""
+def test_reading_resumes_after_a_damaged_record(tmp_path: Path, suffix: str) -> None:
+    """The length of the third chunk is invalid, and there is no index."""
     path = flushed(tmp_path / "a.mcap", 100)
     if suffix == "bag":
         from rosbags.rosbag1 import Writer
@@ -221,14 +227,14 @@ def test_behind_a_broken_record_it_goes_on(tmp_path: Path, suffix: str) -> None:
         data[position : position + 8] = bytes(8)
         path.write_bytes(data)
     with open_bag(path) as reader:
-        assert any("broken record" in each for each in reader.problems)
+        assert any("damaged record" in each for each in reader.problems)
         found = [m.stamp_ns for m in reader.messages()]
         assert found == sorted(found)
         assert 80 <= len(found) < 100
         assert found[-1] == START_NS + 99 * STEP_NS
 
 
-def test_findings_say_what_is_wrong(tmp_path: Path) -> None:
+def test_findings_describe_the_problem(tmp_path: Path) -> None:
     path = flushed(tmp_path / "a.mcap", 30)
     sound = path.read_bytes()
     with open_bag(path) as reader:
@@ -242,13 +248,13 @@ def test_findings_say_what_is_wrong(tmp_path: Path) -> None:
         return "; ".join(each.text for each in check_bag(path).findings)
 
     assert "its checksum is another one" in findings(chunk.position + 33, 1)
-    assert "its head and the index disagree" in findings(chunk.position + 9, 1)
+    assert "header and index disagree" in findings(chunk.position + 9, 1)
     assert "its index lacks" in findings(index + 9 + 6 + 1, 1)
     assert "the file does not end as it should" in findings(len(sound) - 1, 1)
     assert "does not begin as one" in findings(1, 1)
 
 
-def test_stamps_that_go_back_are_a_warning(tmp_path: Path) -> None:
+def test_decreasing_stamps_are_a_warning(tmp_path: Path) -> None:
     writer = open_writer(tmp_path / "a.mcap")
     for message in (*sample(6)[3:], *sample(3)):
         writer.write(message)
@@ -257,10 +263,10 @@ def test_stamps_that_go_back_are_a_warning(tmp_path: Path) -> None:
     assert report.is_sound
     assert [f.severity for f in report.findings] == [Severity.WARNING] * 2
     texts = " ".join(each.text for each in report.findings)
-    assert "/chatter: time goes back 1 times" in texts
+    assert "/chatter: the stamps decrease 1 times" in texts
 
 
-def test_messages_that_are_none_of_their_type(tmp_path: Path) -> None:
+def test_messages_that_do_not_match_their_type(tmp_path: Path) -> None:
     writer = open_writer(tmp_path / "a.mcap")
     writer.write(BagMessage(POINT, 1, b"\0\1\0\0short"))
     writer.close()

@@ -1,4 +1,4 @@
-"""Every format through one face: order, time ranges, topics, types, memory."""
+"""All formats through one interface: order, time ranges, topics, types, memory."""
 
 import sqlite3
 import tracemalloc
@@ -23,7 +23,7 @@ from bag_samples import (
     write_sample,
 )
 from navette.bags import BagMessage, BagTopic, BagWriter, open_bag, parse_qos, qos_text
-from navette.bags.chunks import Choice, Chunk, ChunkMerge, Entry
+from navette.bags.chunks import Chunk, ChunkMerge, ChunkQuery, Entry
 from navette.bags.message_types import Decoder
 from navette.bags.summary import summarise
 from navette.bags.writing import open_writer
@@ -39,7 +39,7 @@ def told(messages: list[BagMessage]) -> list[tuple[str, str, int, bytes]]:
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
-def test_what_is_written_is_read(tmp_path: Path, suffix: str) -> None:
+def test_written_messages_are_read(tmp_path: Path, suffix: str) -> None:
     path = write_sample(tmp_path / f"a.{suffix}", 101)
     with open_bag(path) as reader:
         assert told(list(reader.messages())) == told(sample(101))
@@ -56,7 +56,7 @@ def test_what_is_written_is_read(tmp_path: Path, suffix: str) -> None:
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
-def test_from_any_time_and_some_topics(tmp_path: Path, suffix: str) -> None:
+def test_time_ranges_and_topics(tmp_path: Path, suffix: str) -> None:
     with open_bag(write_sample(tmp_path / f"a.{suffix}", 50)) as reader:
         first, last = START_NS + 10 * STEP_NS, START_NS + 20 * STEP_NS
         part = list(reader.messages(start_ns=first, end_ns=last))
@@ -86,7 +86,7 @@ def test_a_recording_without_messages(tmp_path: Path, suffix: str) -> None:
 def test_mcap_of_another_writer(
     tmp_path: Path, compression: CompressionType, chunked: bool, indexed: bool
 ) -> None:
-    """With and without chunks, indexes and summary; stamps go back now and then."""
+    """With and without chunks, indexes and summary; some stamps decrease."""
     path = tmp_path / "a.mcap"
     with path.open("wb") as file:
         writer = Writer(
@@ -205,7 +205,7 @@ def test_folders_of_rosbag2(tmp_path: Path, plugin: Any, mode: str) -> None:
         assert reader.topics[0].type_hash.startswith("RIHS01_")
     (folder / "metadata.yaml").write_text("{[", "utf-8")
     with open_bag(folder) as reader:
-        assert "metadata.yaml: is no YAML" in reader.problems[0]
+        assert "metadata.yaml: is not YAML" in reader.problems[0]
         assert len(list(reader.messages())) == 10
     # A single compressed file, without its folder.
     (file,) = [each for each in folder.iterdir() if each.name != "metadata.yaml"]
@@ -272,7 +272,7 @@ def test_gaps_and_rates(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "-", "[", "a: b", "- 3", "- depth: x", "&a [*a]"])
-def test_qos_that_is_not_understood_is_no_reason_to_refuse(text: str) -> None:
+def test_invalid_qos_is_ignored(text: str) -> None:
     assert len(parse_qos(text)) <= 1
 
 
@@ -287,8 +287,8 @@ def test_qos_in_numbers_and_words() -> None:
 # -- what is in memory -----------------------------------------------------------
 
 
-def test_chunks_that_all_overlap_do_not_all_stay_in_memory() -> None:
-    """Each chunk has one message at the beginning of time, one at its end."""
+def test_overlapping_chunks_do_not_all_stay_in_memory() -> None:
+    """Each chunk has one message at the first stamp and one at the last."""
     chunks = [Chunk(n, n, 1, 0, 1000 + n) for n in range(50)]
     reads: list[int] = []
 
@@ -300,7 +300,7 @@ def test_chunks_that_all_overlap_do_not_all_stay_in_memory() -> None:
         return [Entry(0, 1, 0, 1), Entry(1000 + chunk.number, 1, 1, 2)]
 
     merge = ChunkMerge(read, entries, cache_bytes=5000)
-    found = list(merge.messages(chunks, Choice(None, 0, 10**6)))
+    found = list(merge.messages(chunks, ChunkQuery(None, 0, 10**6)))
     assert [entry.stamp_ns for entry, _ in found] == [0] * 50 + list(range(1000, 1050))
     assert [data[0] for _, data in found] == [*range(50), *range(50)]
     assert len(merge.cached) <= 5
@@ -309,7 +309,7 @@ def test_chunks_that_all_overlap_do_not_all_stay_in_memory() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["mcap", "bag"])
 def test_memory_stays_flat(tmp_path: Path, suffix: str) -> None:
-    """A hundred chunks pass through the memory of a few."""
+    """A hundred chunks are read with the memory of a few."""
     path = tmp_path / f"a.{suffix}"
     writer = open_writer(path, compression="none")
     data = serialize(String(data="x" * 60_000))
@@ -331,7 +331,7 @@ def test_zstd_bombs_are_refused(tmp_path: Path) -> None:
     from navette.errors import DecodeError
 
     bomb = zstandard.ZstdCompressor().compress(bytes(50_000_000))
-    with pytest.raises(DecodeError, match="announced"):
+    with pytest.raises(DecodeError, match="were stated"):
         unpack("zstd", bomb, 100)
     with pytest.raises(DecodeError, match="at most"):
         unpack("zstd", bomb, 1 << 40)
@@ -341,7 +341,7 @@ def test_zstd_bombs_are_refused(tmp_path: Path) -> None:
     assert unpack_zstd_message(stream) == b"abc" * 100
 
 
-def test_a_message_of_a_topic_that_was_never_named(tmp_path: Path) -> None:
+def test_a_message_of_an_undefined_topic(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     with path.open("wb") as file:
         writer = Writer(file, compression=CompressionType.NONE)
@@ -351,12 +351,12 @@ def test_a_message_of_a_topic_that_was_never_named(tmp_path: Path) -> None:
     lost: list[Any] = []
     with open_bag(path) as reader:
         assert list(reader.messages(on_damage=lost.append)) == []
-        with pytest.raises(FileFormatError, match="channel 9, never named"):
+        with pytest.raises(FileFormatError, match="undefined channel 9"):
             list(reader.messages())
     assert len(lost) == 1
 
 
-def test_other_encodings_are_told_apart(tmp_path: Path) -> None:
+def test_other_encodings_are_distinguished(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     with path.open("wb") as file:
         writer = Writer(file)
@@ -367,7 +367,7 @@ def test_other_encodings_are_told_apart(tmp_path: Path) -> None:
     with open_bag(path) as reader:
         assert reader.topics == (BagTopic("/a", "Beep", encoding="json"),)
         assert next(reader.messages()).data == b"{}"
-        with pytest.raises(FileFormatError, match="json messages are not ROS's"):
+        with pytest.raises(FileFormatError, match="json messages are not ROS messages"):
             Decoder(reader.topics[0])
 
 
@@ -444,8 +444,8 @@ INFORMATION = "rosbag2_bagfile_information:"
         f"{INFORMATION} {{version: 8, relative_file_paths: [../a.mcap]}}",
     ],
 )
-def test_metadata_that_are_none(tmp_path: Path, text: str) -> None:
-    """The file beside them is read all the same; nothing outside the folder is."""
+def test_invalid_metadata(tmp_path: Path, text: str) -> None:
+    """The bag file beside them is read; no file outside the folder is."""
     write_sample(tmp_path / "b.mcap")
     (tmp_path / "metadata.yaml").write_text(text, "utf-8")
     try:

@@ -1,4 +1,4 @@
-"""The recorder: which topics, whose bytes, and what happens when the disk fails."""
+"""The recorder: topics, reproducible bytes, and a failing disk."""
 
 import errno
 from pathlib import Path
@@ -25,7 +25,7 @@ LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Robot(Node):
-    """A noisy scan, a latched map, a camera; a second voice from one second on."""
+    """A noisy scan, a latched map, a camera; another publisher after one second."""
 
     def __init__(self, context: Context, seed: int) -> None:
         super().__init__("robot", context=context)
@@ -75,7 +75,7 @@ class Run:
 
 
 def counts(path: Path) -> dict[str, int]:
-    """Messages by topic."""
+    """Return the number of messages by topic."""
     with path.open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
@@ -97,7 +97,7 @@ def test_everything_but_images_is_recorded(tmp_path: Path) -> None:
     assert "/camera" not in found
 
 
-def test_a_camera_is_left_alone_unless_asked_for(tmp_path: Path) -> None:
+def test_a_camera_is_recorded_only_on_request(tmp_path: Path) -> None:
     run = Run(tmp_path / "a.mcap").go(1)
     assert run.robot.camera.get_subscription_count() == 0
     run.end()
@@ -113,7 +113,7 @@ def test_topics_are_chosen_by_name_and_pattern(tmp_path: Path) -> None:
     assert set(counts(path)) == {"/lidar", "/voice"}
 
 
-def test_more_topics_can_be_taken_up_while_it_runs(tmp_path: Path) -> None:
+def test_topics_can_be_added_while_recording(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     run = Run(path, topics=["/map"]).go(1)
     (result,) = run.recorder.set_parameters([Parameter("regex", value="lidar")])
@@ -124,7 +124,7 @@ def test_more_topics_can_be_taken_up_while_it_runs(tmp_path: Path) -> None:
     assert counts(path) == {"/map": 1, "/lidar": 10}
 
 
-def test_what_is_older_than_half_a_second_is_on_the_disk(tmp_path: Path) -> None:
+def test_messages_older_than_half_a_second_are_on_disk(tmp_path: Path) -> None:
     run = Run(tmp_path / "a.mcap").go(3.0)
     with open_bag(tmp_path / "a.mcap") as reader:  # as who is killed leaves it
         kept = reader.messages(["/lidar"], on_damage=lambda damage: None)
@@ -160,7 +160,7 @@ def test_stamps_are_the_nodes_clock_and_qos_is_kept(tmp_path: Path) -> None:
     assert "durability: transient_local" in qos["/map"]
 
 
-def test_a_file_that_cannot_be_made_leaves_no_node(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_created_leaves_no_node(tmp_path: Path) -> None:
     context = Context(clock=VirtualClock())
     with pytest.raises(FileFormatError, match="cannot be written"):
         RecorderNode(tmp_path / "no" / "a.mcap", context=context)
@@ -168,7 +168,7 @@ def test_a_file_that_cannot_be_made_leaves_no_node(tmp_path: Path) -> None:
     context.shutdown()
 
 
-def test_a_refused_parameter_makes_no_file(tmp_path: Path) -> None:
+def test_a_refused_parameter_creates_no_file(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     with pytest.raises(ParameterError, match="flush_period_s"):
         Run(path, flush_period_s=-1.0)
@@ -193,7 +193,7 @@ def test_a_full_disk_ends_the_recording_not_the_run(
     run.end()
 
 
-def test_closing_twice_is_harmless(tmp_path: Path) -> None:
+def test_closing_twice_has_no_effect(tmp_path: Path) -> None:
     run = Run(tmp_path / "a.mcap").go(1)
     run.recorder.close()
     run.recorder.close()

@@ -1,4 +1,4 @@
-"""What the recorder can besides: files split, snapshots, pauses, types found later."""
+"""Recorder options: split files, snapshots, pauses, types defined later."""
 
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Run:
-    """A talker of 100 Hz, a latched word, and the recorder, under virtual time."""
+    """A 100 Hz talker, a latched topic and the recorder, in virtual time."""
 
     def __init__(self, path: Path, **params: Any) -> None:
         self.context = Context(clock=VirtualClock())
@@ -66,7 +66,7 @@ def chatter(path: Path) -> list[int]:
         return [int(m.data[8:-1]) for m in reader.messages(["/chatter"])]
 
 
-def test_files_of_a_length(tmp_path: Path) -> None:
+def test_files_split_by_duration(tmp_path: Path) -> None:
     path = tmp_path / "run"
     Run(path, max_bag_duration_s=1.0, topics=["/chatter"]).go(3.5).end()
     names = sorted(each.name for each in path.iterdir())
@@ -84,7 +84,7 @@ def test_files_of_a_length(tmp_path: Path) -> None:
         assert reader.start_time == SECOND // 100
 
 
-def test_files_of_a_size(tmp_path: Path) -> None:
+def test_files_split_by_size(tmp_path: Path) -> None:
     path = tmp_path / "run"
     Run(path, max_bag_size_bytes=6000, flush_period_s=0.1).go(10).end()
     files = sorted(path.glob("*.mcap"))
@@ -92,12 +92,12 @@ def test_files_of_a_size(tmp_path: Path) -> None:
     assert chatter(path) == list(range(1, 1001))
 
 
-def test_a_folder_that_is_there_is_not_replaced(tmp_path: Path) -> None:
+def test_an_existing_folder_is_not_replaced(tmp_path: Path) -> None:
     with pytest.raises(FileFormatError, match="exists already"):
         Run(tmp_path, max_bag_size_bytes=6000)
 
 
-def test_the_last_seconds(tmp_path: Path) -> None:
+def test_snapshots_of_the_last_seconds(tmp_path: Path) -> None:
     path = tmp_path / "run"
     run = Run(path, snapshot_duration_s=2.0).go(5)
     assert list(path.iterdir()) == []
@@ -133,9 +133,9 @@ def test_snapshots_are_bounded_in_memory(tmp_path: Path) -> None:
         assert [m.stamp_ns for m in reader.messages()] == [1]
 
 
-def test_a_recorder_that_writes_all_the_time_takes_no_snapshots(tmp_path: Path) -> None:
+def test_a_continuous_recorder_takes_no_snapshots(tmp_path: Path) -> None:
     run = Run(tmp_path / "a.mcap")
-    with pytest.raises(FileFormatError, match="no recording of snapshots"):
+    with pytest.raises(FileFormatError, match="takes no snapshots"):
         run.recorder.take_snapshot()
     run.end()
 
@@ -171,10 +171,10 @@ def test_compression(tmp_path: Path, compression: str) -> None:
     assert chatter(tmp_path / "a.mcap") == list(range(1, 101))
 
 
-def test_a_type_that_becomes_known_later(
+def test_a_type_that_is_defined_later(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As one that only its publisher can describe."""
+    """Simulates a type that only its publisher can describe."""
     run = Run(tmp_path / "a.mcap")
     every = run.context.graph.topics
     name = "recording_late/msg/Beep"
@@ -196,7 +196,7 @@ def test_a_type_that_becomes_known_later(
 
 
 def test_stamps_of_simulated_time(tmp_path: Path) -> None:
-    """What is heard before the first ``/clock`` gets its time, not none."""
+    """Messages received before the first ``/clock`` get its time as stamp."""
     context = Context()
     executor = Executor(context=context)
     talker = Node("talker", context=context)

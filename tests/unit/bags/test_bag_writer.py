@@ -1,4 +1,4 @@
-"""The bag file: its records, its bytes, and what is left of it after a crash."""
+"""The bag file: its records, its bytes, and its content after a crash."""
 
 from pathlib import Path
 
@@ -66,7 +66,7 @@ def test_the_file_has_the_ros2_profile(tmp_path: Path) -> None:
     assert all(m.log_time == m.publish_time for _, _, m in messages)
 
 
-def test_the_index_finds_messages_by_topic_forth_and_back(tmp_path: Path) -> None:
+def test_the_index_finds_messages_by_topic_in_both_directions(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     write_greetings(path)
     with path.open("rb") as file:
@@ -79,7 +79,7 @@ def test_the_index_finds_messages_by_topic_forth_and_back(tmp_path: Path) -> Non
     assert back == forth[::-1]
 
 
-def test_an_empty_recording_is_a_file_too(tmp_path: Path) -> None:
+def test_an_empty_recording_is_a_valid_file(tmp_path: Path) -> None:
     BagWriter(tmp_path / "a.mcap").close()
     with (tmp_path / "a.mcap").open("rb") as file:
         assert list(make_reader(file, validate_crcs=True).iter_messages()) == []
@@ -114,7 +114,7 @@ def test_an_unfinished_file_is_readable_up_to_its_last_flush(tmp_path: Path) -> 
 
 
 def read_unfinished(path: Path) -> int:
-    """How many messages a reader that needs no index finds."""
+    """Return the number of messages found without an index."""
     count = 0
     with path.open("rb") as file:
         records = iter(StreamReader(file, record_size_limit=None).records)
@@ -126,7 +126,7 @@ def read_unfinished(path: Path) -> int:
     raise AssertionError("the file has an end, so it was finished")
 
 
-def test_room_for_the_index_is_kept(tmp_path: Path) -> None:
+def test_space_for_the_index_is_reserved(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     writer = BagWriter(path)
     text = definition_text(STRING)
@@ -144,14 +144,14 @@ def test_room_for_the_index_is_kept(tmp_path: Path) -> None:
     assert index <= kept
 
 
-def test_where_no_room_can_be_kept_none_is(tmp_path: Path) -> None:
+def test_without_temporary_files_no_space_is_reserved(tmp_path: Path) -> None:
     reserve = Reserve(tmp_path / "no folder")
     reserve.grow(1000)
     assert reserve.size == 0
     reserve.release()
 
 
-def test_a_file_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_created_is_named(tmp_path: Path) -> None:
     missing = tmp_path / "no" / "folder" / "a.mcap"
     with pytest.raises(FileFormatError, match=r"a\.mcap: cannot be written: No such"):
         BagWriter(missing)
@@ -167,19 +167,19 @@ def test_a_bag_is_replaced_but_nothing_else_is(tmp_path: Path) -> None:
     assert path.read_bytes() == (write_greetings(tmp_path / "b", 20).path.read_bytes())
     notes = tmp_path / "notes.txt"
     notes.write_text("precious")
-    with pytest.raises(FileFormatError, match=r"notes.txt: exists and is no bag"):
+    with pytest.raises(FileFormatError, match=r"notes.txt: exists, is not a bag"):
         BagWriter(notes)
     assert notes.read_text() == "precious"
 
 
-def test_closing_twice_is_harmless(tmp_path: Path) -> None:
+def test_closing_twice_has_no_effect(tmp_path: Path) -> None:
     writer = write_greetings(tmp_path / "a.mcap", 5)
     writer.close()
     writer.abandon()
     assert writer.message_count == 5
 
 
-def test_quality_of_service_reads_as_rosbag2s() -> None:
+def test_quality_of_service_is_that_of_rosbag2() -> None:
     latched = OfferedQos(depth=1, durability="transient_local")
     sensor = OfferedQos(depth=5, reliability="best_effort", deadline_ns=1_500_000_000)
     first, second = parse_qos(qos_text([latched, sensor]))
@@ -207,12 +207,12 @@ def test_quality_of_service_reads_as_rosbag2s() -> None:
         (TopicSelection(regex="_action"), "/fib/_action/status", STRING, True),
     ],
 )
-def test_topics_are_chosen(
+def test_topics_are_selected(
     selection: TopicSelection, topic: str, type_name: str, taken: bool
 ) -> None:
     assert selection.takes(topic, type_name) is taken
 
 
-def test_a_broken_pattern_is_named() -> None:
-    with pytest.raises(ParameterError, match=r"'exclude'.*no regular expression"):
+def test_an_invalid_pattern_is_named() -> None:
+    with pytest.raises(ParameterError, match=r"'exclude'.*not a regular expression"):
         RecorderParams(exclude="(")

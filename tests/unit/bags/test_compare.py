@@ -1,4 +1,4 @@
-"""Two recordings, and what differs."""
+"""Comparison of two recordings."""
 
 import math
 
@@ -83,7 +83,7 @@ def test_a_number_that_differs_is_named_with_its_field() -> None:
         (["/point.point.y=0.1", "9"], True),
     ],
 )
-def test_the_last_tolerance_that_matches_counts(rules: list[str], same: bool) -> None:
+def test_the_last_matching_tolerance_applies(rules: list[str], same: bool) -> None:
     a = PointStamped(point=Point(y=2.0))
     b = PointStamped(point=Point(y=2.5))
     assert pair(POINT, a, b, *rules).same is same
@@ -92,7 +92,7 @@ def test_the_last_tolerance_that_matches_counts(rules: list[str], same: bool) ->
 @pytest.mark.parametrize(
     "text", ["", "x", "=1", "/a=", "/a=x", "/a=-1", "nan", "1:2", "1:x%"]
 )
-def test_tolerances_that_are_none_are_refused(text: str) -> None:
+def test_invalid_tolerances_are_refused(text: str) -> None:
     with pytest.raises(InvalidValueError, match="tolerance"):
         Tolerances.parse([text])
 
@@ -156,40 +156,40 @@ def test_times_differ_by_seconds_to_the_nanosecond() -> None:
         (0.0, -0.0, True),
     ],
 )
-def test_no_tolerance_bridges_infinite_and_missing(
+def test_no_tolerance_applies_to_infinity_and_nan(
     a: float, b: float, same: bool
 ) -> None:
     assert pair(NUMBER, Float64(data=a), Float64(data=b), "1e300").same is same
 
 
-def test_text_is_the_same_or_not() -> None:
+def test_text_is_compared_exactly() -> None:
     (field,) = pair(TEXT, String(data="a"), String(data="b" * 99), "9").fields.values()
     assert field.worst is not None
     assert field.worst.largest is None
     assert len(field.worst.got) == 60
 
 
-def test_what_is_missing_and_what_came_too_much() -> None:
+def test_missing_and_additional_messages_are_counted() -> None:
     (found,) = against(numbers(1, 2, 3, 5), numbers(1, 2.5, 3, 4, 5)).topics
     assert (found.compared, found.missing, found.extra) == (3, 1, 2)
     assert not found.same
 
 
-def test_stamps_may_be_apart() -> None:
+def test_stamps_may_differ_within_the_tolerance() -> None:
     (found,) = against(
         numbers(1, 2, 3), numbers(1.04, 1.97, 3.2), tolerance_s=0.05
     ).topics
     assert (found.compared, found.missing, found.extra) == (2, 1, 1)
 
 
-def test_several_messages_of_one_stamp_belong_together_in_order() -> None:
+def test_messages_of_one_stamp_are_matched_in_order() -> None:
     a = [said(NUMBER, 1.0, Float64(data=float(i))) for i in range(3)]
     assert against(a, list(a)).same
     (found,) = against(a, a[::-1]).topics
     assert (found.compared, found.differing) == (3, 2)
 
 
-def test_a_topic_that_is_gone_is_missing_and_a_new_one_is_told() -> None:
+def test_a_missing_topic_is_a_difference_and_a_new_one_is_listed() -> None:
     found = against(numbers(1, 2), [said(TEXT, 1.0, String())])
     assert found.topics[0].missing == 2
     assert found.unexpected == ("/text",)
@@ -199,7 +199,7 @@ def test_a_topic_that_is_gone_is_missing_and_a_new_one_is_told() -> None:
 def test_another_type_is_named() -> None:
     other = said(topic_of("/number", String), 1.0, String())
     (found,) = against(numbers(1), [other]).topics
-    assert found.problem == "type std_msgs/msg/Float64, now std_msgs/msg/String"
+    assert found.problem == "type std_msgs/msg/Float64 became std_msgs/msg/String"
     assert not found.same
 
 
@@ -207,10 +207,10 @@ def test_other_fields_of_the_same_type_are_named() -> None:
     old = BagTopic("/number", "std_msgs/msg/Float64", "float64 data\nfloat64 more\n")
     data = b"\x00\x01\x00\x00" + bytes(16)
     (found,) = against([BagMessage(old, S, data)], numbers(1)).topics
-    assert "other fields" in found.problem
+    assert "different fields" in found.problem
 
 
-def test_bytes_that_are_no_message_are_told() -> None:
+def test_invalid_bytes_are_reported() -> None:
     broken = BagMessage(TEXT, S, b"\x00\x01\x00\x00\xff")
     (found,) = against([said(TEXT, 1.0, String(data="a"))], [broken]).topics
     assert found.problem.startswith("at 1.000 s: ")

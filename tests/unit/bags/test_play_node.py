@@ -1,4 +1,4 @@
-"""The player as a node: who hears what, when, and in which time."""
+"""The player node: published messages, their times, and the clock."""
 
 from typing import Any
 
@@ -40,7 +40,7 @@ def texts(probe: Any) -> list[str]:
     return [m.data for m in probe.messages]
 
 
-def test_listeners_hear_it_at_its_time() -> None:
+def test_messages_are_published_at_their_time() -> None:
     with GraphHarness() as graph:
         probe = graph.collect("/chatter", String)
         ended: list[int] = []
@@ -65,7 +65,7 @@ def test_names_can_be_remapped() -> None:
         assert probe.count == 5
 
 
-def test_late_joiners_get_what_was_latched() -> None:
+def test_late_subscribers_receive_latched_messages() -> None:
     with GraphHarness() as graph:
         play(graph, source()).start()
         graph.run_for(1.2)
@@ -80,7 +80,7 @@ def texts_after(graph: GraphHarness, probe: Any) -> list[str]:
     return texts(probe)
 
 
-def test_a_start_in_the_middle_tells_what_was_latched_before() -> None:
+def test_a_start_in_the_middle_publishes_earlier_latched_messages() -> None:
     with GraphHarness() as graph:
         probe = graph.collect("/map", String)
         player = play(graph, source(), start_offset_s=1.0, paused=True)
@@ -89,7 +89,7 @@ def test_a_start_in_the_middle_tells_what_was_latched_before() -> None:
         assert texts(probe) == ["map"]
 
 
-def test_the_clock_is_told_at_its_rate_and_at_jumps_first() -> None:
+def test_the_clock_is_published_at_its_rate_and_first_at_jumps() -> None:
     with GraphHarness() as graph:
         order: list[tuple[str, float]] = []
         node = graph.node
@@ -111,7 +111,7 @@ def test_the_clock_is_told_at_its_rate_and_at_jumps_first() -> None:
         assert order == [("t", 101.0), ("map", 0.0)]
 
 
-def test_a_recorded_clock_gives_way_to_the_told_one() -> None:
+def test_a_published_clock_replaces_a_recorded_one() -> None:
     clock = topic_of("/clock", Clock)
     of = MemorySource([said(clock, 1.0, Clock()), said(CHATTER, 1.0, String())])
     with GraphHarness() as graph:
@@ -120,8 +120,8 @@ def test_a_recorded_clock_gives_way_to_the_told_one() -> None:
         assert play(graph, of).player.names == ("/clock", "/chatter")
 
 
-def test_a_listener_acts_before_the_next_message() -> None:
-    """A queue of one loses nothing, although many messages have one stamp."""
+def test_a_subscriber_acts_before_the_next_message() -> None:
+    """A queue of depth 1 loses no message, although many have the same stamp."""
     of = MemorySource([said(CHATTER, 1.0, String(data=f"{i}")) for i in range(50)])
     with GraphHarness() as graph:
         heard: list[str] = []
@@ -156,7 +156,7 @@ SENSOR = OfferedQos(reliability="best_effort", depth=5)
         ((LATCHED, LATCHED), "RELIABLE", "TRANSIENT_LOCAL", 2),
     ],
 )
-def test_publishers_offer_what_was_offered(
+def test_publishers_have_the_recorded_qos(
     offers: tuple[OfferedQos, ...], reliability: str, durability: str, depth: int
 ) -> None:
     topic = topic_of("/t", String, *offers)
@@ -178,7 +178,7 @@ def test_a_type_that_is_not_installed_is_played() -> None:
         assert list(probe.last.more) == [5, 6]
 
 
-def test_what_cannot_be_played_is_named_and_the_rest_played(
+def test_topics_that_cannot_be_played_are_logged_and_others_played(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     unknown = BagTopic("/u", "nobody_msgs/msg/Knows")
@@ -201,7 +201,7 @@ def test_a_topic_of_another_type_here_is_named(
     assert "/chatter is not played" in capsys.readouterr().err
 
 
-def test_wrong_choices_leave_no_node_behind() -> None:
+def test_invalid_options_leave_no_node() -> None:
     with GraphHarness() as graph:
         with pytest.raises(InvalidValueError):
             play(graph, source(), exclude=".")
@@ -257,8 +257,8 @@ def test_the_end_can_be_played_again() -> None:
         assert texts(probe) == list("01234") * 2
 
 
-def test_with_a_paced_clock_it_is_the_same() -> None:
-    """Under any clock the same messages in the same order at the same times."""
+def test_a_paced_clock_gives_the_same_result() -> None:
+    """With any clock: the same messages, order and times."""
 
     def run(graph: GraphHarness) -> list[tuple[int, str]]:
         probe = graph.collect("/chatter", String)

@@ -1,4 +1,4 @@
-"""Which message when: the player without a node, in made-up time."""
+"""Playback logic without a node, in virtual time."""
 
 import threading
 
@@ -42,7 +42,7 @@ def started(of: MemorySource, **options: object) -> Player:
 
 
 def run(player: Player, until_s: float) -> list[tuple[float, str]]:
-    """(seconds since the start, message) of all that is played until then."""
+    """Return (seconds since the start, message) of all messages played until then."""
     heard = []
     while (due_ns := player.due_ns()) is not None and due_ns <= NOW + until_s * S:
         message = player.take(due_ns)
@@ -51,7 +51,7 @@ def run(player: Player, until_s: float) -> list[tuple[float, str]]:
     return heard
 
 
-def test_messages_come_at_their_times() -> None:
+def test_messages_are_due_at_their_times() -> None:
     player = started(source())
     assert run(player, 10.0) == [
         (0.0, "10.0"),
@@ -64,14 +64,14 @@ def test_messages_come_at_their_times() -> None:
     assert player.position_ns(NOW + 100 * S) == 12 * S
 
 
-def test_nothing_comes_early() -> None:
+def test_no_message_is_early() -> None:
     player = started(source())
     assert text(player.take(NOW)) == "10.0"
     assert player.take(NOW + S // 2 - 1) is None
     assert text(player.take(NOW + S // 2)) == "10.5"
 
 
-def test_the_rate_stretches_time() -> None:
+def test_the_rate_scales_time() -> None:
     assert [t for t, _ in run(started(source(), rate=0.5), 10.0)] == [0, 1, 2, 4]
     assert [t for t, _ in run(started(source(), rate=4.0), 10.0)] == [
         0,
@@ -81,7 +81,7 @@ def test_the_rate_stretches_time() -> None:
     ]
 
 
-def test_a_change_of_rate_counts_from_now() -> None:
+def test_a_change_of_rate_applies_from_now() -> None:
     player = started(source())
     run(player, 0.5)
     player.set_rate(NOW + S // 2, 2.0)
@@ -100,7 +100,7 @@ def test_a_pause_stops_time() -> None:
     assert run(player, 200.0) == [(100.25, "11.0"), (101.25, "12.0")]
 
 
-def test_a_step_pauses_and_gives_the_next_message() -> None:
+def test_a_step_pauses_and_returns_the_next_message() -> None:
     player = started(source(), paused=True)
     assert player.take(NOW + 9 * S) is None
     assert [text(player.step(NOW)) for _ in range(2)] == ["10.0", "10.5"]
@@ -114,7 +114,7 @@ def test_a_step_pauses_and_gives_the_next_message() -> None:
     assert player.step(NOW + S) is None
 
 
-def test_a_step_over_the_end_of_a_loop_gives_the_first() -> None:
+def test_a_step_over_the_end_of_a_loop_returns_the_first() -> None:
     player = started(source(), paused=True, loop=True)
     assert [text(player.step(NOW)) for _ in range(6)] == [
         "10.0",
@@ -127,7 +127,7 @@ def test_a_step_over_the_end_of_a_loop_gives_the_first() -> None:
     assert player.passes == 2
 
 
-def test_a_loop_starts_over_without_drift() -> None:
+def test_a_loop_restarts_without_drift() -> None:
     player = started(source(), loop=True, rate=2.0)
     heard = run(player, 3.0)
     assert heard[:4] == [(0.0, "10.0"), (0.25, "10.5"), (0.5, "11.0"), (1.0, "12.0")]
@@ -135,12 +135,12 @@ def test_a_loop_starts_over_without_drift() -> None:
     assert heard[8:12] == [(t + 2.0, m) for t, m in heard[:4]]
 
 
-def test_a_loop_of_one_instant_lets_time_pass() -> None:
+def test_a_loop_of_a_single_stamp_advances_time() -> None:
     player = started(source((10.0,)), loop=True)
     assert len(run(player, 0.1)) == 11
 
 
-def test_a_seek_goes_on_from_there() -> None:
+def test_a_seek_continues_from_the_new_position() -> None:
     player = started(source())
     run(player, 0.5)
     assert player.seek(NOW + S, 11 * S) == 11 * S
@@ -152,12 +152,12 @@ def test_a_seek_goes_on_from_there() -> None:
 
 
 @pytest.mark.parametrize(("place_s", "wanted_s"), [(-5, 10), (10.2, 10.2), (99, 12)])
-def test_a_seek_stays_inside(place_s: float, wanted_s: float) -> None:
+def test_a_seek_stays_within_the_recording(place_s: float, wanted_s: float) -> None:
     player = started(source())
     assert player.seek(NOW, round(place_s * S)) == wanted_s * S
 
 
-def test_a_seek_wakes_a_player_that_has_ended() -> None:
+def test_a_seek_resumes_a_player_that_has_ended() -> None:
     player = started(source())
     run(player, 10.0)
     player.seek(NOW + 10 * S, 0)
@@ -174,7 +174,7 @@ def test_a_start_in_the_middle_waits_for_the_first_message() -> None:
     assert run(started(source(), start_offset_s=0.75), 10.0)[0] == (0.25, "11.0")
 
 
-def test_topics_are_chosen() -> None:
+def test_topics_are_selected() -> None:
     both = MemorySource(
         [said(t, 1.0 + i, String(data=t.name)) for i, t in enumerate((CHATTER, OTHER))]
     )
@@ -190,7 +190,7 @@ def test_topics_are_chosen() -> None:
         assert player.names == wanted
     with pytest.raises(UnknownNameError, match=r"'/scan'; known: /chatter, /other"):
         Player(both, PlayOptions(topics=("/scan",)))
-    with pytest.raises(InvalidValueError, match="no topic is left"):
+    with pytest.raises(InvalidValueError, match="no topic is selected"):
         Player(both, PlayOptions(exclude="."))
 
 
@@ -207,17 +207,17 @@ def test_topics_are_chosen() -> None:
         {"exclude": "["},
     ],
 )
-def test_wrong_options_are_named(wrong: dict[str, object]) -> None:
+def test_invalid_options_are_named(wrong: dict[str, object]) -> None:
     with pytest.raises(InvalidValueError, match=next(iter(wrong)).split("_")[0]):
         PlayOptions(**wrong)  # type: ignore[arg-type]
 
 
 def test_an_offset_beyond_the_end_is_refused() -> None:
-    with pytest.raises(InvalidValueError, match=r"only 2.000 s long"):
+    with pytest.raises(InvalidValueError, match=r"only 2.000 s"):
         Player(source(), PlayOptions(start_offset_s=2.5))
 
 
-def test_who_was_away_does_not_hurry() -> None:
+def test_playback_does_not_catch_up_after_a_pause_of_the_process() -> None:
     player = started(source((0.0, 1.0, 10.0, 11.0)))
     player.take(NOW)
     assert text(player.take(NOW + 60 * S)) == "1.0"  # 59 s late: time is set there
@@ -247,7 +247,7 @@ def test_the_last_latched_message_comes_first(
     assert [text(m) for m in jump.latched] == wanted
 
 
-def test_so_it_is_after_a_seek_and_in_every_pass() -> None:
+def test_latched_messages_come_first_after_a_seek_and_in_every_pass() -> None:
     of = with_map()
     player = started(of, start_offset_s=60.0, duration_s=1.0, loop=True)
     run(player, 1.5)
@@ -258,7 +258,7 @@ def test_so_it_is_after_a_seek_and_in_every_pass() -> None:
     assert player.pop_jump() is not None
 
 
-def test_only_latched_topics_that_are_played_are_looked_for() -> None:
+def test_only_played_latched_topics_are_searched() -> None:
     player = Player(with_map(), PlayOptions(start_offset_s=60.0, topics=("/chatter",)))
     player.start(NOW)
     jump = player.pop_jump()
@@ -266,7 +266,7 @@ def test_only_latched_topics_that_are_played_are_looked_for() -> None:
     assert jump.latched == ()
 
 
-def test_all_static_transforms_count_even_without_recorded_qos() -> None:
+def test_all_static_transforms_are_published_without_recorded_qos() -> None:
     static = topic_of("/tf_static", TFMessage)
     of = MemorySource(
         [said(static, s, TFMessage()) for s in (0.0, 0.1, 0.2, 300.0)]
@@ -288,7 +288,7 @@ def test_all_static_transforms_count_even_without_recorded_qos() -> None:
     bag_ns=st.integers(0, 2**62),
     ahead_ns=st.integers(0, 10**15),
 )
-def test_a_place_is_reached_when_it_is_due_and_not_before(
+def test_a_position_is_reached_when_it_is_due(
     rate: float, now_ns: int, bag_ns: int, ahead_ns: int
 ) -> None:
     head = Playhead(rate)
@@ -308,7 +308,9 @@ def many(count: int) -> list[BagMessage]:
 
 
 @pytest.mark.parametrize("make", [DirectFeed, PrefetchingFeed])
-def test_feeds_give_everything_once(make: type[DirectFeed | PrefetchingFeed]) -> None:
+def test_feeds_return_every_message_once(
+    make: type[DirectFeed | PrefetchingFeed],
+) -> None:
     messages = many(5000)
     feed = make(iter(messages))
     heard = []
@@ -349,7 +351,7 @@ def test_reading_ahead_is_bounded() -> None:
     assert len(taken) < 3000
 
 
-def test_damage_shows_when_the_message_before_it_is_gone() -> None:
+def test_damage_is_reported_after_the_message_before_it() -> None:
     def damaged() -> object:
         yield from many(3)
         raise FileFormatError("x.mcap", "byte 7: damaged")

@@ -1,4 +1,4 @@
-"""What is played: several recordings as one, damaged ones as far as they go."""
+"""Playback sources: several recordings as one, and damaged recordings."""
 
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def test_an_empty_recording_does_not_move_the_start() -> None:
     assert (merged.start_ns, merged.end_ns) == (7 * S, 8 * S)
 
 
-def test_a_damaged_part_is_left_out_and_told_once(tmp_path: Path) -> None:
+def test_a_damaged_part_is_skipped_and_reported_once(tmp_path: Path) -> None:
     path = tmp_path / "talk.mcap"
     writer = BagWriter(path)
     kind = "std_msgs/msg/String"
@@ -89,7 +89,7 @@ OPERATIONS = st.lists(
 
 
 @given(operations=OPERATIONS, gaps=st.lists(st.integers(0, S), max_size=30))
-def test_nothing_is_lost_doubled_or_early_whatever_a_person_does(
+def test_no_message_is_lost_repeated_or_early_under_any_control(
     operations: list[tuple[str, float]], gaps: list[int]
 ) -> None:
     stamps = [sum(gaps[:i]) for i in range(len(gaps) + 1)]

@@ -1,4 +1,4 @@
-"""Two recordings that should say the same: what differs, field by field."""
+"""Comparison of two recordings, field by field."""
 
 from navette.bags.compare.comparison import Comparison, TopicComparison, compare
 from navette.bags.compare.fields import FieldDifference

@@ -1,7 +1,7 @@
-"""Two recordings, message by message.
+"""Compare two recordings message by message.
 
-Messages of a topic belong together by their stamps. Both files are read once, in the
-order of stamps, and only what still waits for its partner is held.
+Messages of a topic are matched by their stamps. Both files are read once, by stamp, and
+only unmatched messages are held in memory.
 """
 
 import heapq
@@ -20,7 +20,7 @@ from navette.msgs import deserialize, fields, get_interface, register_definition
 
 @dataclass
 class FieldSummary:
-    """A field over all messages of a topic; the example is the worst one."""
+    """Differences of a field over all messages of a topic; the worst as example."""
 
     path: str
     messages: int = 0
@@ -37,18 +37,18 @@ class FieldSummary:
 
 @dataclass
 class TopicComparison:
-    """What came of one topic."""
+    """Result for one topic."""
 
     name: str
     type_name: str
     compared: int = 0
     differing: int = 0
     missing: int = 0
-    """Expected, and not there."""
+    """Expected messages that are missing."""
     extra: int = 0
-    """There, and not expected."""
+    """Messages that were not expected."""
     problem: str = ""
-    """Why nothing could be compared."""
+    """Reason if the topic could not be compared."""
     fields: dict[str, FieldSummary] = field(default_factory=dict)
 
     @property
@@ -58,11 +58,11 @@ class TopicComparison:
 
 @dataclass
 class Comparison:
-    """What came of all topics."""
+    """Result for all topics."""
 
     topics: list[TopicComparison]
     unexpected: tuple[str, ...] = ()
-    """Topics that only the other recording has; not counted as a difference."""
+    """Topics of the other recording only; not counted as a difference."""
 
     @property
     def same(self) -> bool:
@@ -79,25 +79,24 @@ def compare(
     start_ns: int | None = None,
     end_ns: int | None = None,
 ) -> Comparison:
-    """How ``got`` differs from what was ``expected``.
+    """Compare ``got`` with ``expected``.
 
     Args:
-        topics: names to compare; all that are expected if None.
-        tolerances: how far numbers may be apart; exactly equal by default.
-        time_tolerance_ns: how far stamps of messages that belong together may be
-            apart.
-        start_ns, end_ns: first and last stamp to look at; all if None.
+        topics: names to compare; all expected topics if None.
+        tolerances: allowed differences of numbers; none by default.
+        time_tolerance_ns: allowed difference of the stamps of matched messages.
+        start_ns, end_ns: range of stamps to compare; all if None.
 
     Raises:
-        InvalidValueError: there is nothing to compare.
+        InvalidValueError: no topic to compare.
         FileFormatError: a recording is damaged.
     """
     wanted = {t.name: t for t in expected.topics if topics is None or t.name in topics}
     if not wanted:
         raise InvalidValueError(
-            "nothing to compare: expected are "
-            f"{', '.join(t.name for t in expected.topics) or 'no topics'}; compared "
-            f"would be {', '.join(sorted(topics or ())) or 'none'}"
+            "nothing to compare: expected topics are "
+            f"{', '.join(t.name for t in expected.topics) or 'none'}; requested "
+            f"topics are {', '.join(sorted(topics or ())) or 'none'}"
         )
     there = {t.name: t for t in got.topics}
     found = {
@@ -129,7 +128,7 @@ def _side(
 
 
 class _TopicPairs:
-    """Finds the messages of a topic that belong together, and compares them."""
+    """Matches the messages of a topic and compares them."""
 
     def __init__(
         self, topic: BagTopic, other: BagTopic | None, tolerances: Tolerances
@@ -139,7 +138,7 @@ class _TopicPairs:
         self._waiting: tuple[deque[BagMessage], deque[BagMessage]] = (deque(), deque())
         self._classes: tuple[Any, Any] | None = None
         if other is not None and other.type_name != topic.type_name:
-            self.result.problem = f"type {topic.type_name}, now {other.type_name}"
+            self.result.problem = f"type {topic.type_name} became {other.type_name}"
             return
         try:
             expected, got = _class_of(topic), _class_of(other or topic)
@@ -147,7 +146,7 @@ class _TopicPairs:
             self.result.problem = str(error)
             return
         if fields(expected) != fields(got):
-            self.result.problem = f"{topic.type_name} has other fields now"
+            self.result.problem = f"{topic.type_name} has different fields"
         else:
             self._classes = expected, got
 
@@ -161,7 +160,7 @@ class _TopicPairs:
         self._compare(*pair)
 
     def expire(self, before_ns: int | None) -> None:
-        """No partner can come any more for what is older (None: for all)."""
+        """Count messages older than a stamp (None: all) as unmatched."""
         for side, waiting in enumerate(self._waiting):
             while waiting and (before_ns is None or waiting[0].stamp_ns < before_ns):
                 waiting.popleft()

@@ -1,4 +1,4 @@
-"""What differs between two messages of one type, field by field."""
+"""Differences between two messages of one type, field by field."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -17,10 +17,10 @@ _LONGEST_SHOWN = 60
 
 @dataclass(frozen=True)
 class FieldDifference:
-    """One field of one message, beyond its tolerance.
+    """A field of a message that differs by more than its tolerance.
 
-    ``largest`` is the largest distance of numbers; None where it is not a matter of
-    distance (text, lengths, NaN). Times are compared in seconds.
+    ``largest`` is the largest difference of numbers; None for text, lengths and NaN.
+    Times are compared in seconds.
     """
 
     path: str
@@ -37,7 +37,7 @@ ToleranceOf = Callable[[str], Tolerance]
 def message_differences(
     expected: Message, got: Message, tolerance_of: ToleranceOf
 ) -> list[FieldDifference]:
-    """Every field that differs by more than it may; indices are left out of paths."""
+    """Return all fields that exceed their tolerance; paths have no indices."""
     found: list[FieldDifference] = []
     _compare(expected, got, "", tolerance_of, found)
     return found
@@ -62,7 +62,7 @@ def _compare_messages(
 ) -> None:
     names = [each.name for each in fields(a)]
     if names == _TIME:
-        # Whole nanoseconds first: as seconds since 1970 they would lose their end.
+        # Subtract nanoseconds first: seconds since 1970 would lose precision.
         apart_ns = (b.sec - a.sec) * _NS_PER_S + b.nanosec - a.nanosec
         if abs(apart_ns) > tolerance_of(path).absolute * _NS_PER_S:
             one, other = (f"{t.sec}.{t.nanosec:09d} s" for t in (a, b))
@@ -111,7 +111,7 @@ def _compare_numbers(
     same |= np.isnan(x) & np.isnan(y)
     with np.errstate(invalid="ignore"):
         apart = np.abs(y - x)
-    # Infinite and missing numbers are at no distance: they differ or they do not.
+    # Infinite numbers and NaN have no distance: they are equal or different.
     beyond = ~same & ~(apart <= tolerance.absolute)
     count = int(beyond.sum())
     if count == 0 or count <= tolerance.share * len(one):
@@ -140,7 +140,7 @@ def _shown(value: object) -> str:
 
 
 def _joined(single: list[FieldDifference], count: int) -> list[FieldDifference]:
-    """Those of one field of all elements as one, with the worst as the example."""
+    """Merge the differences of all elements of a field, with the worst as example."""
     worst: dict[str, FieldDifference] = {}
     for each in single:
         before = worst.get(each.path)

@@ -1,4 +1,4 @@
-"""How far numbers may be apart, by topic and field."""
+"""Tolerances of numbers by topic and field."""
 
 import math
 import re
@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 
 from navette.errors import InvalidValueError
 
-_FORMS = "wanted VALUE or TOPIC[.FIELD]=VALUE, VALUE as 0.01 or 0.01:2%"
+_FORMS = "expected VALUE or TOPIC[.FIELD]=VALUE, with VALUE as 0.01 or 0.01:2%"
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """``absolute`` in the field's own unit; ``share`` of an array's elements may be
-    further apart than that."""
+    """``absolute`` in the field's unit; ``share`` of an array's elements may exceed
+    it."""
 
     absolute: float = 0.0
     share: float = 0.0
@@ -24,11 +24,11 @@ EXACT = Tolerance()
 
 @dataclass
 class Tolerances:
-    """The tolerance of a field: that of the last rule that matches it, or none.
+    """Tolerance rules; the last rule that matches a field applies.
 
     A rule's pattern is a topic, or a topic and a field as in
-    ``/path.poses[].pose.position.x``; it holds for all fields below it. ``*`` stands
-    for any text.
+    ``/path.poses[].pose.position.x``; it applies to all fields below. ``*`` matches any
+    text.
     """
 
     rules: list[tuple[str, Tolerance]] = field(default_factory=list)
@@ -36,10 +36,10 @@ class Tolerances:
 
     @classmethod
     def parse(cls, texts: Iterable[str]) -> "Tolerances":
-        """Of ``0.01``, ``/path=0.01``, ``/costmap.data=0:0.5%``.
+        """Parse rules such as ``0.01``, ``/path=0.01``, ``/costmap.data=0:0.5%``.
 
         Raises:
-            InvalidValueError: a text has another form.
+            InvalidValueError: invalid syntax.
         """
         tolerances = cls()
         for text in texts:
@@ -50,12 +50,12 @@ class Tolerances:
         return tolerances
 
     def add(self, pattern: str, absolute: float, share: float = 0.0) -> None:
-        """A rule that wins over those before."""
+        """Add a rule that overrides earlier ones."""
         self.rules.append((pattern, Tolerance(absolute, share)))
         self._found.clear()
 
     def of(self, topic: str, path: str) -> Tolerance:
-        """The tolerance of a field (``""``: of the topic as a whole)."""
+        """Return the tolerance of a field (``""``: of the whole topic)."""
         key = f"{topic}.{path}" if path else topic
         if key not in self._found:
             matching = [t for pattern, t in self.rules if _matches(pattern, key)]

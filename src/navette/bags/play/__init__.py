@@ -1,4 +1,4 @@
-"""Playing bags: which message when, and to whom."""
+"""Playback of bags."""
 
 from navette.bags.play.feed import DirectFeed, PrefetchingFeed
 from navette.bags.play.merged import MergedSource, TolerantSource

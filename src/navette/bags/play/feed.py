@@ -1,4 +1,4 @@
-"""The next messages of a bag: read when asked for, or a little ahead by a thread."""
+"""Message feed of a bag: read on demand, or ahead by a thread."""
 
 import threading
 from collections import deque
@@ -13,23 +13,23 @@ _MAX_MESSAGES = 2000
 
 
 class Feed(Protocol):
-    """One message after the other."""
+    """Iterator over messages with lookahead of one."""
 
     def peek(self) -> BagMessage | None:
-        """The next message, which stays the next; None at the end."""
+        """Return the next message without removing it; None at the end."""
 
     def pop(self) -> BagMessage | None:
-        """The next message; None at the end."""
+        """Remove and return the next message; None at the end."""
 
     def close(self) -> None:
-        """Give no more; the bag may be read otherwise from here on."""
+        """Stop reading; the bag may be read elsewhere afterwards."""
 
 
 MakeFeed = Callable[[Iterator[BagMessage]], Feed]
 
 
 class DirectFeed:
-    """Reads when asked."""
+    """Reads on demand."""
 
     def __init__(self, messages: Iterator[BagMessage]) -> None:
         self._messages = messages
@@ -50,9 +50,9 @@ class DirectFeed:
 
 
 class PrefetchingFeed:
-    """A thread reads ahead, so that a slow disk does not make messages late.
+    """Reads ahead in a thread, so that a slow disk does not delay messages.
 
-    It is never further ahead than some messages and bytes, whatever the bag's size.
+    The lookahead is bounded in messages and bytes.
     """
 
     def __init__(self, messages: Iterator[BagMessage]) -> None:
@@ -97,14 +97,14 @@ class PrefetchingFeed:
             for message in self._messages:
                 if not self._put(message):
                     return
-        except (NavetteError, OSError) as error:  # raised again where it is asked for
+        except (NavetteError, OSError) as error:  # raised again in the reading thread
             self._error = error
         with self._changed:
             self._done = True
             self._changed.notify_all()
 
     def _put(self, message: BagMessage) -> bool:
-        """Queue it once there is room; False if nobody wants more."""
+        """Queue a message when there is space; False if the feed is closed."""
         with self._changed:
             self._changed.wait_for(lambda: self._done or self._has_room())
             if self._done:

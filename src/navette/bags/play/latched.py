@@ -1,4 +1,4 @@
-"""What a late joiner would have been told by a point of a recording."""
+"""The latched messages at a position of a recording."""
 
 from collections import defaultdict, deque
 
@@ -12,15 +12,15 @@ _TRANSFORMS = "tf2_msgs/msg/TFMessage"
 
 
 def is_latched(topic: BagTopic) -> bool:
-    """As it was recorded; static transforms always are, by convention."""
+    """Whether the topic was recorded as latched; static transforms always are."""
     return topic.latched or topic.name.endswith("/tf_static")
 
 
 def latched_depth(topic: BagTopic) -> int:
-    """How many of its last messages count.
+    """Number of last messages of a topic to use.
 
-    Each publisher keeps its own, and static transforms come from many senders, of
-    which the file tells nothing: all of them are taken.
+    Each publisher keeps its own messages; static transforms come from many publishers,
+    which the file does not distinguish, so all of them are used.
     """
     if topic.type_name == _TRANSFORMS:
         return _MOST
@@ -33,9 +33,9 @@ def latched_depth(topic: BagTopic) -> int:
 def latched_before(
     source: Source, topics: tuple[BagTopic, ...], stamp_ns: int
 ) -> list[BagMessage]:
-    """The last messages of latched topics before a stamp, in the order of stamps.
+    """Return the last messages of latched topics before a stamp, by stamp.
 
-    Looks back in ever wider windows: a map that is told every second is found without
+    Searches backwards in growing windows: a map published at 1 Hz is found without
     reading an hour of maps.
     """
     missing = {t: latched_depth(t) for t in topics if is_latched(t)}

@@ -1,4 +1,4 @@
-"""Several recordings as one, and what is wrong with them told instead of raised."""
+"""Merge several recordings, and report damage instead of raising it."""
 
 import heapq
 from collections.abc import Callable, Collection, Iterator, Sequence
@@ -11,10 +11,10 @@ _stamp = attrgetter("stamp_ns")
 
 
 class TolerantSource:
-    """A bag whose damaged parts are left out.
+    """A bag whose damaged parts are skipped.
 
     Args:
-        report: told of each part, from whatever thread reads.
+        report: called once for each damaged part, in the reading thread.
     """
 
     def __init__(self, reader: BagReader, report: Callable[[Damage], None]) -> None:
@@ -36,13 +36,13 @@ class TolerantSource:
         )
 
     def _on_damage(self, damage: Damage) -> None:
-        if damage not in self._reported:  # once, however often it is played
+        if damage not in self._reported:  # once, also in loops
             self._reported.add(damage)
             self._report(damage)
 
 
 class MergedSource:
-    """The messages of several sources in the order of their stamps."""
+    """The messages of several sources by stamp."""
 
     def __init__(self, sources: Sequence[Source]) -> None:
         self._sources = sources

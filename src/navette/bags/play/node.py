@@ -1,12 +1,12 @@
-"""The node ``rosbag2_player``: says what a bag recorded, at the recorded times.
+"""The node ``rosbag2_player``: publish the messages of a bag at the recorded times.
 
-The bytes go out as they lie in the bag. Publishers offer what was offered when it was
-recorded, so late joiners get latched topics; a start in the middle, a loop and a seek
-first say what late joiners were to know at that place. With a clock rate it is the
-source of ``/clock``: a jump is told there before anything else.
+Messages are published as recorded, without decoding. Publishers have the recorded QoS,
+so late subscribers receive latched topics; a start in the middle, a loop and a seek
+first publish the latched messages of that position. With a clock rate the node is the
+source of ``/clock``: a jump is published there before anything else.
 
-Services under the node's name, as rosbag2's player has them: pause, resume,
-toggle_paused, is_paused, set_rate, get_rate, play_next, seek, stop.
+Services under the node's name, as of rosbag2's player: pause, resume, toggle_paused,
+is_paused, set_rate, get_rate, play_next, seek, stop.
 """
 
 import re
@@ -44,7 +44,7 @@ _CLOCK_QOS = QoSProfile(depth=1)
 
 @dataclass(frozen=True)
 class PlayProgress:
-    """How it goes: places in the recording in nanoseconds."""
+    """State of playback; positions are recording time in nanoseconds."""
 
     state: PlayState
     position_ns: int
@@ -56,19 +56,19 @@ class PlayProgress:
 
 
 class PlayerNode(Node):
-    """Plays from :meth:`start` on; every method but :meth:`run_soon` on the loop.
+    """Plays from :meth:`start`; all methods except :meth:`run_soon` run on the loop.
 
     Args:
-        source: an open bag; stays the caller's to close.
+        source: an open bag; the caller closes it.
         remap: rules ``FROM:=TO`` for the topics.
-        clock_rate_hz: tell the recording's time on ``/clock`` so often; a recorded
-            ``/clock`` is then left out.
-        on_end: called when the end is reached.
-        on_change: called when state, rate or place changed other than by playing,
-            with whether it was a jump.
+        clock_rate_hz: rate of the recording's time on ``/clock``; a recorded ``/clock``
+            is then not played.
+        on_end: called at the end of the recording.
+        on_change: called when state, rate or position changed other than by playing;
+            the argument is true for a jump.
 
     Raises:
-        UnknownNameError, InvalidValueError: nothing of what was asked for is there.
+        UnknownNameError, InvalidValueError: no recorded topic matches the options.
     """
 
     def __init__(
@@ -113,16 +113,16 @@ class PlayerNode(Node):
         self._outlets = {t: p for t in self.player.topics if (p := self._open_topic(t))}
         self._serve()
 
-    # -- what it does ----------------------------------------------------------
+    # -- control ---------------------------------------------------------------
 
     def start(self) -> None:
-        """Begin to play (or stand at the beginning, if the options say so)."""
+        """Start to play, or to pause at the beginning, as the options say."""
         self.player.start(self._now_ns())
         self._tick()
         self._changed(jumped=True)
 
     def progress(self) -> PlayProgress:
-        """Where it is; may be asked from any thread."""
+        """Return the state of playback; callable from any thread."""
         player = self.player
         return PlayProgress(
             player.state,
@@ -135,7 +135,7 @@ class PlayerNode(Node):
         )
 
     def run_soon(self, action: Callable[[], object]) -> None:
-        """Do something with the player between two callbacks; from any thread."""
+        """Run a function with the player between two callbacks; from any thread."""
         self.context.loop.call_soon_threadsafe(
             action, "player control", self.get_fully_qualified_name()
         )
@@ -145,7 +145,7 @@ class PlayerNode(Node):
         self._changed()
 
     def resume(self) -> None:
-        """Go on; at the end, from the beginning."""
+        """Resume; at the end, restart from the beginning."""
         if self.player.state is PlayState.ENDED:
             self.seek(self.player.begin_ns)
         self.player.resume(self._now_ns())
@@ -158,7 +158,7 @@ class PlayerNode(Node):
             self.resume()
 
     def step(self) -> bool:
-        """Pause, and say the next message; False at the end."""
+        """Pause, and publish the next message; False at the end."""
         message = self.player.step(self._now_ns())
         jumped = self._jump()
         if message is not None:
@@ -170,28 +170,28 @@ class PlayerNode(Node):
         return message is not None
 
     def set_rate(self, rate: float) -> None:
-        """Play ``rate`` times as fast as it was recorded.
+        """Set the playback rate relative to the recording.
 
         Raises:
-            InvalidValueError: no rate.
+            InvalidValueError: the rate is out of range.
         """
         self.player.set_rate(self._now_ns(), rate)
         self._changed()
 
     def seek(self, bag_ns: int) -> None:
-        """Go to a place in the recording, or to the nearest that is played."""
+        """Seek to a position, or to the nearest one that is played."""
         self.player.seek(self._now_ns(), bag_ns)
         self._changed(jumped=True)
 
     def seek_by(self, delta_ns: int) -> None:
-        """Go forward or back."""
+        """Seek relative to the current position."""
         self.seek(self.player.position_ns(self._now_ns()) + delta_ns)
 
     def control(self, *, play: bool, rate: float, seek_ns: int | None) -> None:
-        """All at once: a place to go to (if any), a rate, and whether to play.
+        """Seek (optionally), set the rate, and play or pause.
 
         Raises:
-            InvalidValueError: no rate; nothing is changed.
+            InvalidValueError: the rate is out of range; nothing is changed.
         """
         player, now_ns = self.player, self._now_ns()
         player.set_rate(now_ns, rate)
@@ -206,7 +206,7 @@ class PlayerNode(Node):
         self._changed(jumped=seek_ns is not None)
 
     def stop(self) -> None:
-        """Pause, and end as if the end were reached."""
+        """Pause, and end as at the end of the recording."""
         self.pause()
         if self.on_end is not None:
             self.on_end()
@@ -218,14 +218,14 @@ class PlayerNode(Node):
         self.player.close()
         super().destroy_node()
 
-    # -- in time ---------------------------------------------------------------
+    # -- timing ----------------------------------------------------------------
 
     def _now_ns(self) -> int:
-        # Not the node's clock: that may follow the very /clock that is told here.
+        # Not the node's clock, which may follow the /clock published here.
         return self.context.clock.now_ns
 
     def _changed(self, *, jumped: bool = False) -> None:
-        """The next message is due at another time now."""
+        """Reschedule the next message."""
         self._jump()
         self._arm()
         if self.on_change is not None:
@@ -244,7 +244,7 @@ class PlayerNode(Node):
         return loop.call_at(time_ns, function, "player", name)
 
     def _play(self) -> None:
-        """One message an event: who listens in this process acts before the next."""
+        """Publish one message per event, so that subscribers act before the next."""
         message = self.player.take(self._now_ns())
         if message is not None:
             self._say(message)
@@ -263,7 +263,7 @@ class PlayerNode(Node):
             self.on_end()
 
     def _jump(self) -> bool:
-        """After a start, a loop or a seek: time first, then what is known there."""
+        """Publish time and latched messages after a start, loop or seek."""
         jump = self.player.pop_jump()
         if jump is None:
             return False
@@ -292,7 +292,7 @@ class PlayerNode(Node):
     # -- topics and services ---------------------------------------------------
 
     def _open_topic(self, topic: BagTopic) -> Publisher[Any] | None:
-        """None, and a warning, for what nobody can say."""
+        """Create a publisher; None, and a warning, if the type cannot be published."""
         try:
             name = _valid_name(topic.name)
             if name.lstrip("/") != topic.name.lstrip("/"):
@@ -319,13 +319,13 @@ class _Without:
 
 
 def _valid_name(name: str) -> str:
-    """ROS 1 took more signs in names, and names without a slash as global ones."""
+    """Convert a ROS 1 name, which may have more characters and no slash."""
     parts = (re.sub(r"[^A-Za-z0-9_]", "_", part) for part in name.split("/") if part)
     return "".join(f"/_{p}" if p[0].isdigit() else f"/{p}" for p in parts)
 
 
 def _type_of(topic: BagTopic) -> type:
-    """The class of a recorded topic: as recorded, where the file says how."""
+    """Return the message class of a topic, from the recorded definition if any."""
     if topic.definition:
         return register_definition(topic.type_name, topic.definition, private=True)
     return get_interface(topic.type_name)

@@ -1,4 +1,4 @@
-"""What a playing publisher offers: what was offered when it was recorded."""
+"""QoS of the player's publishers, from the recorded QoS."""
 
 from navette.bags.bag import BagTopic
 from navette.bags.play.latched import is_latched, latched_depth
@@ -8,11 +8,11 @@ _DEPTH = 10
 
 
 def joint_offer(topic: BagTopic) -> OfferedQos:
-    """An offer that everyone can take who could take one of the recorded ones.
+    """Return a QoS compatible with all subscribers of the recorded publishers.
 
-    Publishers that differed become one that offers the most of each policy. Lifespan
-    and liveliness are not kept: a bag that is paused breaks either. What late joiners
-    get is bounded, whatever was kept then.
+    Of different publishers, the strongest of each policy is used. Lifespan and
+    liveliness are dropped, since a paused bag violates them. The depth of latched
+    messages is bounded.
     """
     offers = topic.qos
     best_effort = bool(offers) and all(q.reliability == "best_effort" for q in offers)

@@ -1,4 +1,4 @@
-"""What a person asks of playing a bag."""
+"""Options of playback."""
 
 import math
 import re
@@ -13,7 +13,7 @@ MAX_RATE = 10_000.0
 
 @dataclass(frozen=True, kw_only=True)
 class PlayOptions:
-    """Which part of a bag is played, and how fast.
+    """The part of a bag to play, and the rate.
 
     ``regex`` and ``exclude`` are searched anywhere in a topic's name. With neither
     ``topics`` nor ``regex`` every topic is played.
@@ -43,15 +43,16 @@ class PlayOptions:
                 re.compile(getattr(self, name))
             except re.error as error:
                 raise InvalidValueError(
-                    f"{name} {getattr(self, name)!r} is no regular expression: {error}"
+                    f"{name} {getattr(self, name)!r} is not a regular "
+                    f"expression: {error}"
                 ) from None
 
     def choose(self, names: Iterable[str]) -> tuple[str, ...]:
-        """The topics to play, of those that there are.
+        """Select the topics to play.
 
         Raises:
-            UnknownNameError: a topic asked for by name is not there.
-            InvalidValueError: nothing is left to play.
+            UnknownNameError: a named topic was not recorded.
+            InvalidValueError: no topic is selected.
         """
         known = list(dict.fromkeys(names))
         by_full_name = {_full(name): name for name in known}
@@ -62,7 +63,7 @@ class PlayOptions:
         chosen = tuple(n for n in known if self._takes(n, wanted))
         if not chosen:
             raise InvalidValueError(
-                f"no topic is left to play; recorded: {', '.join(known) or 'none'}"
+                f"no topic is selected; recorded topics: {', '.join(known) or 'none'}"
             )
         return chosen
 
@@ -80,10 +81,10 @@ def _full(name: str) -> str:
 
 
 def check_rate(rate: float) -> float:
-    """The rate, if bags can be played at it.
+    """Return the rate if it is valid.
 
     Raises:
-        InvalidValueError: it is not.
+        InvalidValueError: out of range.
     """
     if not MIN_RATE <= rate <= MAX_RATE:
         raise InvalidValueError(

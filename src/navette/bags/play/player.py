@@ -1,8 +1,8 @@
-"""Plays a recording: which message is next, and when. No node, no clock, no thread.
+"""Playback logic: the next message and its time. No node, no clock, no thread.
 
-Whoever plays tells the time with every call (``now_ns``, integer nanoseconds of any
-clock), asks :meth:`Player.due_ns` when to come back, and takes one message at a time.
-So the same calls give the same messages, whatever clock they come from.
+The caller passes the time with every call (``now_ns``, integer nanoseconds of any
+clock), reads the time of the next call from :meth:`Player.due_ns`, and takes one
+message at a time. The same calls produce the same messages with any clock.
 """
 
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ from navette.bags.play.playhead import Playhead
 from navette.bags.play.source import Source
 from navette.errors import InvalidValueError
 
-# A recording of one instant, looped, must let time pass.
+# Minimum period of a looped recording with a single stamp.
 _SHORTEST_PASS_NS = 10_000_000
-# Who was away for longer (a suspended process) does not hurry to catch up.
+# After a longer pause (a suspended process) playback does not catch up.
 _MAX_LATE_NS = 1_000_000_000
 
 
 class PlayState(Enum):
-    """What the player does."""
+    """State of the player."""
 
     PLAYING = "playing"
     PAUSED = "paused"
@@ -32,23 +32,22 @@ class PlayState(Enum):
 
 @dataclass(frozen=True)
 class Jump:
-    """The place in the recording changes at once: by a start, a loop or a seek."""
+    """A change of position by a start, a loop or a seek."""
 
     to_ns: int
     latched: tuple[BagMessage, ...]
-    """What late joiners were to know at that place, oldest first."""
+    """Latched messages at that position, oldest first."""
 
 
 class Player:
-    """Gives the messages of a bag one by one as their time comes.
+    """Returns the messages of a bag one by one when they are due.
 
     Args:
         source: an open bag.
-        options: what to play of it.
-        make_feed: how messages are read.
+        make_feed: creates the message feed.
 
     Raises:
-        UnknownNameError, InvalidValueError: there is nothing of what was asked for.
+        UnknownNameError, InvalidValueError: no recorded topic matches the options.
     """
 
     def __init__(
@@ -64,10 +63,10 @@ class Player:
         self._feed: Feed | None = None
         self._ended = False
         self.passes = 0
-        """How often the beginning was played; 0 before :meth:`start`."""
+        """Number of passes started; 0 before :meth:`start`."""
         self._jump: Jump | None = None
 
-    # -- where it is -----------------------------------------------------------
+    # -- state -----------------------------------------------------------------
 
     @property
     def state(self) -> PlayState:
@@ -80,11 +79,11 @@ class Player:
         return self._head.rate
 
     def position_ns(self, now_ns: int) -> int:
-        """The place in the recording."""
+        """Position in the recording."""
         return max(self.begin_ns, min(self.end_ns, self._head.at(now_ns)))
 
     def due_ns(self) -> int | None:
-        """When :meth:`take` has something to do; None until something is changed."""
+        """Time of the next :meth:`take`; None while nothing is due."""
         if self._feed is None or self._ended or not self._head.moves:
             return None
         message = self._feed.peek()
@@ -94,21 +93,21 @@ class Player:
     # -- playing ---------------------------------------------------------------
 
     def start(self, now_ns: int) -> None:
-        """Begin, or begin again."""
+        """Start, or restart."""
         self._go_to(now_ns, self.begin_ns)
         self.passes += 1
         self._ended = False
         self._head.moves = not self.options.paused
 
     def take(self, now_ns: int) -> BagMessage | None:
-        """The next message if its time has come.
+        """Return the next message if it is due.
 
-        At the end it starts over, with a :class:`Jump`, or ends.
+        At the end the recording loops, with a :class:`Jump`, or playback ends.
         """
         due_ns = self.due_ns()
         if due_ns is None or due_ns > now_ns:
             return None
-        assert self._feed is not None, "without a feed nothing is due"
+        assert self._feed is not None, "a message is due, so there is a feed"
         message = self._feed.pop()
         place_ns = self._pass_end_ns if message is None else message.stamp_ns
         if now_ns - due_ns > _MAX_LATE_NS:
@@ -118,7 +117,7 @@ class Player:
         return message
 
     def step(self, now_ns: int) -> BagMessage | None:
-        """Pause, and give the next message at once; None at the end."""
+        """Pause, and return the next message at once; None at the end."""
         self.pause(now_ns)
         if self._feed is None or self._ended:
             return None
@@ -142,27 +141,27 @@ class Player:
         """Play at ``rate`` times real time.
 
         Raises:
-            InvalidValueError: no rate.
+            InvalidValueError: the rate is out of range.
         """
         self._head.set_rate(now_ns, rate)
 
     def seek(self, now_ns: int, bag_ns: int) -> int:
-        """Go to a place of the recording (the nearest that is played); returns it."""
+        """Seek to the nearest position that is played; return it."""
         place_ns = max(self.begin_ns, min(self.end_ns, bag_ns))
         self._go_to(now_ns, place_ns)
         self._ended = False
         return place_ns
 
     def pop_jump(self) -> Jump | None:
-        """The last jump, once: it comes before the next message."""
+        """Return the last jump once, before the next message."""
         jump, self._jump = self._jump, None
         return jump
 
     def close(self) -> None:
-        """Stop reading; twice is harmless."""
+        """Stop reading; a second call has no effect."""
         self._close_feed()
 
-    # -- inside ----------------------------------------------------------------
+    # -- internals -------------------------------------------------------------
 
     @property
     def _pass_end_ns(self) -> int:
@@ -193,13 +192,13 @@ class Player:
 
 
 def _range(source: Source, options: PlayOptions) -> tuple[int, int]:
-    """First and last stamp to play."""
+    """Return the first and last stamp to play."""
     length_s = (source.end_ns - source.start_ns) / 1e9
     begin_ns = source.start_ns + round(options.start_offset_s * 1e9)
     if begin_ns > source.end_ns:
         raise InvalidValueError(
-            f"start offset {options.start_offset_s:g} s: the bag is only "
-            f"{length_s:.3f} s long"
+            f"start offset {options.start_offset_s:g} s: the bag has "
+            f"only {length_s:.3f} s"
         )
     if options.duration_s is None:
         return begin_ns, source.end_ns

@@ -1,13 +1,13 @@
-"""The place in a recording, as time goes by."""
+"""Mapping between the time of a clock and the time of a recording."""
 
 from navette.bags.play.options import check_rate
 
 
 class Playhead:
-    """Turns the time of who plays into the time of the recording, and back.
+    """Converts clock time to recording time and back.
 
-    Both in integer nanoseconds. The rate is taken as the exact fraction that the
-    floating-point number is, so that nothing drifts: bag = bag₀ + (now − now₀) · rate.
+    Both in integer nanoseconds. The rate is the exact fraction of the floating-point
+    number, so that the mapping does not drift: bag = bag₀ + (now − now₀) · rate.
     """
 
     def __init__(self, rate: float = 1.0) -> None:
@@ -21,33 +21,33 @@ class Playhead:
         return self._rate
 
     def at(self, now_ns: int) -> int:
-        """The place in the recording at this time."""
+        """Return the position in the recording at this time."""
         if not self.moves:
             return self._bag_ns
         return self._bag_ns + (now_ns - self._now_ns) * self._num // self._den
 
     def due_ns(self, bag_ns: int) -> int:
-        """When, if nothing changes, the place in the recording is reached (rounded up).
+        """Return the time at which a position is reached (rounded up).
 
-        Only while it moves.
+        Valid only while playing.
         """
         ahead = bag_ns - self._bag_ns
         return self._now_ns - (-ahead * self._den // self._num)
 
     def place(self, now_ns: int, bag_ns: int) -> None:
-        """Be at this place now."""
+        """Set the position."""
         self._now_ns, self._bag_ns = now_ns, bag_ns
 
     def set_moving(self, now_ns: int, *, moves: bool) -> None:
-        """Go on or stand still from now on."""
+        """Play or pause from now on."""
         self.place(now_ns, self.at(now_ns))
         self.moves = moves
 
     def set_rate(self, now_ns: int, rate: float) -> None:
-        """Go faster or slower from now on.
+        """Set the rate from now on.
 
         Raises:
-            InvalidValueError: no rate.
+            InvalidValueError: the rate is out of range.
         """
         check_rate(rate)
         self.place(now_ns, self.at(now_ns))

@@ -1,4 +1,4 @@
-"""The player's services: names and forms of rosbag2's player (rosbag2_interfaces)."""
+"""Services of the player, with rosbag2's names and types (rosbag2_interfaces)."""
 
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -9,7 +9,7 @@ from navette.msgs.rosbag2_interfaces import srv
 
 
 class Controls(Protocol):
-    """What the services do with a player that runs."""
+    """The player operations used by the services."""
 
     @property
     def player(self) -> Player: ...
@@ -26,7 +26,7 @@ Answer = Callable[[Controls, Any, Any], Any]
 
 
 def _doing(action: Callable[[Controls], object]) -> Answer:
-    """An answer without content, once it is done."""
+    """Run an action and return an empty response."""
 
     def answer(controls: Controls, request: Any, response: Any) -> Any:
         action(controls)
@@ -56,7 +56,7 @@ def _is_paused(controls: Controls, request: Any, response: Any) -> Any:
 
 
 def _play_next(controls: Controls, request: Any, response: Any) -> Any:
-    """As rosbag2 has it: only while it is paused."""
+    """Publish the next message; as in rosbag2, only while paused."""
     paused = controls.player.state is PlayState.PAUSED
     response.success = paused and controls.step()
     return response
@@ -82,4 +82,4 @@ SERVICES: dict[str, tuple[Any, Answer]] = {
     "play_next": (srv.PlayNext, _play_next),
     "seek": (srv.Seek, _seek),
 }
-"""Name below the node's → type, and what answers."""
+"""Service type and handler by name below the node's."""

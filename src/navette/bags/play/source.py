@@ -1,4 +1,4 @@
-"""What can be played: a part of an open bag's face."""
+"""Interface of a playable recording: a part of an open bag's."""
 
 from collections.abc import Collection, Iterator, Sequence
 from typing import Protocol
@@ -7,11 +7,11 @@ from navette.bags.bag import BagMessage, BagTopic
 
 
 class Source(Protocol):
-    """Recorded messages in the order of their stamps; every open bag is one."""
+    """Recorded messages by stamp; every open bag is a source."""
 
     @property
     def topics(self) -> Sequence[BagTopic]:
-        """What was recorded."""
+        """Recorded topics."""
 
     @property
     def start_ns(self) -> int:
@@ -28,4 +28,4 @@ class Source(Protocol):
         start_ns: int | None = None,
         end_ns: int | None = None,
     ) -> Iterator[BagMessage]:
-        """The messages of these topics (None = all) between two stamps, included."""
+        """Iterate over messages of topics (None: all) between two stamps, inclusive."""

@@ -26,7 +26,7 @@ from navette.cli.session import FAILED
 
 if TYPE_CHECKING:
     from navette.bags import BagMessage, BagReader, Damage
-    from navette.bags.editing import Choice
+    from navette.bags.editing import MessageFilter
 
 
 def recover(
@@ -109,10 +109,10 @@ def filter_(
 ) -> None:
     """Write only some topics, types, times or messages."""
     from navette.bags import open_bag
-    from navette.bags.editing import Choice
+    from navette.bags.editing import MessageFilter
 
     with open_bag(bag) as reader:
-        choice = Choice(
+        selected = MessageFilter(
             topics=tuple(topic or ()),
             types=tuple(type_ or ()),
             regex=regex,
@@ -124,7 +124,7 @@ def filter_(
         _copy(
             reader,
             output,
-            choice,
+            selected,
             storage=storage,
             compression=compression,
             overwrite=overwrite,
@@ -143,7 +143,7 @@ def cut(
 ) -> None:
     """Write the part between two times."""
     from navette.bags import open_bag
-    from navette.bags.editing import Choice
+    from navette.bags.editing import MessageFilter
 
     with open_bag(bag) as reader:
         first = _time(start, reader)
@@ -156,7 +156,7 @@ def cut(
         _copy(
             reader,
             output,
-            Choice(start_ns=first, end_ns=last),
+            MessageFilter(start_ns=first, end_ns=last),
             storage=storage,
             compression=compression,
             overwrite=overwrite,
@@ -186,7 +186,7 @@ def merge(
 def _copy(
     reader: "BagReader",
     output: Path,
-    choice: "Choice | None" = None,
+    selected: "MessageFilter | None" = None,
     *,
     storage: str,
     compression: str,
@@ -213,7 +213,9 @@ def _copy(
                 advance((message.stamp_ns - at) / 1e9)
                 at = message.stamp_ns
 
-        count = copy(reader, writer, choice, on_message=on_message, on_damage=on_damage)
+        count = copy(
+            reader, writer, selected, on_message=on_message, on_damage=on_damage
+        )
     size = output.stat().st_size if output.is_file() else 0
     how_large = f", {size_text(size)}" if size else ""
     note(f"{output}: {count_text(count)} messages{how_large}")

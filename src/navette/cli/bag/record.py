@@ -181,7 +181,7 @@ def _path(output: str, *, in_folder: bool, overwrite: bool) -> Path:
         if not overwrite:
             raise FileFormatError(path, "exists already; --overwrite replaces it")
         if not is_bag(path):
-            raise FileFormatError(path, "exists and is no bag; it is not replaced")
+            raise FileFormatError(path, "exists, is not a bag and is not replaced")
         if path.is_dir():
             shutil.rmtree(path)
     return path
