@@ -460,5 +460,5 @@ def test_only_nodes_are_spun(not_a_node: Any) -> None:
     start()
     with pytest.raises(TypeError, match=r"node must be a Node, got"):
         navette.spin(not_a_node)
-    with pytest.raises(TypeError, match="wanted a node"):
+    with pytest.raises(TypeError, match="node must be a Node"):
         navette.spin_once(not_a_node, timeout_sec=0)
