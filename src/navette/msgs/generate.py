@@ -3,8 +3,9 @@
     python -m navette.msgs.generate
 
 The modules (``std_msgs/msg.py``, …) are committed: run the command after adding a file
-under ``definitions/`` and commit them. The stubs (``std_msgs/msg.pyi``, …) are not:
-building the package runs this command, and so does whoever runs mypy on a checkout.
+under ``definitions/`` and commit the new modules. The type stubs (``std_msgs/msg.pyi``,
+…) are not committed: the build makes them, also for ``pip install -e .``. Run the
+command if mypy finds none in a checkout.
 """
 
 import sys

@@ -138,8 +138,8 @@ def _parse_line(line: str, package: str) -> Field | Constant:
         return _parse_constant(name, type_, value)
     if not _FIELD_NAME.fullmatch(name):
         raise _LineError(
-            f"field name {name!r}: expected lower case letters, digits and single "
-            "underscores, starting with a letter"
+            f"field name {name!r}: expected a lower-case letter, then "
+            "lower-case letters, digits and single underscores"
         )
     if not value:
         return Field(name, type_)

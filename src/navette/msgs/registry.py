@@ -104,8 +104,8 @@ def load_interfaces(package: str, folder: Path | str) -> list[str]:
     folder = Path(folder)
     if not PACKAGE_NAME.fullmatch(package):
         raise InvalidNameError(
-            f"package name {package!r}: expected lower case letters, digits and single "
-            "underscores, starting with a letter"
+            f"package name {package!r}: expected a lower-case letter, then "
+            "lower-case letters, digits and single underscores"
         )
     if (DEFINITIONS / package).is_dir():
         raise InvalidNameError(f"package {package!r} is part of Navette")

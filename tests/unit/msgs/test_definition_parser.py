@@ -86,9 +86,9 @@ def test_comments_and_blank_lines_are_ignored() -> None:
     ("line", "reason"),
     [
         ("int32", "type name"),
-        ("int32 X", "lower case"),
-        ("int32 x_", "lower case"),
-        ("int32 a__b", "lower case"),
+        ("int32 X", "lower-case"),
+        ("int32 x_", "lower-case"),
+        ("int32 a__b", "lower-case"),
         ("int33 x", "unknown type 'int33'"),
         ("time x", "unknown type 'time'"),
         ("int32[0] x", "is at least 1"),
