@@ -107,7 +107,7 @@ def _why_not() -> str:
 def test_info_as_json_says_what_the_file_holds(
     drive: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from typer.testing import CliRunner
+    from click.testing import CliRunner
 
     from navette.cli.bag import bag
 

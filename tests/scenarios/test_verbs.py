@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 
 import pytest
-from typer.testing import CliRunner
+from click.testing import CliRunner
 
 from free_ports import free_endpoint
 from navette.cli.app import app

@@ -1,6 +1,6 @@
 """The command line: ``navette demo``, ``navette sim``."""
 
-from navette.cli.garbage import uncollected
+from navette.cli.gc_tuning import uncollected
 from navette.cli.interruption import dying_on_signals
 
 __all__ = ["main"]

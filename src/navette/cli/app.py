@@ -1,4 +1,4 @@
-"""The commands and their options; the work is done in ``launch``."""
+"""The command line: global options, ``demo`` and ``sim``; other verbs load lazily."""
 
 import math
 import os
@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
 
 from navette import __version__
 from navette.cli.arguments import (
@@ -17,112 +17,97 @@ from navette.cli.arguments import (
     spread_lists,
     without_daemon,
 )
+from navette.cli.commands import LazyGroup
 from navette.cli.completing_installed import complete_robots, complete_worlds
-from navette.cli.completion import is_completing, keep_quiet
-from navette.cli.lazy import lazy_group
-from navette.cli.remarks import complain
+from navette.cli.completion import discard_stderr, is_completing
+from navette.cli.options import Argument, Option
+from navette.cli.stderr import complain
 from navette.cli.verbs import VERBS
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
     from navette.navigation.stack import RunOptions
 
-app = typer.Typer(
-    name="navette",
-    cls=lazy_group(VERBS),
-    help="Robot navigation you pip install: simulate, map, plan, drive, watch.",
-    no_args_is_help=True,
-    add_completion=is_completing(),  # adds options that only a shell needs
-    rich_markup_mode="rich",
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
 USAGE_ERROR = 2
 
 World = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="[WORLD]",
         help="A built-in world (arena, empty, …) or a file: .sdf, .world, .xml (MJCF),"
         " .urdf, or a ROS map .yaml.",
-        autocompletion=complete_worlds,
+        complete=complete_worlds,
     ),
 ]
 Robot = Annotated[
     str | None,
-    typer.Option(
+    Option(
         metavar="NAME|PATH",
         help="A built-in robot (jackal, turtlebot3_burger, husky, course) or a model"
-        " file; by default the world's own.",
-        autocompletion=complete_robots,
+        " file. Default: the robot of the world.",
+        complete=complete_robots,
     ),
 ]
 Start = Annotated[
     tuple[float, float, float] | None,
-    typer.Option(metavar="X Y YAW_DEG", help="Where the robot starts."),
+    Option(metavar="X Y YAW_DEG", help="Start pose of the robot."),
 ]
 Goals = Annotated[
     list[str] | None,
-    typer.Option(metavar="X Y", help="A goal in metres; repeat for several in order."),
+    Option(metavar="X Y", help="Goal in metres. Repeat for several goals, in order."),
 ]
 Headless = Annotated[
     bool,
-    typer.Option("--headless", help="No live view; end when the goals are done."),
+    Option("--headless", help="Run without the live view; exit after the last goal."),
 ]
 Speed = Annotated[
     str | None,
-    typer.Option(
+    Option(
         metavar="FACTOR|max",
-        help="Simulated seconds per second; 1 with the live view, max when headless.",
+        help="Simulated seconds per second. Default: 1 with the live view, max when"
+        " headless.",
     ),
 ]
-Seed = Annotated[int, typer.Option(help="Seed of all noise; same seed, same run.")]
+Seed = Annotated[
+    int, Option(help="Seed of all noise. The same seed gives the same run.")
+]
 Record = Annotated[
     Path | None,
-    typer.Option(metavar="FILE.mcap", help="Record every topic except raw images."),
+    Option(metavar="FILE.mcap", help="Record all topics except raw images."),
 ]
 RecordImages = Annotated[
-    bool, typer.Option("--record-images", help="Record raw images as well.")
+    bool, Option("--record-images", help="Also record raw images.")
 ]
 ParamsFile = Annotated[
     list[Path] | None,
-    typer.Option(metavar="FILE", help="ROS 2 parameter file; later ones win."),
+    Option(
+        metavar="FILE",
+        help="ROS 2 parameter file. Repeat for several; later files win.",
+    ),
 ]
 MaxTime = Annotated[
-    float | None,
-    typer.Option(metavar="S", help="End after this much simulated time."),
+    float | None, Option(metavar="S", help="Stop after this simulated time.")
 ]
 Json = Annotated[
-    bool, typer.Option("--json", help="Print one JSON object about the run on stdout.")
+    bool, Option("--json", help="Print a summary of the run as JSON on stdout.")
 ]
 Port = Annotated[
-    int,
-    typer.Option(min=0, max=65535, help="Port of the live view; 0 takes a free one."),
+    int, Option(min=0, max=65535, help="Port of the live view; 0 selects a free port.")
 ]
 
 
-def _version(value: bool) -> None:
-    if value:
-        typer.echo(f"navette {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
-def _root(
-    version: Annotated[
-        bool,
-        typer.Option(
-            "--version",
-            help="Print the version and exit.",
-            callback=_version,
-            is_eager=True,
-        ),
-    ] = False,
+@click.group(
+    "navette",
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+@click.version_option(
+    __version__, message="navette %(version)s", help="Print the version and exit."
+)
+def app(
     domain_id: Annotated[
         int | None,
-        typer.Option(
-            min=0, max=232, metavar="N", help="In this domain, not ROS_DOMAIN_ID's."
-        ),
+        Option(min=0, max=232, metavar="N", help="Use this domain, not ROS_DOMAIN_ID."),
     ] = None,
 ) -> None:
     """Robot navigation you pip install: simulate, map, plan, drive, watch."""
@@ -137,10 +122,10 @@ def demo(
     speed: Speed = None,
     max_time: MaxTime = None,
 ) -> None:
-    """A robot drives itself through an arena it does not know; watch it live.
+    """Run the demo: a robot explores an unknown arena; watch it in the live view.
 
-    Drives a few goals at once, then waits for more from the live view.
-    Ctrl-C ends it.
+    The robot drives to a few goals, then waits for goals from the live view. Press
+    Ctrl-C to stop.
     """
     from navette.navigation.stack import RunOptions, demo_goals
 
@@ -173,8 +158,8 @@ def sim(
 ) -> None:
     """Simulate a robot in WORLD and drive it to goals.
 
-    With --headless and goals: runs as fast as it can, drives the goals in order and
-    exits 0 only if all were reached without contact.
+    With --headless and goals: runs as fast as possible, drives to the goals in order
+    and exits with 0 only if all goals were reached without contact.
     """
     from navette.geometry import Pose2
     from navette.navigation.stack import RunOptions
@@ -199,28 +184,32 @@ def sim(
 def _run(options: "RunOptions", *, as_json: bool) -> None:
     from navette.cli.running import run_simulation
 
-    raise typer.Exit(run_simulation(options, as_json=as_json))
+    raise click.exceptions.Exit(run_simulation(options, as_json=as_json))
+
+
+for _verb in VERBS:
+    app.add_command(_verb)
 
 
 def main() -> None:
     """Entry point of the ``navette`` command."""
     if is_completing():
-        keep_quiet()
+        discard_stderr()
     arguments = sys.argv[1:]
     if arguments[:1] != ["run"]:
         arguments = without_daemon(fill_values(spread_lists(join_pairs(arguments))))
     try:
-        app(args=arguments, prog_name="navette")
+        app.main(args=arguments, prog_name="navette")
     except NavetteError as error:
         complain(str(error))
         raise SystemExit(USAGE_ERROR) from None
     except SystemExit as end:
-        _end_at_once(end.code)
+        _exit_without_waiting(end.code)
         raise
 
 
-def _end_at_once(exit_code: object) -> None:
-    """Not waiting for what closes slowly, if there is such a thing by now."""
+def _exit_without_waiting(exit_code: object) -> None:
+    """Exit at once if the transport is loaded: closing its threads takes long."""
     shutdown = sys.modules.get("navette.transports.shutdown")
     if shutdown is not None and isinstance(exit_code, int):
         shutdown.end_with(exit_code)

@@ -1,4 +1,4 @@
-"""Reading what a person typed: goals, speeds, and errors that say what to do."""
+"""Preprocess command-line arguments, and parse goals and speeds."""
 
 import math
 from collections.abc import Sequence
@@ -12,8 +12,16 @@ LIST_OPTIONS = (
     *("--topic-types", "--exclude-topics", "--exclude-topic-types"),
     *("--param-prefixes", "--prefixes"),
 )
-_ASKS_DAEMON = ("topic", "node", "param", "service", "action", "lifecycle", "component")
-_NAMES_ITS_NODE = {
+_DAEMON_VERBS = (
+    "topic",
+    "node",
+    "param",
+    "service",
+    "action",
+    "lifecycle",
+    "component",
+)
+_VERBS_OF_ONE_NODE = {
     *(("param", each) for each in ("get", "set", "describe", "load", "delete")),
     *(("lifecycle", each) for each in ("set", "list")),
 }
@@ -21,10 +29,9 @@ OPTIONAL_VALUES = {"--clock": "40"}
 
 
 def join_pairs(arguments: Sequence[str]) -> list[str]:
-    """Make ``--goal X Y`` (or ``--goal=X Y``) one value, ``--goal "X Y"``, each time.
+    """Join ``--goal X Y`` (or ``--goal=X Y``) to one value, ``--goal "X Y"``.
 
-    Why: Typer takes options that repeat, and options with two values, but not an
-    option that does both.
+    Click could take two numbers, but not also ``--goal "X Y"`` and ``--goal X,Y``.
     """
     joined: list[str] = []
     rest = list(arguments)
@@ -40,10 +47,7 @@ def join_pairs(arguments: Sequence[str]) -> list[str]:
 
 
 def fill_values(arguments: Sequence[str]) -> list[str]:
-    """Make ``--clock`` without a number ``--clock 40``.
-
-    Why: ROS 2's command takes it so, and Typer takes options with a value or without.
-    """
+    """Replace ``--clock`` without a number by ``--clock 40``, as in ROS 2's command."""
     filled: list[str] = []
     for word, following in pairwise([*arguments, ""]):
         filled.append(word)
@@ -53,18 +57,17 @@ def fill_values(arguments: Sequence[str]) -> list[str]:
 
 
 def without_daemon(arguments: Sequence[str]) -> list[str]:
-    """Leave out what tells ROS 2's command how to discover: ``--no-daemon`` and such.
+    """Remove discovery options of ROS 2's command, such as ``--no-daemon``.
 
-    Why: scripts that were written for it have them, and here they mean nothing: there
-    is no daemon, what runs is known at once, and a node that is named is found even
-    if its name is a hidden one.
+    Scripts written for ROS 2 contain them. They have no effect here: there is no
+    daemon, discovery is immediate, and a node given by name is found even if hidden.
     """
-    # Before the verb stands at most --domain-id N.
+    # Only --domain-id N can precede the verb.
     words = [w for w in arguments if w[:1] != "-" and not w.isdigit()]
-    if not words or words[0] not in _ASKS_DAEMON:
+    if not words or words[0] not in _DAEMON_VERBS:
         return list(arguments)
     nothing = {"--no-daemon"}
-    if tuple(words[:2]) in _NAMES_ITS_NODE:
+    if tuple(words[:2]) in _VERBS_OF_ONE_NODE:
         nothing.add("--include-hidden-nodes")
     kept: list[str] = []
     skipping = False
@@ -76,9 +79,9 @@ def without_daemon(arguments: Sequence[str]) -> list[str]:
 
 
 def spread_lists(arguments: Sequence[str]) -> list[str]:
-    """Make ``--dependencies a b`` two options, ``--dependencies a --dependencies b``.
+    """Expand ``--dependencies a b`` to ``--dependencies a --dependencies b``.
 
-    Why: ROS 2's command takes them so, and Typer takes options of one value.
+    ROS 2's command takes lists; click takes one value per option.
     """
     spread: list[str] = []
     option = ""
@@ -100,18 +103,18 @@ def _is_number(text: str) -> bool:
 
 
 def parse_goal(text: str) -> tuple[float, float]:
-    """``"X Y"`` (or ``"X,Y"``) in metres."""
+    """Parse ``"X Y"`` or ``"X,Y"``, in metres."""
     words = text.replace(",", " ").split()
     numbers = [float(word) for word in words if _is_number(word)]
     if len(words) != 2 or len(numbers) != 2 or not all(map(math.isfinite, numbers)):
         raise InvalidValueError(
-            f"--goal {text!r}: wanted two finite numbers in metres, as in --goal 6 -12"
+            f"--goal {text!r} is not two finite numbers in metres, as in --goal 6 -12"
         )
     return numbers[0], numbers[1]
 
 
 def parse_speed(text: str) -> float:
-    """A factor of real time, or ``max`` (infinity): as fast as the machine can."""
+    """Parse a real-time factor; ``max`` (as fast as possible) gives infinity."""
     if text == "max":
         return math.inf
     try:
@@ -120,6 +123,6 @@ def parse_speed(text: str) -> float:
         factor = math.nan
     if not (math.isfinite(factor) and factor > 0):
         raise InvalidValueError(
-            f"--speed {text!r}: wanted a factor above 0, as in 2.5, or max"
+            f"--speed {text!r} is not a factor above 0, as in 2.5, or max"
         )
     return factor

@@ -9,14 +9,14 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-import typer
+import click
 
-from navette.cli.asking import Question, ask_all, managed_nodes, node_names
 from navette.cli.completing_installed import (
     chosen,
     complete_action_types,
     complete_service_types,
 )
+from navette.cli.service_calls import Question, ask_all, managed_nodes, node_names
 from navette.cli.session import connect, endpoints, is_hidden, service_endpoints
 from navette.errors import NavetteError
 
@@ -50,7 +50,7 @@ def complete_actions(incomplete: str) -> list[str]:
     )
 
 
-def complete_parameters(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_parameters(ctx: click.Context, incomplete: str) -> list[str]:
     """Names of the parameters of the node named before."""
     return _asked(
         ctx,
@@ -61,7 +61,7 @@ def complete_parameters(ctx: typer.Context, incomplete: str) -> list[str]:
     )
 
 
-def complete_parameter_value(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_parameter_value(ctx: click.Context, incomplete: str) -> list[str]:
     """The value that the parameter named before has; of a switch, both."""
     name = str(ctx.params.get("name") or "")
     if not name:
@@ -93,7 +93,7 @@ def complete_managed_nodes(incomplete: str) -> list[str]:
     return running(incomplete, managed_nodes)
 
 
-def complete_transitions(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_transitions(ctx: click.Context, incomplete: str) -> list[str]:
     """Labels of the transitions that the node named before can make now."""
     return _asked(
         ctx,
@@ -104,7 +104,7 @@ def complete_transitions(ctx: typer.Context, incomplete: str) -> list[str]:
     )
 
 
-def complete_type_of_service(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_type_of_service(ctx: click.Context, incomplete: str) -> list[str]:
     """The type of the service named before, if it is served; else every type."""
     name = f"/{str(ctx.params.get('service') or '').lstrip('/')}"
     served = running(
@@ -114,7 +114,7 @@ def complete_type_of_service(ctx: typer.Context, incomplete: str) -> list[str]:
     return served or complete_service_types(incomplete)
 
 
-def complete_type_of_action(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_type_of_action(ctx: click.Context, incomplete: str) -> list[str]:
     """The type of the action named before, if there is one; else every type."""
     from navette.runtime.action import get_action_names_and_types
 
@@ -126,26 +126,26 @@ def complete_type_of_action(ctx: typer.Context, incomplete: str) -> list[str]:
     return served or complete_action_types(incomplete)
 
 
-def complete_message_values(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_message_values(ctx: click.Context, incomplete: str) -> list[str]:
     """The message of the type named before with its defaults, to edit."""
     return _prototype(str(ctx.params.get("type_name") or ""), "msg", incomplete)
 
 
-def complete_request(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_request(ctx: click.Context, incomplete: str) -> list[str]:
     """Of ``service call NAME``: the type, then the request with its defaults."""
     return _type_or_values(ctx, incomplete, "srv", complete_type_of_service)
 
 
-def complete_goal(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_goal(ctx: click.Context, incomplete: str) -> list[str]:
     """Of ``action send_goal NAME``: the type, then the goal with its defaults."""
     return _type_or_values(ctx, incomplete, "action", complete_type_of_action)
 
 
 def _type_or_values(
-    ctx: typer.Context,
+    ctx: click.Context,
     incomplete: str,
     kind: str,
-    types: "Callable[[typer.Context, str], list[str]]",
+    types: "Callable[[click.Context, str], list[str]]",
 ) -> list[str]:
     words = list(ctx.params.get("words") or ())
     if not words:
@@ -166,7 +166,7 @@ def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
             part: Any = getattr(cls, "Goal", getattr(cls, "Request", cls))
             text = message_to_yaml(part(), flow_style=True).strip()
             # Fish and zsh quote by themselves what is inserted.
-            in_bash = os.environ.get("_NAVETTE_COMPLETE", "").endswith("bash")
+            in_bash = os.environ.get("_NAVETTE_COMPLETE", "").startswith("bash")
             return [f'"{text}"' if in_bash else text]
     return []
 
@@ -174,7 +174,7 @@ def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
 def running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[str]:
     """Names out of what runs; those for machines only where their start is typed."""
     hidden = "_" in incomplete
-    with suppress(NavetteError, typer.Exit), connect() as here:
+    with suppress(NavetteError, click.exceptions.Exit), connect() as here:
         found = [n for n in names(here) if hidden or not is_hidden(n)]
         # A name may be typed without the slash that it begins with.
         if incomplete and not incomplete.startswith("/"):
@@ -184,7 +184,7 @@ def running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[s
 
 
 def _asked(
-    ctx: typer.Context,
+    ctx: click.Context,
     incomplete: str,
     service: str,
     type_name: str,

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-import typer
+import click
 
 
 def complete_from(*words: str) -> Callable[[str], list[str]]:
@@ -35,7 +35,7 @@ def complete_packages(incomplete: str) -> list[str]:
     return chosen(incomplete, find_packages())
 
 
-def complete_programs(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_programs(ctx: click.Context, incomplete: str) -> list[str]:
     """Of ``navette run``: packages with programs, those of a package, files here."""
     from navette.ros2.workspace import find_packages
 
@@ -51,7 +51,7 @@ def complete_programs(ctx: typer.Context, incomplete: str) -> list[str]:
     return chosen(incomplete, [*names, *_files_here("*.py")])
 
 
-def complete_launch_files(ctx: typer.Context, incomplete: str) -> list[str]:
+def complete_launch_files(ctx: click.Context, incomplete: str) -> list[str]:
     """Of ``navette launch``: files here, packages, the launch files of a package."""
     from navette.ros2.workspace import find_packages
 

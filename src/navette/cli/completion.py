@@ -1,124 +1,89 @@
-"""``navette completion``: let the shell complete verbs, topics, nodes and the rest.
+"""``navette completion``: shell completion of verbs, topics, nodes and other names.
 
-The scripts call ``navette`` with what is typed in variables of the environment and get
-words back; Typer understands those variables once its completion is switched on.
+The scripts are click's: they call ``navette`` with ``_NAVETTE_COMPLETE`` set.
 """
 
 import os
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
-import typer
+import click
+from click.shell_completion import BashComplete, FishComplete, ZshComplete
 
-from navette.cli.output import note, show
+from navette.cli.options import Argument, Option
+from navette.cli.output import show
 from navette.cli.session import fail
+from navette.cli.stderr import note
 
 VARIABLE = "_NAVETTE_COMPLETE"
 
-_BASH = """\
-_navette_completion() {
-    local IFS=$'\\n'
-    COMPREPLY=($(COMP_WORDS="${COMP_WORDS[*]}" COMP_CWORD=$COMP_CWORD \\
-        _NAVETTE_COMPLETE=complete_bash "$1" 2>/dev/null))
-}
-complete -o default -F _navette_completion navette
-"""
-# Words come as for fish, a line each with its help: Typer's own answer to zsh is a
-# program to run, made of names that strangers chose.
-_ZSH = """\
-#compdef navette
-(( $+functions[compdef] )) || { autoload -Uz compinit && compinit }
-_navette_completion() {
-    local line value
-    local -a words_and_help values
-    for line in "${(@f)$(_TYPER_COMPLETE_ARGS="${words[1,$CURRENT]}" \\
-        _TYPER_COMPLETE_FISH_ACTION=get-args _NAVETTE_COMPLETE=complete_fish \\
-        navette 2>/dev/null)}"; do
-        value="${line%%$'\\t'*}"
-        if [[ "$value" == *' '* ]]; then
-            values+=("${(qqq)value}")
-        elif [[ "$line" == *$'\\t'* ]]; then
-            words_and_help+=("${value//:/\\\\:}:${line#*$'\\t'}")
-        elif [[ -n "$value" ]]; then
-            words_and_help+=("${value//:/\\\\:}")
-        fi
-    done
-    (( $#values )) && compadd -Q -S '' -- "${values[@]}"
-    (( $#words_and_help )) && _describe navette words_and_help
-    (( $#values + $#words_and_help )) || _files
-}
-compdef _navette_completion navette
-"""
-_FISH = """\
-function _navette_completion
-    set --local words (env _NAVETTE_COMPLETE=complete_fish \\
-        _TYPER_COMPLETE_FISH_ACTION=get-args \\
-        _TYPER_COMPLETE_ARGS=(commandline -cp) navette 2>/dev/null)
-    if test -n "$words"
-        printf '%s\\n' $words
-    else
-        __fish_complete_path (commandline -ct)
-    end
-end
-complete --command navette --no-files --arguments "(_navette_completion)"
-"""
+
+class _FishComplete(FishComplete):
+    # Split only the type off: values of messages contain commas.
+    source_template = FishComplete.source_template.replace(
+        "string split", "string split --max 1"
+    )
 
 
-class Shell(StrEnum):
-    """Those that can be taught."""
+SHELLS = {"bash": BashComplete, "zsh": ZshComplete, "fish": _FishComplete}
 
-    BASH = "bash"
-    ZSH = "zsh"
-    FISH = "fish"
-
-
-SCRIPTS = {Shell.BASH: _BASH, Shell.ZSH: _ZSH, Shell.FISH: _FISH}
-
-# Where a shell looks for what it reads at its start.
-_SETTINGS = {Shell.BASH: ".bashrc", Shell.ZSH: ".zshrc"}
+# Read by the shell when it starts.
+_SETTINGS = {"bash": ".bashrc", "zsh": ".zshrc"}
 
 
 def completion(
     shell: Annotated[
-        Shell | None,
-        typer.Argument(metavar="[bash|zsh|fish]", help="By default that of $SHELL."),
+        str | None,
+        Argument(
+            metavar="[bash|zsh|fish]",
+            help="Default: the shell in $SHELL.",
+            type=click.Choice(list(SHELLS)),
+        ),
     ] = None,
     install: Annotated[
-        bool, typer.Option("--install", help="Add it to the shell's settings.")
+        bool, Option("--install", help="Add the script to the shell's settings.")
     ] = False,
 ) -> None:
-    """Teach the shell to complete navette's words at Tab.
+    """Print or install the shell completion script.
 
-    For this terminal: [bold]eval "$(navette completion bash)"[/bold]; for every new
-    one: [bold]navette completion --install[/bold].
+    For this terminal: [bold]eval "$(navette completion bash)"[/bold]. For all new
+    terminals: [bold]navette completion --install[/bold].
     """
-    chosen = shell or _own_shell()
+    chosen = shell or _current_shell()
     if not install:
-        show(SCRIPTS[chosen].rstrip("\n"))
+        show(script_of(chosen).rstrip("\n"))
         return
     for path in install_script(chosen, Path.home()):
         show(f"wrote {path}")
-    note("open a new terminal to have it")
+    note("open a new terminal to use completion")
 
 
-def _own_shell() -> Shell:
+def _current_shell() -> str:
     name = Path(os.environ.get("SHELL", "")).name
-    if name not in list(Shell):
-        fail(f"$SHELL is {name or 'not set'}; say which: {', '.join(Shell)}")
-    return Shell(name)
+    if name not in SHELLS:
+        fail(
+            f"$SHELL is {name or 'not set'}: no completion for it; name one of"
+            f" {', '.join(SHELLS)}, as in navette completion bash"
+        )
+    return name
 
 
-def install_script(shell: Shell, home: Path) -> list[Path]:
-    """Write the script, and where the shell does not look for it, a line that reads it.
+def script_of(shell: str) -> str:
+    """Return click's completion script for a shell."""
+    complete = SHELLS[shell](click.Command("navette"), {}, "navette", VARIABLE)
+    return complete.source()
 
-    Doing it again changes nothing. Gives the files that were written.
+
+def install_script(shell: str, home: Path) -> list[Path]:
+    """Write the script and, for bash and zsh, a line in the settings that loads it.
+
+    A second call changes nothing. Returns the files that were written.
     """
     folder = home / ".config" / ("fish/completions" if shell == "fish" else "navette")
     script = folder / ("navette.fish" if shell == "fish" else f"completion.{shell}")
     folder.mkdir(parents=True, exist_ok=True)
-    script.write_text(SCRIPTS[shell], encoding="utf-8")
+    script.write_text(script_of(shell), encoding="utf-8")
     if shell not in _SETTINGS:
         return [script]
     settings = home / _SETTINGS[shell]
@@ -132,10 +97,10 @@ def install_script(shell: Shell, home: Path) -> list[Path]:
 
 
 def is_completing() -> bool:
-    """Whether it is the shell that asks for words."""
+    """Whether the shell started this process to get completions."""
     return VARIABLE in os.environ
 
 
-def keep_quiet() -> None:
-    """Say nothing beside the words: it would be printed into a half typed line."""
+def discard_stderr() -> None:
+    """Discard messages: they would appear in the line that is being typed."""
     sys.stderr = Path(os.devnull).open("w")  # noqa: SIM115 - until the process ends

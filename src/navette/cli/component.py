@@ -2,36 +2,38 @@
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+import click
 
-from navette.cli.asking import Answer, Question, ask_all, chosen_node, node_names
+from navette.cli.commands import Group
 from navette.cli.completing import complete_nodes
 from navette.cli.completing_installed import complete_packages
-from navette.cli.output import note, show, show_json, styled
+from navette.cli.options import Argument, Option
+from navette.cli.output import show, show_json, styled
+from navette.cli.service_calls import Answer, Question, ask_all, chosen_node, node_names
 from navette.cli.session import FAILED, connect, fail, service_endpoints
+from navette.cli.stderr import note
 from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from navette.runtime import Node
 
-component = typer.Typer(
+component = Group(
     name="component",
     help="Load nodes into containers that run, and take them out.",
-    no_args_is_help=True,
 )
 
 Container = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="CONTAINER",
         help="As /component_container.",
-        autocompletion=complete_nodes,
+        complete=complete_nodes,
     ),
 ]
 Quiet = Annotated[
-    bool, typer.Option("--quiet", "-q", help="Only ids and names of components.")
+    bool, Option("--quiet", "-q", help="Only ids and names of components.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON, for programs.")]
 
 _SERVICES = {
     "list_nodes": "composition_interfaces/srv/ListNodes",
@@ -45,12 +47,12 @@ _LOAD_S = 30.0  # a node may compile its kernels
 def list_(
     container: Annotated[
         str | None,
-        typer.Argument(
-            metavar="[CONTAINER]", help="By default all.", autocompletion=complete_nodes
+        Argument(
+            metavar="[CONTAINER]", help="By default all.", complete=complete_nodes
         ),
     ] = None,
     containers_only: Annotated[
-        bool, typer.Option("--containers-only", help="Without what is in them.")
+        bool, Option("--containers-only", help="Without what is in them.")
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -77,7 +79,7 @@ def list_(
             for number, node in own.items() if not containers_only else ():
                 show(f"{indent}{number}  {node}")
     if len(held) < len(names):
-        raise typer.Exit(FAILED)
+        raise click.exceptions.Exit(FAILED)
 
 
 @component.command()
@@ -85,33 +87,33 @@ def load(
     container: Container,
     package: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="PACKAGE",
             help="Where the class is.",
-            autocompletion=complete_packages,
+            complete=complete_packages,
         ),
     ],
     plugin: Annotated[
         str,
-        typer.Argument(metavar="PLUGIN", help="As package::Class, or module:Class."),
+        Argument(metavar="PLUGIN", help="As package::Class, or module:Class."),
     ],
     node_name: Annotated[
-        str, typer.Option("--node-name", "-n", metavar="NAME", help="Its name.")
+        str, Option("--node-name", "-n", metavar="NAME", help="Its name.")
     ] = "",
     node_namespace: Annotated[
         str,
-        typer.Option("--node-namespace", metavar="NAMESPACE", help="Its namespace."),
+        Option("--node-namespace", metavar="NAMESPACE", help="Its namespace."),
     ] = "",
     log_level: Annotated[
-        str, typer.Option("--log-level", metavar="LEVEL", help="As debug, info, warn.")
+        str, Option("--log-level", metavar="LEVEL", help="As debug, info, warn.")
     ] = "",
     remap_rule: Annotated[
         list[str] | None,
-        typer.Option("--remap-rule", "-r", metavar="FROM:=TO", help="May be repeated."),
+        Option("--remap-rule", "-r", metavar="FROM:=TO", help="May be repeated."),
     ] = None,
     parameter: Annotated[
         list[str] | None,
-        typer.Option("--parameter", "-p", metavar="NAME:=VALUE", help="Likewise."),
+        Option("--parameter", "-p", metavar="NAME:=VALUE", help="Likewise."),
     ] = None,
     quiet: Quiet = False,
 ) -> None:
@@ -140,7 +142,7 @@ def load(
 def unload(
     container: Container,
     component_uid: Annotated[
-        list[int], typer.Argument(metavar="ID...", help="As list prints them.")
+        list[int], Argument(metavar="ID...", help="As list prints them.")
     ],
     quiet: Quiet = False,
 ) -> None:

@@ -1,12 +1,13 @@
-"""Ctrl-C and SIGTERM end a verb at once, without a traceback.
+"""Stop a verb at once on Ctrl-C and SIGTERM, without a traceback.
 
-Python turns Ctrl-C into an exception at whatever line runs: in an import, where it is
-a page of traceback; in a lock's bookkeeping, where the next who wants that lock waits
-for ever; in a finaliser, where it is lost. So a verb
+Python raises KeyboardInterrupt at an arbitrary line: in an import, which prints a page
+of traceback; inside lock bookkeeping, which can deadlock; in a finalizer, where it is
+lost. Therefore a verb
 
-- simply dies of it while it loads, joins and leaves: there is nothing to clean up;
-- takes note of it while it waits, and ends when the event under way is over;
-- sees KeyboardInterrupt elsewhere, as every Python program does.
+- uses the default signal action while it imports, connects and disconnects, where
+  nothing needs cleanup;
+- records the signal while it waits, and stops after the current event;
+- gets KeyboardInterrupt elsewhere, like any Python program.
 """
 
 import _thread
@@ -21,61 +22,63 @@ from typing import Any
 INTERRUPTED = 128 + signal.SIGINT
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
-# How long an event may go on after Ctrl-C: a message of megabytes is being printed.
-_PATIENCE_S = 0.3
+# How long the current event may continue after Ctrl-C, for example to print megabytes.
+_GRACE_PERIOD_S = 0.3
 
 
 def raise_at_interrupt() -> None:
-    """Let Ctrl-C be KeyboardInterrupt again after :func:`navette.cli.main`."""
+    """Restore KeyboardInterrupt, which :func:`navette.cli.main` disables."""
     if _in_main_thread() and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @contextmanager
 def dying_on_signals() -> Iterator[None]:
-    """Inside, Ctrl-C and SIGTERM end the process as the system does it, silently."""
+    """Inside, Ctrl-C and SIGTERM end the process by their default action, silently."""
     with _handling(signal.SIG_DFL):
         yield
 
 
 @contextmanager
 def ending_on_signals() -> Iterator[None]:
-    """Inside, they raise KeyboardInterrupt; what comes out is their exit code."""
-    with _handling(_asked.on_signal):
+    """Inside, both raise KeyboardInterrupt, which leaves the block as an exit code."""
+    with _handling(_signals.on_signal):
         try:
             yield
         except KeyboardInterrupt:
-            from typer import Exit  # later: this module is loaded first of all
+            from click.exceptions import (
+                Exit,  # later: this module is loaded first of all
+            )
 
-            raise Exit(_asked.code) from None
+            raise Exit(_signals.code) from None
         finally:
-            _asked.forget()
+            _signals.reset()
 
 
 def interruptible(
     run: Callable[[Callable[[], bool]], Any], wake: Callable[[], None]
 ) -> None:
-    """Call ``run`` with a condition that holds once a signal came.
+    """Call ``run`` with a condition that becomes true when a signal arrives.
 
     Args:
-        run: waits; is to come back soon when the condition holds.
-        wake: makes it look at the condition; called from another thread.
+        run: blocking function that returns soon after the condition is true.
+        wake: makes ``run`` check the condition; called from another thread.
 
     Raises:
-        KeyboardInterrupt: a signal came.
+        KeyboardInterrupt: a signal arrived.
     """
-    _asked.wake = wake
+    _signals.wake = wake
     try:
-        run(lambda: _asked.pending)
+        run(lambda: _signals.pending)
     finally:
-        _asked.wake = None
-    if _asked.pending:
-        _asked.pending = False
+        _signals.wake = None
+    if _signals.pending:
+        _signals.pending = False
         raise KeyboardInterrupt
 
 
-class _Asked:
-    """Whether a signal came that nobody has seen yet."""
+class _PendingSignal:
+    """A signal that arrived and is not handled yet."""
 
     def __init__(self) -> None:
         self.code: int = INTERRUPTED
@@ -83,7 +86,7 @@ class _Asked:
         self.count = 0
         self.wake: Callable[[], None] | None = None
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         self.code, self.pending = INTERRUPTED, False
 
     def on_signal(self, signum: int, frame: object) -> None:
@@ -93,23 +96,23 @@ class _Asked:
             raise KeyboardInterrupt
         self.pending = True
         self.count += 1
-        # Not here: this thread may hold the very lock that waking it takes.
-        _thread.start_new_thread(self._insist, (self.wake, self.count))
+        # In another thread: this one may hold the lock that wake() takes.
+        _thread.start_new_thread(self._wake_or_exit, (self.wake, self.count))
 
-    def _insist(self, wake: Callable[[], None], count: int) -> None:
+    def _wake_or_exit(self, wake: Callable[[], None], count: int) -> None:
         wake()
-        threading.Event().wait(_PATIENCE_S)
+        threading.Event().wait(_GRACE_PERIOD_S)
         if self.pending and self.count == count:
             sys.stdout.flush()
             os._exit(self.code)
 
 
-_asked = _Asked()
+_signals = _PendingSignal()
 
 
 @contextmanager
 def _handling(handler: Any) -> Iterator[None]:
-    """Only a main thread can; a signal that is ignored stays so."""
+    """Install a handler, in the main thread only; ignored signals stay ignored."""
     if not _in_main_thread():
         yield
         return

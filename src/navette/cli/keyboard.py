@@ -1,6 +1,6 @@
-"""Single keys from a terminal, while something else runs; the terminal is put back.
+"""Read single keys from a terminal in a thread, and restore the terminal afterwards.
 
-POSIX terminals; elsewhere, and where input is no terminal, there are no keys.
+POSIX only; elsewhere, or if standard input is not a terminal, there are no keys.
 """
 
 import importlib.util
@@ -17,7 +17,7 @@ _NAMES = {
     "C": "right",
     "D": "left",
 }
-# What follows an escape comes at once; alone, it is the key itself.
+# The rest of an escape sequence follows at once; a lone escape is the Escape key.
 _ESCAPE_S = 0.05
 
 
@@ -25,8 +25,8 @@ _ESCAPE_S = 0.05
 def listening_to_keys(on_key: Callable[[str], object]) -> Iterator[bool]:
     """Call ``on_key`` from a thread for each key until the block ends.
 
-    Keys are the character, or ``up``, ``down``, ``left``, ``right``, ``escape``.
-    Ctrl-C and Ctrl-Z do what they always do. Gives whether there are keys at all.
+    A key is its character, or ``up``, ``down``, ``left``, ``right``, ``escape``.
+    Ctrl-C and Ctrl-Z keep their function. Yields whether keys can be read.
     """
     descriptor = _terminal()
     if descriptor is None:
@@ -45,7 +45,7 @@ def listening_to_keys(on_key: Callable[[str], object]) -> Iterator[bool]:
         thread.start()
         yield True
     finally:
-        with suppress(termios.error):  # it is gone, and its settings with it
+        with suppress(termios.error):  # the terminal was closed
             termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
         os.write(wake, b".")
         if thread.ident is not None:
@@ -55,14 +55,14 @@ def listening_to_keys(on_key: Callable[[str], object]) -> Iterator[bool]:
 
 
 def _terminal() -> int | None:
-    """Standard input, where it is a terminal and ours (not a job in the background)."""
+    """Return standard input if it is a terminal and this is the foreground job."""
     if importlib.util.find_spec("termios") is None:  # not on Windows
         return None
     try:
         descriptor = sys.stdin.fileno()
         if os.isatty(descriptor) and os.tcgetpgrp(descriptor) == os.getpgrp():
             return descriptor
-    except (OSError, ValueError):  # closed, or no file at all
+    except (OSError, ValueError):  # closed, or not a file
         return None
     return None
 
@@ -74,7 +74,7 @@ def _listen(descriptor: int, done: int, on_key: Callable[[str], object]) -> None
             return
         try:
             data = os.read(descriptor, 64)
-        except OSError:  # the terminal is gone
+        except OSError:  # the terminal was closed
             return
         if not data:
             return
@@ -86,7 +86,7 @@ def _listen(descriptor: int, done: int, on_key: Callable[[str], object]) -> None
 
 
 def split_keys(text: str) -> list[str]:
-    """Characters and names of keys, of what a terminal sent."""
+    """Split terminal input into characters and key names."""
     keys = []
     rest = text
     while rest:
@@ -102,7 +102,7 @@ def split_keys(text: str) -> list[str]:
 
 
 def _sequence_length(text: str) -> int:
-    """Of the control sequence at the start: up to its first letter or tilde."""
+    """Return the length of the leading control sequence: it ends at a letter or ~."""
     for index in range(2, len(text)):
         if text[index].isalpha() or text[index] == "~":
             return index + 1

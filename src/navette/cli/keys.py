@@ -1,32 +1,30 @@
-"""``navette keys``: certificates, so that only one's own machines join."""
+"""``navette keys``: certificates that restrict the network to known machines."""
 
 from pathlib import Path
 from typing import Annotated
 
-import typer
+import click
 
-keys = typer.Typer(
+from navette.cli.commands import Group
+from navette.cli.options import Argument, Option
+
+keys = Group(
     name="keys",
-    help="Keys and certificates for links with mutual TLS.",
-    no_args_is_help=True,
+    help="Create keys and certificates for mutual TLS.",
 )
 
 
 @keys.command()
 def create(
-    folder: Annotated[
-        Path, typer.Argument(help="Where the authority's keys are kept.")
-    ],
+    folder: Annotated[Path, Argument(help="Where the authority's keys are kept.")],
     names: Annotated[
-        list[str], typer.Argument(metavar="NAME...", help="robot, laptop, anna, …")
+        list[str], Argument(metavar="NAME...", help="robot, laptop, anna, …")
     ],
-    days: Annotated[
-        int, typer.Option(min=1, max=3650, help="Valid for so long.")
-    ] = 365,
+    days: Annotated[int, Option(min=1, max=3650, help="Valid for so long.")] = 365,
 ) -> None:
-    """Make a folder of keys for each NAME; the authority is made once.
+    """Create a folder of keys for each NAME, and the authority if there is none.
 
-    Copy FOLDER/NAME to that machine and set NAVETTE_SECURITY to it there.
+    Copy FOLDER/NAME to that machine and set NAVETTE_SECURITY to the copy.
     """
     import datetime
 
@@ -35,16 +33,16 @@ def create(
 
     now = datetime.datetime.fromtimestamp(SystemClock().now_ns / 1e9, datetime.UTC)
     for made in create_keys(folder, names, now=now, days=days):
-        typer.echo(f"made {made}: NAVETTE_SECURITY={made}")
-    typer.echo(f"{folder / 'ca.key'} signs further ones: leave it where it is")
+        click.echo(f"made {made}: NAVETTE_SECURITY={made}")
+    click.echo(f"{folder / 'ca.key'} signs further ones: leave it where it is")
 
 
 @keys.command()
 def show(
-    folder: Annotated[Path, typer.Argument(help="What NAVETTE_SECURITY would be.")],
+    folder: Annotated[Path, Argument(help="What NAVETTE_SECURITY would be.")],
 ) -> None:
     """Say what a folder asks of links, and check its files."""
     from navette.transports.zenoh.security import Security
 
     for line in Security(folder).describe():
-        typer.echo(line)
+        click.echo(line)

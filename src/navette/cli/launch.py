@@ -2,30 +2,32 @@
 
 from typing import Annotated
 
-import typer
+import click
 
 from navette.cli.completing_installed import complete_launch_files
+from navette.cli.options import Argument, Option
+from navette.cli.output import show
 
 Words = Annotated[
     list[str],
-    typer.Argument(
+    Argument(
         metavar="FILE|PACKAGE FILE [NAME:=VALUE]...",
         help="A launch file in Python, XML or YAML, and its arguments.",
-        autocompletion=complete_launch_files,
+        complete=complete_launch_files,
     ),
 ]
 ShowArgs = Annotated[
     bool,
-    typer.Option("--show-args", "-s", help="List the file's arguments and exit."),
+    Option("--show-args", "-s", help="List the file's arguments and exit."),
 ]
 Processes = Annotated[
     bool,
-    typer.Option("--processes", help="Run each node in its own process."),
+    Option("--processes", help="Run each node in its own process."),
 ]
-Debug = Annotated[bool, typer.Option("--debug", "-d", help="Print debug messages.")]
+Debug = Annotated[bool, Option("--debug", "-d", help="Print debug messages.")]
 OnNavette = Annotated[
     bool,
-    typer.Option("--navette", help="Use Navette even if ROS 2 is installed."),
+    Option("--navette", help="Use Navette even if ROS 2 is installed."),
 ]
 
 
@@ -49,7 +51,9 @@ def launch(
     install(instead_of_ros=on_navette)
     path, rest = find_launch_file(words)
     if show_args:
-        typer.echo(show_arguments(path))
+        show(show_arguments(path))
         return
     arguments = parse_launch_arguments(rest)
-    raise typer.Exit(run_launch(path, arguments, processes=processes, debug=debug))
+    raise click.exceptions.Exit(
+        run_launch(path, arguments, processes=processes, debug=debug)
+    )

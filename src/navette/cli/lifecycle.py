@@ -2,9 +2,14 @@
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+import click
 
-from navette.cli.asking import (
+from navette.cli.commands import Group
+from navette.cli.completing import complete_managed_nodes, complete_transitions
+from navette.cli.nearest import did_you_mean
+from navette.cli.options import Argument, Option
+from navette.cli.output import harmless, show, show_json, styled
+from navette.cli.service_calls import (
     ANSWER_S,
     GET_STATE,
     Question,
@@ -15,39 +20,34 @@ from navette.cli.asking import (
     managed_nodes,
     note_none,
 )
-from navette.cli.completing import complete_managed_nodes, complete_transitions
-from navette.cli.nearest import did_you_mean
-from navette.cli.output import harmless, note, show, show_json, styled
 from navette.cli.session import FAILED, connect, fail, wait_for
+from navette.cli.stderr import note
 
 if TYPE_CHECKING:
     from navette.runtime import Node
 
-lifecycle = typer.Typer(
+lifecycle = Group(
     name="lifecycle",
-    help="Look at managed nodes, and take them from state to state.",
-    no_args_is_help=True,
+    help="Inspect managed nodes and change their state.",
 )
 
 NodeName = Annotated[
     str,
-    typer.Argument(
-        metavar="NODE", help="As /camera.", autocompletion=complete_managed_nodes
-    ),
+    Argument(metavar="NODE", help="As /camera.", complete=complete_managed_nodes),
 ]
 Hidden = Annotated[
-    bool, typer.Option("--include-hidden-nodes", help="Also nodes named _name.")
+    bool, Option("--include-hidden-nodes", help="Also nodes named _name.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON, for programs.")]
 
 
 @lifecycle.command()
 def nodes(
     all_: Annotated[
-        bool, typer.Option("--all", "-a", help="Also hidden ones (_name).")
+        bool, Option("--all", "-a", help="Also hidden ones (_name).")
     ] = False,
     count: Annotated[
-        bool, typer.Option("--count-nodes", "-c", help="Only their number.")
+        bool, Option("--count-nodes", "-c", help="Only their number.")
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -69,10 +69,10 @@ def nodes(
 def get(
     node_name: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             metavar="[NODE]",
             help="By default every managed node.",
-            autocompletion=complete_managed_nodes,
+            complete=complete_managed_nodes,
         ),
     ] = None,
     include_hidden_nodes: Hidden = False,
@@ -99,7 +99,7 @@ def get(
             number = styled(f"[{state.id}]", dim=True)
             show(f"{head}{harmless(state.label)} {number}")
     if len(states) < len(names):
-        raise typer.Exit(FAILED)
+        raise click.exceptions.Exit(FAILED)
 
 
 @lifecycle.command("set")
@@ -107,10 +107,10 @@ def set_(
     node_name: NodeName,
     transition: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="TRANSITION",
             help="As configure, activate, deactivate, cleanup, shutdown, or its id.",
-            autocompletion=complete_transitions,
+            complete=complete_transitions,
         ),
     ],
 ) -> None:
@@ -129,7 +129,7 @@ def set_(
 def list_(
     node_name: NodeName,
     all_: Annotated[
-        bool, typer.Option("--all", "-a", help="Also from other states.")
+        bool, Option("--all", "-a", help="Also from other states.")
     ] = False,
     as_json: Json = False,
 ) -> None:

@@ -4,9 +4,9 @@ from typing import Any
 
 from navette import msgs
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import note
 from navette.cli.peer_definitions import described_by_peers
 from navette.cli.session import endpoints, fail, wait_for
+from navette.cli.stderr import note
 from navette.errors import InvalidNameError, NavetteError, UnknownNameError
 from navette.msgs.registry import full_name, interface_names
 from navette.runtime import Node

@@ -2,32 +2,32 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from navette.cli.asking import chosen_node, node_names, note_none
+from navette.cli.commands import Group
 from navette.cli.completing import complete_nodes
-from navette.cli.output import beside, is_terminal, note, show, show_json, styled
+from navette.cli.options import Argument, Option
+from navette.cli.output import beside, is_terminal, show, show_json, styled
+from navette.cli.service_calls import chosen_node, node_names, note_none
 from navette.cli.session import connect, is_hidden, is_of_every_node
+from navette.cli.stderr import note
 
 if TYPE_CHECKING:
     from navette.runtime import Node
 
-node = typer.Typer(
+node = Group(
     name="node",
-    help="Look at the nodes that run.",
-    no_args_is_help=True,
+    help="List and inspect nodes.",
 )
 
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON, for programs.")]
 
 
 @node.command("list")
 def list_(
     all_: Annotated[
-        bool, typer.Option("--all", "-a", help="Also hidden ones (_name).")
+        bool, Option("--all", "-a", help="Also hidden ones (_name).")
     ] = False,
     count: Annotated[
-        bool, typer.Option("--count-nodes", "-c", help="Only their number.")
+        bool, Option("--count-nodes", "-c", help="Only their number.")
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -51,13 +51,11 @@ def list_(
 def info(
     name: Annotated[
         str,
-        typer.Argument(
-            metavar="NODE", help="As /planner.", autocompletion=complete_nodes
-        ),
+        Argument(metavar="NODE", help="As /planner.", complete=complete_nodes),
     ],
     include_hidden: Annotated[
         bool,
-        typer.Option("--include-hidden", help="Also hidden topics, services, actions."),
+        Option("--include-hidden", help="Also hidden topics, services, actions."),
     ] = False,
     as_json: Json = False,
 ) -> None:

@@ -1,4 +1,4 @@
-"""What verbs print: styled for people on a terminal, plain where it is piped."""
+"""Output of verbs: styled on a terminal, plain in a pipe."""
 
 import json
 import math
@@ -10,27 +10,26 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import typer
+import click
 
 from navette.cli.escaping import escaped, escaped_json
-from navette.cli.remarks import remark
 from navette.cli.session import fail
 
 
 def is_terminal() -> bool:
-    """Whether a person reads standard output."""
+    """Whether standard output is a terminal."""
     return sys.stdout.isatty()
 
 
 def styled(text: str, **style: Any) -> str:
-    """``text`` in colours (``typer.style``'s arguments) where a person reads it."""
+    """Style a text with the arguments of ``click.style``, on a terminal only."""
     if not is_terminal() or "NO_COLOR" in os.environ:
         return text
-    return typer.style(text, **style)
+    return click.style(text, **style)
 
 
 def cut_to_width(line: str) -> str:
-    """A line that a person reads, cut to one line of the terminal."""
+    """Cut a line to the width of the terminal; unchanged in a pipe."""
     width = shutil.get_terminal_size().columns
     if not is_terminal() or len(line) <= width:
         return line
@@ -38,7 +37,7 @@ def cut_to_width(line: str) -> str:
 
 
 def wrapped(text: str, indent: int) -> list[str]:
-    """Lines that a person's terminal has room for beside an indent; one in a pipe."""
+    """Wrap a text to the terminal's width minus an indent; one line in a pipe."""
     if not is_terminal():
         return [text] if text else []
     width = shutil.get_terminal_size().columns - indent
@@ -48,21 +47,14 @@ def wrapped(text: str, indent: int) -> list[str]:
 
 
 def harmless(text: str) -> str:
-    """On a terminal, control characters in what others sent must not act."""
-    if not is_terminal():
-        return text
-    return escaped(text)
-
-
-def note(text: str) -> None:
-    """Tell a person something beside the result: to standard error."""
-    remark(text)
+    """Escape control characters of received text, on a terminal only."""
+    return escaped(text) if is_terminal() else text
 
 
 def show(text: str = "") -> None:
-    """Print a line or several, at once also into a pipe.
+    """Print lines and flush them.
 
-    Ends the command where they cannot be written (but as a broken pipe does it).
+    The command fails if they cannot be written; a broken pipe raises.
     """
     try:
         sys.stdout.write(text + "\n")
@@ -70,20 +62,17 @@ def show(text: str = "") -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115 - what is left goes there
-        fail(f"standard output cannot be written: {error.strerror}")
+        sys.stdout = Path(os.devnull).open("w")  # noqa: SIM115 - for the flush at exit
+        fail(f"cannot write to standard output: {error.strerror}")
 
 
 def show_json(value: Any) -> None:
-    """Print a value as JSON, for programs: indented only for a person."""
+    """Print a value as JSON, indented on a terminal."""
     show(json_text(value, indent=2 if is_terminal() else None))
 
 
 def json_text(value: Any, *, indent: int | None = None) -> str:
-    """JSON as every parser reads it: null for numbers that JSON has not (NaN, ∞).
-
-    Control characters are escaped: a terminal does not see them.
-    """
+    """Return standard JSON: null for NaN and infinity, control characters escaped."""
     try:
         text = json.dumps(value, indent=indent, ensure_ascii=False, allow_nan=False)
     except ValueError:
@@ -107,10 +96,10 @@ def beside(
     indent: int = 0,
     fades: Callable[[str], bool] = lambda name: False,
 ) -> list[str]:
-    """Names, and what is to say of each in a column beside them, for a person.
+    """Format names with a second column; below the name if the terminal is narrow.
 
-    Below the name where the terminal is too narrow. ``fades``: whether a name stays
-    in the background.
+    Args:
+        fades: whether a name is printed dim.
     """
     rows = list(pairs)
     width = max((len(name) for name, _ in rows), default=0)
@@ -121,13 +110,13 @@ def beside(
         gap = " " * (width - len(name) + 2)
         if len(text) > room:
             gap = f"\n{' ' * (indent + 4)}"
-        said = f"{gap}{styled(text, dim=True)}" if text else ""
-        lines.append(f"{' ' * indent}{shown}{said}")
+        second = f"{gap}{styled(text, dim=True)}" if text else ""
+        lines.append(f"{' ' * indent}{shown}{second}")
     return lines
 
 
 def aligned(rows: Iterable[Sequence[str]], *, gap: int = 2) -> list[str]:
-    """Rows of words as lines whose columns stand under each other."""
+    """Format rows of words as lines with aligned columns."""
     table = [list(row) for row in rows]
     widths: list[int] = []
     for row in table:

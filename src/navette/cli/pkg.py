@@ -1,27 +1,26 @@
-"""``navette pkg``: make and find packages."""
+"""``navette pkg``: create and find packages."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
 
+from navette.cli.commands import Group
 from navette.cli.completing_installed import complete_packages
+from navette.cli.options import Argument, Option
 
 if TYPE_CHECKING:
     from navette.ros2.workspace import Package
 
-pkg = typer.Typer(
+pkg = Group(
     name="pkg",
-    help="Make packages and find them: in the workspace by folder, without building.",
-    no_args_is_help=True,
+    help="Create and find packages; packages of the workspace need no build.",
 )
 
-Name = Annotated[str, typer.Argument(metavar="NAME", help="The package's name.")]
+Name = Annotated[str, Argument(metavar="NAME", help="Package name.")]
 Found = Annotated[
     str,
-    typer.Argument(
-        metavar="NAME", help="The package's name.", autocompletion=complete_packages
-    ),
+    Argument(metavar="NAME", help="The package's name.", complete=complete_packages),
 ]
 
 
@@ -30,21 +29,21 @@ def create(
     name: Name,
     msgs: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--msgs", help="Also make NAME_msgs: own messages, services and actions."
         ),
     ] = False,
     node: Annotated[
         str | None,
-        typer.Option(metavar="NODE", help="The node's name; by default the package's."),
+        Option(metavar="NODE", help="The node's name; by default the package's."),
     ] = None,
     dependencies: Annotated[
         list[str] | None,
-        typer.Option(metavar="PACKAGE...", help="Further packages it needs."),
+        Option(metavar="PACKAGE...", help="Further packages it needs."),
     ] = None,
     destination_directory: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             metavar="FOLDER", help="Where to; by default src/ if that is here, or here."
         ),
     ] = None,
@@ -64,51 +63,49 @@ def create(
         name, folder, node=node, messages=msgs, dependencies=dependencies or ()
     )
     for package in made:
-        typer.echo(f"made {package}")
+        click.echo(f"made {package}")
         for file in sorted(path for path in package.rglob("*") if path.is_file()):
-            typer.echo(f"  {file.relative_to(package)}")
+            click.echo(f"  {file.relative_to(package)}")
 
 
 @pkg.command("list")
 def list_(
-    paths: Annotated[
-        bool, typer.Option("--paths", help="With origin and folder.")
-    ] = False,
+    paths: Annotated[bool, Option("--paths", help="With origin and folder.")] = False,
 ) -> None:
     """List all packages: the workspace's, installed ones and Navette's own."""
     from navette.ros2.workspace import find_packages
 
     for package in find_packages().values():
         place = f"\t{package.origin.value}\t{package.folder}" if paths else ""
-        typer.echo(f"{package.name}{place}")
+        click.echo(f"{package.name}{place}")
 
 
 @pkg.command()
 def prefix(
     name: Found,
     share: Annotated[
-        bool, typer.Option("--share", help="The folder of its files instead.")
+        bool, Option("--share", help="The folder of its files instead.")
     ] = False,
 ) -> None:
     """Print where a package is."""
     from navette.ros2.workspace import find_package
 
     package = find_package(name)
-    typer.echo(package.share if share else package.prefix)
+    click.echo(package.share if share else package.prefix)
 
 
 @pkg.command()
 def executables(
     name: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             metavar="[NAME]",
             help="Only of this package.",
-            autocompletion=complete_packages,
+            complete=complete_packages,
         ),
     ] = None,
     full_path: Annotated[
-        bool, typer.Option("--full-path", help="Say what each of them runs.")
+        bool, Option("--full-path", help="Say what each of them runs.")
     ] = False,
 ) -> None:
     """List the programs that navette run PACKAGE EXECUTABLE can run."""
@@ -117,7 +114,7 @@ def executables(
     packages = [find_package(name)] if name else list(find_packages().values())
     for package in packages:
         for line in _lines(package, full_path=full_path):
-            typer.echo(line)
+            click.echo(line)
 
 
 def _lines(package: "Package", *, full_path: bool) -> list[str]:

@@ -1,4 +1,4 @@
-"""Runs a simulation in front of a person or a program, and says how it went."""
+"""Run a simulation with progress on the terminal and an exit code."""
 
 import signal
 import sys
@@ -19,15 +19,15 @@ INTERRUPTED = 130
 
 
 def run_simulation(options: RunOptions, *, as_json: bool) -> int:
-    """Run until it is over or interrupted; the exit code of the command.
+    """Run until the end or an interrupt, and return the exit code.
 
-    0: ended as asked (headless: all goals reached, nothing touched). 1: a goal was
-    not reached, something was touched, or a node raised. 130: a headless run was
-    interrupted before its goals were done.
+    0: success (headless: all goals reached without contact). 1: a goal was not
+    reached, the robot touched something, or a node raised. 130: a headless run was
+    interrupted before its last goal.
     """
     screen = StatusScreen(options)
     with screen.starting():
-        # Imported here: the first time ever this compiles the kernels.
+        # Imported here: the first import compiles the kernels.
         from navette.navigation.stack.simulation import Simulation
 
         simulation = Simulation(options, on_change=screen.on_change)
@@ -56,7 +56,7 @@ def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> 
         screen.report_failure(f"stopped: {failure}")
         return FAILED
     if simulation.recorder is not None and simulation.recorder.error is not None:
-        screen.report_failure(f"recording ended early: {simulation.recorder.error}")
+        screen.report_failure(f"recording failed: {simulation.recorder.error}")
         return FAILED
     if not simulation.options.ends_with_goals:
         return SUCCEEDED
@@ -67,7 +67,7 @@ def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> 
 
 @contextmanager
 def _terminate_as_interrupt() -> Iterator[None]:
-    """SIGTERM ends a run as cleanly as Ctrl-C does."""
+    """Handle SIGTERM as KeyboardInterrupt, so that the run is closed cleanly."""
 
     def interrupt(signum: int, frame: object) -> None:
         raise KeyboardInterrupt

@@ -14,15 +14,15 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Never
 
-import typer
+import click
 
-from navette.cli.garbage import collect
+from navette.cli.gc_tuning import collect
 from navette.cli.interruption import (
     dying_on_signals,
     ending_on_signals,
     interruptible,
 )
-from navette.cli.remarks import complain
+from navette.cli.stderr import complain
 from navette.errors import CallbackError
 
 if TYPE_CHECKING:
@@ -152,7 +152,7 @@ def is_of_every_node(service: str) -> bool:
 def fail(message: str) -> Never:
     """End the command: what was asked for failed (exit code 1)."""
     complain(message)
-    raise typer.Exit(FAILED)
+    raise click.exceptions.Exit(FAILED)
 
 
 def _outside() -> "Context":

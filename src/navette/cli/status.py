@@ -1,4 +1,4 @@
-"""What the terminal shows of a run; all of it on stderr, so that stdout is data."""
+"""Progress of a simulation run on stderr; stdout is left for data."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,7 +22,7 @@ _BESIDE_BAR = 60  # columns that the figures beside the bar may take
 
 
 class StatusScreen:
-    """Lines for what has happened, and on a terminal one live line for what happens."""
+    """Lines for past events and, on a terminal, one live line of progress."""
 
     def __init__(self, options: RunOptions) -> None:
         self._options = options
@@ -32,16 +32,16 @@ class StatusScreen:
 
     @contextmanager
     def starting(self) -> Iterator[None]:
-        """While nodes are made and, the first time, kernels compiled."""
+        """Show that nodes are created and, at the first start, kernels compiled."""
         with self._console.status(
-            "starting (the very first start compiles the kernels, some seconds)",
+            "starting (the first start compiles the kernels, which takes seconds)",
             spinner="dots",
         ):
             yield
 
     @contextmanager
     def watching(self, simulation: "Simulation") -> Iterator[None]:
-        """Show the run until the block ends."""
+        """Show the progress until the block ends."""
         self._show_head(simulation)
         if not self._console.is_terminal:
             yield
@@ -55,7 +55,7 @@ class StatusScreen:
             yield
 
     def on_change(self, progress: "Progress") -> None:
-        """A line whenever a goal begins, ends or fails."""
+        """Print a line when a goal starts, ends or fails."""
         text = self._event(progress)
         if text is not None and text.plain != self._reported:
             self._reported = text.plain
@@ -63,15 +63,15 @@ class StatusScreen:
             self._console.print(stamp + text, soft_wrap=True)
 
     def report(self, summary: RunSummary, *, interrupted: bool) -> None:
-        """The end of the run in a few lines."""
+        """Print the summary of the run."""
         reached = sum(goal.result == "reached" for goal in summary.goals)
         clearance = summary.min_clearance_m
         parts = [
             f"{reached} of {len(self._options.goals)} goals reached"
             if self._options.goals
-            else "no goals were given",
+            else "no goals",
             f"{summary.contacts} contact{'' if summary.contacts == 1 else 's'}",
-            f"closest {clearance:.2f} m" if clearance is not None else "",
+            f"minimum clearance {clearance:.2f} m" if clearance is not None else "",
             f"{summary.sim_time_s:.1f} s simulated in {summary.wall_time_s:.1f} s "
             f"(×{summary.real_time_factor:.1f})",
         ]
@@ -86,7 +86,6 @@ class StatusScreen:
         )
 
     def report_failure(self, text: str) -> None:
-        """What went wrong, in one line."""
         self._console.print(Text(text, style="bold red"), soft_wrap=True)
 
     def _show_head(self, simulation: "Simulation") -> None:

@@ -1,22 +1,23 @@
-"""``navette teleop``: drive a robot with the keys of this terminal."""
+"""``navette teleop``: drive a robot with the keyboard."""
 
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Annotated
 
-import typer
+import click
 
+from navette.cli.options import Argument, Option
 from navette.topics import CMD_VEL
 
-# A terminal tells when a key goes down, and again while it is held, but never when it
-# is let go: a key drives for so long. Longer than a usual keyboard waits to repeat.
+# A terminal reports key presses and repeats, but not releases: each press drives for
+# this long, which exceeds the usual repeat delay of keyboards.
 _HOLD_NS = 600_000_000
 _PERIOD_S = 0.1
 _STEP = 1.1
 
-# Forward and turn, as in ROS 2's teleop_twist_keyboard, on arrows and on wasd.
-_WAYS = {
+# (forward, turn) as in ROS 2's teleop_twist_keyboard, on the arrow keys and on wasd.
+_DIRECTIONS = {
     **dict.fromkeys(("up", "w", "i"), (1, 0)),
     **dict.fromkeys(("down", "s", ","), (-1, 0)),
     **dict.fromkeys(("left", "a", "j"), (0, 1)),
@@ -36,62 +37,60 @@ _HELP = (
 
 
 class KeyDriver:
-    """From keys to a speed command: pure, the time is given.
+    """Convert key presses to velocity commands.
 
     Args:
-        speed_mps: forward, at first.
-        turn_radps: of turns, at first.
+        speed_mps: initial forward speed.
+        turn_radps: initial turn rate.
     """
 
     def __init__(self, speed_mps: float, turn_radps: float) -> None:
         self.speed_mps = speed_mps
         self.turn_radps = turn_radps
         self.has_quit = False
-        self._way = (0, 0)
+        self._direction = (0, 0)
         self._until_ns = 0
         self._drives = False
 
     def press(self, key: str, now_ns: int) -> None:
-        """Take a key; one that means nothing stops, as every wrong key should."""
+        """Handle a key; an unassigned key stops the robot."""
         if key in ("+", "=", "-", "−"):
             factor = _STEP if key in "+=" else 1 / _STEP
             self.speed_mps *= factor
             self.turn_radps *= factor
             return
         self.has_quit = self.has_quit or key in ("q", "escape")
-        self._way = _WAYS.get(key, (0, 0))
+        self._direction = _DIRECTIONS.get(key, (0, 0))
         self._until_ns = now_ns + _HOLD_NS
         self._drives = True
 
     def command(self, now_ns: int) -> tuple[float, float] | None:
-        """Speed (m/s) and turn rate (rad/s) to send now; None: leave it to others.
+        """Return speed (m/s) and turn rate (rad/s), or None to publish nothing.
 
-        After the last one comes a zero, once.
+        The last command of a movement is zero.
         """
         if not self._drives:
             return None
-        if now_ns >= self._until_ns or self._way == (0, 0) or self.has_quit:
+        if now_ns >= self._until_ns or self._direction == (0, 0) or self.has_quit:
             self._drives = False
             return 0.0, 0.0
-        forward, turn = self._way
+        forward, turn = self._direction
         return forward * self.speed_mps, turn * self.turn_radps
 
 
 def teleop(
-    topic: Annotated[
-        str, typer.Argument(help="Where the robot listens.")
-    ] = CMD_VEL.name,
-    speed: Annotated[float, typer.Option(metavar="M/S", help="Forward.")] = 0.5,
-    turn: Annotated[float, typer.Option(metavar="RAD/S", help="Of turns.")] = 0.8,
+    topic: Annotated[str, Argument(help="Topic of velocity commands.")] = CMD_VEL.name,
+    speed: Annotated[float, Option(metavar="M/S", help="Forward speed.")] = 0.5,
+    turn: Annotated[float, Option(metavar="RAD/S", help="Turn rate.")] = 0.8,
 ) -> None:
-    """Drive a robot with the keys of this terminal.
+    """Drive a robot with the keyboard.
 
-    The robot stops when no key is held. Beside a planner that has a goal, both drive:
-    let it arrive first, or end it.
+    The robot stops when no key is held. Do not use it while a planner follows a goal:
+    both would publish commands.
     """
     for name, value in (("--speed", speed), ("--turn", turn)):
         if not (math.isfinite(value) and value > 0):
-            raise typer.BadParameter(f"{name} {value}: wanted more than 0")
+            raise click.BadParameter(f"{name} {value} is not above 0")
     from navette.cli.keyboard import listening_to_keys
     from navette.cli.session import connect, fail, wait_for
     from navette.msgs.geometry_msgs.msg import Twist
@@ -115,7 +114,7 @@ def teleop(
         node.create_timer(_PERIOD_S, send)
         with listening_to_keys(press) as has_keys:
             if not has_keys:
-                fail("teleop needs a terminal to read keys from")
+                fail("teleop needs a terminal as standard input to read keys")
             with _shown(driver, topic, publisher.get_subscription_count) as refresh:
                 node.create_timer(_PERIOD_S, refresh)
                 wait_for(node, lambda: driver.has_quit)
@@ -124,9 +123,9 @@ def teleop(
 
 @contextmanager
 def _shown(
-    driver: KeyDriver, topic: str, listeners: Callable[[], int]
+    driver: KeyDriver, topic: str, subscription_count: Callable[[], int]
 ) -> Iterator[Callable[[], None]]:
-    """Keys and speeds on the terminal, one live line."""
+    """Print the keys, and update one line with the speeds."""
     from rich.console import Console
     from rich.live import Live
     from rich.text import Text
@@ -138,10 +137,9 @@ def _shown(
     console.print(keys, soft_wrap=True)
 
     def line() -> Text:
-        count = listeners()
         command = Text(f"{driver.speed_mps:.2f} m/s  {driver.turn_radps:.2f} rad/s")
-        if count == 0:
-            return command + Text(f"   nobody listens to {topic}", style="yellow")
+        if subscription_count() == 0:
+            return command + Text(f"   no subscription on {topic}", style="yellow")
         return command + Text(f"   → {topic}", style="dim")
 
     with Live(line(), console=console, auto_refresh=False, transient=True) as live:

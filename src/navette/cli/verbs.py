@@ -1,185 +1,121 @@
 """The verbs that are imported when they are called, in the order of the help."""
 
-import typer
+from navette.cli.commands import LazyCommand
 
-from navette.cli.lazy import Later
-
-
-def _run(app: typer.Typer) -> None:
-    from navette.cli.run import run
-
-    # What stands behind the program's name is the program's.
-    app.command(context_settings={"allow_interspersed_args": False})(run)
-
-
-def _launch(app: typer.Typer) -> None:
-    from navette.cli.launch import launch
-
-    app.command()(launch)
-
-
-def _up(app: typer.Typer) -> None:
-    from navette.cli.up.verbs import down, logs, ps, restart, up
-
-    for command in (up, down, restart, ps, logs):
-        app.command()(command)
-
-
-def _teleop(app: typer.Typer) -> None:
-    from navette.cli.teleop import teleop
-
-    app.command()(teleop)
-
-
-def _topic(app: typer.Typer) -> None:
-    from navette.cli.topic import topic
-
-    app.add_typer(topic)
-
-
-def _node(app: typer.Typer) -> None:
-    from navette.cli.node import node
-
-    app.add_typer(node)
-
-
-def _param(app: typer.Typer) -> None:
-    from navette.cli.param import param
-
-    app.add_typer(param)
-
-
-def _service(app: typer.Typer) -> None:
-    from navette.cli.service import service
-
-    app.add_typer(service)
-
-
-def _action(app: typer.Typer) -> None:
-    from navette.cli.action import action
-
-    app.add_typer(action)
-
-
-def _interface(app: typer.Typer) -> None:
-    from navette.cli.interface import interface
-
-    app.add_typer(interface)
-
-
-def _lifecycle(app: typer.Typer) -> None:
-    from navette.cli.lifecycle import lifecycle
-
-    app.add_typer(lifecycle)
-
-
-def _component(app: typer.Typer) -> None:
-    from navette.cli.component import component
-
-    app.add_typer(component)
-
-
-def _bag(app: typer.Typer) -> None:
-    from navette.cli.bag import bag
-
-    app.add_typer(bag)
-
-
-def _pkg(app: typer.Typer) -> None:
-    from navette.cli.pkg import pkg
-
-    app.add_typer(pkg)
-
-
-def _keys(app: typer.Typer) -> None:
-    from navette.cli.keys import keys
-
-    app.add_typer(keys)
-
-
-def _doctor(app: typer.Typer) -> None:
-    from navette.cli.doctor import doctor
-
-    app.command()(doctor)
-
-
-def _completion(app: typer.Typer) -> None:
-    from navette.cli.completion import completion
-
-    app.command()(completion)
-
-
-# A test compares the texts with those of the commands themselves.
-VERBS = {
-    "run": Later("Run ROS 2 programs as they are, without ROS 2.", _run),
-    "launch": Later(
+# A test compares each text with the first line of the verb's own help.
+VERBS = (
+    LazyCommand(
+        "run",
+        "navette.cli.run:run",
+        "Run unmodified ROS 2 programs without ROS 2.",
+        # Options after the program's name belong to the program.
+        settings={"allow_interspersed_args": False},
+    ),
+    LazyCommand(
+        "launch",
+        "navette.cli.launch:launch",
         "Run a launch file: all its nodes in this process, or each in its own process.",
-        _launch,
     ),
-    "up": Later("Start services; each of their nodes is a supervised process.", _up),
-    "down": Later("Stop services, dependents first.", _up),
-    "restart": Later(
+    LazyCommand(
+        "up",
+        "navette.cli.up.verbs:up",
+        "Start services; each of their nodes is a supervised process.",
+    ),
+    LazyCommand(
+        "down",
+        "navette.cli.up.verbs:down",
+        "Stop services, dependents first.",
+    ),
+    LazyCommand(
+        "restart",
+        "navette.cli.up.verbs:restart",
         "Stop services and start them again, with the present content of the file.",
-        _up,
     ),
-    "ps": Later(
-        "List the processes of services: state, pid, time, CPU, memory, restarts.", _up
+    LazyCommand(
+        "ps",
+        "navette.cli.up.verbs:ps",
+        "List the processes of services: state, pid, time, CPU, memory, restarts.",
     ),
-    "logs": Later(
+    LazyCommand(
+        "logs",
+        "navette.cli.up.verbs:logs",
         "Print the output of the services' processes, interleaved in order of time.",
-        _up,
     ),
-    "teleop": Later("Drive a robot with the keys of this terminal.", _teleop),
-    "topic": Later(
-        "Look into topics: list, info, echo, hz, bw, delay; and publish.",
-        _topic,
-        only_looks=True,
+    LazyCommand(
+        "teleop",
+        "navette.cli.teleop:teleop",
+        "Drive a robot with the keyboard.",
     ),
-    "node": Later("Look at the nodes that run.", _node, only_looks=True),
-    "param": Later(
-        "Read and change the parameters of nodes that run.", _param, only_looks=True
+    LazyCommand(
+        "topic",
+        "navette.cli.topic:topic",
+        "List, inspect, print and measure topics, and publish messages.",
+        read_only=True,
     ),
-    "service": Later(
-        "Look into services: list, type, find, info, echo; and call them.",
-        _service,
-        only_looks=True,
+    LazyCommand(
+        "node", "navette.cli.node:node", "List and inspect nodes.", read_only=True
     ),
-    "action": Later(
-        "Look into actions: list, type, find, info; and send goals.",
-        _action,
-        only_looks=True,
+    LazyCommand(
+        "param",
+        "navette.cli.param:param",
+        "Get, set, list, describe, dump and load parameters of nodes.",
+        read_only=True,
     ),
-    "interface": Later(
-        "Show messages, services and actions, and how they are defined.",
-        _interface,
-        only_looks=True,
+    LazyCommand(
+        "service",
+        "navette.cli.service:service",
+        "List, inspect and print services, and call them.",
+        read_only=True,
     ),
-    "lifecycle": Later(
-        "Look at managed nodes, and take them from state to state.",
-        _lifecycle,
-        only_looks=True,
+    LazyCommand(
+        "action",
+        "navette.cli.action:action",
+        "List and inspect actions, and send goals.",
+        read_only=True,
     ),
-    "component": Later(
+    LazyCommand(
+        "interface",
+        "navette.cli.interface:interface",
+        "Show definitions of messages, services and actions.",
+        read_only=True,
+    ),
+    LazyCommand(
+        "lifecycle",
+        "navette.cli.lifecycle:lifecycle",
+        "Inspect managed nodes and change their state.",
+        read_only=True,
+    ),
+    LazyCommand(
+        "component",
+        "navette.cli.component:component",
         "Load nodes into containers that run, and take them out.",
-        _component,
-        only_looks=True,
+        read_only=True,
     ),
-    "bag": Later(
-        "Recordings (.mcap, .bag, .db3): record, play, look into, repair, rework.", _bag
+    LazyCommand(
+        "bag",
+        "navette.cli.bag:bag",
+        "Record, play, inspect, repair and edit recordings (.mcap, .bag, .db3).",
     ),
-    "pkg": Later(
-        "Make packages and find them: in the workspace by folder, without building.",
-        _pkg,
+    LazyCommand(
+        "pkg",
+        "navette.cli.pkg:pkg",
+        "Create and find packages; packages of the workspace need no build.",
     ),
-    "keys": Later("Keys and certificates for links with mutual TLS.", _keys),
-    "doctor": Later(
-        "Find what is wrong here, and say what to do about it.",
-        _doctor,
-        only_looks=True,
+    LazyCommand(
+        "keys",
+        "navette.cli.keys:keys",
+        "Create keys and certificates for mutual TLS.",
     ),
-    "completion": Later(
-        "Teach the shell to complete navette's words at Tab.",
-        _completion,
-        only_looks=True,
+    LazyCommand(
+        "doctor",
+        "navette.cli.doctor:doctor",
+        "Find problems of this system and suggest what to do.",
+        read_only=True,
     ),
-}
+    LazyCommand(
+        "completion",
+        "navette.cli.completion:completion",
+        "Print or install the shell completion script.",
+        read_only=True,
+    ),
+)

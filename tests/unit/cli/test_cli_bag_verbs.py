@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
+from click.testing import CliRunner, Result
 
 from bag_samples import POINT, START_NS, STEP_NS, sample, write_sample
 from navette.bags import BagMessage, open_bag

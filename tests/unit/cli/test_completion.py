@@ -10,8 +10,8 @@ from verb_world import World, world
 
 from navette.cli import completing
 from navette.cli import completing_installed as installed
-from navette.cli.completion import Shell, install_script
-from navette.cli.topic.completing_fields import complete_fields
+from navette.cli.completion import install_script
+from navette.cli.topic.options import complete_fields
 from navette.msgs.example_interfaces.srv import AddTwoInts
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Node
@@ -51,9 +51,9 @@ def test_a_name_typed_without_its_slash(here: World) -> None:
 @pytest.mark.parametrize(
     ("shell", "expected"),
     [
-        ("complete_bash", ['"{a: 0, b: 0}"']),
-        ("complete_fish", ["{a: 0, b: 0}"]),
-        ("complete_zsh", ["{a: 0, b: 0}"]),
+        ("bash_complete", ['"{a: 0, b: 0}"']),
+        ("fish_complete", ["{a: 0, b: 0}"]),
+        ("zsh_complete", ["{a: 0, b: 0}"]),
     ],
 )
 def test_values_to_edit(
@@ -68,7 +68,7 @@ def test_values_to_edit(
 
 
 def test_a_message_and_a_goal_to_edit(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("_NAVETTE_COMPLETE", "complete_bash")
+    monkeypatch.setenv("_NAVETTE_COMPLETE", "bash_complete")
     asked: Any = SimpleNamespace(params={"type_name": "std_msgs/msg/String"})
     assert completing.complete_message_values(asked, "") == ["\"{data: ''}\""]
     asked = SimpleNamespace(params={"words": ["example_interfaces/action/Fibonacci"]})
@@ -145,11 +145,11 @@ def test_names_of_what_is_installed() -> None:
 @pytest.mark.parametrize(
     ("shell", "script", "settings"),
     [
-        (Shell.BASH, ".config/navette/completion.bash", ".bashrc"),
-        (Shell.ZSH, ".config/navette/completion.zsh", ".zshrc"),
+        ("bash", ".config/navette/completion.bash", ".bashrc"),
+        ("zsh", ".config/navette/completion.zsh", ".zshrc"),
     ],
 )
-def test_installing(tmp_path: Path, shell: Shell, script: str, settings: str) -> None:
+def test_installing(tmp_path: Path, shell: str, script: str, settings: str) -> None:
     file = tmp_path / settings
     file.write_text("alias ll='ls -l'")
     assert install_script(shell, tmp_path) == [tmp_path / script, file]
@@ -160,9 +160,9 @@ def test_installing(tmp_path: Path, shell: Shell, script: str, settings: str) ->
 
 
 def test_installing_for_fish(tmp_path: Path) -> None:
-    (script,) = install_script(Shell.FISH, tmp_path)
+    (script,) = install_script("fish", tmp_path)
     assert script == tmp_path / ".config/fish/completions/navette.fish"
-    assert "complete --command navette" in script.read_text()
+    assert "--command navette" in script.read_text()
 
 
 def test_programs_and_launch_files(

@@ -1,29 +1,22 @@
-"""The shells' own view of completion: scripts in a real bash, zsh and fish.
-
-They ask a stand-in for ``navette`` that knows a few words.
-"""
+"""Shell completion of the installed command, in a real bash, zsh and fish."""
 
 import os
 import pty
 import select
 import shutil
 import subprocess
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from navette.cli.completion import SCRIPTS
+from navette.cli.completion import SHELLS, script_of
 
-STAND_IN = r"""#!/bin/sh
-asked="${_TYPER_COMPLETE_ARGS:-$(echo $COMP_WORDS | sed 's/.* //')}"
-case "$_NAVETTE_COMPLETE $asked" in
-  *" topic ") printf 'list\tThe topics: all.\necho\tMessages.\n' ;;
-  *"/od") printf '/odom/filtered\n' ;;
-  complete_bash*Twist) printf "\"{x: 0.0, s: ''}\"\n" ;;
-  *"Twist ") printf "{x: 0.0, s: ''}\n" ;;
-esac
+NAVETTE = f"""#!/bin/sh
+exec {sys.executable} -m navette "$@"
 """
+VALUES = "std_msgs/msg/ColorRGBA"
 LIMIT_S = 30.0
 
 
@@ -34,15 +27,21 @@ def needs(shell: str) -> pytest.MarkDecorator:
 @pytest.fixture
 def environment(tmp_path: Path) -> dict[str, str]:
     program = tmp_path / "navette"
-    program.write_text(STAND_IN)
+    program.write_text(NAVETTE)
     program.chmod(0o755)
-    for shell, script in SCRIPTS.items():
-        (tmp_path / f"script.{shell}").write_text(script)
+    for shell in SHELLS:
+        (tmp_path / f"script.{shell}").write_text(script_of(shell))
     path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
-    return {"PATH": path, "HOME": str(tmp_path), "TERM": "dumb", "LC_ALL": "C.UTF-8"}
+    return {
+        "PATH": path,
+        "HOME": str(tmp_path),
+        "TERM": "dumb",
+        "LC_ALL": "C.UTF-8",
+        "NAVETTE_TRANSPORT": "inprocess",
+    }
 
 
-def said(environment: Mapping[str, str], *command: str) -> str:
+def output(environment: Mapping[str, str], *command: str) -> str:
     done = subprocess.run(
         command,
         env=environment,
@@ -59,8 +58,10 @@ def said(environment: Mapping[str, str], *command: str) -> str:
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        (("topic", "echo", "/od"), "/odom/filtered"),
-        (("topic", "pub", "/x", "Twist", ""), "\"{x: 0.0, s: ''}\""),
+        (("topic", "ec"), "echo"),
+        (("topic", "echo", "/x", "--qos-reliability", "be"), "best_effort"),
+        (("topic", "pub", "/x", VALUES, ""), '"{r: 0.0, g: 0.0, b: 0.0, a: 0.0}"'),
+        (("sim", "file"), ""),
     ],
 )
 def test_bash(
@@ -71,36 +72,36 @@ def test_bash(
         f"source ./script.bash; COMP_WORDS=({typed}); COMP_CWORD={len(words)};"
         '_navette_completion navette; printf "%s" "${COMPREPLY[@]}"'
     )
-    assert said(environment, "bash", "--norc", "-c", body) == offered
+    assert output(environment, "bash", "--norc", "-c", body) == offered
 
 
 @needs("fish")
 @pytest.mark.parametrize(
     ("line", "offered"),
     [
-        ("navette topic ", "echo\tMessages.\nlist\tThe topics: all.\n"),
-        ("navette topic echo /od", "/odom/filtered\n"),
-        ("navette topic pub /x Twist ", "{x: 0.0, s: ''}\n"),
+        ("navette lifecycle ge", "get\tPrint the state"),
+        ("navette topic echo /x --qos-reliability be", "best_effort\n"),
+        (f"navette topic pub /x {VALUES} ", "{r: 0.0, g: 0.0, b: 0.0, a: 0.0}\n"),
     ],
 )
 def test_fish(environment: dict[str, str], line: str, offered: str) -> None:
     body = f"source script.fish; complete -C '{line}'"
-    assert said(environment, "fish", "--no-config", "-c", body) == offered
+    assert output(environment, "fish", "--no-config", "-c", body).startswith(offered)
 
 
 @needs("zsh")
 def test_zsh(environment: dict[str, str]) -> None:
-    """Zsh completes only what is typed at a terminal."""
+    """zsh completes only at a terminal."""
     setup = "autoload -Uz compinit; compinit -D -u; source ./script.zsh; echo re''ady\r"
     with Typing(["zsh", "-f", "-i"], environment) as zsh:
         zsh.type(setup, until="ready")
-        zsh.type("navette topic \t", until="list  -- The topics: all.")
-        zsh.type("\x15navette topic echo /od\t", until="/odom/filtered")
-        zsh.type("\x15navette topic pub /x Twist \t", until="Twist \"{x: 0.0, s: ''}\"")
+        zsh.type("navette topic ec\t", until="echo ")
+        zsh.type("\x15navette topic echo /x --qos-reliability b\t", until="best_effort")
+        zsh.type(f"\x15navette topic pub /x {VALUES} \t", until=r"0.0,\ b:\ 0.0")
 
 
 class Typing:
-    """A program at a terminal of its own."""
+    """A program with its own terminal."""
 
     def __init__(self, command: list[str], environment: Mapping[str, str]) -> None:
         self._terminal, its_end = pty.openpty()
@@ -124,7 +125,7 @@ class Typing:
         os.close(self._terminal)
 
     def type(self, keys: str, *, until: str) -> None:
-        """Type, and read until that text is there."""
+        """Type keys and read until the text appears."""
         os.write(self._terminal, keys.encode())
         seen = ""
         while until not in seen:

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
-from navette.cli.doctor.doors import Refusal
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.graph_checks import check_nodes, check_services, check_topics
 from navette.cli.doctor.machine import is_navette, left_running, stopped
 from navette.cli.doctor.network import Network, Router, check_network
-from navette.cli.doctor.ports import Knock, Process
+from navette.cli.doctor.ports import PortProbe, Process
 from navette.cli.doctor.report import report_lines, summary
+from navette.cli.doctor.router_diagnosis import Refusal
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
 from navette.cli.doctor.state_checks import check_stages, check_time
 from navette.cli.doctor.up_checks import check_supervised
@@ -281,18 +281,18 @@ DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
     ("network", "level", "text"),
     [
         (
-            Network(routers=(Router(HERE, Knock.OPEN, DEMO),), nodes={}),
+            Network(routers=(Router(HERE, PortProbe.OPEN, DEMO),), nodes={}),
             Level.GOOD,
             f"{HERE}, served by navette demo (process 12)",
         ),
         (
-            Network(routers=(Router(HERE, Knock.REFUSED),), nodes=None),
+            Network(routers=(Router(HERE, PortProbe.REFUSED),), nodes=None),
             Level.NOTE,
             f"{HERE} is free: the first program that starts serves",
         ),
         (
             Network(
-                routers=(Router(HERE, Knock.OPEN, None, Refusal("wants TLS", "")),),
+                routers=(Router(HERE, PortProbe.OPEN, None, Refusal("wants TLS", "")),),
                 nodes=None,
             ),
             Level.PROBLEM,
@@ -300,14 +300,16 @@ DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
         ),
         (
             Network(
-                routers=(Router(HERE, Knock.OPEN, DEMO._replace(is_stopped=True)),)
+                routers=(Router(HERE, PortProbe.OPEN, DEMO._replace(is_stopped=True)),)
             ),
             Level.PROBLEM,
             f"{HERE} belongs to navette demo (process 12), which is stopped: nobody"
             " can join",
         ),
         (
-            Network(routers=(Router("tcp/10.0.0.2:7447", Knock.SILENT),), nodes=None),
+            Network(
+                routers=(Router("tcp/10.0.0.2:7447", PortProbe.TIMED_OUT),), nodes=None
+            ),
             Level.PROBLEM,
             "tcp/10.0.0.2:7447 does not answer",
         ),

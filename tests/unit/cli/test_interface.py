@@ -96,7 +96,7 @@ def test_show_an_action() -> None:
 
 
 def test_the_type_from_standard_input() -> None:
-    from typer.testing import CliRunner
+    from click.testing import CliRunner
 
     from navette.cli.app import app
 

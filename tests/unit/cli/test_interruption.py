@@ -4,17 +4,17 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 
+import click
 import pytest
-import typer
 
 from navette.cli import interruption
+from navette.cli.commands import LazyGroup
 from navette.cli.interruption import (
     dying_on_signals,
     ending_on_signals,
     interruptible,
     raise_at_interrupt,
 )
-from navette.cli.lazy import lazy_group
 from navette.cli.verbs import VERBS
 
 Condition = Callable[[], bool]
@@ -41,7 +41,7 @@ def test_a_wait_ends_between_two_events(number: int, code: int) -> None:
         assert woken.wait(60.0)
         assert is_interrupted()
 
-    with pytest.raises(typer.Exit) as ended, ending_on_signals():
+    with pytest.raises(click.exceptions.Exit) as ended, ending_on_signals():
         interruptible(run, woken.set)
     assert ended.value.exit_code == code
     assert seen
@@ -52,7 +52,7 @@ def test_outside_of_waits_it_is_an_exception_at_once() -> None:
         signal.raise_signal(signal.SIGINT)
         pytest.fail("went on")
 
-    with pytest.raises(typer.Exit) as ended, ending_on_signals():
+    with pytest.raises(click.exceptions.Exit) as ended, ending_on_signals():
         body()
     assert ended.value.exit_code == 130
 
@@ -70,7 +70,7 @@ def test_a_verb_may_clean_up_and_wait_for_that() -> None:
             interruptible(lambda asked: cleaned.append(asked()), lambda: None)
             raise
 
-    with pytest.raises(typer.Exit), ending_on_signals():
+    with pytest.raises(click.exceptions.Exit), ending_on_signals():
         body()
     assert cleaned == [False]
 
@@ -85,14 +85,14 @@ def test_an_event_that_does_not_end_is_given_up(
         codes.append(code)
         gone.set()
 
-    monkeypatch.setattr(interruption, "_PATIENCE_S", 0.0)
+    monkeypatch.setattr(interruption, "_GRACE_PERIOD_S", 0.0)
     monkeypatch.setattr("os._exit", leave)
 
     def run(is_interrupted: Condition) -> None:
         signal.raise_signal(signal.SIGINT)
         assert gone.wait(60.0)
 
-    with pytest.raises(typer.Exit), ending_on_signals():
+    with pytest.raises(click.exceptions.Exit), ending_on_signals():
         interruptible(run, lambda: None)
     assert codes == [130]
 
@@ -110,9 +110,9 @@ def test_what_is_ignored_stays_ignored() -> None:
     [("bag", signal.default_int_handler), ("topic", signal.SIG_DFL)],
 )
 def test_verbs_that_have_to_clean_up_hear_of_it(verb: str, handler: object) -> None:
-    group = lazy_group(VERBS)(name="navette")
+    group = LazyGroup("navette", commands=list(VERBS))
     with dying_on_signals():
         assert signal.getsignal(signal.SIGINT) is signal.SIG_DFL
-        group.resolve_command(typer.Context(group), [verb])
+        group.resolve_command(click.Context(group), [verb])
         assert signal.getsignal(signal.SIGINT) is handler
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -6,14 +6,15 @@ import math
 import sys
 from typing import Any
 
+import click
 import pytest
-import typer
 
 from navette.cli.escaping import escaped
-from navette.cli.output import beside, json_text, note, show
+from navette.cli.output import beside, json_text, show
 from navette.cli.session import fail
+from navette.cli.stderr import note
+from navette.cli.topic.echo_options import Style
 from navette.cli.topic.printing import text_of
-from navette.cli.topic.style import Style
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import String
 
@@ -50,7 +51,7 @@ def test_what_others_sent_does_not_act_on_a_terminal(
         shown = text_of(message, (), style)
         assert not set(shown) & set(HOSTILE.replace("a", "")) - set("[2J31mabc"), style
     note(HOSTILE)
-    with pytest.raises(typer.Exit):
+    with pytest.raises(click.exceptions.Exit):
         fail(HOSTILE)
     assert not set(capsys.readouterr().err) & set("\x1b\x9b\x07\u202e\u2028\r")
 
@@ -112,11 +113,11 @@ def test_a_full_disk_is_told_in_a_line(
             return False
 
     monkeypatch.setattr("sys.stdout", Full())
-    with pytest.raises(typer.Exit) as ended:
+    with pytest.raises(click.exceptions.Exit) as ended:
         show("x")
     sys.stdout.close()  # what is left goes to os.devnull
     assert ended.value.exit_code == 1
-    expected = "navette: standard output cannot be written: No space left on device\n"
+    expected = "navette: cannot write to standard output: No space left on device\n"
     assert capsys.readouterr().err == expected
 
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+import click
 import pytest
-import typer
 
 from navette.cli.message_types import interface_class
 from navette.cli.peer_definitions import definition_of, described_by_peers
@@ -113,7 +113,7 @@ def test_who_describes_nothing_is_named(
 def test_a_type_that_nobody_knows_ends_the_command(
     server: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with connect(server.context) as node, pytest.raises(typer.Exit):
+    with connect(server.context) as node, pytest.raises(click.exceptions.Exit):
         interface_class(node, "nowhere_msgs/Thing", endpoints(node), kind="msg")
     assert "type nowhere_msgs/msg/Thing is not known here" in capsys.readouterr().err
 

@@ -4,8 +4,8 @@ import os
 import signal
 from collections.abc import Iterator
 
+import click
 import pytest
-import typer
 
 from navette.cli.session import connect, endpoints, fail, is_hidden, wait_for
 from navette.errors import UnknownNameError
@@ -72,14 +72,14 @@ def test_signals_end_it_with_the_shells_exit_codes(number: int, code: int) -> No
             node.context.loop.call_soon(lambda: os.kill(os.getpid(), number), "test")
             wait_for(node, lambda: False, 5.0)
 
-    with pytest.raises(typer.Exit) as ended:
+    with pytest.raises(click.exceptions.Exit) as ended:
         wait()
     assert ended.value.exit_code == code
     assert signal.getsignal(signal.SIGTERM) is before
 
 
 def test_failing_is_said_on_standard_error(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(typer.Exit) as ended:
+    with pytest.raises(click.exceptions.Exit) as ended:
         fail("nothing came")
     assert ended.value.exit_code == 1
     assert "navette: nothing came" in capsys.readouterr().err

@@ -135,9 +135,9 @@ def test_info_says_who_does_not_hear_whom_and_why(talker: Node) -> None:
         listener.create_subscription(String, "scan", print, reliable)
         shown = navette("topic", "info", "/scan").stdout
     assert shown.splitlines()[-1] == (
-        "No exchange: /talker → /listener: "
-        "reliability reliable wanted, best_effort offered, "
-        "durability transient_local wanted, volatile offered"
+        "Mismatch: /talker → /listener: "
+        "reliability reliable requested, best_effort offered, "
+        "durability transient_local requested, volatile offered"
     )
 
 
@@ -147,7 +147,7 @@ def test_an_unknown_topic_fails_and_names_those_alike(talker: Node, verb: str) -
     assert shown.exit_code == 1
     assert shown.stdout == ""
     assert shown.stderr == (
-        "navette: nobody publishes or subscribes to /chater; did you mean /chatter?\n"
+        "navette: no publishers or subscriptions on /chater; did you mean /chatter?\n"
     )
 
 
@@ -166,7 +166,7 @@ def test_find(talker: Node) -> None:
 def test_find_nothing(talker: Node) -> None:
     shown = navette("topic", "find", "std_msgs/msg/Bool")
     assert (shown.exit_code, shown.stdout) == (1, "")
-    assert shown.stderr == "navette: no topic carries std_msgs/msg/Bool\n"
+    assert shown.stderr == "navette: no topic has type std_msgs/msg/Bool\n"
     shown = navette("topic", "find", "std_msgs/Strin")
     assert "; did you mean std_msgs/msg/String?" in shown.stderr
 

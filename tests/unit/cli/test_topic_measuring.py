@@ -4,12 +4,11 @@ import json
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import click
 import pytest
-import typer
 from topic_world import navette
 
 from navette.cli.session import connect, follow_clock, is_simulated
-from navette.cli.topic import measure_verbs
 from navette.cli.topic.measuring import MeasureOptions, measure
 from navette.cli.topic.meters import (
     DelayMeter,
@@ -19,7 +18,8 @@ from navette.cli.topic.meters import (
     RateMeter,
     Spread,
 )
-from navette.cli.topic.qos_options import QosWishes
+from navette.cli.topic.options import QosOverrides
+from navette.cli.topic.verbs import wrong_clock_remark
 from navette.errors import InvalidValueError
 from navette.msgs import serialize
 from navette.msgs.builtin_interfaces.msg import Time
@@ -92,7 +92,7 @@ def test_one_that_nobody_publishes_yet_does_not_keep_the_others_waiting(
     late = talker.create_timer(1.5, begin)
     run(talker, "chatter", "chater", "later", count=3, **RATE)
     out, err = capsys.readouterr()
-    assert "nobody publishes /chater yet; did you mean /chatter?" in err
+    assert "no publisher on /chater yet; did you mean /chatter?" in err
     tables = out.split("topic")[1:]
     assert ["/later" in table for table in tables] == [False, False, True]
 
@@ -124,7 +124,7 @@ def test_a_quality_of_service_of_ones_own(talker: Node) -> None:
     talker.create_timer(
         0.35, lambda: seen.extend(talker.get_subscriptions_info_by_topic("chatter"))
     )
-    run(talker, "chatter", **RATE, qos=QosWishes(reliability="reliable"))
+    run(talker, "chatter", **RATE, qos=QosOverrides(reliability="reliable"))
     run(talker, "chatter", **RATE)
     first, last = seen[0].qos_profile, seen[-1].qos_profile
     assert first.reliability == ReliabilityPolicy.RELIABLE
@@ -211,17 +211,17 @@ def test_stamps_of_other_times_are_remarked_once(
 ) -> None:
     year_2020 = ns_to_stamp(1_577_836_800 * 10**9)
     publish_each(talker, "imu", 0.1, lambda _: Imu(header=Header(stamp=year_2020)))
-    options = {**DELAY, "remark": measure_verbs.of_other_times, "count": 3}
+    options = {**DELAY, "remark": wrong_clock_remark, "count": 3}
     run(talker, "imu", **options)
     assert capsys.readouterr().err == (
-        "the stamps are not set, or not in this time: --wall-time measures in the"
-        " machine's, --use-sim-time in that of /clock\n"
+        "the stamps are not set or come from another clock: --wall-time measures in"
+        " system time, --use-sim-time in the time of /clock\n"
     )
 
 
 def test_delay_needs_a_header(talker: Node, capsys: pytest.CaptureFixture[str]) -> None:
     talker.create_publisher(String, "chatter", 10)
-    with pytest.raises(typer.Exit):
+    with pytest.raises(click.exceptions.Exit):
         run(talker, "chatter", **DELAY)
     assert "std_msgs/msg/String has no header" in capsys.readouterr().err
 

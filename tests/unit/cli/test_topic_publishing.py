@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import click
 import pytest
-import typer
 from topic_world import navette, program, shared_graph
 
-from navette.cli.filling import from_yaml
+from navette.cli.request_builder import from_yaml
 from navette.cli.session import connect
+from navette.cli.topic.options import QosOverrides
 from navette.cli.topic.pub_options import PublishOptions
 from navette.cli.topic.publishing import filled_message, publish
-from navette.cli.topic.qos_options import QosWishes
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.msgs.geometry_msgs.msg import PointStamped, Twist
 from navette.msgs.rosgraph_msgs.msg import Clock
@@ -118,9 +118,9 @@ def test_a_value_alone_is_the_field_of_a_message_that_has_one() -> None:
     [
         (Twist, "{linear: {w: 1}}", "has no field 'w'; its fields: x, y, z"),
         (Twist, "{linear: {x: far}}", "'far'"),
-        (Twist, "1.0", "wanted fields of geometry_msgs/msg/Twist by name"),
-        (Twist, "[1, 2]", "it has linear, angular"),
-        (Empty, "1", "it has none"),
+        (Twist, "1.0", "geometry_msgs/msg/Twist needs its fields by name"),
+        (Twist, "[1, 2]", "its fields are linear, angular"),
+        (Empty, "1", "its fields are none"),
         (Twist, "{linear: [", "is not YAML"),
         (String, "!!python/object/apply:os.system ['true']", "is not YAML"),
     ],
@@ -151,27 +151,28 @@ def test_it_says_why_nobody_hears_it(
 ) -> None:
     listener.create_subscription(String, "chatter", lambda _: None, 10)
     told = []
-    for topic, qos in (("chattr", QosWishes()),
-                       ("chatter", QosWishes(reliability="best_effort"))):  # fmt: skip
-        with pytest.raises(typer.Exit):
+    for topic, qos in (("chattr", QosOverrides()),
+                       ("chatter", QosOverrides(reliability="best_effort")),
+                       ):  # fmt: skip
+        with pytest.raises(click.exceptions.Exit):
             pub(listener, topic, "std_msgs/String", times=1, max_wait_s=1.0, qos=qos)
         told += capsys.readouterr().err.splitlines()[-2:-1]
     assert told == [
         "waiting for 1 matching subscription(s); did you mean /chatter?",
-        "waiting for 1 matching subscription(s); 1 of /chatter want another QoS",
+        "waiting for 1 matching subscription(s); 1 of /chatter have incompatible QoS",
     ]
 
 
 def test_waiting_for_hearers_ends(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(typer.Exit) as ended:
+    with pytest.raises(click.exceptions.Exit) as ended:
         pub(listener, "chatter", "std_msgs/String", wait_for=2, max_wait_s=1.5)
     assert ended.value.exit_code == 1
     shown = capsys.readouterr()
-    assert shown.err.endswith("0 of 2 subscriptions to /chatter came in 1.5 s\n")
+    assert shown.err.endswith("0 of 2 subscriptions to /chatter matched in 1.5 s\n")
     assert shown.err.count("waiting") == 1
-    with pytest.raises(InvalidValueError, match="nothing is waited for"):
+    with pytest.raises(InvalidValueError, match="has no effect without"):
         pub(listener, "chatter", "std_msgs/String", max_wait_s=1.5)
 
 
@@ -179,10 +180,10 @@ def test_a_topic_of_another_type_and_an_unknown_type_are_refused(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     hear(listener, String, "chatter")
-    with pytest.raises(typer.Exit):
+    with pytest.raises(click.exceptions.Exit):
         pub(listener, "chatter", "std_msgs/Bool", times=1)
     assert "/chatter is of type std_msgs/msg/String" in capsys.readouterr().err
-    with pytest.raises((typer.Exit, UnknownNameError)):
+    with pytest.raises((click.exceptions.Exit, UnknownNameError)):
         pub(listener, "other", "no_such_msgs/msg/Thing", times=1)
     assert "no_such_msgs" in capsys.readouterr().err
 
@@ -206,7 +207,7 @@ def test_the_command() -> None:
 
 @pytest.mark.parametrize(
     ("options", "reason"),
-    [(["-1", "-t", "3"], "wanted one of them"), (["-r", "0"], "above 0")],
+    [(["-1", "-t", "3"], "cannot be combined"), (["-r", "0"], "above 0")],
 )
 def test_wrong_options_are_refused(options: list[str], reason: str) -> None:
     shown = navette("topic", "pub", "/x", "std_msgs/msg/String", *options)

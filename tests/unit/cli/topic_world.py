@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from typer.testing import CliRunner, Result
+from click.testing import CliRunner, Result
 
 from navette.cli.app import app
 from navette.runtime import Context, ContextClock, Executor, Node

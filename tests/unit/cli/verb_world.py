@@ -6,7 +6,7 @@ from functools import partial
 from typing import NamedTuple
 from unittest.mock import patch
 
-from typer.testing import CliRunner
+from click.testing import CliRunner
 
 from navette.cli.app import app
 from navette.cli.arguments import spread_lists

@@ -2,16 +2,18 @@
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+import click
 
 from navette.cli.action.looking import actions, types_of
 from navette.cli.action.options import ActionName, Json
 from navette.cli.completing import complete_goal
-from navette.cli.filling import filled, from_stdin, type_and_values
 from navette.cli.message_yaml import yaml_of
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import is_terminal, note, show, show_json, styled
+from navette.cli.options import Argument, Option
+from navette.cli.output import is_terminal, show, show_json, styled
+from navette.cli.request_builder import filled, from_stdin, type_and_values
 from navette.cli.session import FAILED, connect, fail, service_endpoints, wait_for
+from navette.cli.stderr import note
 
 if TYPE_CHECKING:
     from navette.runtime import Future, Node
@@ -26,28 +28,26 @@ def send_goal(
     action: ActionName,
     words: Annotated[
         list[str] | None,
-        typer.Argument(
+        Argument(
             metavar="[TYPE] [YAML]",
             help="The type (by default that of the server), and the fields of the goal"
             " that are not to keep their defaults: '{order: 5}'.",
-            autocompletion=complete_goal,
+            complete=complete_goal,
         ),
     ] = None,
     feedback: Annotated[
-        bool, typer.Option("--feedback", "-f", help="Print feedback as it comes.")
+        bool, Option("--feedback", "-f", help="Print feedback as it comes.")
     ] = False,
     timeout: Annotated[
         float | None,
-        typer.Option(
-            "--timeout", "-t", metavar="S", help="Cancel the goal after this long."
-        ),
+        Option("--timeout", "-t", metavar="S", help="Cancel the goal after this long."),
     ] = None,
     wait: Annotated[
         float,
-        typer.Option("--wait", "-w", metavar="S", help="For a server; 0: for ever."),
+        Option("--wait", "-w", metavar="S", help="For a server; 0: for ever."),
     ] = 5.0,
     stdin: Annotated[
-        bool, typer.Option("--stdin", help="Read the YAML from standard input.")
+        bool, Option("--stdin", help="Read the YAML from standard input.")
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -79,7 +79,7 @@ def send_goal(
             _cancel(here, sent, report)
             raise
     if status != "SUCCEEDED":
-        raise typer.Exit(FAILED)
+        raise click.exceptions.Exit(FAILED)
 
 
 class _Report:

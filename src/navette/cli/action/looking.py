@@ -2,25 +2,20 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from navette.cli.action.options import ActionName, ActionType, Json
-from navette.cli.asking import note_none
 from navette.cli.nearest import did_you_mean
+from navette.cli.options import Option
 from navette.cli.output import show, show_json
 from navette.cli.service.looking import show_names
+from navette.cli.service_calls import note_none
 from navette.cli.session import connect, endpoints, fail
 
 if TYPE_CHECKING:
     from navette.runtime import Node
     from navette.transports import EndpointKind
 
-Count = Annotated[
-    bool, typer.Option("--count-actions", "-c", help="Only their number.")
-]
-ShowTypes = Annotated[
-    bool, typer.Option("--show-types", "-t", help="With their types.")
-]
+Count = Annotated[bool, Option("--count-actions", "-c", help="Only their number.")]
+ShowTypes = Annotated[bool, Option("--show-types", "-t", help="With their types.")]
 
 _FEEDBACK = "/_action/feedback"
 
@@ -70,7 +65,7 @@ def info(
     action: ActionName,
     show_types: ShowTypes = False,
     count: Annotated[
-        bool, typer.Option("--count", "-c", help="Only how many, not who.")
+        bool, Option("--count", "-c", help="Only how many, not who.")
     ] = False,
     as_json: Json = False,
 ) -> None:

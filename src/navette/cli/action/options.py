@@ -2,25 +2,24 @@
 
 from typing import Annotated
 
-import typer
-
 from navette.cli.completing import complete_actions
 from navette.cli.completing_installed import complete_action_types
+from navette.cli.options import Argument, Option
 
 ActionName = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="ACTION",
         help="Name of the action, such as /fibonacci.",
-        autocompletion=complete_actions,
+        complete=complete_actions,
     ),
 ]
 ActionType = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="TYPE",
         help="As example_interfaces/action/Fibonacci.",
-        autocompletion=complete_action_types,
+        complete=complete_action_types,
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="One JSON value, for programs.")]
+Json = Annotated[bool, Option("--json", help="One JSON value, for programs.")]

@@ -1,13 +1,11 @@
 """The verbs of ``navette action``."""
 
-import typer
-
 from navette.cli.action import goals, looking
+from navette.cli.commands import Group
 
-action = typer.Typer(
+action = Group(
     name="action",
-    help="Look into actions: list, type, find, info; and send goals.",
-    no_args_is_help=True,
+    help="List and inspect actions, and send goals.",
 )
 action.command("list")(looking.list_)
 action.command("type")(looking.type_)

@@ -1,17 +1,15 @@
 """The verbs of ``navette bag``."""
 
-import typer
-
 from navette.cli.bag import edit_verbs, look_verbs
 from navette.cli.bag.play import play
 from navette.cli.bag.plot import plot
 from navette.cli.bag.record import record
 from navette.cli.bag.replay import replay
+from navette.cli.commands import Group
 
-bag = typer.Typer(
+bag = Group(
     name="bag",
-    help="Recordings (.mcap, .bag, .db3): record, play, look into, repair, rework.",
-    no_args_is_help=True,
+    help="Record, play, inspect, repair and edit recordings (.mcap, .bag, .db3).",
 )
 bag.command()(record)
 bag.command()(play)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
 
 from navette.cli.bag.options import (
     Bag,
@@ -21,8 +21,9 @@ from navette.cli.bag.options import (
     Topics,
     Types,
 )
-from navette.cli.output import note
+from navette.cli.options import Option
 from navette.cli.session import FAILED
+from navette.cli.stderr import note
 
 if TYPE_CHECKING:
     from navette.bags import BagMessage, BagReader, Damage
@@ -60,7 +61,7 @@ def recover(
             on_damage=damaged,
         )
     if count == 0 and lost:
-        raise typer.Exit(FAILED)
+        raise click.exceptions.Exit(FAILED)
 
 
 def convert(
@@ -97,7 +98,7 @@ def filter_(
     end: End = "",
     where: Annotated[
         str,
-        typer.Option(
+        Option(
             metavar="PYTHON",
             help="Take messages for which this holds; it knows topic (name), t (s) and"
             ' m (message), as in "m.twist.twist.linear.x > 1".',
@@ -150,7 +151,7 @@ def cut(
         last = _time(end, reader)
         if duration is not None:
             if end:
-                raise typer.BadParameter("--end and --duration say the same")
+                raise click.BadParameter("--end and --duration say the same")
             begin = first if first is not None else reader.start_ns
             last = begin + round(duration * 1e9)
         _copy(
@@ -199,7 +200,7 @@ def _copy(
     from navette.cli.bag.text import count_text, size_text
 
     if output.exists() and any(output.samefile(path) for path in reader.files):
-        raise typer.BadParameter(f"{output} is what is read; it is not written over")
+        raise click.BadParameter(f"{output} is what is read; it is not written over")
     writer = open_writer(
         output, storage=storage, compression=compression, overwrite=overwrite
     )
@@ -229,7 +230,7 @@ def _time(text: str, reader: "BagReader") -> int | None:
     try:
         nanoseconds = round(float(text) * 1e9)
     except (ValueError, OverflowError):
-        raise typer.BadParameter(f"{text!r} is no time in seconds") from None
+        raise click.BadParameter(f"{text!r} is no time in seconds") from None
     if text.startswith("-"):
         return reader.end_ns + nanoseconds
     if nanoseconds <= reader.end_ns - reader.start_ns or nanoseconds < reader.start_ns:

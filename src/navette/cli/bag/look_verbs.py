@@ -3,21 +3,23 @@
 from pathlib import Path
 from typing import Annotated
 
-import typer
+import click
 
 from navette.cli.bag.options import Bags, Json
-from navette.cli.output import note, show, show_json
+from navette.cli.options import Argument, Option
+from navette.cli.output import show, show_json
 from navette.cli.session import FAILED
+from navette.cli.stderr import note
 
 
 def info(
     bags: Bags,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="With hashes, QoS and files.")
+        bool, Option("--verbose", "-v", help="With hashes, QoS and files.")
     ] = False,
     key: Annotated[
         str,
-        typer.Option(
+        Option(
             "--key",
             "-k",
             metavar="NAME",
@@ -25,7 +27,7 @@ def info(
         ),
     ] = "",
     topic_name: Annotated[
-        bool, typer.Option("--topic-name", "-t", help="Print only names of topics.")
+        bool, Option("--topic-name", "-t", help="Print only names of topics.")
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -57,10 +59,10 @@ def info(
 
 def list_(
     folder: Annotated[
-        Path, typer.Argument(metavar="[FOLDER]", help="Where to look; by default here.")
+        Path, Argument(metavar="[FOLDER]", help="Where to look; by default here.")
     ] = Path(),
     recursive: Annotated[
-        bool, typer.Option("--recursive", "-r", help="Look into folders below, too.")
+        bool, Option("--recursive", "-r", help="Look into folders below, too.")
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -79,7 +81,7 @@ def list_(
 def check(
     bags: Bags,
     decode: Annotated[
-        bool, typer.Option("--decode", help="Also read every message as its type.")
+        bool, Option("--decode", help="Also read every message as its type.")
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -104,4 +106,4 @@ def check(
         for each in reports:
             report.show_report(each)
     if not all(each.is_sound for each in reports):
-        raise typer.Exit(FAILED)
+        raise click.exceptions.Exit(FAILED)

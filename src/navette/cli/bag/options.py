@@ -3,20 +3,18 @@
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from navette.cli.options import Argument, Option
 
 Bag = Annotated[
     Path,
-    typer.Argument(
-        metavar="BAG", help="A .mcap, .bag or .db3 file, or a folder of rosbag2."
-    ),
+    Argument(metavar="BAG", help="A .mcap, .bag or .db3 file, or a folder of rosbag2."),
 ]
 Bags = Annotated[
-    list[Path], typer.Argument(metavar="BAG...", help="Files or folders of rosbag2.")
+    list[Path], Argument(metavar="BAG...", help="Files or folders of rosbag2.")
 ]
 Output = Annotated[
     Path,
-    typer.Option(
+    Option(
         "--output",
         "-o",
         metavar="FILE",
@@ -26,7 +24,7 @@ Output = Annotated[
 ]
 Storage = Annotated[
     str,
-    typer.Option(
+    Option(
         "--storage",
         "-s",
         metavar="FORMAT",
@@ -35,44 +33,42 @@ Storage = Annotated[
 ]
 Compression = Annotated[
     str,
-    typer.Option(
+    Option(
         metavar="KIND",
         help="none, zstd, lz4 or bz2, as far as the format has it; .mcap: zstd.",
     ),
 ]
 Overwrite = Annotated[
-    bool, typer.Option("--overwrite", help="Replace a recording of that name.")
+    bool, Option("--overwrite", help="Replace a recording of that name.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+Json = Annotated[bool, Option("--json", help="Print one JSON object.")]
 Topics = Annotated[
     list[str] | None,
-    typer.Option("--topic", "-t", metavar="NAME", help="Take this topic; repeat."),
+    Option("--topic", "-t", metavar="NAME", help="Take this topic; repeat."),
 ]
 Types = Annotated[
     list[str] | None,
-    typer.Option("--type", metavar="TYPE", help="Take topics of this type; repeat."),
+    Option("--type", metavar="TYPE", help="Take topics of this type; repeat."),
 ]
 Regex = Annotated[
     str,
-    typer.Option("--regex", "-e", metavar="PATTERN", help="Take topics that match."),
+    Option("--regex", "-e", metavar="PATTERN", help="Take topics that match."),
 ]
 Exclude = Annotated[
     str,
-    typer.Option("--exclude", "-x", metavar="PATTERN", help="Leave out what matches."),
+    Option("--exclude", "-x", metavar="PATTERN", help="Leave out what matches."),
 ]
 Start = Annotated[
     str,
-    typer.Option(
+    Option(
         "--start",
         metavar="TIME",
         help="From here on: seconds since the first message (12.5), before the last"
         " (-3), or seconds since 1970 (1502792570.5).",
     ),
 ]
-End = Annotated[
-    str, typer.Option("--end", metavar="TIME", help="Up to here, as --start.")
-]
+End = Annotated[str, Option("--end", metavar="TIME", help="Up to here, as --start.")]
 Duration = Annotated[
     float | None,
-    typer.Option("--duration", "-u", metavar="S", help="So long from the start on."),
+    Option("--duration", "-u", metavar="S", help="So long from the start on."),
 ]

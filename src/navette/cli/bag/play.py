@@ -7,7 +7,9 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
+
+from navette.cli.options import Argument, Option
 
 if TYPE_CHECKING:
     from navette.bags.play import PlayOptions
@@ -21,51 +23,49 @@ _FASTER = 1.1
 
 Files = Annotated[
     list[Path],
-    typer.Argument(
+    Argument(
         metavar="FILE...",
         help=".mcap, .bag or .db3 files, or rosbag2 folders; several play as one.",
     ),
 ]
-Loop = Annotated[bool, typer.Option("-l", "--loop", help="Start over at the end.")]
+Loop = Annotated[bool, Option("-l", "--loop", help="Start over at the end.")]
 Paused = Annotated[
-    bool, typer.Option("-p", "--pause", "--start-paused", help="Stand at the start.")
+    bool, Option("-p", "--pause", "--start-paused", help="Stand at the start.")
 ]
-Rate = Annotated[
-    float, typer.Option("-r", "--rate", metavar="X", help="Times real time.")
-]
+Rate = Annotated[float, Option("-r", "--rate", metavar="X", help="Times real time.")]
 Start = Annotated[
     float,
-    typer.Option("-s", "--start-offset", metavar="S", help="Seconds to leave out."),
+    Option("-s", "--start-offset", metavar="S", help="Seconds to leave out."),
 ]
 Length = Annotated[
     float | None,
-    typer.Option("-u", "--duration", metavar="S", help="Seconds to play."),
+    Option("-u", "--duration", metavar="S", help="Seconds to play."),
 ]
 Topics = Annotated[
     list[str] | None,
-    typer.Option("--topics", metavar="TOPIC...", help="Play these topics only."),
+    Option("--topics", metavar="TOPIC...", help="Play these topics only."),
 ]
 Regex = Annotated[
     str,
-    typer.Option("-e", "--regex", metavar="REGEX", help="Play topics that match."),
+    Option("-e", "--regex", metavar="REGEX", help="Play topics that match."),
 ]
 Exclude = Annotated[
     str,
-    typer.Option("-x", "--exclude", metavar="REGEX", help="Leave out what matches."),
+    Option("-x", "--exclude", metavar="REGEX", help="Leave out what matches."),
 ]
 Remap = Annotated[
     list[str] | None,
-    typer.Option("-m", "--remap", metavar="FROM:=TO...", help="Other names."),
+    Option("-m", "--remap", metavar="FROM:=TO...", help="Other names."),
 ]
 Clock = Annotated[
     float | None,
-    typer.Option(
+    Option(
         metavar="[HZ]", help="Tell the recording's time on /clock, 40 times a second."
     ),
 ]
 With = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--with",
         metavar="'PROGRAM [ARGS]'",
         help="Run a program in the same process, as navette run does; it is ended"
@@ -74,10 +74,10 @@ With = Annotated[
 ]
 View = Annotated[
     bool,
-    typer.Option("--view", help="Open the live view; play, pause and seek there."),
+    Option("--view", help="Open the live view; play, pause and seek there."),
 ]
 Port = Annotated[
-    int, typer.Option(min=0, max=65535, help="Port of the live view on 127.0.0.1.")
+    int, Option(min=0, max=65535, help="Port of the live view on 127.0.0.1.")
 ]
 
 
@@ -118,7 +118,7 @@ def play(
     def run() -> int:
         return _play(files, options, tuple(remap or ()), clock, port if view else None)
 
-    raise typer.Exit(_play_with(programs, run) if programs else run())
+    raise click.exceptions.Exit(_play_with(programs, run) if programs else run())
 
 
 def _play(

@@ -3,14 +3,14 @@
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from navette.cli.bag.options import Bag
-from navette.cli.output import note, show
+from navette.cli.options import Argument, Option
+from navette.cli.output import show
+from navette.cli.stderr import note
 
 Fields = Annotated[
     list[str],
-    typer.Argument(
+    Argument(
         metavar="TOPIC.FIELD...",
         help="/odom.twist.twist.linear.x: over time; /odom.pose.pose.position.x:y: y"
         " over x. Fields of one name share a panel; a quaternion is drawn as its yaw.",
@@ -18,7 +18,7 @@ Fields = Annotated[
 ]
 Picture = Annotated[
     Path | None,
-    typer.Option(
+    Option(
         "--output",
         "-o",
         metavar="FILE",

@@ -4,12 +4,13 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+import click
 
 from navette.cli.completing import complete_topics
 from navette.cli.completing_installed import complete_messages
-from navette.cli.output import note
+from navette.cli.options import Argument, Option
 from navette.cli.session import FAILED
+from navette.cli.stderr import note
 
 if TYPE_CHECKING:
     from navette.bags.node import RecorderNode
@@ -17,30 +18,28 @@ if TYPE_CHECKING:
 
 TopicNames = Annotated[
     list[str] | None,
-    typer.Argument(
+    Argument(
         metavar="[TOPIC]...",
         help="Record these topics.",
-        autocompletion=complete_topics,
+        complete=complete_topics,
     ),
 ]
-All = Annotated[
-    bool, typer.Option("--all", "-a", help="Record every topic, raw images too.")
-]
+All = Annotated[bool, Option("--all", "-a", help="Record every topic, raw images too.")]
 Regex = Annotated[
-    str, typer.Option("--regex", "-e", metavar="PATTERN", help="Topics that match.")
+    str, Option("--regex", "-e", metavar="PATTERN", help="Topics that match.")
 ]
 TopicTypes = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--topic-types",
         metavar="TYPE...",
         help="Topics of these types.",
-        autocompletion=complete_messages,
+        complete=complete_messages,
     ),
 ]
 Exclude = Annotated[
     str,
-    typer.Option(
+    Option(
         "--exclude-regex",
         "--exclude",
         "-x",
@@ -50,29 +49,29 @@ Exclude = Annotated[
 ]
 ExcludeTopics = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--exclude-topics",
         metavar="TOPIC...",
         help="Leave out these.",
-        autocompletion=complete_topics,
+        complete=complete_topics,
     ),
 ]
 ExcludeTypes = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--exclude-topic-types",
         metavar="TYPE...",
         help="Leave out these types.",
-        autocompletion=complete_messages,
+        complete=complete_messages,
     ),
 ]
 Hidden = Annotated[
     bool,
-    typer.Option("--include-hidden-topics", help="Also topics such as /_action/…."),
+    Option("--include-hidden-topics", help="Also topics such as /_action/…."),
 ]
 Output = Annotated[
     str,
-    typer.Option(
+    Option(
         "--output",
         "-o",
         metavar="NAME",
@@ -80,19 +79,19 @@ Output = Annotated[
     ),
 ]
 Overwrite = Annotated[
-    bool, typer.Option("--overwrite", help="Replace a recording of that name.")
+    bool, Option("--overwrite", help="Replace a recording of that name.")
 ]
 MaxSize = Annotated[
     int,
-    typer.Option("--max-bag-size", "-b", metavar="BYTES", min=0, help="Split at it."),
+    Option("--max-bag-size", "-b", metavar="BYTES", min=0, help="Split at it."),
 ]
 MaxDuration = Annotated[
     float,
-    typer.Option("--max-bag-duration", "-d", metavar="S", min=0, help="Split at it."),
+    Option("--max-bag-duration", "-d", metavar="S", min=0, help="Split at it."),
 ]
 Snapshot = Annotated[
     float,
-    typer.Option(
+    Option(
         "--snapshot-duration",
         metavar="S",
         min=0,
@@ -101,14 +100,14 @@ Snapshot = Annotated[
     ),
 ]
 Compression = Annotated[
-    str, typer.Option(metavar="KIND", help="Of the chunks: zstd, lz4 or none.")
+    str, Option(metavar="KIND", help="Of the chunks: zstd, lz4 or none.")
 ]
 SimTime = Annotated[
-    bool, typer.Option("--use-sim-time", help="Stamps of /clock, not of the machine.")
+    bool, Option("--use-sim-time", help="Stamps of /clock, not of the machine.")
 ]
 Paused = Annotated[
     bool,
-    typer.Option("--start-paused", "--paused", help="Record nothing until space."),
+    Option("--start-paused", "--paused", help="Record nothing until space."),
 ]
 
 
@@ -136,7 +135,7 @@ def record(
     writes a snapshot, q ends.
     """
     if not (topics or all_ or regex or topic_types):
-        raise typer.BadParameter("name topics, or --all, --regex, --topic-types")
+        raise click.BadParameter("name topics, or --all, --regex, --topic-types")
     patterns = [exclude] if exclude else []
     patterns += [f"^{re.escape(_full(each))}$" for each in exclude_topics or ()]
     in_folder = bool(max_bag_size or max_bag_duration or snapshot_duration)
@@ -158,7 +157,7 @@ def record(
     }
     if all_:
         parameters |= {"topics": [], "types": [], "regex": ""}
-    raise typer.Exit(_record(path, parameters))
+    raise click.exceptions.Exit(_record(path, parameters))
 
 
 def _full(topic: str) -> str:

@@ -6,7 +6,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
+
+from navette.cli.options import Argument, Option
 
 if TYPE_CHECKING:
     from navette.bags.compare import Comparison
@@ -17,11 +19,11 @@ if TYPE_CHECKING:
 FAILED = 1
 
 File = Annotated[
-    Path, typer.Argument(metavar="FILE", help="The recording that feeds the nodes.")
+    Path, Argument(metavar="FILE", help="The recording that feeds the nodes.")
 ]
 Nodes = Annotated[
     list[str],
-    typer.Option(
+    Option(
         "--node",
         metavar="NAME",
         help="A stage (costmap, map_memory, planner, control, …), MODULE:Class or"
@@ -30,26 +32,26 @@ Nodes = Annotated[
 ]
 Parameters = Annotated[
     list[str] | None,
-    typer.Option("-p", metavar="[NODE:]NAME:=VALUE", help="A parameter."),
+    Option("-p", metavar="[NODE:]NAME:=VALUE", help="A parameter."),
 ]
 ParamsFiles = Annotated[
     list[Path] | None,
-    typer.Option("--params-file", metavar="FILE", help="ROS 2 parameter file."),
+    Option("--params-file", metavar="FILE", help="ROS 2 parameter file."),
 ]
 World = Annotated[
     str | None,
-    typer.Option(help="The world it was recorded in, for its robot's parameters."),
+    Option(help="The world it was recorded in, for its robot's parameters."),
 ]
 Robot = Annotated[
-    str | None, typer.Option(help="The robot whose parameters the stages take.")
+    str | None, Option(help="The robot whose parameters the stages take.")
 ]
 Record = Annotated[
     Path | None,
-    typer.Option(metavar="OUT.mcap", help="Record what the nodes say."),
+    Option(metavar="OUT.mcap", help="Record what the nodes say."),
 ]
 Golden = Annotated[
     Path | None,
-    typer.Option(
+    Option(
         "--compare",
         metavar="GOLDEN",
         help="Compare what the nodes say with this recording; exit code 1 if it"
@@ -58,7 +60,7 @@ Golden = Annotated[
 ]
 Tolerance = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         metavar="[TOPIC[.FIELD]=]VALUE[:SHARE%]",
         help="How far numbers may be apart, and how many of an array's elements"
         " further than that; repeat, the last that matches counts.",
@@ -66,21 +68,21 @@ Tolerance = Annotated[
 ]
 TimeTolerance = Annotated[
     float,
-    typer.Option(metavar="S", help="How far stamps may be apart.", min=0.0),
+    Option(metavar="S", help="How far stamps may be apart.", min=0.0),
 ]
 Inputs = Annotated[
     list[str] | None,
-    typer.Option("--input", metavar="TOPIC", help="Feed this topic in any case."),
+    Option("--input", metavar="TOPIC", help="Feed this topic in any case."),
 ]
 Start = Annotated[
     float,
-    typer.Option("-s", "--start-offset", metavar="S", help="Seconds to leave out."),
+    Option("-s", "--start-offset", metavar="S", help="Seconds to leave out."),
 ]
 Length = Annotated[
     float | None,
-    typer.Option("-u", "--duration", metavar="S", help="Seconds to replay."),
+    Option("-u", "--duration", metavar="S", help="Seconds to replay."),
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")]
+Json = Annotated[bool, Option("--json", help="Print one JSON object on stdout.")]
 
 
 def replay(
@@ -149,7 +151,7 @@ def replay(
         show_json(as_document(summary, comparison, shown_record))
     else:
         report(summary, comparison, shown_record)
-    raise typer.Exit(0 if comparison is None or comparison.same else FAILED)
+    raise click.exceptions.Exit(0 if comparison is None or comparison.same else FAILED)
 
 
 def _maker(name: str) -> "MakeNode":

@@ -4,7 +4,8 @@ from pathlib import Path
 from typing import Any
 
 from navette.bags.compare import Comparison, TopicComparison
-from navette.cli.output import aligned, note, show, styled
+from navette.cli.output import aligned, show, styled
+from navette.cli.stderr import note
 from navette.navigation.stack.replay import ReplaySummary
 
 

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
 
 from navette.cli.doctor.findings import Finding, Level, count
+from navette.cli.options import Option
 from navette.cli.output import show, show_json
 from navette.cli.session import FAILED, connect
 
@@ -18,13 +19,13 @@ if TYPE_CHECKING:
 
 def doctor(
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Only what wants a look.")
+        bool, Option("--quiet", "-q", help="Only what wants a look.")
     ] = False,
     as_json: Annotated[
-        bool, typer.Option("--json", help="One JSON value, for programs.")
+        bool, Option("--json", help="One JSON value, for programs.")
     ] = False,
 ) -> None:
-    """Find what is wrong here, and say what to do about it.
+    """Find problems of this system and suggest what to do.
 
     ✓ well, · to know, ! to look at, ✗ a problem. Exit code 1 if there is a problem.
     """
@@ -40,7 +41,7 @@ def doctor(
             for line in (*lines, *([""] if lines else []), report.summary(findings)):
                 show(line)
     if count(findings, Level.PROBLEM):
-        raise typer.Exit(FAILED)
+        raise click.exceptions.Exit(FAILED)
 
 
 def _findings(joined: ExitStack) -> Iterator[Finding]:
@@ -66,7 +67,7 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
         known = {} if network.is_alone else network.nodes or {}
         published = network.published.get(domain, {})
         seen = look(here, known.get(domain, ()), published)
-    except typer.Exit as end:  # the reason is on standard error already
+    except click.exceptions.Exit as end:  # the reason is on standard error already
         if not isinstance(end.__context__, NetworkError):
             raise
         yield from check_network(network, None)

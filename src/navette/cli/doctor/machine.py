@@ -13,11 +13,11 @@ from navette import __version__
 from navette.cli.doctor.findings import Finding, Level
 from navette.cli.doctor.graph_checks import NODES
 from navette.cli.doctor.ports import (
-    Knock,
+    PortProbe,
     Process,
     has_nodes,
-    knock,
     listener,
+    probe,
     processes,
 )
 
@@ -119,7 +119,7 @@ def _loads(library: str) -> bool:
 def _live_view() -> Finding:
     """Who is on the live view's port?"""
     what = f"port {VIEW_PORT}"
-    if knock("127.0.0.1", VIEW_PORT) is not Knock.OPEN:
+    if probe("127.0.0.1", VIEW_PORT) is not PortProbe.OPEN:
         return Finding(Level.NOTE, MACHINE, what, "free: no live view runs")
     who = listener(VIEW_PORT)
     if who is None:

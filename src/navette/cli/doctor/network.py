@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from navette.cli.doctor.doors import Refusal, refusal
 from navette.cli.doctor.findings import Finding, Level, plural
-from navette.cli.doctor.ports import Knock, Process, knock, listener
+from navette.cli.doctor.ports import PortProbe, Process, listener, probe
+from navette.cli.doctor.router_diagnosis import Refusal, refusal
 from navette.transports import EndpointKind
 
 if TYPE_CHECKING:
@@ -26,13 +26,13 @@ class Router:
 
     Args:
         endpoint: Zenoh's, as tcp/127.0.0.1:7447.
-        knock: what came of a connection; None: cannot be tried.
+        probe: what came of a connection; None: cannot be tried.
         process: who that is, if it is here and can be seen.
         refusal: why it does not let us in, where it does not.
     """
 
     endpoint: str
-    knock: Knock | None = None
+    probe: PortProbe | None = None
     process: Process | None = None
     refusal: Refusal | None = None
 
@@ -76,7 +76,7 @@ class Network:
     def is_out_of_reach(self) -> bool:
         """Whether nobody can be met: the router is elsewhere, and does not answer."""
         reached = any(
-            router.is_here or router.knock in (None, Knock.OPEN)
+            router.is_here or router.probe in (None, PortProbe.OPEN)
             for router in self.routers
         )
         return bool(self.routers) and not reached and not self.session_file
@@ -127,15 +127,15 @@ def _router(endpoint: str) -> Router:
     host, port = _address(endpoint)
     if protocol not in _PROBED or port is None:
         return Router(endpoint)
-    found = knock(host.strip("[]"), port)
-    here = found is Knock.OPEN and host in _LOCAL
+    found = probe(host.strip("[]"), port)
+    here = found is PortProbe.OPEN and host in _LOCAL
     return Router(endpoint, found, listener(port) if here else None)
 
 
 def _with_refusal(router: Router, security: Path | None) -> Router:
     """Look why it does not let us in."""
     host, port = _address(router.endpoint)
-    if router.knock is not Knock.OPEN or port is None or router.is_stopped:
+    if router.probe is not PortProbe.OPEN or port is None or router.is_stopped:
         return router
     address = host.strip("[]"), port
     why = refusal(router.endpoint, address, security, router.process)
@@ -185,11 +185,11 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
     who = router.process
     data = {
         "endpoint": router.endpoint,
-        "answers": None if router.knock is None else router.knock is Knock.OPEN,
+        "answers": None if router.probe is None else router.probe is PortProbe.OPEN,
         "pid": who.pid if who else None,
     }
     by = f", served by {who.command} (process {who.pid})" if who else ""
-    if router.knock is None:
+    if router.probe is None:
         text = f"{router.endpoint}, which cannot be tried from here"
         return Finding(Level.NOTE, NETWORK, "router", text, data=data)
     if who is not None and who.is_stopped:
@@ -203,34 +203,37 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
             f" kill -KILL {who.pid}",
             data,
         )
-    if router.knock is Knock.OPEN and speaks:
+    if router.probe is PortProbe.OPEN and speaks:
         return Finding(
             Level.GOOD, NETWORK, "router", f"{router.endpoint}{by}", data=data
         )
-    if router.knock is Knock.OPEN:
+    if router.probe is PortProbe.OPEN:
         why = router.refusal or Refusal("does not let us in", "")
         text = f"{router.endpoint} answers{by}, but {why.text}"
         return Finding(Level.PROBLEM, NETWORK, "router", text, why.advice, data)
     if router.is_here:
         text = f"{router.endpoint} is free: the first program that starts serves"
         return Finding(Level.NOTE, NETWORK, "router", text, data=data)
-    how, advice = _UNREACHED[router.knock]
+    how, advice = _UNREACHED[router.probe]
     text = f"{router.endpoint} {how}"
     return Finding(Level.PROBLEM, NETWORK, "router", text, advice, data)
 
 
 _THERE = "start Navette there, with NAVETTE_ROUTER on that address"
 _UNREACHED = {
-    Knock.REFUSED: ("is refused: that machine is on, but no router runs there", _THERE),
-    Knock.SILENT: (
+    PortProbe.REFUSED: (
+        "is refused: that machine is on, but no router runs there",
+        _THERE,
+    ),
+    PortProbe.TIMED_OUT: (
         "does not answer",
         f"is that machine on, and no firewall between? Then {_THERE}",
     ),
-    Knock.NO_WAY: (
+    PortProbe.UNREACHABLE: (
         "cannot be reached: there is no way to that address",
         "is this machine on the same network? ping it",
     ),
-    Knock.NO_NAME: (
+    PortProbe.UNKNOWN_HOST: (
         "cannot be reached: nobody knows that name",
         "look for a mistyped name, or give the address in numbers",
     ),

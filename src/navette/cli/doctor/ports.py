@@ -42,29 +42,29 @@ class Process(NamedTuple):
         return " ".join([Path(words[0]).name, *words[1:]]) if words else "?"
 
 
-class Knock(Enum):
+class PortProbe(Enum):
     """What comes of a TCP connection."""
 
     OPEN = "open"
     REFUSED = "refused"
-    SILENT = "silent"
-    NO_WAY = "no way there"
-    NO_NAME = "no such name"
+    TIMED_OUT = "silent"
+    UNREACHABLE = "no way there"
+    UNKNOWN_HOST = "no such name"
 
 
-def knock(host: str, port: int, timeout_s: float = 0.2) -> Knock:
+def probe(host: str, port: int, timeout_s: float = 0.2) -> PortProbe:
     """Try whether somebody accepts connections there."""
     try:
         with socket.create_connection((host, port), timeout_s):
-            return Knock.OPEN
+            return PortProbe.OPEN
     except socket.gaierror:
-        return Knock.NO_NAME
+        return PortProbe.UNKNOWN_HOST
     except TimeoutError:
-        return Knock.SILENT
+        return PortProbe.TIMED_OUT
     except ConnectionRefusedError:
-        return Knock.REFUSED
+        return PortProbe.REFUSED
     except OSError:
-        return Knock.NO_WAY
+        return PortProbe.UNREACHABLE
 
 
 def listener(port: int) -> Process | None:

@@ -4,43 +4,42 @@ import sys
 from collections.abc import Iterable
 from typing import Annotated
 
-import typer
-
+from navette.cli.commands import Group
 from navette.cli.completing_installed import complete_packages, complete_types
+from navette.cli.options import Argument, Option
 from navette.cli.output import show as put
 from navette.cli.output import show_json
 from navette.cli.session import fail
 from navette.errors import InvalidValueError
 
-interface = typer.Typer(
+interface = Group(
     name="interface",
-    help="Show messages, services and actions, and how they are defined.",
-    no_args_is_help=True,
+    help="Show definitions of messages, services and actions.",
 )
 
 TypeName = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="TYPE",
         help="pkg/msg/Name, pkg/srv/Name or pkg/action/Name; - reads it from"
         " standard input, as in navette topic type /odom | navette interface show -.",
-        autocompletion=complete_types,
+        complete=complete_types,
     ),
 ]
-OnlyMsgs = Annotated[bool, typer.Option("--only-msgs", "-m", help="Messages.")]
-OnlySrvs = Annotated[bool, typer.Option("--only-srvs", "-s", help="Services.")]
-OnlyActions = Annotated[bool, typer.Option("--only-actions", "-a", help="Actions.")]
-Json = Annotated[bool, typer.Option("--json", help="One JSON value, for programs.")]
+OnlyMsgs = Annotated[bool, Option("--only-msgs", "-m", help="Messages.")]
+OnlySrvs = Annotated[bool, Option("--only-srvs", "-s", help="Services.")]
+OnlyActions = Annotated[bool, Option("--only-actions", "-a", help="Actions.")]
+Json = Annotated[bool, Option("--json", help="One JSON value, for programs.")]
 
 
 @interface.command("show")
 def show(
     type_name: TypeName,
     all_comments: Annotated[
-        bool, typer.Option("--all-comments", help="Those of contained types too.")
+        bool, Option("--all-comments", help="Those of contained types too.")
     ] = False,
     no_comments: Annotated[
-        bool, typer.Option("--no-comments", help="No comments, no empty lines.")
+        bool, Option("--no-comments", help="No comments, no empty lines.")
     ] = False,
 ) -> None:
     """Print a definition, with those it contains indented below.
@@ -80,10 +79,10 @@ def list_(
 def package(
     name: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="PACKAGE",
             help="The package's name.",
-            autocompletion=complete_packages,
+            complete=complete_packages,
         ),
     ],
     only_msgs: OnlyMsgs = False,
@@ -124,7 +123,7 @@ def _put_all(names: Iterable[str], *, as_json: bool) -> None:
 def proto(
     type_name: TypeName,
     no_quotes: Annotated[
-        bool, typer.Option("--no-quotes", help="Without quotes around it.")
+        bool, Option("--no-quotes", help="Without quotes around it.")
     ] = False,
 ) -> None:
     """Print a message, a request or a goal with its defaults, as YAML to edit."""

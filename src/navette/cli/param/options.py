@@ -2,41 +2,38 @@
 
 from typing import Annotated
 
-import typer
-
 from navette.cli.completing import complete_nodes, complete_parameters
+from navette.cli.options import Argument, Option
 
 NodeName = Annotated[
     str,
-    typer.Argument(metavar="NODE", help="As /planner.", autocompletion=complete_nodes),
+    Argument(metavar="NODE", help="As /planner.", complete=complete_nodes),
 ]
 AnyNode = Annotated[
     str | None,
-    typer.Argument(
-        metavar="[NODE]", help="By default every node.", autocompletion=complete_nodes
-    ),
+    Argument(metavar="[NODE]", help="By default every node.", complete=complete_nodes),
 ]
 Name = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="NAME",
         help="The parameter's name, as limits.max_speed_mps.",
-        autocompletion=complete_parameters,
+        complete=complete_parameters,
     ),
 ]
 Names = Annotated[
     list[str],
-    typer.Argument(
+    Argument(
         metavar="NAME...",
         help="The parameters' names.",
-        autocompletion=complete_parameters,
+        complete=complete_parameters,
     ),
 ]
 Hidden = Annotated[
-    bool, typer.Option("--include-hidden-nodes", help="Also nodes named _name.")
+    bool, Option("--include-hidden-nodes", help="Also nodes named _name.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON, for programs.")]
 Timeout = Annotated[
     float,
-    typer.Option("--timeout", min=0.0, metavar="S", help="Wait so long for answers."),
+    Option("--timeout", min=0.0, metavar="S", help="Wait so long for answers."),
 ]

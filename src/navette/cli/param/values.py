@@ -5,9 +5,9 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from navette.cli.asking import Question, answer, ask_all, patience_s, served
 from navette.cli.nearest import did_you_mean
 from navette.cli.param.text import type_word
+from navette.cli.service_calls import Question, answer, ask_all, patience_s, served
 from navette.cli.session import fail, wait_for
 from navette.errors import ParameterError
 

@@ -4,18 +4,12 @@ import re
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
+import click
 
-from navette.cli.asking import ANSWER_S, chosen_node, node_names, patient
+from navette.cli.commands import Group
 from navette.cli.completing import complete_parameter_value
-from navette.cli.output import (
-    harmless,
-    is_terminal,
-    note,
-    show,
-    show_json,
-    styled,
-)
+from navette.cli.options import Argument, Option
+from navette.cli.output import harmless, is_terminal, show, show_json, styled
 from navette.cli.param import text, values
 from navette.cli.param.options import (
     AnyNode,
@@ -26,13 +20,14 @@ from navette.cli.param.options import (
     NodeName,
     Timeout,
 )
+from navette.cli.service_calls import ANSWER_S, chosen_node, node_names, patient
 from navette.cli.session import connect, fail
+from navette.cli.stderr import note
 from navette.errors import InvalidValueError
 
-param = typer.Typer(
+param = Group(
     name="param",
-    help="Read and change the parameters of nodes that run.",
-    no_args_is_help=True,
+    help="Get, set, list, describe, dump and load parameters of nodes.",
 )
 
 
@@ -41,20 +36,18 @@ def list_(
     node_name: AnyNode = None,
     filter_: Annotated[
         str | None,
-        typer.Option("--filter", metavar="REGEX", help="Only names that match."),
+        Option("--filter", metavar="REGEX", help="Only names that match."),
     ] = None,
     prefixes: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             "--param-prefixes",
             "--prefixes",
             metavar="PREFIX...",
             help="Only names below these, as limits for limits.max_speed_mps.",
         ),
     ] = None,
-    types: Annotated[
-        bool, typer.Option("--param-type", help="With their types.")
-    ] = False,
+    types: Annotated[bool, Option("--param-type", help="With their types.")] = False,
     include_hidden_nodes: Hidden = False,
     timeout_s: Timeout = ANSWER_S,
     as_json: Json = False,
@@ -86,7 +79,7 @@ def list_(
         for line in text.name_lines(found, kinds, held, with_nodes=node_name is None):
             show(line)
     if node_name and listed.silent:
-        raise typer.Exit(1)
+        raise click.exceptions.Exit(1)
 
 
 def _pattern(text: str | None) -> re.Pattern[str] | None:
@@ -104,9 +97,7 @@ def _pattern(text: str | None) -> re.Pattern[str] | None:
 def get(
     node_name: NodeName,
     name: Name,
-    hide_type: Annotated[
-        bool, typer.Option("--hide-type", help="Only the value.")
-    ] = False,
+    hide_type: Annotated[bool, Option("--hide-type", help="Only the value.")] = False,
     timeout_s: Timeout = ANSWER_S,
     as_json: Json = False,
 ) -> None:
@@ -128,10 +119,10 @@ def set_(
     name: Name,
     value: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="VALUE",
             help="As YAML: 1.5, true, text, \"'5'\", [1, 2].",
-            autocompletion=complete_parameter_value,
+            complete=complete_parameter_value,
         ),
     ],
     timeout_s: Timeout = ANSWER_S,
@@ -175,7 +166,7 @@ def dump(
     node_name: AnyNode = None,
     output_dir: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             "--output-dir",
             "-o",
             metavar="FOLDER",
@@ -202,17 +193,17 @@ def dump(
         for path in values.write(dumped.found, output_dir):
             show(f"Saving to: {path}")
     if dumped.remarks and not dumped.found:
-        raise typer.Exit(1)
+        raise click.exceptions.Exit(1)
 
 
 @param.command()
 def load(
     node_name: NodeName,
     parameter_file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="A ROS 2 parameter file.")
+        Path, Argument(metavar="FILE", help="A ROS 2 parameter file.")
     ],
     no_use_wildcard: Annotated[
-        bool, typer.Option("--no-use-wildcard", help="Not what stands under /**.")
+        bool, Option("--no-use-wildcard", help="Not what stands under /**.")
     ] = False,
     timeout_s: Timeout = ANSWER_S,
 ) -> None:
@@ -231,7 +222,7 @@ def load(
             failed = True
             note(_with_reason(f"Set parameter {name} failed", result))
     if failed:
-        raise typer.Exit(1)
+        raise click.exceptions.Exit(1)
 
 
 @param.command()

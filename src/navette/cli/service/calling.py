@@ -2,15 +2,15 @@
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from navette.cli.completing import complete_request
-from navette.cli.filling import filled, from_stdin, type_and_values
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import note, show, show_json, styled
+from navette.cli.options import Argument, Option
+from navette.cli.output import show, show_json, styled
+from navette.cli.request_builder import filled, from_stdin, type_and_values
 from navette.cli.service.looking import services, types_of
 from navette.cli.service.options import Json, ServiceName
 from navette.cli.session import connect, fail, service_endpoints, wait_for
+from navette.cli.stderr import note
 from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -21,23 +21,23 @@ def call(
     service: ServiceName,
     words: Annotated[
         list[str] | None,
-        typer.Argument(
+        Argument(
             metavar="[TYPE] [YAML]",
             help="The type (by default that of the server), and the fields of the"
             " request that are not to keep their defaults: '{a: 1, b: 2}'.",
-            autocompletion=complete_request,
+            complete=complete_request,
         ),
     ] = None,
     rate: Annotated[
         float | None,
-        typer.Option("--rate", "-r", metavar="HZ", help="Call again and again."),
+        Option("--rate", "-r", metavar="HZ", help="Call again and again."),
     ] = None,
     timeout: Annotated[
         float,
-        typer.Option("--timeout", "-w", metavar="S", help="Give up waiting; 0: never."),
+        Option("--timeout", "-w", metavar="S", help="Give up waiting; 0: never."),
     ] = 5.0,
     stdin: Annotated[
-        bool, typer.Option("--stdin", help="Read the YAML from standard input.")
+        bool, Option("--stdin", help="Read the YAML from standard input.")
     ] = False,
     as_json: Json = False,
 ) -> None:

@@ -4,13 +4,13 @@ import re
 from functools import partial
 from typing import Annotated, Any
 
-import typer
-
 from navette.cli.message_yaml import yaml_of
-from navette.cli.output import note, show
+from navette.cli.options import Argument, Option
+from navette.cli.output import show
 from navette.cli.service.looking import types_of
 from navette.cli.service.options import ServiceName
 from navette.cli.session import connect, service_endpoints, wait_for
+from navette.cli.stderr import note
 
 _EVENTS = "/_service_event"
 
@@ -19,17 +19,17 @@ def echo(
     service: ServiceName,
     service_type: Annotated[
         str | None,
-        typer.Argument(metavar="[TYPE]", help="By default that of the server."),
+        Argument(metavar="[TYPE]", help="By default that of the server."),
     ] = None,
     csv: Annotated[
-        bool, typer.Option("--csv", help="Values only, with commas between.")
+        bool, Option("--csv", help="Values only, with commas between.")
     ] = False,
     full_length: Annotated[
-        bool, typer.Option("--full-length", "-f", help="Shorten nothing.")
+        bool, Option("--full-length", "-f", help="Shorten nothing.")
     ] = False,
     truncate_length: Annotated[
         int,
-        typer.Option(
+        Option(
             "--truncate-length",
             "-l",
             metavar="N",
@@ -37,12 +37,12 @@ def echo(
             help="Shorten arrays and texts to this.",
         ),
     ] = 128,
-    no_arr: Annotated[bool, typer.Option("--no-arr", help="No arrays.")] = False,
-    no_str: Annotated[bool, typer.Option("--no-str", help="No texts.")] = False,
+    no_arr: Annotated[bool, Option("--no-arr", help="No arrays.")] = False,
+    no_str: Annotated[bool, Option("--no-str", help="No texts.")] = False,
     flow_style: Annotated[
-        bool, typer.Option("--flow-style", help="An event on a line.")
+        bool, Option("--flow-style", help="An event on a line.")
     ] = False,
-    once: Annotated[bool, typer.Option("--once", help="End after an event.")] = False,
+    once: Annotated[bool, Option("--once", help="End after an event.")] = False,
 ) -> None:
     """Print requests and responses as they are sent and received.
 

@@ -2,12 +2,11 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from navette.cli.asking import note_none
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import beside, is_terminal, note, show, show_json
+from navette.cli.options import Option
+from navette.cli.output import beside, is_terminal, show, show_json
 from navette.cli.service.options import Hidden, Json, ServiceName, ServiceType
+from navette.cli.service_calls import note_none
 from navette.cli.session import (
     connect,
     fail,
@@ -15,19 +14,18 @@ from navette.cli.session import (
     is_of_every_node,
     service_endpoints,
 )
+from navette.cli.stderr import note
 
 if TYPE_CHECKING:
     from navette.runtime import Node
     from navette.transports import Endpoint
 
-Count = Annotated[
-    bool, typer.Option("--count-services", "-c", help="Only their number.")
-]
+Count = Annotated[bool, Option("--count-services", "-c", help="Only their number.")]
 
 
 def list_(
     show_types: Annotated[
-        bool, typer.Option("--show-types", "-t", help="With their types.")
+        bool, Option("--show-types", "-t", help="With their types.")
     ] = False,
     count: Count = False,
     include_hidden_services: Hidden = False,
@@ -98,7 +96,7 @@ def find(
 def info(
     service: ServiceName,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Also who serves and calls it.")
+        bool, Option("--verbose", "-v", help="Also who serves and calls it.")
     ] = False,
     as_json: Json = False,
 ) -> None:

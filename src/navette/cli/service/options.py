@@ -2,33 +2,32 @@
 
 from typing import Annotated
 
-import typer
-
 from navette.cli.completing import complete_services
 from navette.cli.completing_installed import complete_service_types
+from navette.cli.options import Argument, Option
 
 ServiceName = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="SERVICE",
         help="Name of the service, such as /add_two_ints.",
-        autocompletion=complete_services,
+        complete=complete_services,
     ),
 ]
 ServiceType = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="TYPE",
         help="As std_srvs/srv/SetBool.",
-        autocompletion=complete_service_types,
+        complete=complete_service_types,
     ),
 ]
 Hidden = Annotated[
     bool,
-    typer.Option(
+    Option(
         "--include-hidden-services",
         "-a",
         help="Also those with a part that begins with _.",
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="One JSON value, for programs.")]
+Json = Annotated[bool, Option("--json", help="One JSON value, for programs.")]

@@ -1,13 +1,11 @@
 """The verbs of ``navette service``."""
 
-import typer
-
+from navette.cli.commands import Group
 from navette.cli.service import calling, echoing, looking
 
-service = typer.Typer(
+service = Group(
     name="service",
-    help="Look into services: list, type, find, info, echo; and call them.",
-    no_args_is_help=True,
+    help="List, inspect and print services, and call them.",
 )
 service.command("list")(looking.list_)
 service.command("type")(looking.type_)

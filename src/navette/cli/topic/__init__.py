@@ -1,5 +1,5 @@
-"""``navette topic …``: what is said on topics, by whom, how often; and saying it."""
+"""``navette topic``: list, inspect, print, measure and publish topics."""
 
-from navette.cli.topic.app import topic
+from navette.cli.topic.verbs import topic
 
 __all__ = ["topic"]

@@ -1,4 +1,4 @@
-"""Prints the messages of a topic."""
+"""Print the messages of a topic."""
 
 import re
 import shutil
@@ -8,29 +8,30 @@ from typing import Any
 import yaml
 
 from navette.cli.message_types import topic_class
-from navette.cli.output import is_terminal, note, show
+from navette.cli.output import is_terminal, show
 from navette.cli.session import endpoints, fail, wait_for
+from navette.cli.stderr import note
 from navette.cli.topic.echo_options import EchoOptions
 from navette.cli.topic.filtering import message_filter
+from navette.cli.topic.options import QosOverrides
 from navette.cli.topic.printing import SEPARATOR, text_of
-from navette.cli.topic.qos_choice import fitting_profile, wished_profile
-from navette.cli.topic.qos_options import QosWishes
+from navette.cli.topic.qos_profiles import compatible_profile, overridden_profile
 from navette.msgs import type_name
 from navette.msgs.field_path import FieldPath, parse_field_path
 from navette.runtime import Node, QoSProfile
 from navette.runtime.qos_events import SubscriptionEventCallbacks
 from navette.transports import EndpointKind
 
-# Home, then every line erased as it is written over, then what is below: no flicker.
+# Overwriting line by line does not flicker, unlike clearing the screen first.
 _HOME, _END_OF_LINE, _BELOW = "\x1b[H", "\x1b[K", "\x1b[J"
 _CLEAR = "\x1b[2J"
 _COLOUR = re.compile(r"\x1b\[[\d;]*m")
 
 
 def echo(node: Node, options: EchoOptions) -> None:
-    """Print messages until there were enough, or the time is over.
+    """Print messages until the count or the timeout is reached.
 
-    Ends the command with a failure if what was waited for did not come.
+    The command fails if the timeout passes before the requested messages arrive.
     """
     keep = message_filter(options.filter)
     deadline_ns = None
@@ -57,17 +58,17 @@ def echo(node: Node, options: EchoOptions) -> None:
         left_s = max(0.0, (deadline_ns - node.context.clock.now_ns) / 1e9)
     enough = wait_for(node, lambda: screen.is_full, left_s)
     if not enough and (options.wanted is not None or not screen.count):
-        fail(f"{screen.count} messages came on {topic} in {options.timeout_s:g} s")
+        fail(f"received {screen.count} messages on {topic} in {options.timeout_s:g} s")
 
 
 class Screen:
-    """Where messages are printed, and how many were."""
+    """Printer that counts messages and, with ``--clear``, overwrites the last one."""
 
     def __init__(self, options: EchoOptions, paths: Sequence[FieldPath]) -> None:
         self._options = options
         self._paths = paths
         self._style = options.style
-        self._said_short = False
+        self._noted_short = False
         self._clears = options.clear and is_terminal()
         self.count = 0
 
@@ -77,7 +78,6 @@ class Screen:
         return wanted is not None and self.count >= wanted
 
     def show(self, message: Any, info: dict[str, Any]) -> None:
-        """Print one, unless there were enough."""
         if self.is_full:
             return
         text = self._text(message)
@@ -87,7 +87,7 @@ class Screen:
         if self._options.with_info:
             text = self._with_info(text, info)
         if self._clears:
-            text = _fitting(text)
+            text = _cut_to_screen(text)
             text = text.replace("\n", f"{_END_OF_LINE}\n")
             first = _CLEAR if self.count == 1 else ""
             text = f"{first}{_HOME}{text}{_END_OF_LINE}{_BELOW}"
@@ -99,10 +99,10 @@ class Screen:
         try:
             parts = [(path, path.of(message)) for path in self._paths]
         except IndexError:
-            if not self._said_short:
+            if not self._noted_short:
                 names = ", ".join(path.text for path in self._paths)
-                note(f"{names}: some messages have not so many elements")
-            self._said_short = True
+                note(f"{names}: skipping messages whose arrays are too short")
+            self._noted_short = True
             return None
         return text_of(message, parts, self._style)
 
@@ -112,8 +112,8 @@ class Screen:
         return f"{yaml.safe_dump(info)}{SEPARATOR}\n{text}"
 
 
-def _fitting(text: str) -> str:
-    """What fits on the screen: if it scrolled, there would be nothing to write over."""
+def _cut_to_screen(text: str) -> str:
+    """Cut the text to the terminal's height: a scrolled text cannot be overwritten."""
     width, height = shutil.get_terminal_size()
     lines = text.split("\n")
     rows = 0
@@ -124,14 +124,11 @@ def _fitting(text: str) -> str:
     return text
 
 
-def _profile(node: Node, topic: str, wishes: QosWishes) -> QoSProfile:
-    if not wishes.is_empty:
-        return wished_profile(wishes, "sensor_data")
-    return fitting_profile(endpoints(node, topic, kind=EndpointKind.PUBLISHER))
+def _profile(node: Node, topic: str, overrides: QosOverrides) -> QoSProfile:
+    if not overrides.is_empty:
+        return overridden_profile(overrides, "sensor_data")
+    return compatible_profile(endpoints(node, topic, kind=EndpointKind.PUBLISHER))
 
 
 def _report_lost(event: Any) -> None:
-    note(
-        f"{event.total_count_change} messages lost on the way "
-        f"({event.total_count} so far)"
-    )
+    note(f"{event.total_count_change} messages lost ({event.total_count} in total)")

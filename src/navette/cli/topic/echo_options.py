@@ -1,68 +1,109 @@
-"""What ``topic echo`` is told."""
+"""Options of ``navette topic echo``."""
 
 from dataclasses import dataclass, field
 from typing import Annotated
 
-import typer
-
 from navette.cli.completing_installed import complete_messages
-from navette.cli.topic.completing_fields import complete_fields
-from navette.cli.topic.options import Filter, TopicName
-from navette.cli.topic.qos_options import QosWishes
-from navette.cli.topic.style import Style
+from navette.cli.options import Argument, Option
+from navette.cli.topic.options import (
+    Filter,
+    NodeName,
+    QosOverrides,
+    TopicName,
+    complete_fields,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Style:
+    """How messages are printed. Lengths count items or characters; None: no limit."""
+
+    csv: Annotated[bool, Option("--csv", help="Print comma-separated values.")] = False
+    as_json: Annotated[
+        bool,
+        Option(
+            "--json",
+            help="Print one line of JSON per message; full arrays, null for NaN.",
+        ),
+    ] = False
+    no_arr: Annotated[
+        bool, Option("--no-arr", help="Print only type and length of arrays.")
+    ] = False
+    no_str: Annotated[
+        bool, Option("--no-str", help="Print only the length of strings.")
+    ] = False
+    flow_style: Annotated[
+        bool, Option("--flow-style", help="Print each message on one line.")
+    ] = False
+    truncate_length: Annotated[
+        int | None,
+        Option(
+            "--truncate-length",
+            "-l",
+            min=0,
+            metavar="N",
+            help="Truncate arrays and strings to N items.",
+        ),
+    ] = 128
+    full_length: Annotated[
+        bool, Option("--full-length", "-f", help="Print full arrays and strings.")
+    ] = False
 
 
 @dataclass(frozen=True, kw_only=True)
 class EchoOptions:
-    """What to print of a topic."""
+    """What ``topic echo`` prints, and when it stops."""
 
     topic: TopicName
     type_name: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             metavar="TYPE",
-            help="Its type; by default what is published.",
-            autocompletion=complete_messages,
+            help="Message type. Default: the published type.",
+            complete=complete_messages,
         ),
     ] = None
-    once: Annotated[bool, typer.Option("--once", help="Print one and end.")] = False
+    once: Annotated[bool, Option("--once", help="Stop after one message.")] = False
     count: Annotated[
         int | None,
-        typer.Option("--count", "-n", min=1, metavar="N", help="Print N and end."),
+        Option("--count", "-n", min=1, metavar="N", help="Stop after N messages."),
     ] = None
     timeout_s: Annotated[
         float | None,
-        typer.Option("--timeout", min=0.0, metavar="S", help="Wait no longer."),
+        Option("--timeout", min=0, metavar="S", help="Stop after S seconds."),
     ] = None
     paths: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             "--field",
             metavar="PATH",
-            help="Only a part, as in pose.position.x or ranges[0]; repeat for more.",
-            autocompletion=complete_fields,
+            help="Print only this field, as in pose.position.x or ranges[0]. Repeat for"
+            " several.",
+            complete=complete_fields,
         ),
     ] = None
     filter: Filter = None
     clear: Annotated[
-        bool, typer.Option("--clear", "-c", help="Print each over the last one.")
+        bool,
+        Option("--clear", "-c", help="Clear the screen before each message."),
     ] = False
     style: Style = field(default_factory=Style)
-    raw: Annotated[bool, typer.Option("--raw", help="The bytes on the wire.")] = False
+    raw: Annotated[bool, Option("--raw", help="Print the serialized bytes.")] = False
     with_info: Annotated[
         bool,
-        typer.Option("--include-message-info", "-i", help="With stamps and numbers."),
+        Option(
+            "--include-message-info",
+            "-i",
+            help="Also print timestamps and sequence numbers.",
+        ),
     ] = False
     no_lost_messages: Annotated[
-        bool, typer.Option("--no-lost-messages", help="Do not report losses.")
+        bool, Option("--no-lost-messages", help="Do not report lost messages.")
     ] = False
-    node_name: Annotated[
-        str | None,
-        typer.Option("--node-name", metavar="NAME", help="By default a hidden one."),
-    ] = None
-    qos: QosWishes = field(default_factory=QosWishes)
+    node_name: NodeName = None
+    qos: QosOverrides = field(default_factory=QosOverrides)
 
     @property
     def wanted(self) -> int | None:
-        """How many messages; None: until Ctrl-C."""
+        """Number of messages to print; None: until Ctrl-C."""
         return 1 if self.once else self.count

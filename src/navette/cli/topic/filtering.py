@@ -1,4 +1,4 @@
-"""``--filter "m.pose.position.x > 1"``: which messages count."""
+"""Message filters: ``--filter "m.pose.position.x > 1"``."""
 
 from collections.abc import Callable
 from typing import Any

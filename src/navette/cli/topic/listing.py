@@ -1,4 +1,4 @@
-"""Topics as they are: who publishes and subscribes, with which type and QoS."""
+"""Topics with their publishers, subscriptions, types and QoS."""
 
 import shutil
 from dataclasses import dataclass
@@ -31,13 +31,13 @@ class Topic:
 
     @property
     def types(self) -> list[str]:
-        """Sorted; more than one is a fault of the programs."""
+        """Sorted type names; more than one is an error of the programs."""
         every = (*self.publishers, *self.subscriptions)
         return sorted({endpoint.type_name for endpoint in every})
 
     @property
     def mismatches(self) -> list[str]:
-        """Pairs that exchange nothing, and why, for a person."""
+        """Publisher and subscription pairs that do not match, each with the reason."""
         return [
             _mismatch(publisher, subscription)
             for publisher in self.publishers
@@ -56,7 +56,7 @@ class Topic:
 
 
 def topics(node: Node, *, hidden: bool = False) -> list[Topic]:
-    """All topics that run beside ``node``, by name."""
+    """Return all topics of other nodes, sorted by name."""
     by_name: dict[str, list[Endpoint]] = {}
     for endpoint in endpoints(node):
         by_name.setdefault(endpoint.topic, []).append(endpoint)
@@ -65,17 +65,17 @@ def topics(node: Node, *, hidden: bool = False) -> list[Topic]:
 
 
 def topic(node: Node, name: str) -> Topic:
-    """The topic of that name; ends the command if nobody has it."""
+    """Return the topic with this name; the command fails if there is none."""
     full_name = node.resolve_topic_name(name)
     found = endpoints(node, full_name)
     if not found:
         near = did_you_mean(full_name, (each.topic for each in endpoints(node)))
-        fail(f"nobody publishes or subscribes to {full_name}{near}")
+        fail(f"no publishers or subscriptions on {full_name}{near}")
     return _topic(full_name, found)
 
 
 def listed(found: list[Topic], *, show_types: bool, verbose: bool) -> str:
-    """Lines for a list: as ``ros2 topic list`` prints them, aligned for a person."""
+    """Format a list: as ``ros2 topic list``, in columns on a terminal."""
     if verbose:
         return _table(found) if is_terminal() else _by_direction(found)
     if show_types:
@@ -84,7 +84,7 @@ def listed(found: list[Topic], *, show_types: bool, verbose: bool) -> str:
 
 
 def described(found: Topic, *, verbose: bool) -> str:
-    """One topic as ``ros2 topic info`` prints it, and what does not fit."""
+    """Format one topic as ``ros2 topic info`` does, with its mismatches."""
     types = ", ".join(found.types)
     publishers, subscriptions = map(_nodes, (found.publishers, found.subscriptions))
     blocks = [
@@ -96,12 +96,12 @@ def described(found: Topic, *, verbose: bool) -> str:
     blocks.append(f"Subscription count: {len(found.subscriptions)}{subscriptions}")
     if verbose:
         blocks += [str(TopicEndpointInfo.of(each)) for each in found.subscriptions]
-    blocks += [styled(f"No exchange: {text}", fg="red") for text in found.mismatches]
+    blocks += [styled(f"Mismatch: {text}", fg="red") for text in found.mismatches]
     return ("\n\n" if verbose else "\n").join(blocks)
 
 
 def _nodes(found: tuple[Endpoint, ...]) -> str:
-    """For a person: whose they are."""
+    """Return the names of the nodes, on a terminal only."""
     names = sorted({each.node_full_name for each in found})
     if not is_terminal() or not names:
         return ""
@@ -109,7 +109,7 @@ def _nodes(found: tuple[Endpoint, ...]) -> str:
 
 
 def describe_qos(qos: EndpointQos) -> str:
-    """What matters of a QoS in few words: ``reliable, volatile, last 10``."""
+    """Summarize a QoS profile: ``reliable, volatile, last 10``."""
     kept = "all" if qos.history == HistoryPolicy.KEEP_ALL else f"last {qos.depth}"
     words = [qos.reliability.short_key, qos.durability.short_key, kept]
     if qos.deadline_ns != INFINITE_NS:
@@ -170,7 +170,7 @@ def _table(found: list[Topic]) -> str:
 
 
 def _stacked(name: str, types: str, pubs: str, subs: str, qos: str) -> list[str]:
-    """A topic in lines of its own, where a terminal has no room for a table."""
+    """Format a topic in several lines, for terminals too narrow for a table."""
     counts = f"{_count(int(pubs), 'publisher')}, {_count(int(subs), 'subscription')}"
     details = [types, counts, *([qos] if qos else [])]
     return [name, *(f"    {styled(each, dim=True)}" for each in details)]
@@ -194,7 +194,7 @@ def _reason(kind: QoSPolicyKind, offered: EndpointQos, wanted: EndpointQos) -> s
     mine, other = getattr(offered, word, None), getattr(wanted, word, None)
     if mine is None or other is None:
         return word.replace("_", " ")
-    return f"{word} {other.short_key} wanted, {mine.short_key} offered"
+    return f"{word} {other.short_key} requested, {mine.short_key} offered"
 
 
 def _endpoint_json(endpoint: Endpoint) -> dict[str, Any]:

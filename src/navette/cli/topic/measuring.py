@@ -1,10 +1,10 @@
-"""Listens to topics and prints what a meter makes of it, every second."""
+"""Subscribe to topics and print the figures of their meters every second."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import typer
+import click
 
 from navette.cli.message_types import topic_class
 from navette.cli.nearest import did_you_mean
@@ -13,51 +13,53 @@ from navette.cli.output import (
     cut_to_width,
     is_terminal,
     json_text,
-    note,
     show,
     styled,
 )
 from navette.cli.session import endpoints, fail, is_hidden, wait_for
+from navette.cli.stderr import note
 from navette.cli.topic.filtering import message_filter
 from navette.cli.topic.meters import Meter
-from navette.cli.topic.qos_choice import wished_profile
-from navette.cli.topic.qos_options import QosWishes
+from navette.cli.topic.options import QosOverrides
+from navette.cli.topic.qos_profiles import overridden_profile
 from navette.msgs import type_name
 from navette.msgs.registry import get_message_spec
 from navette.runtime import Clock, Node, QoSProfile, ReliabilityPolicy
 from navette.runtime.time import ClockType
 
 PERIOD_S = 1.0
-# Nothing is asked for twice, and a burst does not count as a slower topic.
+# Best effort avoids retransmissions; the depth keeps bursts complete.
 _QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 _HEADER = "std_msgs/msg/Header"
 
 
 @dataclass(frozen=True, kw_only=True)
 class MeasureOptions:
-    """What to measure, and how much of it to say."""
+    """What to measure, and what to print.
+
+    Args:
+        value: input of the meter from a message, or from its bytes if ``raw``.
+        remark: explanation of implausible figures, printed once; empty for none.
+    """
 
     topics: list[str]
-    #: Whatever there is, also what comes later.
     all_topics: bool = False
     make_meter: Callable[[], Meter]
-    #: What the meter needs of a message (of its bytes, where ``raw``).
     value: Callable[[Any], int] = lambda _: 0
     raw: bool = True
     needs_header: bool = False
     filter: str | None = None
     count: int | None = None
     as_json: bool = False
-    qos: QosWishes = field(default_factory=QosWishes)
-    #: What to say of unlikely figures, once.
+    qos: QosOverrides = field(default_factory=QosOverrides)
     remark: Callable[[Any], str] = lambda _: ""
 
 
 def measure(node: Node, options: MeasureOptions) -> None:
-    """Print figures every second, until it was often enough."""
+    """Print figures every second, until the requested number of reports."""
     measured = Measured(node, options)
     report = Report(node, measured, options)
-    # Of the wall: simulated time may stand.
+    # Steady time: simulated time can be paused.
     clock = Clock(clock_type=ClockType.STEADY_TIME, context=node.context)
     node.create_timer(PERIOD_S, measured.look_for_more, clock=clock)
     node.create_timer(PERIOD_S, report.print, clock=clock)
@@ -65,7 +67,7 @@ def measure(node: Node, options: MeasureOptions) -> None:
 
 
 class Measured:
-    """The topics that are listened to, each with its meter; more may come."""
+    """Subscribed topics, each with its meter."""
 
     def __init__(self, node: Node, options: MeasureOptions) -> None:
         self._node = node
@@ -75,15 +77,15 @@ class Measured:
         self._missing = [node.resolve_topic_name(name) for name in options.topics]
         self.are_many = options.all_topics or len(self._missing) > 1
         if not self.are_many:
-            topic_class(node, self._missing[0])  # waits, and says what is wrong
+            topic_class(node, self._missing[0])  # waits for a publisher
         self.look_for_more()
         if self._missing:
             every = [each.topic for each in endpoints(node)]
             for name in self._missing:
-                note(f"nobody publishes {name} yet{did_you_mean(name, every)}")
+                note(f"no publisher on {name} yet{did_you_mean(name, every)}")
 
     def look_for_more(self) -> None:
-        """Listen to those that have come by now."""
+        """Subscribe to topics that appeared since the last call."""
         if self._options.all_topics:
             there = {each.topic for each in endpoints(self._node)}
             new = there - set(self.meters) - self._unknown
@@ -94,7 +96,7 @@ class Measured:
             meter = self._options.make_meter()
             try:
                 _listen(self._node, name, meter, self._options)
-            except typer.Exit:  # it has said why
+            except click.exceptions.Exit:  # the reason was printed
                 if not self.are_many:
                     raise
                 self._unknown.add(name)
@@ -105,7 +107,7 @@ class Measured:
 
 
 class Report:
-    """Prints the figures of one topic, or a table of those of several."""
+    """Printer of one topic's figures, or of a table of several topics."""
 
     def __init__(self, node: Node, measured: Measured, options: MeasureOptions) -> None:
         self._node = node
@@ -113,7 +115,7 @@ class Report:
         self._options = options
         self._count = 0
         self._lines_above = 0
-        self._said_silent = False
+        self._noted_silence = False
         self._remarked = False
 
     @property
@@ -121,7 +123,7 @@ class Report:
         return self._options.count is not None and self._count >= self._options.count
 
     def print(self) -> None:
-        """The figures of what came since the last time, or that nothing came."""
+        """Print the figures since the last call, or that no messages arrived."""
         if self.is_full:
             return
         now_ns = self._node.get_clock().now_ns
@@ -131,11 +133,11 @@ class Report:
             if (figures := meter.figures(now_ns)) is not None
         }
         if not found:
-            if not self._said_silent:
+            if not self._noted_silence:
                 note("no new messages")
-            self._said_silent = True
+            self._noted_silence = True
             return
-        self._said_silent = False
+        self._noted_silence = False
         self._count += 1
         if self._options.as_json:
             for topic, (meter, figures) in found.items():
@@ -153,7 +155,7 @@ class Report:
     def _print_table(self, found: dict[str, tuple[Meter, Any]]) -> None:
         head = next(iter(found.values()))[0].columns
         rows = [(t, *meter.row(figures)) for t, (meter, figures) in found.items()]
-        # A line that wraps would be two of those that are written over.
+        # Wrapped lines would break the count of lines to overwrite.
         first, *lines = map(cut_to_width, aligned([("topic", *head), *rows], gap=3))
         width = max(map(len, (first, *lines)))
         text = "\n".join([styled(first, dim=True), "=" * width, *lines, ""])
@@ -168,13 +170,15 @@ def _listen(node: Node, name: str, meter: Meter, options: MeasureOptions) -> Non
     cls = topic_class(node, name)
     topic = node.resolve_topic_name(name)
     if options.needs_header and not _has_header(type_name(cls)):
-        fail(f"{topic}: {type_name(cls)} has no header, so no stamp to measure from")
+        fail(
+            f"{topic}: {type_name(cls)} has no header, so its delay cannot be measured"
+        )
 
     def receive(message: Any, info: dict[str, int]) -> None:
         if not options.raw and not keep(message):
             return
         now_ns = _arrival_ns(node, info)
-        # Simulated time is zero until it has begun.
+        # Simulated time is zero before the first /clock message.
         if now_ns and not meter.add(now_ns, options.value(message)):
             note("time has reset, resetting counters")
 
@@ -184,11 +188,11 @@ def _listen(node: Node, name: str, meter: Meter, options: MeasureOptions) -> Non
     )  # fmt: skip
 
 
-def _profile(wishes: QosWishes) -> QoSProfile:
-    if wishes.is_empty:
+def _profile(overrides: QosOverrides) -> QoSProfile:
+    if overrides.is_empty:
         return _QOS
-    profile = wished_profile(wishes, "sensor_data")
-    if wishes.depth is None:
+    profile = overridden_profile(overrides, "sensor_data")
+    if overrides.depth is None:
         profile.depth = _QOS.depth
     return profile
 

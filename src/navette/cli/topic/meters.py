@@ -1,7 +1,7 @@
-"""How often, how much, how late: figures over a window of the newest messages.
+"""Rate, bandwidth and delay over a window of the newest messages.
 
-Texts are those of ``ros2 topic hz``, ``bw`` and ``delay``. Times are nanoseconds of
-the clock that is measured with.
+The output format is that of ``ros2 topic hz``, ``bw`` and ``delay``. Times are in
+nanoseconds.
 """
 
 import math
@@ -15,7 +15,7 @@ _UNITS = ((1e6, "MB"), (1e3, "KB"), (1.0, "B"))
 
 @dataclass(frozen=True)
 class Spread:
-    """Mean, extremes and (population) standard deviation of some values."""
+    """Mean, minimum, maximum and population standard deviation."""
 
     mean: float
     min: float
@@ -25,7 +25,7 @@ class Spread:
 
     @classmethod
     def of(cls, values: "deque[int]", scale: float = 1.0) -> "Spread":
-        """Of at least one value, each times ``scale``."""
+        """Compute the statistics of at least one value, each times ``scale``."""
         mean = sum(values) / len(values)
         variance = sum((value - mean) ** 2 for value in values) / len(values)
         return cls(
@@ -45,14 +45,14 @@ class Spread:
 
 
 class Meter(ABC):
-    """Takes in messages, gives figures; forgets all when time goes back."""
+    """Statistics of messages; cleared when time jumps back."""
 
     def __init__(self) -> None:
         self._last_ns: int | None = None
         self._is_new = False
 
     def add(self, now_ns: int, value: int) -> bool:
-        """Take in a message; False if time had gone back and all was forgotten."""
+        """Add a message; return False if time jumped back and the meter was cleared."""
         went_back = self._last_ns is not None and now_ns < self._last_ns
         if went_back:
             self._forget()
@@ -62,7 +62,7 @@ class Meter(ABC):
         return not went_back
 
     def figures(self, now_ns: int) -> Any:
-        """A dataclass of figures; None without new messages, or too few of them."""
+        """Return a dataclass of figures; None without new or with too few messages."""
         if not self._is_new:
             return None
         self._is_new = False
@@ -70,33 +70,33 @@ class Meter(ABC):
 
     @abstractmethod
     def text(self, figures: Any) -> str:
-        """The figures in two lines."""
+        """Format the figures in two lines."""
 
     def to_json(self, figures: Any) -> dict[str, Any]:
         return asdict(figures)
 
     columns: ClassVar[tuple[str, ...]] = ()
-    """What :meth:`row` has."""
+    """Titles of :meth:`row`."""
 
     def row(self, figures: Any) -> tuple[str, ...]:
-        """The figures beside those of other topics."""
+        """Format the figures as a row of a table of topics."""
         return ()
 
     @abstractmethod
     def _take(self, now_ns: int, value: int, last_ns: int | None) -> None:
-        """Keep what is needed of a message; ``last_ns``: when the last one came."""
+        """Store the value of a message; ``last_ns`` is the previous arrival."""
 
     @abstractmethod
     def _forget(self) -> None:
-        """Begin again."""
+        """Clear the stored values."""
 
     @abstractmethod
     def _figures(self, now_ns: int) -> Any:
-        """What is kept, summed up; None if it is too little."""
+        """Compute the figures; None if there are too few values."""
 
 
 class RateMeter(Meter):
-    """How often: from the times between messages."""
+    """Rate, from the intervals between messages."""
 
     def __init__(self, window: int) -> None:
         super().__init__()
@@ -135,7 +135,7 @@ class RateMeter(Meter):
 
 
 class DelayMeter(Meter):
-    """How late: from the times between a message's stamp and its arrival."""
+    """Delay, from the stamp of each message to its arrival."""
 
     def __init__(self, window: int) -> None:
         super().__init__()
@@ -156,7 +156,7 @@ class DelayMeter(Meter):
 
 @dataclass(frozen=True)
 class Load:
-    """Bytes per second, and the sizes of messages in bytes."""
+    """Bandwidth in bytes per second, and message sizes in bytes."""
 
     bytes_per_s: float
     mean: float
@@ -166,7 +166,7 @@ class Load:
 
 
 class LoadMeter(Meter):
-    """How much: from the sizes of messages on the wire."""
+    """Bandwidth, from the serialized sizes of messages."""
 
     def __init__(self, window: int) -> None:
         super().__init__()
@@ -209,7 +209,7 @@ class LoadMeter(Meter):
 
 
 def _sizes_text(figures: Load) -> list[str]:
-    """Bytes per second, mean, least, most: in the unit of the first."""
+    """Format bytes per second, mean, minimum and maximum in one unit."""
     scale, unit = next(
         (each for each in _UNITS if figures.bytes_per_s >= each[0]), _UNITS[-1]
     )

@@ -1,32 +1,155 @@
 """Options that several verbs of ``navette topic`` take."""
 
-from typing import Annotated
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
 
-from navette.cli.completing import complete_topics
+from navette.cli.completing import complete_topics, running
+from navette.cli.completing_installed import chosen, complete_from, complete_messages
+from navette.cli.options import Argument, Option
+from navette.cli.session import endpoints
+from navette.errors import NavetteError
+
+if TYPE_CHECKING:
+    from navette.runtime import Node
+
+QOS_PANEL = "Quality of service"
+# ROS 2's names; spelled out so that declaring the options imports nothing.
+QOS_PROFILES = (
+    "unknown default system_default sensor_data services_default parameters "
+    "parameter_events action_status_default best_available"
+)
 
 TopicName = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="TOPIC",
         help="Name of the topic, such as /chatter.",
-        autocompletion=complete_topics,
+        complete=complete_topics,
+    ),
+]
+TypeName = Annotated[
+    str,
+    Argument(
+        metavar="TYPE",
+        help="Message type, such as std_msgs/msg/String.",
+        complete=complete_messages,
     ),
 ]
 Hidden = Annotated[
     bool,
-    typer.Option(
-        "--include-hidden-topics", help="Also those with a part that begins with _."
+    Option(
+        "--include-hidden-topics",
+        help="Include hidden topics: a part of the name begins with _.",
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="One JSON value, for programs.")]
+Count = Annotated[
+    bool, Option("--count-topics", "-c", "--count", help="Print only the number.")
+]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
+JsonLines = Annotated[bool, Option("--json", help="Print one line of JSON each time.")]
 Filter = Annotated[
     str | None,
-    typer.Option(
+    Option(
         "--filter",
         metavar="EXPR",
-        help="Only messages for which this holds, as in 'm.data > 3' or"
+        help="Only messages for which the expression is true, as in 'm.data > 3' or"
         " 'any(r < 0.5 for r in m.ranges)'.",
     ),
 ]
+NodeName = Annotated[
+    str | None,
+    Option(
+        "--node-name", metavar="NAME", help="Name of this node. Default: a hidden name."
+    ),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class QosOverrides:
+    """Policies given with ``--qos-…``; None means not given."""
+
+    profile: Annotated[
+        str | None,
+        Option(
+            "--qos-profile",
+            help=f"Preset: {QOS_PROFILES.replace(' ', ', ')}.",
+            complete=complete_from(*QOS_PROFILES.split()),
+            panel=QOS_PANEL,
+        ),
+    ] = None
+    depth: Annotated[
+        int | None,
+        Option("--qos-depth", min=0, metavar="N", help="Queue size.", panel=QOS_PANEL),
+    ] = None
+    history: Annotated[
+        str | None,
+        Option(
+            "--qos-history",
+            help="keep_last or keep_all.",
+            complete=complete_from("keep_last", "keep_all"),
+            panel=QOS_PANEL,
+        ),
+    ] = None
+    reliability: Annotated[
+        str | None,
+        Option(
+            "--qos-reliability",
+            help="reliable or best_effort.",
+            complete=complete_from("reliable", "best_effort"),
+            panel=QOS_PANEL,
+        ),
+    ] = None
+    durability: Annotated[
+        str | None,
+        Option(
+            "--qos-durability",
+            help="volatile or transient_local.",
+            complete=complete_from("volatile", "transient_local"),
+            panel=QOS_PANEL,
+        ),
+    ] = None
+    liveliness: Annotated[
+        str | None,
+        Option(
+            "--qos-liveliness",
+            help="automatic or manual_by_topic.",
+            complete=complete_from("automatic", "manual_by_topic"),
+            panel=QOS_PANEL,
+        ),
+    ] = None
+    lease_s: Annotated[
+        float | None,
+        Option(
+            "--qos-liveliness-lease-duration-seconds",
+            metavar="S",
+            help="Liveliness lease duration.",
+            panel=QOS_PANEL,
+        ),
+    ] = None
+
+    @property
+    def is_empty(self) -> bool:
+        return self == QosOverrides()
+
+
+def complete_fields(ctx: click.Context, incomplete: str) -> list[str]:
+    """Complete a path to a field of the topic's messages, two levels deep."""
+    from navette.cli.message_types import full_type_name, installed_class
+    from navette.cli.topic.field_path import field_paths
+    from navette.msgs import type_name
+
+    def published_types(here: "Node") -> Iterable[str]:
+        topic = here.resolve_topic_name(str(ctx.params.get("topic") or ""))
+        return (end.type_name for end in endpoints(here, topic))
+
+    given = str(ctx.params.get("type_name") or "")
+    for name in [given] if given else running("", published_types):
+        with suppress(NavetteError):
+            cls = installed_class(full_type_name(name, "msg"))
+            if cls is not None:
+                return chosen(incomplete, field_paths(incomplete, type_name(cls)))
+    return []

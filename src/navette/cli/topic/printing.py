@@ -1,11 +1,16 @@
-"""Messages as text on a terminal or in a pipe: YAML, CSV, JSON, raw."""
+"""Format messages as YAML, CSV or JSON."""
 
 from collections.abc import Sequence
 from typing import Any
 
 from navette.cli.message_yaml import yaml_of
 from navette.cli.output import harmless, json_text, styled
+<<<<<<< HEAD
 from navette.cli.topic.style import Style
+=======
+from navette.cli.topic.echo_options import Style
+from navette.cli.topic.field_path import FieldPath
+>>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs)
 from navette.msgs import Message, to_dict
 from navette.msgs.field_path import FieldPath
 from navette.ros2.packages.rosidl_runtime_py.convert import (
@@ -18,7 +23,7 @@ Part = tuple[FieldPath, Any]
 
 
 def text_of(message: Any, parts: Sequence[Part], style: Style) -> str:
-    """A message, or the parts of it that were asked for."""
+    """Format a message, or only the selected fields."""
     if style.as_json:
         return json_text(_json_of(message, parts))
     if style.csv:
@@ -33,7 +38,7 @@ def text_of(message: Any, parts: Sequence[Part], style: Style) -> str:
 
 
 def _json_of(message: Any, parts: Sequence[Part]) -> Any:
-    """The message or the one part; several by their paths."""
+    """Return the message or the single field; several fields by their paths."""
     if len(parts) < 2:
         return _jsonable(parts[0][1] if parts else message)
     return {field.text: _jsonable(value) for field, value in parts}

@@ -1,120 +1,126 @@
-"""What ``topic pub`` is told."""
+"""Options of ``navette topic pub``."""
 
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from navette.cli.completing import complete_message_values
-from navette.cli.completing_installed import complete_messages
-from navette.cli.topic.options import TopicName
-from navette.cli.topic.qos_options import QosWishes
+from navette.cli.options import Argument, Option
+from navette.cli.topic.options import QosOverrides, TopicName, TypeName
 from navette.errors import InvalidValueError
 
 
 @dataclass(frozen=True, kw_only=True)
 class PublishOptions:
-    """What to publish, and how often."""
+    """What ``topic pub`` publishes, how often and to whom."""
 
     topic: TopicName
-    type_name: Annotated[
-        str,
-        typer.Argument(
-            metavar="TYPE",
-            help="Its type, such as std_msgs/msg/String.",
-            autocompletion=complete_messages,
-        ),
-    ]
+    type_name: TypeName
     values: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="YAML",
-            help="Fields that are not at their defaults, as in '{linear: {x: 0.5}}';"
-            " auto for a header and now for a time mean when it is sent.",
-            autocompletion=complete_message_values,
+            help="Fields that differ from their defaults, as in"
+            " '{linear: {x: 0.5}}'. The time of publishing is written auto for a header"
+            " and now for a time.",
+            complete=complete_message_values,
         ),
     ] = "{}"
     stdin: Annotated[
-        bool, typer.Option("--stdin", help="Read the YAML from standard input.")
+        bool, Option("--stdin", help="Read the YAML from standard input.")
     ] = False
     yaml_file: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             "--yaml-file",
             metavar="FILE",
-            help="Publish what topic echo wrote there: one message after the other.",
+            help="Publish the messages of a file that topic echo wrote, in order.",
         ),
     ] = None
     rate_hz: Annotated[
-        float, typer.Option("--rate", "-r", metavar="HZ", help="How often.")
+        float, Option("--rate", "-r", metavar="HZ", help="Publishing rate.")
     ] = 1.0
-    once: Annotated[bool, typer.Option("--once", "-1", help="Once, and end.")] = False
+    once: Annotated[bool, Option("--once", "-1", help="Publish one message.")] = False
     times: Annotated[
-        int, typer.Option("--times", "-t", min=0, metavar="N", help="N times, and end.")
+        int,
+        Option("--times", "-t", min=0, metavar="N", help="Publish N messages."),
     ] = 0
     wait_for: Annotated[
         int | None,
-        typer.Option(
+        Option(
             "--wait-matching-subscriptions",
             "-w",
             min=0,
             metavar="N",
-            help="Begin when N hear it; by default 1 with --once and --times, else 0.",
+            help="Wait for N matching subscriptions. Default: 1 with --once and"
+            " --times, else 0.",
         ),
     ] = None
     max_wait_s: Annotated[
         float | None,
-        typer.Option(
-            "--max-wait-time-secs", min=0.0, metavar="S", help="Wait no longer."
+        Option(
+            "--max-wait-time-secs",
+            min=0,
+            metavar="S",
+            help="Fail if the subscriptions are not there after S seconds.",
         ),
     ] = None
     print_each: Annotated[
         int,
-        typer.Option(
-            "--print", "-p", min=0, metavar="N", help="Print every N-th; 0: none."
+        Option(
+            "--print",
+            "-p",
+            min=0,
+            metavar="N",
+            help="Print every N-th message; 0: none.",
         ),
     ] = 1
     keep_alive_s: Annotated[
         float,
-        typer.Option(
-            "--keep-alive", min=0.0, metavar="S", help="Stay so long after the last."
+        Option(
+            "--keep-alive",
+            min=0,
+            metavar="S",
+            help="Wait S seconds after the last message before exiting.",
         ),
     ] = 0.1
     wall_time: Annotated[
         bool,
-        typer.Option("--wall-time", help="Stamp in the machine's time always."),
+        Option("--wall-time", help="Stamp with the system time, even with /clock."),
     ] = False
     node_name: Annotated[
         str | None,
-        typer.Option(
-            "--node-name", "-n", metavar="NAME", help="By default a hidden one."
+        Option(
+            "--node-name",
+            "-n",
+            metavar="NAME",
+            help="Name of this node. Default: a hidden name.",
         ),
     ] = None
-    qos: QosWishes = field(default_factory=QosWishes)
+    qos: QosOverrides = field(default_factory=QosOverrides)
 
     def __post_init__(self) -> None:
         if not (self.rate_hz > 0 and math.isfinite(self.rate_hz)):
             raise InvalidValueError(
-                f"--rate {self.rate_hz!r}: wanted a number above 0, in Hz"
+                f"--rate {self.rate_hz!r} is not a finite number above 0 (in Hz)"
             )
         if self.stdin and self.yaml_file is not None:
-            raise InvalidValueError("--stdin and --yaml-file: wanted one of them")
+            raise InvalidValueError("--stdin and --yaml-file cannot be combined")
         if self.once and self.times:
-            raise InvalidValueError("--once and --times: wanted one of them")
+            raise InvalidValueError("--once and --times cannot be combined")
         if self.max_wait_s is not None and not self.subscriptions_wanted:
             raise InvalidValueError(
-                "--max-wait-time-secs: nothing is waited for without"
+                "--max-wait-time-secs has no effect without"
                 " --wait-matching-subscriptions, --once or --times"
             )
 
     @property
     def wanted(self) -> int:
-        """How often; 0: until Ctrl-C."""
+        """Number of messages to publish; 0: until Ctrl-C."""
         return 1 if self.once else self.times
 
     @property
     def subscriptions_wanted(self) -> int:
-        """As in ROS 2: a message that is sent once should have a hearer."""
+        """Subscriptions to wait for; 1 with ``--once`` or ``--times``, as in ROS 2."""
         return int(self.wanted > 0) if self.wait_for is None else self.wait_for

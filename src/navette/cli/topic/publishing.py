@@ -1,12 +1,12 @@
-"""Publishes a message as a person typed it, once or at a rate."""
+"""Publish messages given as YAML, once or at a rate."""
 
 from collections.abc import Callable
 from typing import Any
 
-from navette.cli.filling import from_stdin, from_yaml, from_yaml_file
 from navette.cli.message_types import topic_class
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import is_terminal, note, show
+from navette.cli.output import is_terminal, show
+from navette.cli.request_builder import from_stdin, from_yaml, from_yaml_file
 from navette.cli.session import (
     endpoints,
     fail,
@@ -14,8 +14,9 @@ from navette.cli.session import (
     is_simulated,
     wait_for,
 )
+from navette.cli.stderr import note
 from navette.cli.topic.pub_options import PublishOptions
-from navette.cli.topic.qos_choice import wished_profile
+from navette.cli.topic.qos_profiles import overridden_profile
 from navette.errors import InvalidValueError
 from navette.msgs import type_name
 from navette.msgs.interface import Field
@@ -33,13 +34,13 @@ Stamp = Callable[[Any], None]
 
 
 def publish(node: Node, options: PublishOptions) -> None:
-    """Publish until it was often enough."""
+    """Publish until the requested number of messages is sent."""
     cls = topic_class(node, options.topic, options.type_name)
     messages = [filled_message(cls, values) for values in _typed(options)]
     wanted = options.wanted
     if options.yaml_file is not None:
         wanted = min(wanted or len(messages), len(messages))
-    profile = wished_profile(options.qos, "default")
+    profile = overridden_profile(options.qos, "default")
     publisher = node.create_publisher(cls, options.topic, profile)
     _wait_for_subscriptions(node, publisher, options)
     if (
@@ -69,22 +70,22 @@ def publish(node: Node, options: PublishOptions) -> None:
     clock = Clock(clock_type=ClockType.STEADY_TIME, context=node.context)
     node.create_timer(1.0 / options.rate_hz, send, clock=clock)
     wait_for(node, lambda: bool(wanted) and count >= wanted)
-    # Time to reach the wire, and for who hears late to take it.
+    # Time to send the last message and for late subscriptions to match.
     wait_for(node, lambda: False, options.keep_alive_s)
 
 
 def _typed(options: PublishOptions) -> list[Any]:
-    """What a message, or each of several, is to be filled with."""
+    """Return the parsed YAML of each message."""
     if options.yaml_file is not None:
         return from_yaml_file(options.yaml_file)
     return [from_yaml(from_stdin() if options.stdin else options.values)]
 
 
 def filled_message(cls: Any, values: Any) -> tuple[Any, list[Stamp]]:
-    """The message, and what to call with the time before it is sent.
+    """Return the message and the functions that stamp it before each publication.
 
     Raises:
-        InvalidValueError: a field or value does not fit.
+        InvalidValueError: unknown field, or a value of the wrong type.
     """
     fields = get_message_spec(type_name(cls)).fields
     if values is not None and not isinstance(values, dict):
@@ -97,12 +98,12 @@ def filled_message(cls: Any, values: Any) -> tuple[Any, list[Stamp]]:
 
 
 def _only_field(name: str, fields: tuple[Field, ...], value: Any) -> str:
-    """A value alone means the field of a message that has one, as with rostopic."""
+    """Return the name of the only field: a bare value sets it, as with rostopic."""
     if len(fields) != 1:
         listed = ", ".join(each.name for each in fields) or "none"
         raise InvalidValueError(
-            f"{shortened(value)}: wanted fields of {name} by name, as in "
-            f"'{{{fields[0].name if fields else ''}: …}}'; it has {listed}"
+            f"{shortened(value)}: {name} needs its fields by name, as in "
+            f"'{{{fields[0].name if fields else ''}: …}}'; its fields are {listed}"
         )
     return fields[0].name
 
@@ -121,19 +122,18 @@ def _wait_for_subscriptions(
     if not wait_for(node, enough, options.max_wait_s):
         fail(
             f"{publisher.get_subscription_count()} of {wanted} subscriptions "
-            f"to {publisher.topic_name} came in {options.max_wait_s:g} s"
+            f"to {publisher.topic_name} matched in {options.max_wait_s:g} s"
         )
 
 
 def _hint(node: Node, publisher: Publisher[Any]) -> str:
-    """Why there are too few: another name was meant, or their QoS does not fit."""
-    heard = [e.topic for e in endpoints(node, kind=EndpointKind.SUBSCRIPTION)]
-    deaf = heard.count(publisher.topic_name) - publisher.get_subscription_count()
-    if deaf:
-        return f"; {deaf} of {publisher.topic_name} want another QoS"
-    if publisher.topic_name in heard:
-        return ""
-    return did_you_mean(publisher.topic_name, heard)
+    """Explain missing subscriptions: incompatible QoS or a mistyped name."""
+    subscribed = [e.topic for e in endpoints(node, kind=EndpointKind.SUBSCRIPTION)]
+    count = subscribed.count(publisher.topic_name)
+    incompatible = count - publisher.get_subscription_count()
+    if incompatible:
+        return f"; {incompatible} of {publisher.topic_name} have incompatible QoS"
+    return "" if count else did_you_mean(publisher.topic_name, subscribed)
 
 
 def _shown(message: Any) -> str:

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+import click
 
-from navette.cli.output import note, show, show_json
+from navette.cli.options import Argument, Option
+from navette.cli.output import show, show_json
+from navette.cli.stderr import note
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:  # imported when a verb is called: completion must be fast
@@ -45,23 +47,23 @@ def complete_running_services(incomplete: str) -> list[str]:
 
 Words = Annotated[
     list[str] | None,
-    typer.Argument(
+    Argument(
         metavar="SERVICE | NAME:=VALUE",
         help="Services (default: all), and values for the arguments of the file.",
-        autocompletion=complete_services,
+        complete=complete_services,
     ),
 ]
 Services = Annotated[
     list[str] | None,
-    typer.Argument(
+    Argument(
         metavar="SERVICE",
         help="Services (default: all of the project).",
-        autocompletion=complete_running_services,
+        complete=complete_running_services,
     ),
 ]
 File = Annotated[
     Path | None,
-    typer.Option(
+    Option(
         "--file",
         "-f",
         metavar="FILE",
@@ -70,11 +72,11 @@ File = Annotated[
     ),
 ]
 Timeout = Annotated[
-    float, typer.Option(metavar="S", help="How long to wait for readiness, in seconds.")
+    float, Option(metavar="S", help="How long to wait for readiness, in seconds.")
 ]
 Watch = Annotated[
     bool,
-    typer.Option(
+    Option(
         "--watch",
         "-w",
         help="Stay, show the output, and restart a service when its files change.",
@@ -87,7 +89,7 @@ def up(
     file: File = None,
     attach: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--attach",
             "-a",
             help="Stay, show the output, and stop the services on Ctrl-C.",
@@ -123,7 +125,7 @@ def up(
             _stop(client, started)
         else:
             note("the services keep running; navette down stops them")
-        raise typer.Exit(_INTERRUPTED) from None
+        raise click.exceptions.Exit(_INTERRUPTED) from None
     finally:
         reader.close()
 
@@ -155,10 +157,10 @@ def down(services: Services = None, file: File = None) -> None:
 def ps(
     file: File = None,
     all_projects: Annotated[
-        bool, typer.Option("--all", "-a", help="List the processes of all projects.")
+        bool, Option("--all", "-a", help="List the processes of all projects.")
     ] = False,
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print a JSON list of processes.")
+        bool, Option("--json", help="Print a JSON list of processes.")
     ] = False,
 ) -> None:
     """List the processes of services: state, pid, time, CPU, memory, restarts."""
@@ -188,17 +190,15 @@ def ps(
 def logs(
     services: Services = None,
     file: Annotated[
-        Path | None, typer.Option("--file", metavar="FILE", help="The project's file.")
+        Path | None, Option("--file", metavar="FILE", help="The project's file.")
     ] = None,
     follow: Annotated[
-        bool, typer.Option("--follow", "-f", help="Keep printing new output.")
+        bool, Option("--follow", "-f", help="Keep printing new output.")
     ] = False,
     lines: Annotated[
-        int, typer.Option("--lines", "-n", min=0, help="Number of last lines; 0: all.")
+        int, Option("--lines", "-n", min=0, help="Number of last lines; 0: all.")
     ] = 100,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print each line as JSON.")
-    ] = False,
+    as_json: Annotated[bool, Option("--json", help="Print each line as JSON.")] = False,
 ) -> None:
     """Print the output of the services' processes, interleaved in order of time."""
     from navette.cli.up.view import LogView
@@ -277,7 +277,7 @@ def _await_ready(
     if late:
         note(f"not ready within {timeout_s:g} s: {', '.join(late)}")
     if (failed or late) and not stay:
-        raise typer.Exit(_FAILED)
+        raise click.exceptions.Exit(_FAILED)
 
 
 def _warn_of_shared_domain(client: "SupervisorClient") -> None:
@@ -308,7 +308,7 @@ def _stop(client: "SupervisorClient", names: Sequence[str] | None) -> None:
     left = [s.label for s in Progress(ProcessState.RUNNING).show(steps) if s.pid]
     if left:
         note(f"still running after {_DOWN_TIMEOUT_S:g} s: {', '.join(left)}")
-        raise typer.Exit(_FAILED)
+        raise click.exceptions.Exit(_FAILED)
 
 
 def _follow(reader: "LogReader") -> None:

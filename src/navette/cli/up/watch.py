@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from navette.cli.output import note
+from navette.cli.stderr import note
 from navette.cli.up.config import ProjectConfig
 from navette.errors import NavetteError
 from navette.supervisor.client import SupervisorClient

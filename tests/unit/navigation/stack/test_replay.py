@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
+from click.testing import CliRunner
 
 from navette.bags import BagWriter, OfferedQos, open_bag, qos_text
 from navette.bags.play import PlayOptions

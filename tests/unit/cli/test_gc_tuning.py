@@ -6,7 +6,7 @@ from unittest.mock import patch
 
 import pytest
 
-from navette.cli.garbage import collect, uncollected
+from navette.cli.gc_tuning import collect, uncollected
 
 
 def test_none_is_looked_for_until_all_is_loaded() -> None:

@@ -1,10 +1,10 @@
-"""From wishes and what is offered to a profile."""
+"""QoS profiles from command-line overrides and from the publishers' QoS."""
 
 import copy
 import math
 from typing import TypeVar
 
-from navette.cli.topic.qos_options import QosWishes
+from navette.cli.topic.options import QosOverrides
 from navette.errors import InvalidValueError
 from navette.runtime import QoSPresetProfiles, QoSProfile
 from navette.runtime.qos import QoSPolicyEnum
@@ -22,39 +22,43 @@ P = TypeVar("P", bound=QoSPolicyEnum)
 MAX_DEPTH = 1000
 
 
-def wished_profile(wishes: QosWishes, preset: str) -> QoSProfile:
-    """The preset with what was wished otherwise.
+def overridden_profile(overrides: QosOverrides, preset: str) -> QoSProfile:
+    """Return the preset profile with the overrides applied.
 
     Raises:
-        InvalidValueError: an unknown word; lists those known.
+        InvalidValueError: unknown policy value; the message lists the known ones.
     """
-    name = wishes.profile or preset
+    name = overrides.profile or preset
     if name not in QoSPresetProfiles.short_keys():
         known = ", ".join(QoSPresetProfiles.short_keys())
         raise InvalidValueError(f"--qos-profile {name!r}; known: {known}")
     profile = copy.copy(QoSPresetProfiles.get_from_short_key(name))
-    if wishes.history is not None:
-        profile.history = _policy(HistoryPolicy, "history", wishes.history)
-    if wishes.reliability is not None:
+    if overrides.history is not None:
+        profile.history = _policy(HistoryPolicy, "history", overrides.history)
+    if overrides.reliability is not None:
         profile.reliability = _policy(
-            ReliabilityPolicy, "reliability", wishes.reliability
+            ReliabilityPolicy, "reliability", overrides.reliability
         )
-    if wishes.durability is not None:
-        profile.durability = _policy(DurabilityPolicy, "durability", wishes.durability)
-    if wishes.liveliness is not None:
-        profile.liveliness = _policy(LivelinessPolicy, "liveliness", wishes.liveliness)
-    if wishes.lease_s is not None:
-        profile.liveliness_lease_duration = _lease(wishes.lease_s)
-    if wishes.depth is not None:
-        profile.depth = wishes.depth
+    if overrides.durability is not None:
+        profile.durability = _policy(
+            DurabilityPolicy, "durability", overrides.durability
+        )
+    if overrides.liveliness is not None:
+        profile.liveliness = _policy(
+            LivelinessPolicy, "liveliness", overrides.liveliness
+        )
+    if overrides.lease_s is not None:
+        profile.liveliness_lease_duration = _lease(overrides.lease_s)
+    if overrides.depth is not None:
+        profile.depth = overrides.depth
     return profile
 
 
-def fitting_profile(publishers: list[Endpoint], depth: int = 10) -> QoSProfile:
-    """What all the publishers can serve, and as much of it as they offer.
+def compatible_profile(publishers: list[Endpoint], depth: int = 10) -> QoSProfile:
+    """Return the strictest profile that is compatible with all publishers.
 
-    Latched samples are asked for where every publisher keeps some: asked of one that
-    keeps none, it would be heard no more.
+    Requests transient_local only if every publisher offers it: a volatile publisher
+    would be incompatible.
     """
     qos = [each.qos for each in publishers]
     reliable = bool(qos) and all(
@@ -85,6 +89,7 @@ def _policy(kind: type[P], word: str, name: str) -> P:
 def _lease(seconds: float) -> Duration:
     if not (math.isfinite(seconds) and seconds > 0):
         raise InvalidValueError(
-            f"--qos-liveliness-lease-duration-seconds {seconds!r}: wanted above 0"
+            f"--qos-liveliness-lease-duration-seconds {seconds!r} is not a finite"
+            " number above 0"
         )
     return Duration(seconds=seconds)

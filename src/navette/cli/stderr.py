@@ -1,4 +1,4 @@
-"""What is said beside the result, on standard error: remarks, and why a verb failed."""
+"""Notes and error messages on standard error."""
 
 import os
 import shutil
@@ -6,33 +6,33 @@ import sys
 import textwrap
 from typing import Any
 
-import typer
+import click
 
 from navette.cli.escaping import escaped
 
 
-def remark(text: str) -> None:
-    """Tell a person something."""
-    _say(text, dim=True)
+def note(text: str) -> None:
+    """Print a note to the user."""
+    _print(text, dim=True)
 
 
 def complain(text: str) -> None:
-    """Say what went wrong."""
-    _say(f"navette: {text}", fg="red")
+    """Print an error message."""
+    _print(f"navette: {text}", fg="red")
 
 
-def _say(text: str, **style: Any) -> None:
+def _print(text: str, **style: Any) -> None:
     text = escaped(text)
     if sys.stderr.isatty():
         text = "\n".join(map(_wrapped, text.split("\n")))
         if "NO_COLOR" not in os.environ:
-            text = typer.style(text, **style)
+            text = click.style(text, **style)
     sys.stderr.write(f"{text}\n")
     sys.stderr.flush()
 
 
 def _wrapped(line: str) -> str:
-    """On a terminal lines end between two words; what is one word stays one."""
+    """Wrap a line at spaces to the terminal's width; long words are not broken."""
     width = shutil.get_terminal_size().columns
     if len(line) <= width:
         return line

@@ -4,15 +4,15 @@ import sys
 
 import pytest
 
-from navette.cli.remarks import complain, remark
+from navette.cli.stderr import complain, note
 
 LONG = "nobody publishes /odometry/filtered_and_long; did you mean /odom/filtered?"
 
 
 def test_in_a_pipe_it_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     complain(LONG)
-    remark("from a stranger: \x1b[2J")
-    assert capsys.readouterr().err == (f"navette: {LONG}\nfrom a stranger: \\x1b[2J\n")
+    note("from a peer: \x1b[2J")
+    assert capsys.readouterr().err == (f"navette: {LONG}\nfrom a peer: \\x1b[2J\n")
 
 
 def test_on_a_terminal_lines_end_between_words(
@@ -22,7 +22,7 @@ def test_on_a_terminal_lines_end_between_words(
     monkeypatch.setenv("COLUMNS", "40")
     monkeypatch.setenv("NO_COLOR", "1")
     complain(LONG)
-    remark("known:\n- one [1]\n- two [2]")
+    note("known:\n- one [1]\n- two [2]")
     assert capsys.readouterr().err.splitlines() == [
         "navette: nobody publishes",
         "  /odometry/filtered_and_long; did you",

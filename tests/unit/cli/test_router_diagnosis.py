@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from navette.cli.doctor.doors import distrust, refusal, speaks_tls
 from navette.cli.doctor.network import Network, Router
-from navette.cli.doctor.ports import Knock, Process, knock
+from navette.cli.doctor.ports import PortProbe, Process, probe
+from navette.cli.doctor.router_diagnosis import distrust, refusal, speaks_tls
 from navette.runtime import SystemClock
 from navette.transports.certificates import create_keys
 
@@ -110,15 +110,15 @@ def test_a_program_that_is_none_of_zenoh() -> None:
 
 def test_knocking() -> None:
     with door() as (host, port):
-        assert knock(host, port) is Knock.OPEN
-    assert knock(host, port) is Knock.REFUSED
-    assert knock("no.such.name.invalid", 1) is Knock.NO_NAME
+        assert probe(host, port) is PortProbe.OPEN
+    assert probe(host, port) is PortProbe.REFUSED
+    assert probe("no.such.name.invalid", 1) is PortProbe.UNKNOWN_HOST
 
 
 def test_who_is_out_of_reach_need_not_join() -> None:
-    far = Router("tcp/10.0.0.2:7447", Knock.SILENT)
+    far = Router("tcp/10.0.0.2:7447", PortProbe.TIMED_OUT)
     assert Network(routers=(far,)).is_out_of_reach
-    here = Router("tcp/127.0.0.1:7447", Knock.REFUSED)
+    here = Router("tcp/127.0.0.1:7447", PortProbe.REFUSED)
     for routers in ((far, here), (far, Router("quic/10.0.0.3:1")), ()):
         assert not Network(routers=routers).is_out_of_reach
     assert not Network(routers=(far,), session_file="scouts.json5").is_out_of_reach

@@ -6,7 +6,6 @@ from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from navette.cli.nearest import did_you_mean
-from navette.cli.output import note
 from navette.cli.session import (
     endpoints,
     fail,
@@ -14,6 +13,7 @@ from navette.cli.session import (
     service_endpoints,
     wait_for,
 )
+from navette.cli.stderr import note
 
 if TYPE_CHECKING:
     from navette.runtime import Future, Node

@@ -1,0 +1,103 @@
+"""Commands of the command line: declared by annotations, imported when they run."""
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+import click
+
+from navette.cli.gc_tuning import collect
+from navette.cli.interruption import INTERRUPTED, raise_at_interrupt
+from navette.cli.options import call_arguments, click_parameters
+
+
+class Command(click.Command):
+    """A command whose parameters are the annotated parameters of its function."""
+
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        callback: Callable[..., Any] | None = None,
+        params: list[click.Parameter] | None = None,
+        **attributes: Any,
+    ) -> None:
+        if callback is not None:
+            function = callback
+            params = [*click_parameters(function), *(params or ())]
+
+            def callback(**values: Any) -> Any:
+                return function(**call_arguments(function, values))
+
+        super().__init__(name, callback=callback, params=params, **attributes)
+
+    def get_help(self, ctx: click.Context) -> str:
+        from navette.cli.help_page import help_page
+
+        return help_page(self, ctx)
+
+
+class Group(Command, click.Group):
+    """A group that lists its commands in the order in which they were added."""
+
+    command_class = Command
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(self.commands)
+
+
+class LazyCommand(click.Command):
+    """A command or group whose module is imported when it is called.
+
+    Importing all verbs would take longer than most of them run.
+
+    Args:
+        target: ``module:attribute`` of the function, command or group.
+        help: first line of its help.
+        read_only: Ctrl-C may end the process at any time until the verb connects.
+        settings: click's context settings.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        target: str,
+        help: str,
+        *,
+        read_only: bool = False,
+        settings: dict[str, Any] | None = None,
+    ) -> None:
+        super().__init__(name, help=help, context_settings=settings)
+        self.read_only = read_only
+        self._target = target
+
+    def load(self) -> click.Command:
+        module, _, attribute = self._target.partition(":")
+        target = getattr(import_module(module), attribute)
+        if isinstance(target, click.Command):
+            return target
+        return click.command(
+            self.name, cls=Command, context_settings=self.context_settings
+        )(target)
+
+
+class LazyGroup(Group):
+    """A group that can contain lazy commands."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        name, command, rest = super().resolve_command(ctx, args)
+        read_only = isinstance(command, LazyCommand) and command.read_only
+        if isinstance(command, LazyCommand) and name is not None:
+            command = self.commands[name] = command.load()
+        if not read_only:
+            raise_at_interrupt()
+            collect()
+        return name, command, rest
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            raise click.exceptions.Exit(INTERRUPTED) from None

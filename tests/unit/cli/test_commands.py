@@ -1,0 +1,93 @@
+"""Verbs are imported when they are called; the list has the texts of the verbs."""
+
+import subprocess
+import sys
+
+import pytest
+from topic_world import navette
+
+from navette.cli.commands import LazyCommand
+from navette.cli.verbs import VERBS
+
+LOADED = """
+import sys
+sys.argv = ["navette", *{arguments!r}]
+from navette.cli import main
+try:
+    main()
+except SystemExit:
+    pass
+print([name for name in {modules!r} if name in sys.modules])
+"""
+
+
+def loaded(modules: list[str], *arguments: str) -> str:
+    """Which of the modules a command has imported: the last line of its output."""
+    code = LOADED.format(arguments=arguments, modules=modules)
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    return done.stdout.splitlines()[-1]
+
+
+@pytest.mark.parametrize("verb", VERBS, ids=lambda verb: verb.name)
+def test_the_list_has_the_first_line_of_the_verbs_help(verb: LazyCommand) -> None:
+    command = verb.load()
+    assert command.name == verb.name
+    assert command.help is not None
+    assert command.help.split("\n\n")[0] == verb.help
+
+
+def test_every_verb_is_listed_and_can_be_called() -> None:
+    shown = navette("--help").stdout
+    for name in (str(verb.name) for verb in VERBS):
+        assert name in shown
+        assert navette(name, "--help").exit_code == 0
+    assert navette("topics", "list").exit_code == 2
+    assert "Did you mean 'topic'?" in navette("topics", "list").stderr
+
+
+def test_a_group_lists_its_commands() -> None:
+    assert navette("run").exit_code == 2
+    shown = navette("topic", "--help").stdout
+    assert "--install-completion" not in shown
+    assert "echo" in shown
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (("--help",), "[]"),
+        (("topic", "list", "--help"), "['navette.cli.topic']"),
+    ],
+)
+def test_only_what_is_needed_is_imported(
+    arguments: tuple[str, ...], expected: str
+) -> None:
+    modules = ["numpy", "zenoh", "navette.runtime", "navette.cli.topic",
+               "navette.cli.bag"]  # fmt: skip
+    assert loaded(modules, *arguments) == expected
+
+
+def test_verbs_import_no_heavy_modules(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NAVETTE_TRANSPORT", "inprocess")
+    heavy = ["numba", "mujoco", "mcap", "websockets", "rich"]
+    assert loaded(heavy, "topic", "list", "-t") == "[]"
+    assert loaded(heavy, "topic", "echo", "/nothing", "--field", "x", "--once",
+                  "nonsense") == "[]"  # fmt: skip
+
+
+def test_numbers_are_checked() -> None:
+    for arguments in (["-n", "0"], ["-n", "two"], ["--timeout", "-1"]):
+        shown = navette("topic", "echo", "/chatter", *arguments)
+        assert shown.exit_code == 2
+        assert "Invalid value" in shown.stderr
+
+
+def test_flags_have_no_metavar() -> None:
+    for words in (["topic", "echo", "--help"], ["--help"]):
+        assert "BOOLEAN" not in navette(*words).stdout
