@@ -1,8 +1,4 @@
-<<<<<<< HEAD:src/navette/msgs/field_path.py
 """Paths to parts of messages: ``pose.position.x``, ``ranges[0]``, ``poses[-1]``."""
-=======
-"""Paths to message fields: ``pose.position.x``, ``ranges[0]``, ``poses[-1].pose``."""
->>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs):src/navette/cli/topic/field_path.py
 
 import re
 from collections.abc import Callable, Iterator
@@ -23,25 +19,17 @@ Step = str | int | slice
 
 @dataclass(frozen=True)
 class FieldPath:
-    """Steps from a message to a field, and the type of the field."""
+    """Steps from a message to a part of it, and the type of that part."""
 
     text: str
     steps: tuple[Step, ...]
     type: FieldType
 
-<<<<<<< HEAD:src/navette/msgs/field_path.py
     @cached_property
     def of(self) -> Callable[[Any], Any]:
         """Function from a message to the part.
 
         It raises IndexError for a message whose sequence is too short.
-=======
-    def of(self, message: Any) -> Any:
-        """Return the field's value.
-
-        Raises:
-            IndexError: a sequence of this message is too short.
->>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs):src/navette/cli/topic/field_path.py
         """
         getters: list[Callable[[Any], Any]] = [
             attrgetter(step) if isinstance(step, str) else itemgetter(step)
@@ -59,17 +47,10 @@ class FieldPath:
 
 
 def parse_field_path(text: str, type_name: str) -> FieldPath:
-<<<<<<< HEAD:src/navette/msgs/field_path.py
     """Parse a path and check it against the definition of the message.
 
     Raises:
         MessageError: the path is malformed, or there is no such field or element.
-=======
-    """Parse a path and check it against the message definition.
-
-    Raises:
-        MessageError: the path is malformed or names a field that does not exist.
->>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs):src/navette/cli/topic/field_path.py
     """
     found = FieldType(type_name)
     steps: list[Step] = []
@@ -89,19 +70,11 @@ def parse_field_path(text: str, type_name: str) -> FieldPath:
     return FieldPath(text, tuple(steps), found)
 
 
-<<<<<<< HEAD:src/navette/msgs/field_path.py
 def field_paths(prefix: str, type_name: str) -> Iterator[str]:
     """Complete a path: fields of the message at its last dot, and their fields.
 
     Raises:
         MessageError: the path before its last dot is wrong.
-=======
-def field_paths(begun: str, type_name: str) -> Iterator[str]:
-    """Yield the paths that continue an incomplete path by one and two names.
-
-    Raises:
-        MessageError: the part before the last dot is not a path.
->>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs):src/navette/cli/topic/field_path.py
     """
     before = prefix.rpartition(".")[0]
     owner = parse_field_path(before, type_name).type if before else FieldType(type_name)
@@ -113,11 +86,7 @@ def field_paths(begun: str, type_name: str) -> Iterator[str]:
 
 
 def _fields(owner: FieldType) -> tuple[Field, ...]:
-<<<<<<< HEAD:src/navette/msgs/field_path.py
     """Fields of a message; none for other types and for sequences."""
-=======
-    """Return the fields of a message type; none for arrays of messages."""
->>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs):src/navette/cli/topic/field_path.py
     is_one = owner.is_message and owner.is_scalar
     return get_message_spec(owner.base).fields if is_one else ()
 
@@ -139,13 +108,8 @@ def _step(
 def _field(name: str, owner: FieldType, so_far: str) -> FieldType:
     if not owner.is_scalar:
         raise MessageError(
-<<<<<<< HEAD:src/navette/msgs/field_path.py
             f"field {so_far!r}: {owner} is an array; add an index, as in [0], "
             f"before .{name}"
-=======
-            f"field {so_far!r}: {owner} is an array; select an element, as in [0],"
-            f" before .{name}"
->>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs):src/navette/cli/topic/field_path.py
         )
     if not owner.is_message:
         raise MessageError(f"field {so_far!r}: {owner} has no fields")
@@ -154,8 +118,4 @@ def _field(name: str, owner: FieldType, so_far: str) -> FieldType:
         if field.name == name:
             return field.type
     known = ", ".join(field.name for field in fields) or "none"
-<<<<<<< HEAD:src/navette/msgs/field_path.py
     raise MessageError(f"field {so_far!r}: {owner} has no such field; known: {known}")
-=======
-    raise MessageError(f"field {so_far!r} does not exist; {owner} has {known}")
->>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs):src/navette/cli/topic/field_path.py

@@ -94,7 +94,7 @@ def test_stamps_are_seconds_a_quaternion_its_yaw_and_what_is_not_there_a_gap(
         ("/odom.a:b:c", InvalidValueError, "wanted TOPIC.FIELD"),
         ("/odom.pose:", InvalidValueError, "wanted TOPIC.FIELD"),
         ("/oddom.pose", UnknownNameError, "'/oddom'; known: /odom, /scan"),
-        ("/odom.pose.x", MessageError, "does not exist"),
+        ("/odom.pose.x", MessageError, "no such field"),
         ("/odom.pose.pose.position", MessageError, "is no number"),
         ("/odom.child_frame_id", MessageError, "string is no number"),
         ("/scan.ranges", MessageError, "is many; take one"),

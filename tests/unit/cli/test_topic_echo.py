@@ -228,18 +228,15 @@ def test_a_wrong_filter_is_refused_before_any_message(talker: Node) -> None:
 @pytest.mark.parametrize(
     ("path", "reason"),
     [
-        (
-            "poses.position",
-            r"is an array; select an element, as in \[0\]",
-        ),
-        ("poses[0].place", "has position, orientation"),
+        ("poses.position", r"is an array; add an index, as in \[0\], before .position"),
+        ("poses[0].place", "no such field; known: position, orientation"),
         ("header.frame_id.x", "string has no fields"),
-        ("header[0]", "has no elements"),
+        ("header[0]", "is not an array"),
         ("poses[", "is not a path"),
         ("..", "is not a path"),
         ("poses[99999999999]", "is not a path"),
         ("a" * 2000, "is not a path"),
-        ("__class__", "is not a path|does not exist"),
+        ("__class__", "is not a path|no such field"),
     ],
 )
 def test_wrong_paths_are_refused_before_any_message(

@@ -139,8 +139,8 @@ class QosOverrides:
 def complete_fields(ctx: click.Context, incomplete: str) -> list[str]:
     """Complete a path to a field of the topic's messages, two levels deep."""
     from navette.cli.message_types import full_type_name, installed_class
-    from navette.cli.topic.field_path import field_paths
     from navette.msgs import type_name
+    from navette.msgs.field_path import field_paths
 
     def published_types(here: "Node") -> Iterable[str]:
         topic = here.resolve_topic_name(str(ctx.params.get("topic") or ""))

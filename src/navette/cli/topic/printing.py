@@ -5,12 +5,7 @@ from typing import Any
 
 from navette.cli.message_yaml import yaml_of
 from navette.cli.output import harmless, json_text, styled
-<<<<<<< HEAD
-from navette.cli.topic.style import Style
-=======
 from navette.cli.topic.echo_options import Style
-from navette.cli.topic.field_path import FieldPath
->>>>>>> 897316d (cli: declare commands with click, load verbs lazily without private API; rewrite topic verbs)
 from navette.msgs import Message, to_dict
 from navette.msgs.field_path import FieldPath
 from navette.ros2.packages.rosidl_runtime_py.convert import (
