@@ -100,5 +100,5 @@ def test_empty_and_foreign_files(tmp_path: Path) -> None:
     with pytest.raises(FileFormatError, match="cannot be opened"):
         open_bag(tmp_path / "nowhere.mcap")
     (tmp_path / "folder").mkdir()
-    with pytest.raises(FileFormatError, match="holds no recording"):
+    with pytest.raises(FileFormatError, match="is not a recording"):
         open_bag(tmp_path / "folder")
