@@ -1,7 +1,8 @@
 """rclpy's module-level functions: init, spin, shutdown and others."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Any
 
@@ -126,15 +127,22 @@ def _executor_of(node: Node) -> Executor:
     return executor or get_global_executor(node.context)
 
 
-def spin(node: Node, executor: Executor | None = None) -> None:
-    """Run the node's callbacks until shutdown."""
+@contextmanager
+def _executor_with(node: Node, executor: Executor | None) -> Iterator[Executor]:
+    """Add the node to its executor for the duration of a spin."""
     executor = executor or _executor_of(node)
     was_added = executor.add_node(node)
     try:
-        executor.spin()
+        yield executor
     finally:
         if was_added:
             executor.remove_node(node)
+
+
+def spin(node: Node, executor: Executor | None = None) -> None:
+    """Run the node's callbacks until shutdown."""
+    with _executor_with(node, executor) as used:
+        used.spin()
 
 
 def spin_once(
@@ -144,13 +152,8 @@ def spin_once(
     timeout_sec: float | None = None,
 ) -> None:
     """Run one event, waiting at most ``timeout_sec`` for it."""
-    executor = executor or _executor_of(node)
-    was_added = executor.add_node(node)
-    try:
-        executor.spin_once(timeout_sec=timeout_sec)
-    finally:
-        if was_added:
-            executor.remove_node(node)
+    with _executor_with(node, executor) as used:
+        used.spin_once(timeout_sec=timeout_sec)
 
 
 def spin_until_future_complete(
@@ -160,13 +163,8 @@ def spin_until_future_complete(
     timeout_sec: float | None = None,
 ) -> None:
     """Run until ``future`` is done or the timeout expires; also in a callback."""
-    executor = executor or _executor_of(node)
-    was_added = executor.add_node(node)
-    try:
-        executor.spin_until_future_complete(future, timeout_sec)
-    finally:
-        if was_added:
-            executor.remove_node(node)
+    with _executor_with(node, executor) as used:
+        used.spin_until_future_complete(future, timeout_sec)
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:

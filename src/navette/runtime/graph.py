@@ -4,6 +4,7 @@ import itertools
 import threading
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import Generic, ParamSpec
 
 from navette.transports import (
     Endpoint,
@@ -14,74 +15,56 @@ from navette.transports import (
     TransportObserver,
 )
 
-IncompatibleHook = Callable[[Endpoint, Endpoint, tuple[QoSPolicyKind, ...]], None]
+P = ParamSpec("P")
+
+
+class GraphEvent(Generic[P]):
+    """An event of the graph; calling it registers a callback.
+
+    Callbacks run during the change and must not modify the graph.
+    """
+
+    def __init__(self) -> None:
+        self._callbacks: list[Callable[P, object]] = []
+
+    def __call__(self, callback: Callable[P, object]) -> Callable[[], None]:
+        """Register a callback; return a function that removes it."""
+        self._callbacks.append(callback)
+        return lambda: self._callbacks.remove(callback)
+
+    def report(self, *args: P.args, **kwargs: P.kwargs) -> None:
+        """Run the callbacks."""
+        for callback in tuple(self._callbacks):
+            callback(*args, **kwargs)
 
 
 class Graph(TransportObserver):
-    """Nodes and endpoints that the context's transports have discovered.
-
-    Each ``on_…`` method registers a callback and returns a function that removes it.
-    Callbacks run during the change and must not modify the graph.
-    """
+    """Nodes and endpoints that the context's transports have discovered."""
 
     def __init__(self) -> None:
         self.transports: list[Transport] = []
         #: Held while transports are selected.
         self.joining = threading.Lock()
         self._nodes: list[NodeInfo] = []
-        self._on_change: list[Callable[[], None]] = []
-        self._on_incompatible: list[IncompatibleHook] = []
-        self._on_incompatible_type: list[Callable[[Endpoint, Endpoint], None]] = []
-        self._on_lost: list[Callable[[Endpoint, int], None]] = []
-        self._on_match: list[Callable[[Endpoint, Endpoint, bool], None]] = []
-        self._on_liveliness: list[Callable[[Endpoint, bool], None]] = []
-        self._on_assertion: list[Callable[[Endpoint, Endpoint], None]] = []
+        #: A node or endpoint was added or removed.
+        self.on_change = GraphEvent[[]]()
+        #: A publisher and a subscription matched (True) or stopped matching (False).
+        self.on_match = GraphEvent[[Endpoint, Endpoint, bool]]()
+        #: A publisher and a subscription do not match, because of these policies.
+        self.on_incompatible = GraphEvent[
+            [Endpoint, Endpoint, tuple[QoSPolicyKind, ...]]
+        ]()
+        #: A local endpoint and a remote endpoint of its topic differ in type.
+        self.on_incompatible_type = GraphEvent[[Endpoint, Endpoint]]()
+        #: A local subscription lost this number of samples.
+        self.on_lost = GraphEvent[[Endpoint, int]]()
+        #: A publisher's lease was renewed (True) or has expired (False).
+        self.on_liveliness = GraphEvent[[Endpoint, bool]]()
+        #: A remote publisher asserted its liveliness to a local subscription.
+        self.on_assertion = GraphEvent[[Endpoint, Endpoint]]()
         #: Gids of the publishers with manual liveliness and a valid lease.
         self.manually_alive: set[bytes] = set()
         self._gids = itertools.count(1)
-
-    def on_change(self, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call ``callback()`` after a node or endpoint was added or removed."""
-        self._on_change.append(callback)
-        return lambda: self._on_change.remove(callback)
-
-    def on_incompatible(self, callback: IncompatibleHook) -> Callable[[], None]:
-        """Call back with publisher, subscription and the incompatible policies."""
-        self._on_incompatible.append(callback)
-        return lambda: self._on_incompatible.remove(callback)
-
-    def on_incompatible_type(
-        self, callback: Callable[[Endpoint, Endpoint], None]
-    ) -> Callable[[], None]:
-        """Call back with a local endpoint and a remote endpoint of another type."""
-        self._on_incompatible_type.append(callback)
-        return lambda: self._on_incompatible_type.remove(callback)
-
-    def on_lost(self, callback: Callable[[Endpoint, int], None]) -> Callable[[], None]:
-        """Call back with a local subscription and its number of lost samples."""
-        self._on_lost.append(callback)
-        return lambda: self._on_lost.remove(callback)
-
-    def on_match(
-        self, callback: Callable[[Endpoint, Endpoint, bool], None]
-    ) -> Callable[[], None]:
-        """Call back with publisher, subscription and whether they (still) match."""
-        self._on_match.append(callback)
-        return lambda: self._on_match.remove(callback)
-
-    def on_liveliness(
-        self, callback: Callable[[Endpoint, bool], None]
-    ) -> Callable[[], None]:
-        """Call back with a publisher and whether its lease is valid."""
-        self._on_liveliness.append(callback)
-        return lambda: self._on_liveliness.remove(callback)
-
-    def on_assertion(
-        self, callback: Callable[[Endpoint, Endpoint], None]
-    ) -> Callable[[], None]:
-        """Call back with a remote publisher's assertion and the local subscription."""
-        self._on_assertion.append(callback)
-        return lambda: self._on_assertion.remove(callback)
 
     def add_transport(self, transport: Transport) -> None:
         """Add a transport, on which all future endpoints open a port."""
@@ -119,20 +102,16 @@ class Graph(TransportObserver):
         return replace(endpoint, gid=next(self._gids).to_bytes(16, "big"))
 
     def graph_changed(self) -> None:
-        for callback in tuple(self._on_change):
-            callback()
+        self.on_change.report()
 
     def matched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        for callback in tuple(self._on_match):
-            callback(publisher, subscription, True)
+        self.on_match.report(publisher, subscription, True)
 
     def unmatched(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        for callback in tuple(self._on_match):
-            callback(publisher, subscription, False)
+        self.on_match.report(publisher, subscription, False)
 
     def asserted(self, publisher: Endpoint, subscription: Endpoint) -> None:
-        for callback in tuple(self._on_assertion):
-            callback(publisher, subscription)
+        self.on_assertion.report(publisher, subscription)
 
     def report_liveliness(self, publisher: Endpoint, *, alive: bool) -> None:
         """Record and report that a publisher's lease was renewed or has expired."""
@@ -140,8 +119,7 @@ class Graph(TransportObserver):
             self.manually_alive.add(publisher.gid)
         else:
             self.manually_alive.discard(publisher.gid)
-        for callback in tuple(self._on_liveliness):
-            callback(publisher, alive)
+        self.on_liveliness.report(publisher, alive)
 
     def incompatible_qos(
         self,
@@ -149,16 +127,13 @@ class Graph(TransportObserver):
         subscription: Endpoint,
         policies: tuple[QoSPolicyKind, ...],
     ) -> None:
-        for callback in tuple(self._on_incompatible):
-            callback(publisher, subscription, policies)
+        self.on_incompatible.report(publisher, subscription, policies)
 
     def message_lost(self, subscription: Endpoint, count: int) -> None:
-        for callback in tuple(self._on_lost):
-            callback(subscription, count)
+        self.on_lost.report(subscription, count)
 
     def incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
-        for callback in tuple(self._on_incompatible_type):
-            callback(local, remote)
+        self.on_incompatible_type.report(local, remote)
 
     def nodes(self) -> list[NodeInfo]:
         """Return local nodes, then remote nodes; equal names are listed repeatedly."""

@@ -16,7 +16,6 @@ from navette.msgs.rcl_interfaces.msg import (
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.client import Client
-from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.context import Context, get_default_context
 from navette.runtime.exceptions import NotInitializedException
 from navette.runtime.graph_queries import GraphQueries
@@ -58,7 +57,7 @@ from navette.runtime.rate import Rate
 from navette.runtime.ros_clock import Clock, ROSClock
 from navette.runtime.rosout import RosoutSink
 from navette.runtime.service import Service
-from navette.runtime.subscription import Subscription
+from navette.runtime.subscription import ContentFilterOptions, Subscription
 from navette.runtime.time import ns_to_stamp, seconds_to_ns
 from navette.runtime.time_source import TimeSource
 from navette.runtime.timer import Timer

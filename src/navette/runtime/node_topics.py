@@ -5,7 +5,6 @@ from typing import Any, TypeVar
 
 from navette.errors import NavetteError
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.log import Logger
 from navette.runtime.node_entities import NodeEntities
 from navette.runtime.node_parameters import NodeParameters
@@ -17,7 +16,7 @@ from navette.runtime.qos_events import (
 )
 from navette.runtime.qos_overriding_options import QoSOverridingOptions, overridden
 from navette.runtime.qos_watch import EndpointWatch
-from navette.runtime.subscription import Subscription
+from navette.runtime.subscription import ContentFilterOptions, Subscription
 from navette.runtime.type_support import interface_name
 from navette.transports import Endpoint, EndpointKind
 

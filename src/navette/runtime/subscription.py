@@ -3,11 +3,10 @@
 from collections import deque
 from collections.abc import Callable, Sequence
 from enum import Enum
-from typing import Any, Generic, TypedDict, TypeVar
+from typing import Any, Generic, NamedTuple, TypedDict, TypeVar
 
 from navette.msgs import serialize
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.destroyable import Destroyable, EntityOwner
 from navette.runtime.events import Entity
 from navette.runtime.handles import Handle
@@ -38,6 +37,16 @@ class SubscriptionHandle(Handle):
     ) -> "tuple[Any, MessageInfo] | None":
         """Remove and return the oldest queued sample (bytes if ``raw``), or None."""
         return self.entity.take_with_info(raw=raw)
+
+
+class ContentFilterOptions(NamedTuple):
+    """Filter expression of a subscription, and the values of ``%0``, ``%1``, … as text.
+
+    See :func:`navette.runtime.filter_expression.compile_filter`.
+    """
+
+    filter_expression: str
+    expression_parameters: list[str]
 
 
 class MessageInfo(TypedDict):

@@ -11,9 +11,9 @@ from navette.msgs.rcl_interfaces.msg import Log
 from navette.msgs.sensor_msgs.msg import CameraInfo, LaserScan
 from navette.msgs.std_msgs.msg import Bool, Int32, String
 from navette.runtime import Node, QoSProfile
-from navette.runtime.content_filter import ContentFilterOptions
 from navette.runtime.exceptions import RCLError
 from navette.runtime.filter_expression import ContentFilterError, compile_filter
+from navette.runtime.subscription import ContentFilterOptions
 from navette.testing import GraphHarness
 
 POINT = PointStamped()

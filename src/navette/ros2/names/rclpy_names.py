@@ -41,7 +41,6 @@ _ORIGINS = {
         default_cancel_callback, default_goal_callback, default_handle_accepted_callback
     """,
     "navette.runtime.action.server_goal_handle": "ServerGoalHandle",
-    "navette.runtime.content_filter": "ContentFilterOptions",
     "navette.runtime.exceptions": """
         ConditionReachedException, InvalidHandle, InvalidNamespaceException,
         InvalidNodeNameException, InvalidParameterException,
@@ -109,6 +108,7 @@ _ORIGINS = {
         get_current_signal_handlers_options, install_signal_handlers,
         SignalHandlerGuardCondition, uninstall_signal_handlers
     """,
+    "navette.runtime.subscription": "ContentFilterOptions",
     "navette.runtime.time": "Infinite, NS_PER_S as S_TO_NS, timeout_sec_to_nsec",
     "navette.runtime.time_source": "CLOCK_TOPIC, TimeSource, USE_SIM_TIME_NAME",
     "navette.runtime.timer": "TimerInfo",
