@@ -73,6 +73,22 @@ def test_parameters_in_the_troubleshooting_page_exist() -> None:
     assert named - {"unknown_frame"} <= known
 
 
+def test_files_and_folders_of_the_design_exist() -> None:
+    page = (DOCS / "design.md").read_text(encoding="utf-8")
+    table = page[page.index("| question |") : page.index("## Rules")]
+    files = set(re.findall(r"`((?:\w+/)+(?:\w+\.py)?)`", table))
+    assert len(files) >= 10
+    source = DOCS.parent / "src" / "navette"
+    assert [path for path in sorted(files) if not (source / path).exists()] == []
+    tree = page[page.index("src/navette/") : page.index("The reasons for")]
+    named = set(re.findall(r"(\w+)/\s", tree)) - {"navette"}
+    folders = {path.name for path in source.rglob("*") if path.is_dir()}
+    assert named - folders == set()
+    assert {path.name for path in source.iterdir() if path.is_dir()} <= (
+        named | {"__pycache__"}
+    )
+
+
 def test_names_in_the_idioms_page_exist() -> None:
     page = (DOCS / "reference" / "idioms.md").read_text(encoding="utf-8")
     names = set(re.findall(r"navette\.([A-Za-z_]+)", page)) - {"msgs"}
