@@ -1,4 +1,4 @@
-"""Public test tools: a graph of nodes in virtual time, without sleeps."""
+"""Test tools: a graph of nodes in virtual time, without sleeps."""
 
 from navette.testing.harness import GraphHarness, Probe
 

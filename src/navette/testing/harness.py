@@ -1,4 +1,4 @@
-"""A graph harness: own context, virtual time, publish in, collect out.
+"""Graph harness: runs nodes in virtual time, publishes inputs and collects outputs.
 
 ::
 
@@ -33,7 +33,7 @@ N = TypeVar("N", bound=Node)
 
 
 class Probe:
-    """What arrived on a topic: messages and, beside them, when (ns)."""
+    """Messages that arrived on a topic, with the times of arrival (ns)."""
 
     def __init__(self, topic: str) -> None:
         self.topic = topic
@@ -45,10 +45,10 @@ class Probe:
         """The newest message.
 
         Raises:
-            InvalidValueError: there is none.
+            InvalidValueError: no message has arrived.
         """
         if not self.messages:
-            raise InvalidValueError(f"nothing arrived on {self.topic}")
+            raise InvalidValueError(f"no message has arrived on {self.topic}")
         return self.messages[-1]
 
     @property
@@ -56,17 +56,17 @@ class Probe:
         return len(self.messages)
 
     def clear(self) -> None:
-        """Forget what arrived so far."""
+        """Delete the messages."""
         self.messages.clear()
         self.stamps_ns.clear()
 
 
 class GraphHarness:
-    """Runs nodes in a context of their own, under virtual time.
+    """Runs nodes in a separate context with virtual time.
 
     Args:
         args: ROS arguments, such as ``["--ros-args", "-r", "a:=b"]``.
-        clock: another clock than a virtual one that starts at zero.
+        clock: default: a virtual clock that starts at zero.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class GraphHarness:
         self._publishers: dict[str, Publisher[Any]] = {}
 
     def add(self, node: N) -> N:
-        """Let the node's callbacks run (it must have been made in ``context``)."""
+        """Add a node that was created in :attr:`context`, and return it."""
         self.executor.add_node(node)
         return node
 
@@ -97,7 +97,7 @@ class GraphHarness:
         return self.context.clock.now_ns
 
     def publish(self, topic: str, message: Any, *, latched: bool = False) -> None:
-        """Publish once; the publisher stays."""
+        """Publish a message; the publisher continues to exist."""
         publisher = self._publishers.get(topic)
         if publisher is None:
             durability = (
@@ -113,13 +113,13 @@ class GraphHarness:
     def publish_every(
         self, period_s: float, topic: str, make: Callable[[int], Any]
     ) -> None:
-        """Publish ``make(now_ns)`` at a period, from one period on."""
+        """Publish ``make(now_ns)`` periodically, first after one period."""
         self.node.create_timer(period_s, lambda: self.publish(topic, make(self.now_ns)))
 
     def collect(
         self, topic: str, message: str | type, *, latched: bool = False
     ) -> Probe:
-        """Keep what arrives on a topic from now on (with ``latched``: before, too)."""
+        """Collect the messages of a topic, with ``latched`` also the last samples."""
         probe = Probe(topic)
 
         def receive(msg: Any) -> None:
@@ -139,15 +139,15 @@ class GraphHarness:
         return probe
 
     def run_for(self, seconds: float) -> None:
-        """Let virtual time pass, all events included."""
+        """Run all events of a span of virtual time."""
         self.executor.spin_for(round(seconds * 1e9))
 
     def run_until(self, condition: Callable[[], bool], timeout_s: float = 60.0) -> bool:
-        """Let virtual time pass until the condition holds; tells whether it does."""
+        """Run until the condition holds or the timeout; return whether it holds."""
         return self.executor.spin_until_complete(condition, round(timeout_s * 1e9))
 
     def close(self) -> None:
-        """Shut the context down, with all nodes."""
+        """Shut the context and its nodes down."""
         self.context.try_shutdown()
 
     def __enter__(self) -> Self:

@@ -1,4 +1,4 @@
-"""Random messages of any type, for round-trip tests of what carries messages."""
+"""Random messages of any type, for round-trip tests."""
 
 from typing import Any, TypeVar
 
@@ -14,10 +14,10 @@ _MOST_ELEMENTS = 3
 
 
 def random_message(cls: type[M], rng: np.random.Generator) -> M:
-    """A message with every field drawn at random, the ends of its range included.
+    """Return a message with random fields, the limits of their ranges included.
 
-    Floats are finite, so that the message equals its copy; float32 fields hold float32
-    values, so that it still does after a trip over a wire.
+    Floats are finite and float32 fields have float32 values, so that the message equals
+    its copy, also after serialization.
     """
     return cls(**{each.name: _value(each.type, rng) for each in fields(cls)})
 

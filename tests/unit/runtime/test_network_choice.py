@@ -1,4 +1,4 @@
-"""Which transports a context has."""
+"""Choice of a context's transports."""
 
 import pytest
 
@@ -16,7 +16,7 @@ from navette.runtime.network import chosen_transport
         (VirtualClock(), "inprocess"),
     ],
 )
-def test_by_the_clock_where_nothing_is_said(
+def test_the_default_depends_on_the_clock(
     clock: ContextClock, expected: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("NAVETTE_TRANSPORT")
@@ -24,18 +24,20 @@ def test_by_the_clock_where_nothing_is_said(
     assert chosen_transport(None, clock) == expected
 
 
-def test_a_test_keeps_to_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tests_are_isolated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("NAVETTE_TRANSPORT")
     assert chosen_transport(None, SystemClock()) == "inprocess"
 
 
-def test_the_argument_wins_over_the_variable(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_argument_takes_precedence_over_the_variable(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setenv("NAVETTE_TRANSPORT", "zenoh")
     assert chosen_transport(None, VirtualClock()) == "zenoh"
     assert chosen_transport("inprocess", SystemClock()) == "inprocess"
 
 
-def test_an_unknown_name_is_an_error_that_lists_the_known(
+def test_the_error_of_an_unknown_name_lists_the_known_ones(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     with pytest.raises(InvalidValueError, match=r"'udp'; known: inprocess, zenoh"):

@@ -32,7 +32,7 @@ ERROR = TransitionCallbackReturn.ERROR
 
 
 class Talker(Node):
-    """Says what it is asked; ``answers`` has the callbacks' answers by name."""
+    """Logs its callbacks, which return the values in ``answers`` by name."""
 
     def __init__(self, graph: GraphHarness, **answers: Any) -> None:
         super().__init__("talker", context=graph.context)
@@ -80,7 +80,7 @@ def change(graph: GraphHarness, **transition: Any) -> bool:
     return bool(client.call(request).success)
 
 
-def test_once_around(graph: GraphHarness) -> None:
+def test_all_transitions(graph: GraphHarness) -> None:
     node = Talker(graph)
     assert state_of(graph) == "unconfigured"
     assert node.trigger_configure() is SUCCESS
@@ -103,7 +103,7 @@ def test_once_around(graph: GraphHarness) -> None:
         node.trigger_shutdown()
 
 
-def test_over_the_service(graph: GraphHarness) -> None:
+def test_transitions_by_the_service(graph: GraphHarness) -> None:
     Talker(graph)
     assert change(graph, id=Transition.TRANSITION_CONFIGURE)
     assert change(graph, label="activate")
@@ -114,7 +114,7 @@ def test_over_the_service(graph: GraphHarness) -> None:
     assert state_of(graph) == "finalized"
 
 
-def test_a_failure_goes_back(graph: GraphHarness) -> None:
+def test_a_failure_restores_the_state(graph: GraphHarness) -> None:
     node = Talker(graph, configure=FAILURE)
     assert node.trigger_configure() is FAILURE
     assert state_of(graph) == "unconfigured"
@@ -134,9 +134,9 @@ def test_errors_are_processed(
     assert state_of(graph) == end
     assert node.calls[-1] == ("error", "unconfigured")
     graph.run_for(0.1)
-    told = "\n".join(message.msg for message in logs.messages)
-    assert ("ValueError: no port" in told) is isinstance(fault, ValueError)
-    assert ("expected a TransitionCallbackReturn" in told) is (fault is None)
+    logged = "\n".join(message.msg for message in logs.messages)
+    assert ("ValueError: no port" in logged) is isinstance(fault, ValueError)
+    assert ("expected a TransitionCallbackReturn" in logged) is (fault is None)
 
 
 def test_events_of_transitions(graph: GraphHarness) -> None:
@@ -154,7 +154,7 @@ def test_events_of_transitions(graph: GraphHarness) -> None:
     ]
 
 
-def test_what_there_is(graph: GraphHarness) -> None:
+def test_services_that_list_states_and_transitions(graph: GraphHarness) -> None:
     Talker(graph)
     client = graph.node.create_client(GetAvailableStates, "talker/get_available_states")
     labels = {
@@ -175,7 +175,7 @@ def test_what_there_is(graph: GraphHarness) -> None:
     assert {transition.id for transition in TRANSITIONS} <= constants
 
 
-def test_publishers_are_silent_unless_active(graph: GraphHarness) -> None:
+def test_publishers_publish_only_while_active(graph: GraphHarness) -> None:
     node = Talker(graph)
     heard = graph.collect("/chatter", String)
     publisher = node.create_lifecycle_publisher(String, "chatter", 10)

@@ -17,7 +17,7 @@ from navette.testing import GraphHarness
 
 
 class Hub(LogHub):
-    """A hub whose clock the test moves."""
+    """A hub with a clock that the test sets."""
 
     def __init__(self) -> None:
         self.ns = 0
@@ -72,10 +72,10 @@ def test_children_inherit_the_nearest_level(hub: Hub) -> None:
         logger.get_child("")
 
 
-def test_record_names_the_line(hub: Hub) -> None:
+def test_a_record_contains_file_and_line(hub: Hub) -> None:
     Logger("a", hub).info("here")
     record = hub.records[0]
-    assert record.function == "test_record_names_the_line"
+    assert record.function == "test_a_record_contains_file_and_line"
     assert Path(record.file).name == "test_runtime_logging.py"
     assert record.line > 0
 
@@ -99,19 +99,19 @@ def test_once_skip_first_and_throttle(hub: Hub) -> None:
     ]
 
 
-def test_filters_count_by_line(hub: Hub) -> None:
+def test_each_line_has_its_own_filters(hub: Hub) -> None:
     logger = Logger("a", hub)
     logger.info("first line", once=True)
     logger.info("second line", once=True)
     assert len(hub.records) == 2
 
 
-def test_unknown_option_is_refused(hub: Hub) -> None:
+def test_an_unknown_option_is_an_error(hub: Hub) -> None:
     with pytest.raises(TypeError, match="unknown logging option 'ones'"):
         Logger("a", hub).info("x", ones=True)
 
 
-def test_filtered_line_keeps_its_severity(hub: Hub) -> None:
+def test_a_filtered_line_has_one_severity(hub: Hub) -> None:
     logger = Logger("a", hub)
 
     def log(severity: LoggingSeverity) -> None:
@@ -122,7 +122,7 @@ def test_filtered_line_keeps_its_severity(hub: Hub) -> None:
         log(LoggingSeverity.ERROR)
 
 
-def test_format_is_that_of_ros() -> None:
+def test_the_format_of_ros() -> None:
     record = LogRecord(1_500_000_001, LoggingSeverity.WARN, "robot.n", "text")
     assert format_record(record) == "[WARN] [1.500000001] [robot.n]: text"
 
@@ -141,7 +141,7 @@ def test_console_is_coloured_on_a_terminal_only() -> None:
     assert terminal.getvalue().startswith("\x1b[31m[ERROR]")
 
 
-def test_console_goes_to_standard_error(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_console_is_standard_error(capsys: pytest.CaptureFixture[str]) -> None:
     context = Context(clock=VirtualClock())
     Node("n", context=context).get_logger().info("hello")
     assert capsys.readouterr().err == "[INFO] [0.000000000] [n]: hello\n"
@@ -170,7 +170,7 @@ def test_level_arguments() -> None:
         severity_from_string("loud")
 
 
-def test_rosout_carries_the_nodes_own_words(graph: GraphHarness) -> None:
+def test_rosout_has_the_messages_of_the_node(graph: GraphHarness) -> None:
     logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
     graph.run_for(1.0)
     node = graph.add(Node("n", context=graph.context, namespace="/robot"))
@@ -182,7 +182,7 @@ def test_rosout_carries_the_nodes_own_words(graph: GraphHarness) -> None:
         ("robot.n.part", "careful", 30)
     ]
     assert logs.last.stamp.sec == 1
-    assert logs.last.function == "test_rosout_carries_the_nodes_own_words"
+    assert logs.last.function == "test_rosout_has_the_messages_of_the_node"
 
 
 @pytest.fixture
@@ -190,7 +190,7 @@ def algorithm_logger() -> logging.Logger:
     return logging.getLogger("navette.navigation.planning.astar")
 
 
-def test_what_an_algorithm_logs_is_its_nodes(
+def test_messages_of_an_algorithm_belong_to_the_node(
     graph: GraphHarness, algorithm_logger: logging.Logger
 ) -> None:
     logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
@@ -207,7 +207,7 @@ def test_what_an_algorithm_logs_is_its_nodes(
     ]
 
 
-def test_what_an_algorithm_logs_outside_callbacks_reaches_the_console(
+def test_messages_of_an_algorithm_outside_callbacks_go_to_the_console(
     graph: GraphHarness,
     algorithm_logger: logging.Logger,
     capsys: pytest.CaptureFixture[str],
@@ -219,7 +219,7 @@ def test_what_an_algorithm_logs_outside_callbacks_reaches_the_console(
     )
 
 
-def test_what_a_clock_logs_while_it_waits_is_no_nodes(
+def test_messages_of_a_waiting_clock_belong_to_no_node(
     algorithm_logger: logging.Logger, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A lock-step that waits for others; whose callback ran last is chance."""
@@ -239,7 +239,7 @@ def test_what_a_clock_logs_while_it_waits_is_no_nodes(
     assert "[navette.navigation.planning.astar]: still waiting" in output
 
 
-def test_two_nodes_of_one_name_are_warned_about(
+def test_a_warning_of_two_nodes_with_one_name(
     graph: GraphHarness, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Node("twin", context=graph.context)

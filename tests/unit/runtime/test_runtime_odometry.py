@@ -1,4 +1,4 @@
-"""Poses of the base on the map, from every kind of odometry."""
+"""Poses of the base in the map frame from odometry of several frames."""
 
 import math
 
@@ -52,7 +52,7 @@ def tracker(graph: GraphHarness) -> PoseTracker:
     return PoseTracker(node, "base_link", "map")
 
 
-def test_plain_odometry_is_taken_as_it_is(tracker: PoseTracker) -> None:
+def test_odometry_of_the_base_in_the_map_frame(tracker: PoseTracker) -> None:
     assert tracker.latest is None
     assert tracker.stamp_ns is None
     assert tracker.update(odometry(S, Pose2(1, 2, 0.5), v=0.4, omega=0.2))
@@ -61,10 +61,10 @@ def test_plain_odometry_is_taken_as_it_is(tracker: PoseTracker) -> None:
     assert tracker.velocity == pytest.approx((0.4, 0.2))
 
 
-def test_odometry_of_a_sensor_ahead_becomes_that_of_the_base(
+def test_odometry_of_a_sensor_is_converted_to_the_base(
     graph: GraphHarness,
 ) -> None:
-    """The course world's odometry is the lidar's, 1.3 m ahead of the axle."""
+    """The course world's odometry is the lidar's, 1.3 m in front of the axle."""
     node = graph.add(Node("stage", context=graph.context))
     tracker = PoseTracker(node, "robot", "sim_world")
     message = odometry(
@@ -86,7 +86,9 @@ def test_odometry_of_a_sensor_ahead_becomes_that_of_the_base(
     assert tracker.velocity == pytest.approx((0.5, 0.4))
 
 
-def test_velocity_of_a_turned_sensor(graph: GraphHarness, tracker: PoseTracker) -> None:
+def test_velocity_of_a_rotated_sensor(
+    graph: GraphHarness, tracker: PoseTracker
+) -> None:
     send_static(graph, "base_link", "side", Pose2(0, 0.5, math.pi / 2))
     # At 0.5 m to the left, turning left slows the point: v − ω·0.5, along its −y.
     tracker.update(
@@ -127,7 +129,7 @@ def test_pose_at_a_stamp(tracker: PoseTracker) -> None:
     assert tracker.pose_at(3 * S + 1) is None
 
 
-def test_yaw_is_interpolated_the_short_way(tracker: PoseTracker) -> None:
+def test_yaw_is_interpolated_along_the_shorter_arc(tracker: PoseTracker) -> None:
     tracker.update(odometry(0, Pose2(0, 0, math.pi - 0.1)))
     tracker.update(odometry(S, Pose2(0, 0, -math.pi + 0.1)))
     pose = tracker.pose_at(S // 2)
@@ -144,7 +146,7 @@ def test_history_is_bounded(graph: GraphHarness) -> None:
     assert tracker.pose_at(88 * S // 10) is None
 
 
-def test_time_set_back_begins_a_new_history(tracker: PoseTracker) -> None:
+def test_a_jump_backward_clears_the_history(tracker: PoseTracker) -> None:
     for second in (5, 6):
         tracker.update(odometry(second * S, Pose2(second, 0, 0)))
     tracker.update(odometry(6 * S, Pose2(60, 0, 0)))
@@ -156,7 +158,7 @@ def test_time_set_back_begins_a_new_history(tracker: PoseTracker) -> None:
     assert tracker.latest is None
 
 
-def test_nonsense_is_refused_and_said(
+def test_non_finite_odometry_is_rejected(
     graph: GraphHarness, tracker: PoseTracker
 ) -> None:
     logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")

@@ -1,4 +1,4 @@
-"""Parameter files and arguments: format, matching, precedence, loud mistakes."""
+"""Parameter files and arguments: format, matching, precedence, errors."""
 
 from pathlib import Path
 from typing import Any
@@ -75,7 +75,7 @@ def test_nodes_and_nested_names() -> None:
         ("null", "null"),
     ],
 )
-def test_scalars_as_ros_reads_them(text: str, value: Any) -> None:
+def test_scalars_as_in_ros(text: str, value: Any) -> None:
     parsed = parse_value(text)
     assert parsed == value
     assert type(parsed) is type(value)
@@ -84,7 +84,7 @@ def test_scalars_as_ros_reads_them(text: str, value: Any) -> None:
 @pytest.mark.parametrize(
     "text", ["{a: 1}", "[1, a]", "[[1]]", "[1, true]", "[null]", "!!binary aGk="]
 )
-def test_values_that_no_parameter_has(text: str) -> None:
+def test_values_without_a_parameter_type(text: str) -> None:
     with pytest.raises(ParameterError, match="not a parameter value"):
         parse_value(text)
 
@@ -102,7 +102,7 @@ def test_values_that_no_parameter_has(text: str) -> None:
         ("!!python/object/apply:os.system ['true']", "not YAML"),
     ],
 )
-def test_broken_and_hostile_files(text: str, reason: str) -> None:
+def test_invalid_and_malicious_files(text: str, reason: str) -> None:
     with pytest.raises(FileFormatError, match=reason):
         parse_parameters(text, "some.yaml")
 
@@ -116,7 +116,7 @@ def test_alias_bomb_ends_early() -> None:
         parse_parameters(f"n:\n  ros__parameters:\n{body}\n")
 
 
-def test_names_are_text_whatever_they_look_like() -> None:
+def test_names_are_always_text() -> None:
     found = parse_parameters("n:\n  ros__parameters: {y: 1, on: {off: 2}, 3: 4}")
     assert found == [("/n", {"y": 1, "on.off": 2, "3": 4})]
 
@@ -163,7 +163,7 @@ def make_node(args: list[str], name: str = "planner", **kwargs: Any) -> Node:
     return Node(name, context=context, **kwargs)
 
 
-def test_last_word_wins(tmp_path: Path) -> None:
+def test_the_last_value_counts(tmp_path: Path) -> None:
     first, second = tmp_path / "1.yaml", tmp_path / "2.yaml"
     first.write_text("planner: {ros__parameters: {a: 1, b: 1, c: 1}}")
     second.write_text("/**: {ros__parameters: {b: 2, c: 2}}")
@@ -174,18 +174,18 @@ def test_last_word_wins(tmp_path: Path) -> None:
     assert values == [1, 2, 3, 0]
 
 
-def test_parameter_for_one_node_by_its_bare_name() -> None:
+def test_a_parameter_for_a_node_by_its_base_name() -> None:
     node = make_node(["-p", "planner:x:=1", "-p", "other:y:=1"], namespace="/robot")
     assert node.declare_parameter("x", 0).value == 1
     assert node.declare_parameter("y", 0).value == 0
 
 
-def test_an_int_in_a_file_is_taken_for_a_double() -> None:
+def test_an_int_in_a_file_is_converted_to_a_double() -> None:
     value = make_node(["-p", "x:=1"]).declare_parameter("x", 0.5).value
     assert isinstance(value, float)
 
 
-def test_wrong_type_from_outside_names_everything() -> None:
+def test_the_error_of_a_wrong_type_names_node_parameter_and_origin() -> None:
     node = make_node(["-p", "x:=fast"])
     with pytest.raises(
         ParameterError, match=r"/planner.*'x'.*'fast'.*DOUBLE.*command line -p x"
@@ -193,20 +193,20 @@ def test_wrong_type_from_outside_names_everything() -> None:
         node.declare_parameter("x", 0.5)
 
 
-def test_check_passes_when_everything_is_known() -> None:
+def test_the_check_passes_with_known_parameters() -> None:
     node = make_node(["-p", "x:=1", "-p", "planner:y:=1"])
     node.declare_parameters("", [("x", 0), ("y", 0)])
     node.context.check_overrides()
 
 
-def test_check_names_unknown_parameters_and_the_known_ones() -> None:
+def test_the_check_names_unknown_and_known_parameters() -> None:
     node = make_node(["-p", "planner:sped:=1"])
     node.declare_parameter("speed", 0)
     with pytest.raises(ParameterError, match=r"-p planner:sped.*'sped'.*speed"):
         node.context.check_overrides()
 
 
-def test_check_names_files_that_match_no_node(tmp_path: Path) -> None:
+def test_the_check_names_files_without_a_matching_node(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text("planer: {ros__parameters: {x: 1}}")
     node = make_node(["--params-file", str(path)])
@@ -214,7 +214,7 @@ def test_check_names_files_that_match_no_node(tmp_path: Path) -> None:
         node.context.check_overrides()
 
 
-def test_values_for_all_need_one_node_that_knows_them() -> None:
+def test_values_for_all_nodes_require_one_node_with_the_parameter() -> None:
     node = make_node(["-p", "x:=1"])
     other = Node("other", context=node.context)
     with pytest.raises(ParameterError, match="unknown parameter 'x'"):
@@ -223,7 +223,7 @@ def test_values_for_all_need_one_node_that_knows_them() -> None:
     node.context.check_overrides([node, other])
 
 
-def test_node_that_takes_anything_passes() -> None:
+def test_a_node_with_undeclared_parameters_passes() -> None:
     make_node(
         ["-p", "x:=1"], allow_undeclared_parameters=True
     ).context.check_overrides()
@@ -255,7 +255,7 @@ def test_arguments() -> None:
     "args",
     [["--what"], ["-p"], ["-p", "x"], ["--log-level", "loud"], ["-r", "x"], ["stray"]],
 )
-def test_bad_arguments_are_named(args: list[str]) -> None:
+def test_invalid_arguments(args: list[str]) -> None:
     with pytest.raises(InvalidValueError):
         parse_ros_arguments(["--ros-args", *args])
 
@@ -265,7 +265,7 @@ def test_remove_ros_args() -> None:
     assert remove_ros_args(args) == ["prog", "-a", "-b"]
 
 
-def test_what_is_formatted_reads_back_the_same() -> None:
+def test_formatted_parameters_are_read_unchanged() -> None:
     values: dict[str, Any] = {
         "x": 2,
         "x.y": 1e-5,  # x is a value and a prefix

@@ -137,7 +137,7 @@ def test_delete(client: AsyncParameterClient, ask: Ask, node: Node) -> None:
     assert not node.has_parameter("any")
 
 
-def test_the_callback_gets_the_future(
+def test_the_callback_receives_the_future(
     graph: GraphHarness, client: AsyncParameterClient
 ) -> None:
     seen: list[Any] = []
@@ -154,7 +154,7 @@ def test_waiting_for_the_services(graph: GraphHarness) -> None:
     assert client.services_are_ready()
 
 
-def test_a_call_to_ones_own_parameters_from_a_callback(
+def test_a_callback_calls_the_services_of_its_own_node(
     graph: GraphHarness, node: Node
 ) -> None:
     client = AsyncParameterClient(node, "n")

@@ -59,7 +59,7 @@ def test_type_of_a_value_and_back_through_messages(value: Any, kind: T) -> None:
 
 
 @pytest.mark.parametrize("value", [{}, [1, "a"], object(), [1, 2.0], [[1]]])
-def test_values_that_no_parameter_has(value: Any) -> None:
+def test_values_without_a_parameter_type(value: Any) -> None:
     with pytest.raises(TypeError, match="has no parameter type"):
         Parameter("p", value=value)
 
@@ -114,7 +114,7 @@ def test_name_only_declares_any_type(node: Node) -> None:
         assert node.set_parameters([Parameter("x", value=value)])[0].successful
 
 
-def test_declaring_mistakes(node: Node) -> None:
+def test_invalid_declarations(node: Node) -> None:
     node.declare_parameter("x", 1)
     with pytest.raises(ParameterAlreadyDeclaredException):
         node.declare_parameter("x", 1)
@@ -164,7 +164,7 @@ def test_undeclared_parameters_may_be_allowed() -> None:
         node.undeclare_parameter("x")
 
 
-def test_code_overrides_win_over_defaults() -> None:
+def test_overrides_take_precedence_over_defaults() -> None:
     node = Node(
         "n",
         context=Context(clock=VirtualClock()),
@@ -196,7 +196,7 @@ def test_declared_automatically_from_overrides() -> None:
 # -- types and ranges ----------------------------------------------------------
 
 
-def test_an_int_is_taken_for_a_double(node: Node) -> None:
+def test_an_int_is_converted_to_a_double(node: Node) -> None:
     node.declare_parameter("x", 1.5)
     node.declare_parameter("xs", [1.5])
     assert node.set_parameters([Parameter("x", value=2)])[0].successful
@@ -209,7 +209,7 @@ def test_an_int_is_taken_for_a_double(node: Node) -> None:
     ("default", "value"),
     [(1, 1.0), (1.0, True), (1.0, "1"), (True, 1), ("a", 1), ([1], [1.5]), ([1], 1)],
 )
-def test_a_wrong_type_is_refused_by_name(node: Node, default: Any, value: Any) -> None:
+def test_a_wrong_type_is_rejected(node: Node, default: Any, value: Any) -> None:
     node.declare_parameter("x", default)
     result = node.set_parameters([Parameter("x", value=value)])[0]
     assert not result.successful
@@ -218,7 +218,7 @@ def test_a_wrong_type_is_refused_by_name(node: Node, default: Any, value: Any) -
     assert node.get_parameter("x").value == default
 
 
-def test_an_empty_list_fits_any_array(node: Node) -> None:
+def test_an_empty_list_is_accepted_for_any_array(node: Node) -> None:
     node.declare_parameter("x", [1.5])
     assert node.set_parameters([Parameter("x", value=[])])[0].successful
     assert node.get_parameter("x").type_ is T.DOUBLE_ARRAY
@@ -255,7 +255,7 @@ def test_ranges_and_steps(node: Node) -> None:
     ]
 
 
-def test_default_outside_the_range_is_refused(node: Node) -> None:
+def test_a_default_outside_the_range_is_rejected(node: Node) -> None:
     bounds = [IntegerRange(from_value=0, to_value=10)]
     with pytest.raises(InvalidParameterValueException, match=r"out of range 0 … 10"):
         node.declare_parameter("i", 11, ParameterDescriptor(integer_range=bounds))
@@ -329,7 +329,7 @@ def test_one_by_one_or_all_or_none(node: Node) -> None:
     assert node.get_parameter("a").value == 2
 
 
-def test_on_set_callback_may_refuse(node: Node) -> None:
+def test_the_on_set_callback_can_reject(node: Node) -> None:
     def refuse(parameters: list[Parameter[Any]]) -> SetParametersResult:
         bad = any(p.name == "x" and p.value > 5 for p in parameters)
         return SetParametersResult(successful=not bad, reason="too big" if bad else "")
@@ -343,7 +343,9 @@ def test_on_set_callback_may_refuse(node: Node) -> None:
     assert node.set_parameters([Parameter("x", value=6)])[0].successful
 
 
-def test_pre_set_callback_may_alter_and_post_set_is_told(node: Node) -> None:
+def test_the_pre_set_callback_can_change_and_the_post_set_callback_runs_after(
+    node: Node,
+) -> None:
     seen: list[Any] = []
 
     def double(parameters: list[Parameter[Any]]) -> list[Parameter[Any]]:
@@ -363,7 +365,7 @@ def test_pre_set_callback_may_alter_and_post_set_is_told(node: Node) -> None:
     assert seen == [("x", 8), ("x", 4)]
 
 
-def test_events_tell_what_changed(graph: GraphHarness) -> None:
+def test_events_contain_the_changes(graph: GraphHarness) -> None:
     events = graph.collect("/parameter_events", "rcl_interfaces/msg/ParameterEvent")
     graph.run_for(1.0)
     node = graph.add(Node("n", context=graph.context, allow_undeclared_parameters=True))
@@ -392,7 +394,7 @@ def test_events_tell_what_changed(graph: GraphHarness) -> None:
     assert events.last.stamp.sec == 1
 
 
-def test_a_callback_that_forgets_to_return_is_named(node: Node) -> None:
+def test_the_error_of_a_callback_without_result_names_it(node: Node) -> None:
     node.declare_parameter("speed", 1.0)
 
     def check(parameters: list[Parameter]) -> None:

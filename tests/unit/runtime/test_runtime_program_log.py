@@ -1,4 +1,4 @@
-"""rclpy.logging: loggers that belong to no node."""
+"""rclpy.logging: loggers without a node."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,7 +19,7 @@ def fresh_default_context() -> Iterator[None]:
     reset_default_context()
 
 
-def test_lines_before_init_go_to_the_console(
+def test_messages_before_init_go_to_the_console(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     logger = program_log.get_logger("early")
@@ -31,7 +31,9 @@ def test_lines_before_init_go_to_the_console(
     assert "[early.child]: too" in text
 
 
-def test_after_init_the_context_decides(capsys: pytest.CaptureFixture[str]) -> None:
+def test_messages_after_init_go_to_the_context(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     logger = program_log.get_logger("tool")
     navette.init(args=["--ros-args", "--disable-stdout-logs"], clock=VirtualClock())
     logger.info("nobody sees this")
@@ -40,7 +42,7 @@ def test_after_init_the_context_decides(capsys: pytest.CaptureFixture[str]) -> N
     get_default_context().log.sinks.append(records.append)
     logger.info("once", once=True)
     assert [(r.name, r.message) for r in records] == [("tool", "once")]
-    assert records[0].function == "test_after_init_the_context_decides"
+    assert records[0].function == "test_messages_after_init_go_to_the_context"
     navette.shutdown()
     navette.init(args=[], clock=VirtualClock())
     logger.info("the next context's")
@@ -48,7 +50,7 @@ def test_after_init_the_context_decides(capsys: pytest.CaptureFixture[str]) -> N
     assert "the next context's" in capsys.readouterr().err
 
 
-def test_levels_are_those_of_the_nodes_loggers() -> None:
+def test_levels_are_shared_with_the_loggers_of_nodes() -> None:
     navette.init(args=["--ros-args", "--disable-stdout-logs"], clock=VirtualClock())
     program_log.set_logger_level("arm", LoggingSeverity.ERROR)
     node = navette.Node("arm")

@@ -61,7 +61,7 @@ def test_equality_hash_and_text() -> None:
     assert "reliability=RELIABLE" in str(profile)
 
 
-def test_there_and_back_for_the_transport() -> None:
+def test_conversion_to_the_transports_qos_and_back() -> None:
     profile = QoSProfile(depth=3, deadline=Duration(seconds=1))
     endpoint = profile.to_endpoint_qos()
     assert (endpoint.deadline_ns, endpoint.lifespan_ns) == (1_000_000_000, INFINITE_NS)

@@ -1,4 +1,4 @@
-"""The base of the stages: declared inputs, outputs, parameters, status."""
+"""Base of the stages: inputs, outputs, parameters and status."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -23,7 +23,7 @@ from navette.testing import GraphHarness
 
 @dataclass(frozen=True, kw_only=True)
 class EchoParams(Params):
-    """Every kind of field."""
+    """A field of every type."""
 
     gain: float = param(1.0, "how much", unit="m", at_least=0.0, at_most=3.0)
     times: int = param(2, "how often", at_least=1, at_most=9)
@@ -40,7 +40,7 @@ class EchoParams(Params):
 
 
 class Echo(StageNode):
-    """Repeats what it hears."""
+    """Publishes its input."""
 
     PARAMS = EchoParams
     INPUTS = (
@@ -87,7 +87,7 @@ def harness(*args: str) -> tuple[GraphHarness, Echo]:
     return graph, graph.add(Echo(context=graph.context))
 
 
-def test_inputs_and_outputs_are_wired_as_declared() -> None:
+def test_inputs_and_outputs_are_connected() -> None:
     graph, _ = harness()
     graph.publish("/map", String(data="early"), latched=True)
     out = graph.collect("out", String)
@@ -96,7 +96,7 @@ def test_inputs_and_outputs_are_wired_as_declared() -> None:
     assert out.last.data == "abab"
 
 
-def test_latched_input_gets_what_was_sent_before() -> None:
+def test_a_latched_input_receives_earlier_messages() -> None:
     graph = GraphHarness()
     message = String(data="early")
     graph.publish("/map", message, latched=True)
@@ -105,7 +105,7 @@ def test_latched_input_gets_what_was_sent_before() -> None:
     assert node.maps == [message]
 
 
-def test_inputs_are_shared_and_cut_off_from_the_publishers_object() -> None:
+def test_inputs_are_shared_copies_of_the_publishers_message() -> None:
     graph, node = harness()
     second = graph.add(_Second(context=graph.context))
     message = String(data="one")
@@ -121,7 +121,7 @@ class _Second(Echo):
         super().__init__(cli_args=["-r", "__node:=second"], **kwargs)
 
 
-def test_liveliness_by_arrival() -> None:
+def test_staleness_by_arrival() -> None:
     graph, node = harness()
     assert node.is_stale("in")
     graph.publish("in", String())
@@ -137,7 +137,7 @@ def test_liveliness_by_arrival() -> None:
         node.is_stale("x")
 
 
-def test_unknown_output_is_named() -> None:
+def test_the_error_of_an_unknown_output_lists_the_known_ones() -> None:
     graph, node = harness()
     with pytest.raises(
         UnknownNameError, match="output 'outt'; known: /echo/status, out"
@@ -157,7 +157,7 @@ def test_remapped_topics_keep_their_declared_names() -> None:
     assert not node.is_stale("in")
 
 
-def test_raising_input_names_the_stage_and_the_topic() -> None:
+def test_an_exception_in_a_callback_names_the_stage_and_the_topic() -> None:
     graph, _ = harness()
     graph.publish("in", String(data="raise"))
     with pytest.raises(CallbackError, match=r"node /echo: callback of topic /in"):
@@ -167,13 +167,13 @@ def test_raising_input_names_the_stage_and_the_topic() -> None:
 # -- parameters ----------------------------------------------------------------
 
 
-def test_parameters_come_from_outside_as_the_dataclass() -> None:
+def test_given_parameters_become_the_dataclass() -> None:
     _, node = harness("-p", "echo:gain:=2", "-p", "echo:corners:=[1, 2.5]")
     assert node.params == EchoParams(gain=2.0, corners=(1.0, 2.5))
     assert node.get_parameter("mode").value == "plain"
 
 
-def test_descriptors_carry_text_range_and_choices() -> None:
+def test_descriptors_have_text_range_and_choices() -> None:
     _, node = harness()
     gain = node.describe_parameter("gain")
     assert gain.description == "how much [m]"
@@ -196,12 +196,12 @@ def test_descriptors_carry_text_range_and_choices() -> None:
         ("echo:low:=2.0", r"/echo: low 2.0 must be below high"),
     ],
 )
-def test_wrong_values_from_outside_are_loud(argument: str, reason: str) -> None:
+def test_wrong_given_values_are_errors(argument: str, reason: str) -> None:
     with pytest.raises(ParameterError, match=reason):
         harness("-p", argument)
 
 
-def test_refused_stage_leaves_nothing_in_the_graph() -> None:
+def test_a_failed_stage_leaves_nothing_in_the_graph() -> None:
     graph = GraphHarness(args=["--ros-args", "-p", "echo:gain:=7"])
     before = graph.context.graph.endpoints()
     with pytest.raises(ParameterError):
@@ -210,12 +210,12 @@ def test_refused_stage_leaves_nothing_in_the_graph() -> None:
     assert graph.context.nodes == [graph.node]
 
 
-def test_values_for_all_nodes_need_not_be_known() -> None:
+def test_unknown_values_for_all_nodes_are_ignored() -> None:
     _, node = harness("-p", "something:=1")
     assert node.params == EchoParams()
 
 
-def test_changes_at_run_time_are_checked_and_told() -> None:
+def test_changes_are_checked_and_reported() -> None:
     _, node = harness()
 
     def outcome(name: str, value: Any) -> str:
@@ -275,7 +275,7 @@ def test_status_on_change_and_then_twice_a_second() -> None:
     assert late.last.message == "no_path"
 
 
-def test_a_node_whose_parameter_is_refused_is_not_left_behind() -> None:
+def test_a_node_with_an_invalid_parameter_is_removed() -> None:
     graph = GraphHarness()
     graph.context.overrides.add("echo", {"gain": 9.0}, "test")
     with pytest.raises(ParameterError, match="gain"):

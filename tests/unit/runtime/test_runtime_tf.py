@@ -77,7 +77,7 @@ def test_interpolated_between_samples(core: BufferCore) -> None:
     assert pose == pytest.approx((2.5, 2.5, 0))
 
 
-def test_time_zero_is_the_newest_common_one(core: BufferCore) -> None:
+def test_time_zero_is_the_newest_common_time(core: BufferCore) -> None:
     core.set("odom", "base", 9 * S // 2, at(7), is_static=False)
     pose, stamp = core.lookup("map", "lidar", 0)
     assert stamp == 4 * S
@@ -137,7 +137,7 @@ def test_samples_out_of_order_and_repeated(core: BufferCore) -> None:
     assert core.lookup("odom", "base", 11 * S // 4)[0].translation[0] == 75
 
 
-def test_a_frame_given_to_another_parent(core: BufferCore) -> None:
+def test_a_frame_that_changes_its_parent(core: BufferCore) -> None:
     core.set("map", "dock", 0, at(10), is_static=True)
     core.lookup("map", "base", 0)
     core.set("dock", "base", 5 * S, at(1), is_static=False)
@@ -148,7 +148,7 @@ def test_a_frame_given_to_another_parent(core: BufferCore) -> None:
         core.lookup("map", "base", 4 * S + 1)
 
 
-def test_what_lies_above_the_meeting_point_may_be_missing(core: BufferCore) -> None:
+def test_frames_above_the_common_ancestor_may_be_missing(core: BufferCore) -> None:
     core.set("odom", "base", 6 * S, at(6), is_static=False)
     assert core.lookup("odom", "lidar", 6 * S)[0].translation[0] == 6.5
     with pytest.raises(ExtrapolationException, match="'odom' in 'map'"):
@@ -172,7 +172,7 @@ def test_malformed_transforms(parent: str, child: str, transform: Transform3) ->
         BufferCore(S).set(parent, child, 0, transform, is_static=True)
 
 
-def test_a_refused_transform_leaves_no_trace(core: BufferCore) -> None:
+def test_an_invalid_transform_changes_nothing(core: BufferCore) -> None:
     known = core.lookup("map", "base", 2 * S)
     zero = Transform3((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
     for child, is_static in (("new", False), ("base", False), ("base", True)):
@@ -183,7 +183,7 @@ def test_a_refused_transform_leaves_no_trace(core: BufferCore) -> None:
         core.lookup("map", "new", 0)
 
 
-def test_frames_in_a_circle_are_found_out() -> None:
+def test_a_cycle_of_frames_is_an_error() -> None:
     core = BufferCore(S)
     core.set("a", "b", 0, at(1), is_static=True)
     core.set("b", "a", 0, at(1), is_static=True)
@@ -192,7 +192,7 @@ def test_frames_in_a_circle_are_found_out() -> None:
         core.lookup("a", "d", 0)
 
 
-def test_leading_slash_is_dropped(core: BufferCore) -> None:
+def test_a_leading_slash_is_ignored(core: BufferCore) -> None:
     assert core.lookup("/map", "/base", 2 * S) == core.lookup("map", "base", 2 * S)
 
 
@@ -207,7 +207,7 @@ def test_leading_slash_is_dropped(core: BufferCore) -> None:
         lambda ns: ns,
     ],
 )
-def test_times_in_any_form(time_of: Callable[[int], Any]) -> None:
+def test_types_of_times(time_of: Callable[[int], Any]) -> None:
     buffer = Buffer()
     for second in (1, 2):
         buffer.set_transform(transform_stamped("map", "base", second * S, at(second)))
@@ -254,7 +254,7 @@ def test_yaml_and_clear() -> None:
     assert buffer.can_transform("base", "lidar", 0)  # static: true at all times
 
 
-def test_broadcast_and_listen(graph: GraphHarness) -> None:
+def test_broadcaster_and_listener(graph: GraphHarness) -> None:
     static = StaticTransformBroadcaster(graph.node)
     static.sendTransform(transform_stamped("base", "lidar", 0, at(1)))
     static.send_transform([transform_stamped("base", "camera", 0, at(2))])
@@ -299,7 +299,7 @@ def test_lookup_waits_inside_a_callback(graph: GraphHarness) -> None:
     assert found == [2.0, 2.0]
 
 
-def test_a_wait_that_is_too_short_ends_in_the_error(graph: GraphHarness) -> None:
+def test_a_timeout_raises_the_lookup_error(graph: GraphHarness) -> None:
     buffer = Buffer(node=graph.node)
     with pytest.raises(LookupException):
         buffer.lookup_transform("map", "base", 0, timeout=Duration(seconds=1))
@@ -324,7 +324,9 @@ def test_awaiting_a_transform(graph: GraphHarness) -> None:
     assert found == [7.0]
 
 
-def test_bad_transform_is_logged_and_the_rest_is_taken(graph: GraphHarness) -> None:
+def test_an_invalid_transform_is_logged_and_the_others_are_used(
+    graph: GraphHarness,
+) -> None:
     logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
     node = graph.add(Node("n", context=graph.context))
     buffer = Buffer(node=node)

@@ -1,4 +1,4 @@
-"""The public harness."""
+"""GraphHarness."""
 
 import pytest
 
@@ -28,7 +28,7 @@ def test_publish_run_collect() -> None:
         assert graph.now_ns == 1_000_000_000
         out.clear()
         assert out.count == 0
-        with pytest.raises(InvalidValueError, match="nothing arrived on out"):
+        with pytest.raises(InvalidValueError, match="no message has arrived on out"):
             _ = out.last
 
 
@@ -42,22 +42,22 @@ def test_publish_every_and_run_until() -> None:
         assert not graph.run_until(lambda: False, timeout_s=0.5)
 
 
-def test_two_harnesses_do_not_hear_each_other() -> None:
+def test_two_harnesses_are_isolated() -> None:
     with GraphHarness() as one, GraphHarness() as other:
-        heard = other.collect("t", String)
+        received = other.collect("t", String)
         one.publish("t", String())
         one.run_for(1.0)
         other.run_for(1.0)
-        assert heard.count == 0
+        assert received.count == 0
 
 
-def test_arguments_reach_the_nodes() -> None:
+def test_arguments_apply_to_the_nodes() -> None:
     with GraphHarness(args=["--ros-args", "-r", "in:=/elsewhere"]) as graph:
         node = doubling(graph)
         assert node.count_subscribers("/elsewhere") == 1
 
 
-def test_closed_harness_has_no_nodes() -> None:
+def test_a_closed_harness_has_no_nodes() -> None:
     graph = GraphHarness()
     doubling(graph)
     graph.close()

@@ -1,1 +1,1 @@
-"""The small packages that ROS 2 programs use beside rclpy, under their own names."""
+"""ROS 2's Python packages other than rclpy, under their own names."""

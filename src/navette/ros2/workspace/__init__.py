@@ -1,4 +1,4 @@
-"""Packages of a workspace, found by folder without a build step, and made new."""
+"""Packages of a workspace: search without a build step, and creation."""
 
 from navette.ros2.workspace.create import create_package
 from navette.ros2.workspace.executables import Executable

@@ -1,7 +1,7 @@
-"""Make a package from the templates.
+"""Creation of packages from templates.
 
-A template's text may hold ``$package``, ``$node``, …, its name ``{package}``, …: see
-``_values``.
+The text of a template may contain ``$package``, ``$node``, …, and its file name
+``{package}``, …: see ``_values``.
 """
 
 import re
@@ -13,11 +13,11 @@ from navette.errors import FileFormatError, InvalidNameError
 from navette.ros2.workspace.manifest import FILE_NAME
 
 TEMPLATES = Path(__file__).parent / "templates"
-_SUFFIX = ".template"  # so that no tool takes a template for the file it makes
+_SUFFIX = ".template"  # so that tools do not process templates as source files
 _NAME = re.compile(r"[a-z](?:_?[a-z0-9]+)+")
 _NODE_NAME = re.compile(r"[a-zA-Z][a-zA-Z0-9_]*")
 _MESSAGES = "_msgs"
-#: What the templates depend on already.
+#: Dependencies that the templates contain.
 _PYTHON_NEEDS = ("launch", "launch_ros", "rclpy", "std_msgs", "ament_index_python")
 _MESSAGES_NEEDS = ("std_msgs", "builtin_interfaces", "action_msgs")
 
@@ -30,19 +30,19 @@ def create_package(
     messages: bool = False,
     dependencies: Sequence[str] = (),
 ) -> list[Path]:
-    """Make a package below ``folder``; returns the folders of the packages made.
+    """Create a package below ``folder`` and return the folders of the new packages.
 
-    A name that ends in ``_msgs`` gives a package of messages, services and actions,
-    every other one a package with a node.
+    A package whose name ends in ``_msgs`` has messages, services and actions; every
+    other package has a node.
 
     Args:
-        node: name of the node; the package's name if not given.
-        messages: make a package ``<name>_msgs`` beside it, too, and depend on it.
-        dependencies: further packages it needs.
+        node: name of the node; default: the package's name.
+        messages: also create a package ``<name>_msgs`` and depend on it.
+        dependencies: further packages to depend on.
 
     Raises:
-        InvalidNameError: a name that ROS 2 does not allow.
-        FileFormatError: the folder of that name is there already.
+        InvalidNameError: ROS 2 does not allow a name.
+        FileFormatError: the folder exists already.
     """
     _check(name, _NAME, "package", "lower case letters, digits and single underscores")
     for each in dependencies:
@@ -50,7 +50,7 @@ def create_package(
     if name.endswith(_MESSAGES):
         if node is not None:
             raise InvalidNameError(
-                f"{name!r} is a package of messages ({_MESSAGES}): it has no node"
+                f"{name!r} is a package of messages ({_MESSAGES}), which has no node"
             )
         needs = [each for each in dependencies if each not in _MESSAGES_NEEDS]
         return [_make("messages", folder / name, _values(name, name, needs))]
@@ -71,7 +71,8 @@ def create_package(
 def _check(name: str, pattern: re.Pattern[str], kind: str, allowed: str) -> None:
     if not pattern.fullmatch(name):
         raise InvalidNameError(
-            f"{name!r} is not a valid {kind} name: wanted {allowed}, a letter first"
+            f"{name!r} is not a valid {kind} name: allowed are {allowed}, starting "
+            "with a letter"
         )
 
 
@@ -105,5 +106,5 @@ def _make(template: str, folder: Path, values: dict[str, str]) -> Path:
 
 def _refuse_existing(folder: Path) -> None:
     if folder.exists():
-        has = "a package" if (folder / FILE_NAME).exists() else "something"
-        raise FileFormatError(folder, f"there is {has} already")
+        kind = "package" if (folder / FILE_NAME).exists() else "file or folder"
+        raise FileFormatError(folder, f"this {kind} exists already")

@@ -1,7 +1,4 @@
-"""The programs of a package, as its build files name them.
-
-Nothing is run to find them (see ``setup_py``).
-"""
+"""Programs of a package, read from its build files without running these."""
 
 import ast
 import configparser
@@ -45,7 +42,7 @@ _CMAKE_PROGRAMS = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Executable:
-    """A function of a module (``module`` and ``attribute``), or a file (``path``)."""
+    """A program: a function (``module`` and ``attribute``) or a file (``path``)."""
 
     package: str
     name: str
@@ -55,10 +52,10 @@ class Executable:
 
     @staticmethod
     def named(name: str, package: str, among: Iterable["Executable"]) -> "Executable":
-        """The one of that name.
+        """Return the executable of that name.
 
         Raises:
-            UnknownNameError: none; lists those known.
+            UnknownNameError: there is none; lists the existing ones.
         """
         known = {each.name: each for each in among}
         if name not in known:
@@ -67,7 +64,7 @@ class Executable:
 
 
 def built_in_executables(package: str) -> tuple[Executable, ...]:
-    """Navette's own: each stage as a program, and the container of nodes."""
+    """Return Navette's programs: the stages and the component container."""
     if package != BUILT_IN:
         return ()
     return tuple(
@@ -77,7 +74,7 @@ def built_in_executables(package: str) -> tuple[Executable, ...]:
 
 
 def source_executables(package: str, folder: Path) -> tuple[Executable, ...]:
-    """Those of a package's folder: entry points, and programs that CMake installs."""
+    """Return the entry points of a source package and the programs CMake installs."""
     texts = [
         *_from_setup_py(folder / "setup.py"),
         *_from_setup_cfg(folder / "setup.cfg"),
@@ -95,7 +92,7 @@ def source_executables(package: str, folder: Path) -> tuple[Executable, ...]:
 
 
 def installed_executables(package: str, folder: Path) -> tuple[Executable, ...]:
-    """The files of ``lib/<package>`` below a prefix that may be executed."""
+    """Return the executable files of ``lib/<package>`` below a prefix."""
     if not folder.is_dir():
         return ()
     return tuple(

@@ -1,9 +1,8 @@
-"""Where packages are: the workspace one works in, NAVETTE_PATH, installed prefixes.
+"""Search for packages: current workspace, NAVETTE_PATH, installed prefixes.
 
-A source folder is enough: files are read from where they are written, so that nothing
-has to be built or installed after a change. Of one name the first found counts, in this
-order: the current workspace, NAVETTE_PATH, AMENT_PREFIX_PATH and Python's own prefix,
-Navette itself.
+A source package needs no build or installation: its files are read from the source
+folder. Of several packages with one name the first counts, in this order: the current
+workspace, NAVETTE_PATH, AMENT_PREFIX_PATH and Python's prefix, Navette itself.
 """
 
 import os
@@ -17,46 +16,46 @@ from navette.msgs.registry import DEFINITIONS
 from navette.ros2.workspace.manifest import FILE_NAME, is_package_name, read_manifest
 from navette.ros2.workspace.package import Origin, Package
 
-#: Folders to look for packages in, as PATH holds folders of programs.
+#: Environment variable with the folders in which packages are searched.
 PATH_VARIABLE = "NAVETTE_PATH"
 AMENT_VARIABLE = "AMENT_PREFIX_PATH"
 
 _IGNORE_FILES = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "NAVETTE_IGNORE")
 _OUTPUT_FOLDERS = ("build", "install", "log", "node_modules", "__pycache__")
 _DEPTH = 4  # workspace/src/repository/group/package
-_DEPTH_BESIDE = 1  # packages side by side in a folder that may be anything, as a home
-_SRC_ABOVE = 3  # how many folders a package may lie below the workspace's src
+_DEPTH_BESIDE = 1  # in a folder that is not a workspace, such as the home folder
+_SRC_ABOVE = 3  # greatest number of folders between a package and the workspace's src
 
 
 class PackageNotFoundError(UnknownNameError, KeyError):
-    """Nobody has a package of that name.
+    """There is no package of that name.
 
-    Also a ``KeyError``, as ament_index_python's exception of that name is.
+    Also a ``KeyError``, as ament_index_python's exception of the same name.
     """
 
-    __str__ = Exception.__str__  # a KeyError's would put the text in quotes
+    __str__ = Exception.__str__  # KeyError would quote the text
 
 
 def find_packages(start: Path | None = None) -> dict[str, Package]:
-    """All packages by name, sorted.
+    """Return all packages by name, sorted.
 
     Args:
-        start: where one stands; the working directory if not given.
+        start: a folder of the workspace; default: the working directory.
 
     Raises:
-        FileFormatError: a broken package.xml, or a folder of NAVETTE_PATH that is
-            not there.
-        InvalidNameError: two packages of one name below one folder.
+        FileFormatError: a package.xml is invalid, or a folder of NAVETTE_PATH does not
+            exist.
+        InvalidNameError: two packages below one folder have the same name.
     """
     return {each.name: each for each in _first_of_each(_all(start))}
 
 
 def find_package(name: str, start: Path | None = None) -> Package:
-    """The package of that name.
+    """Return the package of that name.
 
     Raises:
-        InvalidNameError: no package can have that name.
-        PackageNotFoundError: nobody has it; says where it was looked for.
+        InvalidNameError: the name is not valid.
+        PackageNotFoundError: there is no such package; lists the searched folders.
     """
     if not is_package_name(name):
         raise InvalidNameError(f"{name!r} is not a valid package name")
@@ -68,36 +67,35 @@ def find_package(name: str, start: Path | None = None) -> Package:
     )
     raise PackageNotFoundError(
         f"package {name!r} not found, searching: {places} "
-        f"({PATH_VARIABLE} names further folders)"
+        f"(add folders to {PATH_VARIABLE})"
     )
 
 
 def search_roots(start: Path | None = None) -> tuple[Path, ...]:
-    """The folders below which source packages are looked for.
+    """Return the folders below which source packages are searched.
 
     Raises:
-        FileFormatError: a folder of NAVETTE_PATH is not there.
+        FileFormatError: a folder of NAVETTE_PATH does not exist.
     """
     here = _workspace_root((start or Path.cwd()).resolve())[0]
     return tuple(dict.fromkeys((here, *_named_roots())))
 
 
 def _named_roots() -> list[Path]:
-    """The folders of NAVETTE_PATH."""
     named = [Path(each).expanduser() for each in _variable(PATH_VARIABLE)]
     for root in named:
         if not root.is_dir():
-            raise FileFormatError(root, f"no such folder; {PATH_VARIABLE} names it")
+            raise FileFormatError(root, f"no such folder, but it is in {PATH_VARIABLE}")
     return [root.resolve() for root in named]
 
 
 def activate(start: Path | None = None) -> tuple[Path, ...]:
-    """Make the workspace's own modules and interfaces importable in this process.
+    """Make the workspace's modules and interfaces importable in this process.
 
-    Returns the folders that were put on Python's path (behind what is there).
+    Return the folders that were appended to ``sys.path``.
     """
     added = []
-    for package in _first_of_each(_beside_built_in(start)):
+    for package in _first_of_each(_not_built_in(start)):
         if package.has_interfaces and package.name not in msgs.packages():
             _add_interfaces(package)
         folder = package.python_path
@@ -109,14 +107,14 @@ def activate(start: Path | None = None) -> tuple[Path, ...]:
 
 def _add_interfaces(package: Package) -> None:
     if package.folder.name == package.name:
-        # Read when asked for: its types may use those of packages still to come.
+        # Read on first use: the types may use those of packages that are added later.
         msgs.add_interface_path(package.folder.parent)
     else:
         msgs.load_interfaces(package.name, package.folder)
 
 
 def _first_of_each(packages: Iterable[Package]) -> list[Package]:
-    """The first of each name, sorted by name."""
+    """Return the first package of each name, sorted by name."""
     found: dict[str, Package] = {}
     for package in packages:
         found.setdefault(package.name, package)
@@ -124,14 +122,14 @@ def _first_of_each(packages: Iterable[Package]) -> list[Package]:
 
 
 def _all(start: Path | None) -> Iterator[Package]:
-    """Those of the nearest place first; a name may come several times."""
-    yield from _beside_built_in(start)
+    """Yield all packages in order of precedence; a name may occur several times."""
+    yield from _not_built_in(start)
     yield from _built_in()
 
 
-def _beside_built_in(start: Path | None) -> Iterator[Package]:
+def _not_built_in(start: Path | None) -> Iterator[Package]:
     here, depth = _workspace_root((start or Path.cwd()).resolve())
-    if here in _named_roots():  # then it is a workspace, whatever else it holds
+    if here in _named_roots():  # explicitly a workspace
         depth = _DEPTH
     for root in search_roots(start):
         yield from _crawl(root, depth if root == here else _DEPTH)
@@ -140,7 +138,7 @@ def _beside_built_in(start: Path | None) -> Iterator[Package]:
 
 
 def _workspace_root(start: Path) -> tuple[Path, int]:
-    """The folder to look below from where one stands, and how deep."""
+    """Return the folder below which packages are searched, and the depth."""
     for folder in (start, *start.parents):
         if (folder / FILE_NAME).is_file():
             above = folder.parents[:_SRC_ABOVE]
@@ -168,13 +166,13 @@ def _crawl(root: Path, depth: int) -> Iterator[Package]:
 
 
 def _package_folders(folder: Path, depth: int) -> Iterator[Path]:
-    """Folders with a package.xml, sorted; packages do not lie in one another."""
-    # One look at each: all below is gone through whenever a program starts.
+    """Yield folders with a package.xml, sorted; packages are not nested."""
+    # One scandir per folder, because every start of a program does this search.
     try:
         with os.scandir(folder) as listed:
             entries = {entry.name: entry for entry in listed}
     except PermissionError:
-        return  # not ours to read: no package of this user's
+        return  # not readable: not a package of this user
     if not entries.keys().isdisjoint(_IGNORE_FILES):
         return
     if FILE_NAME in entries and entries[FILE_NAME].is_file():
@@ -190,7 +188,7 @@ def _may_hold_packages(name: str) -> bool:
 
 
 def installed_prefixes() -> tuple[Path, ...]:
-    """The prefixes that packages may be installed in, the first ones first."""
+    """Return the existing prefixes of installed packages in order of precedence."""
     named = [Path(each) for each in _variable(AMENT_VARIABLE)]
     return tuple(prefix for prefix in (*named, Path(sys.prefix)) if prefix.is_dir())
 
@@ -205,7 +203,7 @@ def _installed(prefix: Path) -> Iterator[Package]:
 
 
 def _built_in() -> Iterator[Package]:
-    """Navette's share is its own package, an interface package's its definitions."""
+    """Yield Navette's package and the interface packages with their definitions."""
     yield Package("navette", Path(__file__).parents[2], Origin.BUILT_IN)
     for folder in sorted(DEFINITIONS.iterdir()):
         if folder.is_dir():

@@ -1,4 +1,4 @@
-"""package.xml: what a package says of itself (REP 127, 140, 149)."""
+"""Reader of package.xml (REP 127, 140, 149)."""
 
 import re
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Manifest:
     version: str
     description: str
     build_type: str
-    #: Packages it needs to be built or run; tests' needs left out; in the file's order.
+    #: Packages required to build or run, in the file's order; not those of tests.
     dependencies: tuple[str, ...]
 
 
@@ -37,17 +37,17 @@ def read_manifest(path: Path) -> Manifest:
     """Read a package.xml.
 
     Raises:
-        FileFormatError: not XML, no package, or without a valid name.
+        FileFormatError: the file is not XML, or has no package with a valid name.
     """
     try:
         root = fromstring(path.read_text(encoding="utf-8"))
     except (ParseError, DefusedXmlException, UnicodeDecodeError) as error:
         raise FileFormatError(path, f"not readable as XML: {error}") from None
     if root.tag != "package":
-        raise FileFormatError(path, f"<{root.tag}>: wanted <package>")
+        raise FileFormatError(path, f"<{root.tag}>: expected <package>")
     name = _text(root, "name")
     if not is_package_name(name):
-        raise FileFormatError(path, f"<name> {name!r} is no package name")
+        raise FileFormatError(path, f"<name> {name!r} is not a valid package name")
     names = (e.text or "" for tag in _DEPENDENCY_TAGS for e in root.iter(tag))
     return Manifest(
         name=name,

@@ -1,4 +1,4 @@
-"""A package that was found: where it is and what is in it."""
+"""A package: its folders, manifest and executables."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -17,7 +17,7 @@ INTERFACE_KINDS = ("msg", "srv", "action")
 
 
 class Origin(Enum):
-    """How a package came to be there."""
+    """Kind of a package's location."""
 
     SOURCE = "source"  # a folder with package.xml in a workspace
     INSTALLED = "installed"  # share/<name> below a prefix, built by colcon or pip
@@ -26,10 +26,10 @@ class Origin(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Package:
-    """Found by :func:`find_package`.
+    """A package, as :func:`find_package` returns it.
 
     Attributes:
-        folder: where it lies.
+        folder: source folder, share directory, or folder of definitions.
     """
 
     name: str
@@ -38,10 +38,10 @@ class Package:
 
     @property
     def share(self) -> Path:
-        """The folder of its files: launch/, config/, msg/, ….
+        """The share directory with launch/, config/, msg/, ….
 
         Raises:
-            FileFormatError: setup.py is broken.
+            FileFormatError: setup.py is not valid Python.
         """
         if self.origin is Origin.SOURCE:
             return share_directory(self.name, self.folder)
@@ -49,14 +49,14 @@ class Package:
 
     @property
     def prefix(self) -> Path:
-        """The prefix it is installed in; where nothing was installed, its folder."""
+        """The prefix of an installed package; of another one its folder."""
         if self.origin is Origin.INSTALLED:
             return self.folder.parent.parent
         return self.folder
 
     @property
     def has_interfaces(self) -> bool:
-        """Whether it defines messages, services or actions."""
+        """Whether the package defines messages, services or actions."""
         return any(
             next((self.folder / kind).glob(f"*.{kind}"), None)
             for kind in INTERFACE_KINDS
@@ -64,22 +64,22 @@ class Package:
 
     @property
     def python_path(self) -> Path | None:
-        """The folder that its Python modules are imported from, if it is a source."""
+        """The import folder of a source package's Python modules, else None."""
         return self.folder if self.origin is Origin.SOURCE else None
 
     def manifest(self) -> Manifest:
-        """Read its package.xml.
+        """Read package.xml.
 
         Raises:
-            FileFormatError: broken.
+            FileFormatError: the file is not valid.
         """
         return read_manifest(self.folder / FILE_NAME)
 
     def executables(self) -> tuple[Executable, ...]:
-        """What ``navette run PACKAGE EXECUTABLE`` can run, sorted by name.
+        """Return the programs for ``navette run PACKAGE EXECUTABLE``, sorted by name.
 
         Raises:
-            FileFormatError: setup.py, setup.cfg or pyproject.toml is broken.
+            FileFormatError: setup.py, setup.cfg or pyproject.toml is not valid.
         """
         if self.origin is Origin.SOURCE:
             return source_executables(self.name, self.folder)
@@ -88,9 +88,9 @@ class Package:
         return built_in_executables(self.name)
 
     def executable(self, name: str) -> Executable:
-        """One of them, by name.
+        """Return one program by name.
 
         Raises:
-            UnknownNameError: there is none of that name; lists those known.
+            UnknownNameError: there is none of that name; lists the existing ones.
         """
         return Executable.named(name, self.name, self.executables())

@@ -1,7 +1,7 @@
-"""What a package's setup.py says, without running it.
+"""Reader of setup.py that does not run it.
 
-It is read as text: constants, names, f-strings, sums, ``os.path.join`` and ``glob`` are
-understood; what it computes by more than that stays unknown.
+Constants, names, f-strings, sums, ``os.path.join`` and ``glob`` are evaluated; other
+expressions are ignored.
 """
 
 import ast
@@ -13,11 +13,11 @@ from navette.errors import FileFormatError
 
 @dataclass(frozen=True, slots=True)
 class SetupPy:
-    """The arguments of its ``setup()`` call.
+    """The arguments of the ``setup()`` call.
 
     Attributes:
-        folder: where it lies; patterns are looked up from there.
-        names: what the module sets to a text.
+        folder: folder of setup.py, to which patterns are relative.
+        names: texts that the module assigns to names.
     """
 
     folder: Path
@@ -25,25 +25,25 @@ class SetupPy:
     names: dict[str, str]
 
     def argument(self, name: str) -> ast.expr | None:
-        """An argument as written; None if it is not given."""
+        """Return an argument's expression; None if it is not given."""
         return self.arguments.get(name)
 
     def text(self, node: ast.expr) -> str | None:
-        """The text an expression gives; None where that takes more than is read."""
+        """Return the text of an expression; None if it cannot be evaluated."""
         return _text(node, self.names)
 
     def texts(self, node: ast.expr) -> list[str]:
-        """The texts of a list; of sums of lists; the files that a pattern finds."""
+        """Return the texts of lists, sums of lists, and glob patterns."""
         if isinstance(node, (ast.List, ast.Tuple)):
             found = (self.text(item) for item in node.elts)
             return [text for text in found if text is not None]
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             return [*self.texts(node.left), *self.texts(node.right)]
         if isinstance(node, ast.Call) and _called_name(node) == "glob" and node.args:
-            return self._found(self.text(node.args[0]))
+            return self._glob(self.text(node.args[0]))
         return []
 
-    def _found(self, pattern: str | None) -> list[str]:
+    def _glob(self, pattern: str | None) -> list[str]:
         if not pattern or Path(pattern).is_absolute():
             return []
         found = sorted(self.folder.glob(pattern))
@@ -51,10 +51,10 @@ class SetupPy:
 
 
 def read_setup_py(path: Path) -> SetupPy | None:
-    """What the file says; None where there is none, or it calls no ``setup()``.
+    """Read a setup.py; return None without a file or without a call of ``setup()``.
 
     Raises:
-        FileFormatError: it is no Python; names the line.
+        FileFormatError: the file is not valid Python; names the line.
     """
     if not path.is_file():
         return None
@@ -75,7 +75,7 @@ def _called_name(call: ast.Call) -> str:
 
 
 def _constants(tree: ast.Module) -> dict[str, str]:
-    """Names that the module sets to a text."""
+    """Return the texts that the module assigns to names."""
     found: dict[str, str] = {}
     for node in tree.body:
         if isinstance(node, ast.Assign) and len(node.targets) == 1:

@@ -1,9 +1,9 @@
-"""A source package's share directory: its folder, as an installation would lay it out.
+"""Share directory of a source package, laid out as after an installation.
 
-Most packages install their files where they lie, ``launch/x`` to ``share/name/launch``:
-then the folder itself is the share directory. Where ``data_files`` of setup.py says
-otherwise, a folder of links stands in for it: all that the package has, and what is
-installed elsewhere also there.
+Most packages install files under the same relative path, ``launch/x`` to
+``share/name/launch/x``: then the source folder is the share directory. If
+``data_files`` of setup.py moves files, the share directory is a folder of links to the
+package's files and to the moved files in their new places.
 """
 
 import hashlib
@@ -18,10 +18,10 @@ _CACHE_VARIABLE = "XDG_CACHE_HOME"
 
 
 def share_directory(name: str, folder: Path) -> Path:
-    """Where the files of the source package in ``folder`` are found.
+    """Return the share directory of the source package in ``folder``.
 
     Raises:
-        FileFormatError: its setup.py is no Python.
+        FileFormatError: setup.py is not valid Python.
     """
     setup = read_setup_py(folder / "setup.py")
     moved = {} if setup is None else _moved(setup, name)
@@ -29,7 +29,7 @@ def share_directory(name: str, folder: Path) -> Path:
 
 
 def _moved(setup: SetupPy, name: str) -> dict[PurePosixPath, Path]:
-    """Place below the share directory → file, for files that lie elsewhere."""
+    """Return the moved files by their path below the share directory."""
     found: dict[PurePosixPath, Path] = {}
     data_files = setup.argument("data_files")
     for entry in getattr(data_files, "elts", ()):
@@ -47,7 +47,7 @@ def _moved(setup: SetupPy, name: str) -> dict[PurePosixPath, Path]:
 
 
 def _linked(name: str, folder: Path, moved: dict[PurePosixPath, Path]) -> Path:
-    """A folder of links; the same content gives the same folder, made once."""
+    """Return a folder of links, which is created once for the same content."""
     children = sorted(c for c in folder.iterdir() if not c.name.startswith("."))
     plan = repr((str(folder), [c.name for c in children], sorted(moved.items())))
     digest = hashlib.sha256(plan.encode()).hexdigest()[:20]
@@ -55,7 +55,7 @@ def _linked(name: str, folder: Path, moved: dict[PurePosixPath, Path]) -> Path:
     if view.is_dir():
         return view
     view.parent.parent.mkdir(parents=True, exist_ok=True)
-    # Made aside, then moved: another process sees all of it or nothing.
+    # Created elsewhere and renamed, so that other processes never see a part of it.
     making = Path(tempfile.mkdtemp(dir=view.parent.parent))
     (making / name).mkdir()
     for child in children:
@@ -70,7 +70,7 @@ def _linked(name: str, folder: Path, moved: dict[PurePosixPath, Path]) -> Path:
 
 
 def _place(view: Path, place: PurePosixPath, file: Path) -> None:
-    """Link a file in a folder that may be a link itself: then open that up."""
+    """Link a file; replace links to folders on its path by folders of links."""
     folder = view
     for part in place.parts[:-1]:
         folder = folder / part
@@ -87,7 +87,9 @@ def _place(view: Path, place: PurePosixPath, file: Path) -> None:
 def _link(target: Path, place: Path) -> None:
     try:
         place.symlink_to(target.resolve(), target_is_directory=target.is_dir())
-    except OSError:  # Windows allows links to few; a copy is as good until it changes
+    except (
+        OSError
+    ):  # without the right to create links on Windows; copies do not follow changes
         if target.is_dir():
             shutil.copytree(target, place)
         else:

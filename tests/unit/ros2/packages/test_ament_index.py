@@ -48,8 +48,8 @@ def test_share_and_prefix(workspace: Path) -> None:
 def test_an_installed_package_without_files_warns(workspace: Path) -> None:
     with pytest.warns(UserWarning, match="Share directory for built"):
         index.get_package_share_directory("built")
-    wanted = workspace / "prefix" / "share" / "built"
-    assert index.get_package_share_path("built", print_warning=False) == wanted
+    expected = workspace / "prefix" / "share" / "built"
+    assert index.get_package_share_path("built", print_warning=False) == expected
 
 
 def test_unknown_packages(workspace: Path) -> None:

@@ -1,4 +1,4 @@
-"""diagnostic_updater: statuses, tasks, and what is published."""
+"""diagnostic_updater: statuses, tasks, and the published messages."""
 
 from typing import Any
 
@@ -37,8 +37,8 @@ def fine(stat: Any) -> Any:
     return stat
 
 
-def heard(graph: GraphHarness) -> list[Any]:
-    """The statuses on /diagnostics, as they come."""
+def published_statuses(graph: GraphHarness) -> list[Any]:
+    """Return the list that collects the statuses on /diagnostics."""
     statuses: list[Any] = []
     graph.node.create_subscription(
         DiagnosticArray, "/diagnostics", lambda m: statuses.extend(m.status), 10
@@ -74,7 +74,7 @@ def test_summaries_are_merged(first: Any, second: Any, merged: Any) -> None:
     assert (stat.level, stat.message) == merged
 
 
-def test_a_status_is_filled_in() -> None:
+def test_filling_a_status() -> None:
     stat = status(ERROR, "x")
     stat.add("count", 3)
     stat.add("ok", True)
@@ -85,7 +85,7 @@ def test_a_status_is_filled_in() -> None:
         stat.summary()
 
 
-def test_a_composite_takes_the_worst_and_all_values() -> None:
+def test_a_composite_has_the_worst_level_and_all_values() -> None:
     def hot(stat: Any) -> Any:
         stat.summary(WARN, "hot")
         stat.add("°C", 80)
@@ -101,7 +101,7 @@ def test_a_composite_takes_the_worst_and_all_values() -> None:
 
 
 def test_an_updater_publishes_every_second(graph: GraphHarness) -> None:
-    statuses = heard(graph)
+    statuses = published_statuses(graph)
     updater = Updater(driver(graph))
     updater.setHardwareID("none")
     updater.add("motor", fine)
@@ -128,7 +128,7 @@ def test_an_updater_publishes_every_second(graph: GraphHarness) -> None:
 
 
 def test_period_and_full_name_are_parameters(graph: GraphHarness) -> None:
-    statuses = heard(graph)
+    statuses = published_statuses(graph)
     overrides = [
         Parameter("diagnostic_updater.period", value=0.1),
         Parameter("diagnostic_updater.use_fqn", value=True),
@@ -147,24 +147,24 @@ def test_period_and_full_name_are_parameters(graph: GraphHarness) -> None:
     assert len(statuses) == 13
 
 
-def test_a_missing_hardware_id_is_told_once(
+def test_a_missing_hardware_id_is_logged_once(
     graph: GraphHarness, capsys: pytest.CaptureFixture[str]
 ) -> None:
     updater = Updater(driver(graph))
     updater.add("motor", fine)
     updater.verbose = True
     graph.run_for(3.0)
-    assert capsys.readouterr().err.count("no hardware ID") == 1
+    assert capsys.readouterr().err.count("hardware ID is not set") == 1
 
 
-def test_a_task_that_returns_nothing_is_named(graph: GraphHarness) -> None:
+def test_the_error_of_a_task_without_result_names_it(graph: GraphHarness) -> None:
     updater = Updater(driver(graph))
     updater.add("motor", lambda stat: None)
-    with pytest.raises(CallbackError, match="'motor': it must return the status"):
+    with pytest.raises(CallbackError, match="'motor' must return the status"):
         graph.run_for(1.0)
 
 
-def test_how_often_a_topic_comes(graph: GraphHarness) -> None:
+def test_the_rate_of_a_topic(graph: GraphHarness) -> None:
     node = driver(graph)
     updater = Updater(node, period=1000.0)
     bounds = {"min": 8.0, "max": 12.0}
@@ -198,7 +198,7 @@ def test_how_often_a_topic_comes(graph: GraphHarness) -> None:
     assert topic.run(DiagnosticStatusWrapper()).level == ERROR
 
 
-def test_two_looks_at_one_instant_divide_by_nothing(graph: GraphHarness) -> None:
+def test_two_runs_at_one_instant_have_no_rate(graph: GraphHarness) -> None:
     updater = Updater(driver(graph))
     topic = HeaderlessTopicDiagnostic("t", updater, FrequencyStatusParam({"min": 1.0}))
     topic.tick()
@@ -207,7 +207,7 @@ def test_two_looks_at_one_instant_divide_by_nothing(graph: GraphHarness) -> None
     )
 
 
-def test_how_old_stamps_are(graph: GraphHarness) -> None:
+def test_the_age_of_stamps(graph: GraphHarness) -> None:
     node = driver(graph)
     graph.run_for(100.0)
     stamps = TimeStampStatus(TimeStampStatusParam(-1, 5), clock=node.get_clock())
@@ -235,7 +235,7 @@ def test_how_old_stamps_are(graph: GraphHarness) -> None:
 def test_a_diagnosed_publisher(graph: GraphHarness) -> None:
     node = driver(graph)
     updater = Updater(node, period=1.0)
-    statuses = heard(graph)
+    statuses = published_statuses(graph)
     publisher = DiagnosedPublisher(
         node.create_publisher(LaserScan, "scan", 10),
         updater,

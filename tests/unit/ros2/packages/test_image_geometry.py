@@ -66,7 +66,7 @@ def test_parameters() -> None:
     assert model().distortionCoeffs() is None
 
 
-def test_lengths_at_a_depth() -> None:
+def test_distances_at_a_depth() -> None:
     camera = model()
     assert camera.getDeltaU(0.5, 2.0) == pytest.approx(125)
     assert camera.getDeltaV(0.5, 2.0) == pytest.approx(127.5)
@@ -88,7 +88,7 @@ def test_binning_and_region_of_interest() -> None:
     assert camera.raw_roi == roi
 
 
-def test_distortion_is_taken_out() -> None:
+def test_distortion_is_removed() -> None:
     camera = model(d=DISTORTION)
     zero, point = np.zeros(3), (0.8, -0.6, 2.0)
     raw, _ = cv2.projectPoints(
@@ -118,18 +118,18 @@ def test_an_image_is_rectified() -> None:
     )
 
 
-def test_a_model_without_parameters_says_so() -> None:
+def test_a_model_without_parameters() -> None:
     with pytest.raises(InvalidValueError, match="fromCameraInfo first"):
         PinholeCameraModel().project3dToPixel(POINT)
     with pytest.raises(InvalidValueError, match="fromCameraInfo first"):
         StereoCameraModel().projectPixelTo3d((0, 0), 1)
     stereo = StereoCameraModel()
-    with pytest.raises(InvalidValueError, match="exchanged"):
+    with pytest.raises(InvalidValueError, match="may be swapped"):
         stereo.fromCameraInfo(info(tx=-60.0), info())
 
 
 @pytest.mark.parametrize("right_cx", [320.0, 300.0])
-def test_a_pair(right_cx: float) -> None:
+def test_a_stereo_pair(right_cx: float) -> None:
     stereo = StereoCameraModel()
     stereo.fromCameraInfo(info(), info(cx=right_cx, tx=-500 * 0.12))
     left, right = stereo.project3dToPixel(POINT)

@@ -1,4 +1,4 @@
-"""laser_geometry: hits of scans as points."""
+"""laser_geometry: conversion of hits to points."""
 
 import math
 from typing import Any
@@ -18,7 +18,7 @@ Option = LaserProjection.ChannelOption
 
 
 def scan(**changes: Any) -> LaserScan:
-    """Beams to the right, ahead and to the left, and two that are no hits."""
+    """Beams to the right, forward and to the left, and two without a hit."""
     message = LaserScan(
         angle_min=-math.pi / 2,
         angle_max=math.pi,
@@ -74,7 +74,7 @@ def test_the_cutoff(cutoff: float, count: int) -> None:
     assert LaserProjection().projectLaser(scan(), cutoff).width == count
 
 
-def test_what_is_no_range_is_no_point() -> None:
+def test_invalid_ranges_have_no_point() -> None:
     message = scan()
     message.ranges = [math.nan, math.inf, 10.0, -math.inf]
     assert LaserProjection().projectLaser(message).width == 0
@@ -91,6 +91,6 @@ def test_another_scan_has_other_directions() -> None:
     assert points(projector.projectLaser(message))["x"].tolist() == [1, 2, 3]
 
 
-def test_intensities_that_do_not_fit_are_refused() -> None:
+def test_a_wrong_number_of_intensities() -> None:
     with pytest.raises(InvalidValueError, match="4 ranges and 2 intensities"):
         LaserProjection().projectLaser(scan(intensities=[1.0, 2.0]))

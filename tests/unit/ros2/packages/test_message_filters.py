@@ -39,7 +39,7 @@ def stamp_ms_of(message: Any) -> int:
 
 
 class Sets:
-    """Collects what a filter hands on, as stamps in ms."""
+    """Collects the output of a filter as stamps in ms."""
 
     def __init__(self, source: SimpleFilter) -> None:
         self.seen: list[tuple[int, ...]] = []
@@ -52,7 +52,7 @@ class Sets:
 # -- filters and subscribers ---------------------------------------------------
 
 
-def test_callbacks_get_their_own_arguments() -> None:
+def test_callbacks_receive_their_arguments() -> None:
     source, seen = SimpleFilter(), []
     assert source.registerCallback(lambda *args: seen.append(args), "a", 1) == 0
     assert source.registerCallback(lambda *args: seen.append(args)) == 1
@@ -100,7 +100,7 @@ def test_cache_by_time(cache: Cache) -> None:
     assert cache.getLastestTime() == ros_time(4000)
     cache.add(point(9000))
     assert cache.getOldestTime() == ros_time(1000)
-    with pytest.raises(InvalidValueError, match="too early"):
+    with pytest.raises(InvalidValueError, match="before its start"):
         cache.getInterval(ros_time(2), ros_time(1))
 
 
@@ -136,7 +136,7 @@ def test_messages_without_header(
 # -- exact ---------------------------------------------------------------------
 
 
-def test_equal_stamps_meet(graph: GraphHarness) -> None:
+def test_messages_with_equal_stamps(graph: GraphHarness) -> None:
     inputs = [Subscriber(graph.node, PointStamped, name) for name in ("a", "b", "c")]
     sets = Sets(TimeSynchronizer(inputs, 10))
     for topic, stamp in [("a", 1), ("a", 2), ("b", 2), ("c", 1), ("c", 2), ("b", 1)]:
@@ -145,7 +145,7 @@ def test_equal_stamps_meet(graph: GraphHarness) -> None:
     assert sets.seen == [(2, 2, 2), (1, 1, 1)]
 
 
-def test_the_oldest_of_too_many_goes() -> None:
+def test_the_oldest_message_of_a_full_queue_is_dropped() -> None:
     a, b = SimpleFilter(), SimpleFilter()
     sets = Sets(TimeSynchronizer([a, b], 2))
     for stamp in (3, 1, 2):
@@ -155,7 +155,7 @@ def test_the_oldest_of_too_many_goes() -> None:
     assert sets.seen == [(2, 2), (3, 3)]
 
 
-def test_exact_needs_stamps(graph: GraphHarness) -> None:
+def test_the_exact_synchronizer_requires_stamps(graph: GraphHarness) -> None:
     TimeSynchronizer([Subscriber(graph.node, String, "text"), SimpleFilter()], 1)
     graph.publish("/text", String())
     with pytest.raises(CallbackError, match="String has no header"):
@@ -165,7 +165,7 @@ def test_exact_needs_stamps(graph: GraphHarness) -> None:
 # -- approximate ---------------------------------------------------------------
 
 
-def test_close_stamps_meet() -> None:
+def test_messages_with_close_stamps() -> None:
     a, b = SimpleFilter(), SimpleFilter()
     sets = Sets(ApproximateTimeSynchronizer([a, b], 10, 0.1))
     a.signalMessage(point(0))
@@ -177,7 +177,7 @@ def test_close_stamps_meet() -> None:
     assert sets.seen == [(60, 100), (0, 50)]
 
 
-def test_the_nearest_is_taken_first_then_the_first_input_decides() -> None:
+def test_the_nearest_message_is_tried_first() -> None:
     a, b, c = (SimpleFilter() for _ in range(3))
     sets = Sets(ApproximateTimeSynchronizer([a, b, c], 10, 0.05))
     for stamp in (0, 30, 100):
@@ -188,7 +188,7 @@ def test_the_nearest_is_taken_first_then_the_first_input_decides() -> None:
     assert sets.seen == [(30, 25, 20)]
 
 
-def test_headerless_by_the_clock(graph: GraphHarness) -> None:
+def test_messages_without_header_have_the_time_of_arrival(graph: GraphHarness) -> None:
     points = Subscriber(graph.node, PointStamped, "points")
     words = Subscriber(graph.node, String, "words")
     seen: list[tuple[int, str]] = []
@@ -202,7 +202,7 @@ def test_headerless_by_the_clock(graph: GraphHarness) -> None:
     assert seen == [(1100, "now")]
 
 
-def test_filters_chain() -> None:
+def test_chained_filters() -> None:
     a, b, c = (SimpleFilter() for _ in range(3))
     cached = Cache(a, 3)
     sets = Sets(ApproximateTimeSynchronizer([cached, b], 5, 0.1))
@@ -216,7 +216,7 @@ def test_filters_chain() -> None:
 
 
 class Plain:
-    """The documented rule word by word: every combination, in order."""
+    """Reference: try every combination in order."""
 
     def __init__(self, inputs: int, size: int, slop: int) -> None:
         self.queues: list[list[int]] = [[] for _ in range(inputs)]
@@ -253,7 +253,7 @@ class Plain:
     st.integers(0, 12),
     st.lists(st.tuples(st.integers(0, 3), st.integers(0, 40)), max_size=60),
 )
-def test_same_sets_as_trying_all(
+def test_same_sets_as_the_reference(
     inputs: int, size: int, slop: int, events: list[tuple[int, int]]
 ) -> None:
     sources = [SimpleFilter() for _ in range(inputs)]

@@ -35,7 +35,7 @@ def scan() -> LaserScan:
     return message
 
 
-def test_yaml_is_what_echo_prints() -> None:
+def test_yaml_in_the_form_of_ros2_topic_echo() -> None:
     text = rosidl.message_to_yaml(scan())
     assert text == (
         "header:\n"
@@ -70,8 +70,8 @@ def test_texts_in_yaml() -> None:
     )
 
 
-def test_arrays_in_yaml_are_what_the_emitter_writes() -> None:
-    """They are written apart from it (an image has millions of numbers)."""
+def test_arrays_in_yaml_equal_the_emitters_text() -> None:
+    """Large arrays are written without the emitter, which is slow."""
     edges: list[list[Any]] = [
         [0, 1, 127, -128, -1] * 10,
         [2**63 - 1, -(2**63)] * 10,
@@ -84,10 +84,10 @@ def test_arrays_in_yaml_are_what_the_emitter_writes() -> None:
             plain = dict(rosidl.message_to_ordereddict(message))
             for flow in (False, True):
                 text = rosidl.message_to_yaml(message, flow_style=flow)
-                wanted = yaml.safe_dump(
+                expected = yaml.safe_dump(
                     plain, sort_keys=False, default_flow_style=flow, width=10**6
                 )
-                assert text == wanted
+                assert text == expected
             pieces = list(yaml_pieces(message, None, width=30))
             assert max(map(len, pieces[1].split("\n"))) <= 30
             assert repr(yaml.safe_load("".join(pieces))) == repr(plain)
@@ -108,7 +108,7 @@ def test_shortened() -> None:
     )
 
 
-def test_ordered_dicts_all_the_way() -> None:
+def test_nested_ordered_dicts() -> None:
     array = DiagnosticArray(
         status=[DiagnosticStatus(name="n", values=[KeyValue(key="k", value="v")])]
     )
@@ -151,7 +151,7 @@ def test_fields_are_set_by_name() -> None:
     assert battery.cell_voltage.tolist() == [1.0, 2.5]
 
 
-def test_stamps_that_are_set_when_sent() -> None:
+def test_stamps_that_are_set_later() -> None:
     message = PathMsg()
     setters = rosidl.set_message_fields(
         message,
@@ -167,7 +167,7 @@ def test_stamps_that_are_set_when_sent() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "error", "said"),
+    ("values", "error", "message"),
     [
         ({"point": {"w": 1}}, AttributeError, "Point has no field 'w'.*x, y, z"),
         ({"point": {"x": "one"}}, TypeError, "x"),
@@ -175,13 +175,13 @@ def test_stamps_that_are_set_when_sent() -> None:
         ("text", TypeError, "PointStamped is expected to be a dictionary"),
     ],
 )
-def test_wrong_values(values: Any, error: type[Exception], said: str) -> None:
-    with pytest.raises(error, match=said) as caught:
+def test_wrong_values(values: Any, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message) as caught:
         rosidl.set_message_fields(PointStamped(), values)
     assert isinstance(caught.value, MessageError)
 
 
-def test_a_bool_is_no_text() -> None:
+def test_a_text_is_not_a_bool() -> None:
     with pytest.raises(MessageError):  # bool("false") would be True
         rosidl.set_message_fields(Bool(), {"data": "false"})
     number = Float64()
@@ -233,5 +233,5 @@ def test_lists_and_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         rosidl.get_interface_path("std_msgs/msg/Nothing")
     with pytest.raises(LookupError, match="'nowhere' not found"):
         rosidl.get_interfaces(["nowhere"])
-    with pytest.raises(ValueError, match="wanted 'package/msg/Name'"):
+    with pytest.raises(ValueError, match="expected 'package/msg/Name'"):
         rosidl.get_interface_path("../etc")

@@ -54,7 +54,7 @@ def transform(
     return message
 
 
-def test_exceptions_are_tf2s_tree() -> None:
+def test_the_hierarchy_of_exceptions() -> None:
     for name in (
         "LookupException",
         "ConnectivityException",
@@ -88,7 +88,7 @@ def test_time_must_be_a_time() -> None:
         Buffer().lookup_transform("map", "base", 1.5)
 
 
-def test_can_transform_tells_why_not() -> None:
+def test_can_transform_returns_the_reason() -> None:
     buffer = Buffer()
     buffer.set_transform(transform("map", "base", 1.0, sec=1), "x")
     ask = ("base", Time(seconds=1), "base", Time(seconds=9), "map")
@@ -100,7 +100,7 @@ def test_can_transform_tells_why_not() -> None:
     assert late[0] is False
 
 
-def test_buffer_without_node_waits_by_the_listeners(graph: GraphHarness) -> None:
+def test_a_buffer_without_node_uses_that_of_the_listener(graph: GraphHarness) -> None:
     node = graph.add(Node("frame_listener", context=graph.context))
     buffer = Buffer()
     listener = TransformListener(buffer, node, spin_thread=True)
@@ -142,8 +142,8 @@ def test_a_thread_spins_for_programs_that_do_not() -> None:
     listener.dedicated_listener_thread.join()
 
 
-def test_any_object_may_be_filled(graph: GraphHarness) -> None:
-    """A listener needs no Navette buffer: two methods are enough."""
+def test_a_listener_accepts_any_object(graph: GraphHarness) -> None:
+    """A listener works with any object that has the two methods."""
 
     class Recorder:
         def __init__(self) -> None:
@@ -169,7 +169,7 @@ def test_any_object_may_be_filled(graph: GraphHarness) -> None:
     listener.unregister()
 
 
-def test_futures_carry_the_transform(graph: GraphHarness) -> None:
+def test_a_future_has_the_transform_as_result(graph: GraphHarness) -> None:
     buffer = Buffer(node=graph.node)
     future = buffer.wait_for_transform_async("map", "base", Time())
     full = buffer.wait_for_transform_full_async(
@@ -183,7 +183,7 @@ def test_futures_carry_the_transform(graph: GraphHarness) -> None:
     assert full.result().transform.translation.x == -4.0
 
 
-def test_own_types_are_registered() -> None:
+def test_registration_of_types() -> None:
     class Sensed:
         def __init__(self, x: float) -> None:
             self.header = Header(frame_id="base")
@@ -230,7 +230,7 @@ def test_the_function_module_has_the_same_names() -> None:
     assert tf2_geometry_msgs.__all__ == functions.__all__
 
 
-def test_covariance_turns_with_the_pose() -> None:
+def test_the_covariance_is_rotated() -> None:
     pose = PoseWithCovarianceStamped()
     pose.pose.covariance = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).ravel()
     moved = tf2_geometry_msgs.do_transform_pose_with_covariance_stamped(
@@ -242,7 +242,7 @@ def test_covariance_turns_with_the_pose() -> None:
     assert np.allclose(moved.pose.covariance.reshape(6, 6), wanted)
 
 
-def test_wrench_gains_the_lever_arms_torque() -> None:
+def test_a_wrench_includes_the_torque_of_its_lever_arm() -> None:
     wrench = WrenchStamped(wrench=Wrench(force=Vector3(x=3.0), torque=Vector3(z=1.0)))
     moved = tf2_geometry_msgs.do_transform_wrench_stamped(
         wrench, transform("map", "base", 2.0, quarter_turn=True)
@@ -264,7 +264,7 @@ def test_polygon_and_vector() -> None:
     assert turned.transform.translation.x == 1.0  # Jazzy's sets it to zero
 
 
-def test_pose_as_its_parts() -> None:
+def test_a_pose_with_its_parts() -> None:
     pose = tf2_geometry_msgs.do_transform_pose(
         Pose(), transform("map", "base", 1.0, quarter_turn=True)
     )
@@ -303,7 +303,7 @@ class Asking:
         self.buffer.set_transform_static(transform("odom", "base", 2.0), "test")
 
 
-def test_a_buffer_elsewhere(graph: GraphHarness) -> None:
+def test_a_remote_buffer(graph: GraphHarness) -> None:
     asking = Asking(graph)
     client = asking.client
     assert client.wait_for_server(Duration(seconds=1))
@@ -319,22 +319,22 @@ def test_a_buffer_elsewhere(graph: GraphHarness) -> None:
     asking.client.destroy()
 
 
-def test_what_a_buffer_elsewhere_cannot_tell(graph: GraphHarness) -> None:
+def test_errors_of_a_remote_buffer(graph: GraphHarness) -> None:
     asking = Asking(graph)
     with pytest.raises(tf2_ros.LookupException, match="nose"):
         asking.client.lookup_transform("odom", "nose", Time())
     asking.buffer.set_transform(transform("odom", "arm", 0.0, sec=5), "test")
     with pytest.raises(tf2_ros.ExtrapolationException):
         asking.client.lookup_transform("odom", "arm", Time(seconds=9))
-    with pytest.raises(TypeError, match="wanted a Time"):
+    with pytest.raises(TypeError, match="expected a Time"):
         asking.client.lookup_transform("odom", "arm", 3)  # type: ignore[arg-type]
     asking.server.destroy()
-    with pytest.raises(tf2_ros.TimeoutException, match="no buffer server serves /tf2"):
+    with pytest.raises(tf2_ros.TimeoutException, match="no buffer server for /tf2"):
         asking.client.lookup_transform("odom", "base", Time())
     assert not asking.client.can_transform("odom", "base", Time())
 
 
-def test_a_question_waits_for_its_transform(graph: GraphHarness) -> None:
+def test_a_request_waits_for_its_transform(graph: GraphHarness) -> None:
     asking = Asking(graph)
     late = transform("map", "odom", 1.0)
     graph.node.create_timer(0.5, lambda: asking.buffer.set_transform_static(late, "t"))
@@ -343,7 +343,7 @@ def test_a_question_waits_for_its_transform(graph: GraphHarness) -> None:
     assert 0.5 <= graph.now_ns / 1e9 < 0.6
 
 
-def test_a_server_that_does_not_answer_is_not_waited_for(graph: GraphHarness) -> None:
+def test_a_server_that_does_not_respond(graph: GraphHarness) -> None:
     node = graph.add(Node("silent", context=graph.context))
 
     async def never(goal: Any) -> Any:
@@ -352,12 +352,12 @@ def test_a_server_that_does_not_answer_is_not_waited_for(graph: GraphHarness) ->
     ActionServer(node, LookupTransform, "tf2_buffer_server", never)
     asker = graph.add(Node("asker", context=graph.context))
     client = tf2_ros.BufferClient(asker, "tf2_buffer_server")
-    with pytest.raises(tf2_ros.TimeoutException, match="did not answer in time"):
+    with pytest.raises(tf2_ros.TimeoutException, match="did not respond in time"):
         client.lookup_transform("a", "b", Time(), Duration(seconds=1))
     assert graph.now_ns == 3_000_000_000
 
 
-def test_a_server_that_refuses(graph: GraphHarness) -> None:
+def test_a_server_that_rejects_the_request(graph: GraphHarness) -> None:
     node = graph.add(Node("proud", context=graph.context))
     ActionServer(
         node,
@@ -368,5 +368,5 @@ def test_a_server_that_refuses(graph: GraphHarness) -> None:
     )
     asker = graph.add(Node("asker", context=graph.context))
     client = tf2_ros.BufferClient(asker, "tf2_buffer_server")
-    with pytest.raises(tf2_ros.TimeoutException, match="refused"):
+    with pytest.raises(tf2_ros.TimeoutException, match="rejected the request"):
         client.lookup_transform("a", "b", Time())

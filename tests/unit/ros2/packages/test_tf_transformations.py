@@ -22,7 +22,7 @@ ANGLE = st.floats(-3.1, 3.1)
 
 
 def reference(angles: tuple[float, float, float], axes: str) -> Rotation:
-    """SciPy writes turning axes in capitals."""
+    """Return SciPy's rotation; its names of rotating axes are capital letters."""
     letters = axes[1:].upper() if axes[0] == "r" else axes[1:]
     return Rotation.from_euler(letters, angles)
 
@@ -33,12 +33,12 @@ def test_there_are_24() -> None:
 
 @given(st.sampled_from(SEQUENCES), ANGLE, ANGLE, ANGLE)
 def test_all_sequences(axes: str, ai: float, aj: float, ak: float) -> None:
-    wanted = reference((ai, aj, ak), axes).as_matrix()
-    assert np.allclose(tft.euler_matrix(ai, aj, ak, axes)[:3, :3], wanted)
+    expected = reference((ai, aj, ak), axes).as_matrix()
+    assert np.allclose(tft.euler_matrix(ai, aj, ak, axes)[:3, :3], expected)
     quaternion = tft.quaternion_from_euler(ai, aj, ak, axes)
     back = tft.euler_from_quaternion(quaternion, axes)
-    assert np.allclose(reference(back, axes).as_matrix(), wanted, atol=1e-6)
-    from_matrix = tft.quaternion_from_matrix(wanted)
+    assert np.allclose(reference(back, axes).as_matrix(), expected, atol=1e-6)
+    from_matrix = tft.quaternion_from_matrix(expected)
     assert from_matrix[3] >= 0
     assert abs(np.dot(from_matrix, quaternion)) == pytest.approx(1)
 
@@ -46,9 +46,9 @@ def test_all_sequences(axes: str, ai: float, aj: float, ak: float) -> None:
 @pytest.mark.parametrize("axes", SEQUENCES)
 @pytest.mark.parametrize("middle", [0.0, math.pi / 2, -math.pi / 2, math.pi])
 def test_gimbal_lock(axes: str, middle: float) -> None:
-    wanted = reference((0.3, middle, 0.4), axes).as_matrix()
-    back = tft.euler_from_matrix(wanted, axes)
-    assert np.allclose(reference(back, axes).as_matrix(), wanted, atol=1e-6)
+    expected = reference((0.3, middle, 0.4), axes).as_matrix()
+    back = tft.euler_from_matrix(expected, axes)
+    assert np.allclose(reference(back, axes).as_matrix(), expected, atol=1e-6)
 
 
 def test_roll_pitch_yaw() -> None:
@@ -86,11 +86,11 @@ def test_matrices() -> None:
 
 
 def test_wrong_use() -> None:
-    with pytest.raises(InvalidValueError, match="axes 'sxxz': wanted s or r"):
+    with pytest.raises(InvalidValueError, match="axes 'sxxz': expected s or r"):
         tft.quaternion_from_euler(0, 0, 0, "sxxz")
-    with pytest.raises(InvalidValueError, match=r"wanted \(x, y, z, w\)"):
+    with pytest.raises(InvalidValueError, match=r"expected \(x, y, z, w\)"):
         tft.euler_from_quaternion((0, 0, 1))
-    with pytest.raises(InvalidValueError, match="is no rotation"):
+    with pytest.raises(InvalidValueError, match="is not a rotation"):
         tft.euler_from_quaternion((0, 0, 0, 0))
     with pytest.raises(InvalidValueError, match="has no direction"):
         tft.quaternion_about_axis(1.0, (0, 0, 0))

@@ -1,4 +1,4 @@
-"""Making packages: names, contents; tests of what was made pass at once."""
+"""Creation of packages: names, contents, and the tests that they contain."""
 
 import os
 import subprocess
@@ -16,7 +16,7 @@ SOURCE = Path(navette.__file__).parent.parent
 
 
 def run_tests(folder: Path) -> str:
-    """Run pytest as a person would; its last line."""
+    """Run pytest in the folder and return the last line of its output."""
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"],
         cwd=folder,
@@ -29,7 +29,7 @@ def run_tests(folder: Path) -> str:
     return done.stdout.splitlines()[-1]
 
 
-def test_what_a_package_holds(tmp_path: Path) -> None:
+def test_contents_of_a_package(tmp_path: Path) -> None:
     (made,) = create_package(
         "my_robot",
         tmp_path,
@@ -96,11 +96,11 @@ def test_the_tests_of_a_new_package_pass(tmp_path: Path) -> None:
     assert "my_robot_msgs" in read_manifest(robot / "package.xml").dependencies
     assert "my_robot_msgs" in find_package("my_robot_msgs", robot).manifest().name
     create_package("other_robot", tmp_path, node="other", messages=True)
-    assert "12 passed" in run_tests(tmp_path)  # of the workspace: no name twice
+    assert "12 passed" in run_tests(tmp_path)  # in the workspace: no duplicate names
 
 
 @pytest.mark.slow
-def test_a_package_of_messages_alone(tmp_path: Path) -> None:
+def test_a_package_with_messages_only(tmp_path: Path) -> None:
     (made,) = create_package("own_msgs", tmp_path, dependencies=["geometry_msgs"])
     cmake = (made / "CMakeLists.txt").read_text()
     assert "find_package(geometry_msgs REQUIRED)" in cmake
@@ -130,9 +130,11 @@ def test_bad_names(tmp_path: Path, arguments: dict[str, object], reason: str) ->
 
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "robot_msgs").mkdir()
-    with pytest.raises(FileFormatError, match="robot_msgs: there is something already"):
+    with pytest.raises(
+        FileFormatError, match="robot_msgs: this file or folder exists already"
+    ):
         create_package("robot", tmp_path, messages=True)
     assert not (tmp_path / "robot").exists()
     create_package("robot", tmp_path)
-    with pytest.raises(FileFormatError, match="robot: there is a package already"):
+    with pytest.raises(FileFormatError, match="robot: this package exists already"):
         create_package("robot", tmp_path)

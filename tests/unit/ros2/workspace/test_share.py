@@ -1,4 +1,4 @@
-"""Share directories of packages that install files elsewhere than they lie."""
+"""Share directories of packages that install files under other paths."""
 
 import os
 from pathlib import Path
@@ -59,7 +59,7 @@ def listed(folder: Path) -> set[str]:
     return found
 
 
-def test_files_are_where_they_would_be_installed(
+def test_files_have_the_paths_of_an_installation(
     package: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(package)
@@ -68,7 +68,7 @@ def test_files_are_where_they_would_be_installed(
     assert (share / "config" / "moved.yaml").read_text() == "moved"
     assert (share / "config" / "own.yaml").read_text() == "own"
     assert (share / "maps" / "big" / "map.pgm").read_text() == "P5"
-    # All that lies in the folder is there, too.
+    # All files of the source folder exist too.
     assert listed(package) <= listed(share)
     (package / "robot" / "parameters" / "params.yaml").write_text("a: 2")
     assert (share / "params.yaml").read_text() == "a: 2"
@@ -76,7 +76,9 @@ def test_files_are_where_they_would_be_installed(
     assert not (package / "params.yaml").exists()
 
 
-def test_it_is_made_once_and_anew_when_the_package_changes(package: Path) -> None:
+def test_the_folder_of_links_is_created_again_when_the_package_changes(
+    package: Path,
+) -> None:
     share = share_directory("robot", package)
     assert share_directory("robot", package) == share
     (package / "more").mkdir()
@@ -84,11 +86,11 @@ def test_it_is_made_once_and_anew_when_the_package_changes(package: Path) -> Non
     assert len(list(share.parent.parent.iterdir())) == 2
 
 
-def test_copies_do_where_links_are_not_allowed(
+def test_files_are_copied_where_links_are_not_allowed(
     package: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object, **__: object) -> None:
-        raise OSError("no links for you")
+        raise OSError("links are not allowed")
 
     monkeypatch.setattr(Path, "symlink_to", refuse)
     share = share_directory("robot", package)
@@ -96,7 +98,9 @@ def test_copies_do_where_links_are_not_allowed(
     assert listed(package) <= listed(share)
 
 
-def test_usual_packages_are_their_own_share(package: Path) -> None:
+def test_the_source_folder_is_the_share_directory_if_no_file_moves(
+    package: Path,
+) -> None:
     (package / "setup.py").write_text(
         "from setuptools import setup\nsetup(data_files=[('share/robot', "
         "['package.xml']), ('share/robot/launch', ['launch/one.launch.py'])])"
@@ -106,7 +110,7 @@ def test_usual_packages_are_their_own_share(package: Path) -> None:
     assert share_directory("robot", package) == package
 
 
-def test_a_broken_setup_py_is_named(package: Path) -> None:
+def test_the_error_of_an_invalid_setup_py_names_the_line(package: Path) -> None:
     (package / "setup.py").write_text("setup(\n")
     with pytest.raises(FileFormatError, match=r"setup\.py:1"):
         share_directory("robot", package)

@@ -1,4 +1,4 @@
-"""ament_index_python: where packages and their files are."""
+"""ament_index_python: folders of packages and resources."""
 
 from navette.ros2.packages.ament_index_python.constants import RESOURCE_INDEX_SUBFOLDER
 from navette.ros2.packages.ament_index_python.packages import (

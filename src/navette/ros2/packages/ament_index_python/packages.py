@@ -1,7 +1,6 @@
-"""ament_index_python.packages: where packages and their files are.
+"""ament_index_python.packages: prefixes and share directories of packages.
 
-A package of the workspace is found in its source folder, with nothing built: that
-folder is its share directory and its prefix.
+For a package of the workspace both are its source folder; no build is required.
 """
 
 import warnings
@@ -19,32 +18,32 @@ __all__ = [
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    """Names of all packages → their prefixes."""
+    """Return the prefixes of all packages by name."""
     return {name: str(package.prefix) for name, package in find_packages().items()}
 
 
 def get_package_prefix(package_name: str) -> str:
-    """The prefix a package is installed in, its folder if it is a source.
+    """Return the prefix of an installed package, or the folder of a source package.
 
     Raises:
-        PackageNotFoundError: nobody has a package of that name.
-        ValueError: no package can have that name.
+        PackageNotFoundError: the package does not exist.
+        ValueError: the name is not valid.
     """
     return str(find_package(package_name).prefix)
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
-    """The folder of a package's files, as text.
+    """Return the share directory of a package as text.
 
     Raises:
-        PackageNotFoundError: nobody has a package of that name.
-        ValueError: no package can have that name.
+        PackageNotFoundError: the package does not exist.
+        ValueError: the name is not valid.
     """
     return str(_share(package_name, warn=print_warning))
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:
-    """The folder of a package's files; raises as the other."""
+    """Return the share directory; raise as :func:`get_package_share_directory`."""
     return _share(package_name, warn=print_warning)
 
 

@@ -1,7 +1,7 @@
-"""ament_index_python.resources: marker files below prefixes, by type and name.
+"""ament_index_python.resources: marker files of the ament index, by type and name.
 
-Two types are known for packages that were never installed, too: ``packages`` and
-``rosidl_interfaces``.
+The types ``packages`` and ``rosidl_interfaces`` include packages that are not
+installed.
 """
 
 from collections.abc import Iterator
@@ -18,18 +18,18 @@ _INTERFACES = "rosidl_interfaces"
 
 
 class InvalidResourceTypeNameError(InvalidNameError):
-    """A resource type that no folder can be named after."""
+    """The resource type is empty or contains a slash."""
 
 
 class InvalidResourceNameError(InvalidNameError):
-    """A resource that no file can be named after."""
+    """The resource name is empty or contains a slash."""
 
 
 def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
-    """The content of a resource and the prefix it is in.
+    """Return the content of a resource and its prefix.
 
     Raises:
-        LookupError: there is none; lists those known.
+        LookupError: the resource does not exist; lists the existing ones.
         InvalidResourceTypeNameError, InvalidResourceNameError
     """
     _check_names(resource_type, resource_name)
@@ -46,7 +46,7 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
 
 
 def get_resources(resource_type: str) -> dict[str, str]:
-    """Names of all resources of a type → the prefixes they are in."""
+    """Return the prefixes of all resources of a type by name."""
     _check_names(resource_type, "any")
     found: dict[str, str] = {}
     for package in _packages_with(resource_type):
@@ -57,14 +57,14 @@ def get_resources(resource_type: str) -> dict[str, str]:
 
 
 def get_resource_types() -> set[str]:
-    """All types of resources."""
+    """Return all resource types."""
     indices = (prefix / RESOURCE_INDEX_SUBFOLDER for prefix in installed_prefixes())
     names = {f.name for index in indices if index.is_dir() for f in index.iterdir()}
     return {_PACKAGES, _INTERFACES, *(n for n in names if not n.startswith("."))}
 
 
 def has_resource(resource_type: str, resource_name: str) -> str | bool:
-    """The prefix that a resource is in, False if there is none."""
+    """Return the prefix of a resource, False if it does not exist."""
     _check_names(resource_type, resource_name)
     return get_resources(resource_type).get(resource_name, False)
 
@@ -72,16 +72,16 @@ def has_resource(resource_type: str, resource_name: str) -> str | bool:
 def _check_names(resource_type: str, resource_name: str) -> None:
     if not resource_type or set(resource_type) & set("/\\"):
         raise InvalidResourceTypeNameError(
-            f"resource type {resource_type!r}: must not be empty or hold a slash"
+            f"resource type {resource_type!r}: must not be empty or contain a slash"
         )
     if not resource_name or set(resource_name) & set("/\\"):
         raise InvalidResourceNameError(
-            f"resource name {resource_name!r}: must not be empty or hold a slash"
+            f"resource name {resource_name!r}: must not be empty or contain a slash"
         )
 
 
 def _resources(resource_type: str) -> Iterator[tuple[str, str, Path]]:
-    """Name, prefix and file of the markers that are installed."""
+    """Yield name, prefix and file of the installed markers."""
     for prefix in installed_prefixes():
         folder = prefix / RESOURCE_INDEX_SUBFOLDER / resource_type
         if folder.is_dir():

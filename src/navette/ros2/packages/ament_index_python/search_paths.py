@@ -4,9 +4,9 @@ from navette.ros2.workspace.finding import installed_prefixes, search_roots
 
 
 def get_search_paths() -> list[str]:
-    """The folders that packages are looked for in: sources first, then prefixes.
+    """Return the folders in which packages are searched: sources, then prefixes.
 
     Raises:
-        FileFormatError: a folder that NAVETTE_PATH names is not there.
+        FileFormatError: a folder of NAVETTE_PATH does not exist.
     """
     return [str(path) for path in (*search_roots(), *installed_prefixes())]

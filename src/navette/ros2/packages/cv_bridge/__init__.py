@@ -1,4 +1,4 @@
-"""cv_bridge: image messages and OpenCV's images."""
+"""cv_bridge: conversion between image messages and OpenCV images."""
 
 from navette.ros2.packages.cv_bridge.core import CvBridge, CvBridgeError
 

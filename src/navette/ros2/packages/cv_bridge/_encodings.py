@@ -1,7 +1,7 @@
-"""Encodings of image messages, and how to get from one to another.
+"""Encodings of image messages and conversions between them.
 
-Names: sensor_msgs/image_encodings. Colours are OpenCV's names of them; OpenCV names a
-Bayer pattern by the second row's second and third pixel.
+The names are those of sensor_msgs/image_encodings, the colours OpenCV's. OpenCV names a
+Bayer pattern after the second and third pixel of the second row.
 """
 
 import re
@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-#: OpenCV's depths, in the order of its numbers → numpy's name.
+#: OpenCV's depth, in the order of its numbers → numpy's name.
 DEPTHS = {
     "8U": "uint8",
     "8S": "int8",
@@ -29,13 +29,13 @@ _YUV = {"yuv422": "UYVY", "uyvy": "UYVY", "yuv422_yuy2": "YUY2", "yuyv": "YUY2"}
 
 
 class CvBridgeError(TypeError):
-    """An image or an encoding that cannot be converted."""
+    """The image or the encoding cannot be converted."""
 
 
 class Encoding(NamedTuple):
-    """What the numbers of an image mean.
+    """Data type, channels and colour space of an image.
 
-    ``colour`` is empty where they are no colours: a depth image, say.
+    ``colour`` is empty if the values are not colours, as in a depth image.
     """
 
     dtype: str
@@ -49,10 +49,10 @@ class Encoding(NamedTuple):
 
 @cache
 def parsed(name: str) -> Encoding:
-    """The encoding of that name.
+    """Return the encoding of that name.
 
     Raises:
-        CvBridgeError: there is none.
+        CvBridgeError: the name is unknown.
     """
     plain = _PLAIN.fullmatch(name)
     if plain is not None:
@@ -70,50 +70,50 @@ def parsed(name: str) -> Encoding:
         if stem != pattern and pattern in _BAYER:
             return Encoding(f"uint{bits}", 1, f"Bayer{_BAYER[pattern]}")
     raise CvBridgeError(
-        f"unrecognized image encoding {name!r}; wanted mono8, bgr8, rgb8, bgra8, "
-        "rgba8, the same with 16, bayer_rggb8 and its like, yuv422, yuv422_yuy2, or "
-        "8UC1 to 64FC4"
+        f"unrecognized image encoding {name!r}; known: mono8, bgr8, rgb8, bgra8, "
+        "rgba8, the same with 16, bayer_rggb8 and the other patterns, yuv422, "
+        "yuv422_yuy2, and 8UC1 to 64FC4"
     )
 
 
-def converted(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
-    """The image in another encoding; between 8 and 16 bits values are stretched.
+def converted(image: NDArray[Any], source: str, target: str) -> NDArray[Any]:
+    """Convert an image to another encoding; values are scaled between 8 and 16 bits.
 
     Raises:
-        CvBridgeError: there is no way from the one to the other.
+        CvBridgeError: there is no conversion between the two encodings.
     """
-    if source == wanted:
+    if source == target:
         return image
-    have, want = parsed(source), parsed(wanted)
-    if have.colour and want.colour:
-        if have.colour != want.colour:
-            image = _recoloured(image, have.colour, want.colour)
-    elif want.colour or have.channels != want.channels:
-        raise CvBridgeError(
-            f"no way from {source} to {wanted}: "
-            + ("its numbers are no colours" if want.colour else "other channels")
+    old, new = parsed(source), parsed(target)
+    if old.colour and new.colour:
+        if old.colour != new.colour:
+            image = _recoloured(image, old.colour, new.colour)
+    elif new.colour or old.channels != new.channels:
+        reason = (
+            "values are not colours" if new.colour else "numbers of channels differ"
         )
-    return _with_depth(image, want)
+        raise CvBridgeError(f"no conversion from {source} to {target}: {reason}")
+    return _with_depth(image, new)
 
 
-def _recoloured(image: NDArray[Any], have: str, want: str) -> NDArray[Any]:
+def _recoloured(image: NDArray[Any], old: str, new: str) -> NDArray[Any]:
     import cv2
 
-    is_yuv = have in _YUV.values()
-    name = f"COLOR_YUV2{want}_{have}" if is_yuv else f"COLOR_{have}2{want}"
-    code = getattr(cv2, name, None) if want in _CHANNELS else None
+    is_yuv = old in _YUV.values()
+    name = f"COLOR_YUV2{new}_{old}" if is_yuv else f"COLOR_{old}2{new}"
+    code = getattr(cv2, name, None) if new in _CHANNELS else None
     if code is None:
-        raise CvBridgeError(f"no way from {have} to {want} images")
+        raise CvBridgeError(f"no conversion from {old} to {new} images")
     recoloured: NDArray[Any] = cv2.cvtColor(image, code)
     return recoloured
 
 
-def _with_depth(image: NDArray[Any], want: Encoding) -> NDArray[Any]:
-    dtype = np.dtype(want.dtype)
+def _with_depth(image: NDArray[Any], target: Encoding) -> NDArray[Any]:
+    dtype = np.dtype(target.dtype)
     if image.dtype == dtype:
         return image
     scale = {(8, 16): 65535 / 255, (16, 8): 255 / 65535}.get(
-        (8 * image.dtype.itemsize, want.bits), 1.0
+        (8 * image.dtype.itemsize, target.bits), 1.0
     )
     if dtype.kind == "f":
         return image.astype(dtype)

@@ -1,4 +1,4 @@
-"""cv_bridge.core: image messages and OpenCV's images."""
+"""cv_bridge.core: conversion between image messages and OpenCV images."""
 
 import sys
 from typing import Any
@@ -17,11 +17,11 @@ from navette.ros2.packages.cv_bridge._encodings import (
 
 __all__ = ["CvBridge", "CvBridgeError"]
 
-_COLOURS = {1: "mono", 3: "bgr", 4: "bgra"}  # as OpenCV decodes files
+_COLOURS = {1: "mono", 3: "bgr", 4: "bgra"}  # of files that OpenCV decodes
 
 
 class CvBridge:
-    """Converts both ways. Images are arrays (height, width) or (height, width, n)."""
+    """Converter of messages to arrays (height, width[, channels]) and back."""
 
     def __init__(self) -> None:
         import cv2
@@ -31,7 +31,7 @@ class CvBridge:
         self.cvdepth_to_numpy_depth: dict[int, str] = {
             getattr(cv2, f"CV_{name}"): dtype for name, dtype in DEPTHS.items()
         }
-        # What one more channel adds to OpenCV's number of a type; 8 before its 5.0.
+        # Difference of OpenCV's type numbers per channel; 8 before OpenCV 5.0.
         self._per_channel = int(cv2.CV_8UC2 - cv2.CV_8UC1)
         self.cvtype_to_name: dict[int, str] = {
             getattr(cv2, f"CV_{name}C{channels}"): f"{name}C{channels}"
@@ -44,10 +44,10 @@ class CvBridge:
     def imgmsg_to_cv2(
         self, img_msg: Image, desired_encoding: str = "passthrough"
     ) -> NDArray[Any]:
-        """The image of a message, an array of its own.
+        """Return a copy of a message's image.
 
         Raises:
-            CvBridgeError: there is no way to that encoding, or too little data.
+            CvBridgeError: there is no such conversion, or too little data.
         """
         image = _pixels(img_msg)
         if desired_encoding == "passthrough":
@@ -57,10 +57,10 @@ class CvBridge:
     def compressed_imgmsg_to_cv2(
         self, cmprs_img_msg: CompressedImage, desired_encoding: str = "passthrough"
     ) -> NDArray[Any]:
-        """The image of a compressed message; bgr, bgra or mono unless said otherwise.
+        """Return the image of a compressed message; bgr, bgra or mono by default.
 
         Raises:
-            CvBridgeError: there is no way to that encoding, or no image in the data.
+            CvBridgeError: there is no such conversion, or the data is not an image.
         """
         import cv2
 
@@ -69,7 +69,7 @@ class CvBridge:
         if found is None:
             raise CvBridgeError(
                 f"compressed image of {data.size} bytes, format "
-                f"{cmprs_img_msg.format!r}: it cannot be decoded"
+                f"{cmprs_img_msg.format!r}: OpenCV cannot decode it"
             )
         image: NDArray[Any] = found
         if desired_encoding == "passthrough":
@@ -86,10 +86,10 @@ class CvBridge:
         encoding: str = "passthrough",
         header: Header | None = None,
     ) -> Image:
-        """A message with the image; its encoding ``8UC3`` and so on unless said.
+        """Return a message with the image; the default encoding is ``8UC3`` etc.
 
         Raises:
-            CvBridgeError: the encoding is another number of channels or other numbers.
+            CvBridgeError: the encoding has another data type or number of channels.
         """
         kind = self._kind(cvim)
         if encoding == "passthrough":
@@ -115,10 +115,10 @@ class CvBridge:
     def cv2_to_compressed_imgmsg(
         self, cvim: NDArray[Any], dst_format: str = "jpg"
     ) -> CompressedImage:
-        """A message with the image in a file's format (jpg, png, …).
+        """Return a message with the image in a file format (jpg, png, …).
 
         Raises:
-            CvBridgeError: OpenCV does not write such an image in that format.
+            CvBridgeError: OpenCV cannot write this image in that format.
         """
         import cv2
 
@@ -132,29 +132,28 @@ class CvBridge:
     # -- types -----------------------------------------------------------------
 
     def dtype_with_channels_to_cvtype2(self, dtype: Any, n_channels: int) -> str:
-        """``8UC3`` for three channels of uint8."""
+        """Return ``8UC3`` for three channels of uint8."""
         name = np.dtype(dtype).name
         if name not in DEPTHS.values():
             raise CvBridgeError(
-                f"images of {name} are unknown to OpenCV; wanted one of "
-                f"{', '.join(DEPTHS.values())}"
+                f"OpenCV has no images of {name}; known: {', '.join(DEPTHS.values())}"
             )
         return f"{self.numpy_type_to_cvtype[name]}C{n_channels}"
 
     def cvtype2_to_dtype_with_channels(self, cvtype: int) -> tuple[str, int]:
-        """``("uint8", 3)`` for OpenCV's number ``CV_8UC3``."""
+        """Return ``("uint8", 3)`` for OpenCV's number ``CV_8UC3``."""
         more, depth = divmod(cvtype, self._per_channel)
         return self.cvdepth_to_numpy_depth[depth], more + 1
 
     def encoding_to_cvtype2(self, encoding: str) -> int:
-        """OpenCV's number of an encoding's type."""
+        """Return OpenCV's type number of an encoding."""
         dtype, channels = self.encoding_to_dtype_with_channels(encoding)
         name = self.numpy_type_to_cvtype[dtype]
         first = next(k for k, v in self.cvtype_to_name.items() if v == f"{name}C1")
         return first + self._per_channel * (channels - 1)
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """``("uint8", 3)`` for ``bgr8``."""
+        """Return ``("uint8", 3)`` for ``bgr8``."""
         found = parsed(encoding)
         return found.dtype, found.channels
 
@@ -173,16 +172,16 @@ class CvBridge:
 
 
 def _pixels(msg: Image) -> NDArray[Any]:
-    """The pixels without the padding of rows, in the machine's byte order."""
+    """Return the pixels without row padding, in native byte order."""
     encoding = parsed(msg.encoding)
     dtype = np.dtype(encoding.dtype)
     pixel = encoding.channels * dtype.itemsize
     data = np.asarray(msg.data, dtype=np.uint8)
     if msg.step < msg.width * pixel or data.size < msg.height * msg.step:
         raise CvBridgeError(
-            f"{msg.encoding} image of {msg.width} × {msg.height}, {msg.step} bytes a "
-            f"row, {data.size} in all: wanted at least {msg.width * pixel} a row and "
-            f"{msg.height * max(msg.step, msg.width * pixel)} in all"
+            f"{msg.encoding} image of {msg.width} × {msg.height}, {msg.step} bytes "
+            f"per row, {data.size} in total: expected at least {msg.width * pixel} per "
+            f"row and {msg.height * max(msg.step, msg.width * pixel)} in total"
         )
     shape, strides = (msg.height, msg.width), (msg.step, pixel)
     if encoding.channels > 1:

@@ -1,4 +1,4 @@
-"""diagnostic_updater: what a node knows of its own health, on ``/diagnostics``."""
+"""diagnostic_updater: diagnostics of a node on ``/diagnostics``."""
 
 from navette.ros2.packages.diagnostic_updater._diagnostic_status_wrapper import (
     DiagnosticStatusWrapper,

@@ -1,4 +1,4 @@
-"""A status message that is easy to fill in."""
+"""Status message with methods to fill it."""
 
 # ruff: noqa: N802 - the names are diagnostic_updater's
 
@@ -8,21 +8,21 @@ from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 
 class DiagnosticStatusWrapper(DiagnosticStatus):
-    """A DiagnosticStatus; fields as keywords."""
+    """A DiagnosticStatus with methods to set its summary and values."""
 
     def summary(self, *args: Any) -> None:
-        """Set level and message: ``summary(level, message)`` or those of a status."""
+        """Set level and message: ``summary(level, message)`` or ``summary(status)``."""
         self.level, self.message = _summary_of(args)
 
     def clearSummary(self) -> None:
-        """Level OK, no message."""
+        """Set level OK without a message."""
         self.summary(DiagnosticStatus.OK, "")
 
     def mergeSummary(self, *args: Any) -> None:
-        """Take in a further summary, given as to :meth:`summary`.
+        """Merge another summary; arguments as for :meth:`summary`.
 
-        The worse level counts. Messages of two that are both fine, or both not, are
-        put one behind the other; else the message of the one that is not fine stays.
+        The worse level counts. If both summaries are OK, or neither is, the messages
+        are joined; otherwise the message of the summary that is not OK remains.
         """
         level, message = _summary_of(args)
         is_bad, was_bad = level > DiagnosticStatus.OK, self.level > DiagnosticStatus.OK
@@ -33,7 +33,7 @@ class DiagnosticStatusWrapper(DiagnosticStatus):
         self.level = max(self.level, level)
 
     def add(self, key: str, val: object) -> None:
-        """Add a value under a name; anything that can be written as text."""
+        """Add a value, which is converted to text."""
         self.values.append(KeyValue(key=key, value=str(val)))
 
 
@@ -43,5 +43,5 @@ def _summary_of(args: tuple[Any, ...]) -> tuple[bytes, str]:
     if len(args) == 2:
         return args[0], str(args[1])
     raise TypeError(
-        f"wanted a status, or a level and a message; got {len(args)} arguments"
+        f"expected a status, or a level and a message; got {len(args)} arguments"
     )

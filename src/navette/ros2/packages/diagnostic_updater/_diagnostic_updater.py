@@ -1,4 +1,4 @@
-"""Tasks that fill in a status each, and the updater that publishes them."""
+"""Diagnostic tasks and the updater that publishes their statuses."""
 
 # ruff: noqa: N802 - the names are diagnostic_updater's
 
@@ -19,7 +19,7 @@ _USE_FQN = "diagnostic_updater.use_fqn"
 
 
 class DiagnosticTask:
-    """Base of what says how something fares."""
+    """Base of the diagnostic tasks."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -28,12 +28,12 @@ class DiagnosticTask:
         return self.name
 
     def run(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Fill in the status and give it back."""
+        """Fill the status and return it."""
         return stat
 
 
 class FunctionDiagnosticTask(DiagnosticTask):
-    """A task that is a function."""
+    """Task that calls a function."""
 
     def __init__(self, name: str, fn: Fill) -> None:
         super().__init__(name)
@@ -44,7 +44,7 @@ class FunctionDiagnosticTask(DiagnosticTask):
 
 
 class CompositeDiagnosticTask(DiagnosticTask):
-    """Several tasks with one status: the worst level, the messages that tell of it."""
+    """Several tasks with one status: the worst level and its messages."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -54,7 +54,7 @@ class CompositeDiagnosticTask(DiagnosticTask):
         self.tasks.append(t)
 
     def run(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Let each task add its values and its summary to that of the others."""
+        """Run each task and combine values and summaries."""
         given, combined = DiagnosticStatusWrapper(), DiagnosticStatusWrapper()
         given.summary(stat)
         for task in self.tasks:
@@ -75,7 +75,7 @@ class _NamedFill(NamedTuple):
 
 
 class DiagnosticTaskVector:
-    """A list of tasks, in the order in which they were added."""
+    """List of tasks in the order in which they were added."""
 
     DiagnosticTaskInternal = _NamedFill
 
@@ -84,7 +84,7 @@ class DiagnosticTaskVector:
         self.lock = threading.RLock()
 
     def addedTaskCallback(self, task: _NamedFill) -> None:
-        """Told of each task that is added."""
+        """Override to react to an added task."""
 
     def add(self, *args: Any) -> None:
         """Add a task: ``add(task)`` or ``add(name, function)``."""
@@ -96,7 +96,7 @@ class DiagnosticTaskVector:
             self.addedTaskCallback(task)
 
     def removeByName(self, name: str) -> bool:
-        """Remove the first task of that name; False if there is none."""
+        """Remove the first task of that name; return False if there is none."""
         with self.lock:
             for task in self.tasks:
                 if task.name == name:
@@ -106,12 +106,12 @@ class DiagnosticTaskVector:
 
 
 class Updater(DiagnosticTaskVector):
-    """Runs its tasks at regular times and publishes what they say.
+    """Runs its tasks periodically and publishes their statuses.
 
     Args:
-        node: publishes and has the parameters ``diagnostic_updater.period`` (seconds)
-            and ``diagnostic_updater.use_fqn`` (statuses bear the node's full name).
-        period: seconds, unless the parameter says otherwise.
+        node: publishes the statuses. Its parameters are ``diagnostic_updater.period``
+            (s) and ``diagnostic_updater.use_fqn`` (use the node's full name).
+        period: default of the parameter, in s.
     """
 
     def __init__(self, node: Node, period: float = 1.0) -> None:
@@ -130,7 +130,7 @@ class Updater(DiagnosticTaskVector):
 
     @property
     def period(self) -> float:
-        """Seconds between two updates."""
+        """Time between two updates, in s."""
         return self._period
 
     @period.setter
@@ -140,28 +140,28 @@ class Updater(DiagnosticTaskVector):
         self.timer = self.node.create_timer(period, self.update)
 
     def setHardwareID(self, hwid: str) -> None:
-        """Name the device that all statuses are about."""
+        """Set the hardware ID of all statuses."""
         self.hwid = hwid
 
     def update(self) -> None:
-        """Run all tasks now and publish."""
+        """Run all tasks and publish their statuses."""
         with self.lock:
             statuses = [self._run(task) for task in tuple(self.tasks)]
         is_fine = all(status.level == DiagnosticStatus.OK for status in statuses)
         if is_fine and not self.hwid and not self.warn_nohwid_done:
             self.warn_nohwid_done = True
             self.node.get_logger().warning(
-                "diagnostic_updater: no hardware ID was set, though all is well; call "
-                "setHardwareID (with 'none', if there is no device)"
+                "diagnostic_updater: the hardware ID is not set; call setHardwareID "
+                "(with 'none' if there is no device)"
             )
         self.publish(statuses)
 
     def force_update(self) -> None:
-        """As :meth:`update`."""
+        """Run all tasks and publish, as :meth:`update` does."""
         self.update()
 
     def broadcast(self, lvl: bytes, msg: str) -> None:
-        """Publish one summary for all tasks, without running them."""
+        """Publish one summary for all tasks without running them."""
         statuses = []
         for task in tuple(self.tasks):
             status = DiagnosticStatusWrapper(name=task.name)
@@ -170,7 +170,7 @@ class Updater(DiagnosticTaskVector):
         self.publish(statuses)
 
     def publish(self, msg: DiagnosticStatus | list[Any]) -> None:
-        """Publish a status or several; the node's name goes before theirs."""
+        """Publish one or several statuses, prefixed with the node's name."""
         array = DiagnosticArray()
         array.header.stamp = self.node.get_clock().now().to_msg()
         for status in msg if isinstance(msg, list) else [msg]:
@@ -187,7 +187,7 @@ class Updater(DiagnosticTaskVector):
         self.publisher.publish(array)
 
     def addedTaskCallback(self, task: _NamedFill) -> None:
-        """Say at once that the task is there."""
+        """Publish a first status of the task."""
         status = DiagnosticStatusWrapper(name=task.name)
         status.summary(DiagnosticStatus.OK, "Node starting up")
         self.publish(status)
@@ -215,14 +215,14 @@ def _filled(
     filled = fill(stat)
     if not isinstance(filled, DiagnosticStatus):
         raise TypeError(
-            f"diagnostic task {name!r}: it must return the status that it was given, "
+            f"diagnostic task {name!r} must return the status that it received, "
             f"got {filled!r}"
         )
     return filled
 
 
 def _parameter(node: Node, name: str, default: Any) -> Any:
-    """Its value; declared first if no other updater of the node has done so."""
+    """Return a parameter's value; declare it if no other updater of the node has."""
     if node.has_parameter(name):
         return node.get_parameter(name).value
     return node.declare_parameter(name, default).value

@@ -1,4 +1,4 @@
-"""Tasks about a topic, told of each message or publishing it themselves."""
+"""Tasks that monitor the messages of a topic."""
 
 from typing import Any
 
@@ -16,12 +16,12 @@ from navette.runtime import Publisher, Time
 
 
 class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
-    """How often messages come that have no header.
+    """Monitor of the rate of messages without a header.
 
     Args:
-        name: the topic's.
-        diag: the updater that it is added to; its node's clock counts.
-        freq: what is expected.
+        name: name of the topic.
+        diag: the updater to which the task is added; its node's clock is used.
+        freq: the expected rate.
     """
 
     def __init__(self, name: str, diag: Updater, freq: FrequencyStatusParam) -> None:
@@ -32,16 +32,16 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
         diag.add(self)
 
     def tick(self) -> None:
-        """A message came or went."""
+        """Count a message."""
         self.freq.tick()
 
     def clear_window(self) -> None:
-        """Count anew."""
+        """Reset the counts."""
         self.freq.clear()
 
 
 class TopicDiagnostic(HeaderlessTopicDiagnostic):
-    """How often messages come, and whether their stamps are about now."""
+    """Monitor of the rate and the stamps of messages."""
 
     def __init__(
         self,
@@ -55,13 +55,13 @@ class TopicDiagnostic(HeaderlessTopicDiagnostic):
         self.addTask(self.stamp)
 
     def tick(self, stamp: Time | float) -> None:  # type: ignore[override]
-        """A message with that stamp came or went."""
+        """Count a message with that stamp."""
         self.stamp.tick(stamp)
         super().tick()
 
 
 class DiagnosedPublisher(TopicDiagnostic):
-    """A publisher whose messages are looked at as they go."""
+    """Publisher that monitors its messages."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Tasks that many nodes need: how often something happens, and how old it is."""
+"""Common tasks: rate of events and age of stamps."""
 
 import math
 import threading
@@ -13,13 +13,13 @@ from navette.runtime import Clock, ClockType, Time
 
 
 class FrequencyStatusParam:
-    """What :class:`FrequencyStatus` expects.
+    """Expected frequency of :class:`FrequencyStatus`.
 
     Args:
-        freq_bound: 'min' and 'max' frequency, Hz; 'max' may be left out. Looked at each
-            time, so that it may be changed.
-        tolerance: how far beyond the bounds is still fine, as a part of them.
-        window_size: over how many runs of the task events are counted.
+        freq_bound: 'min' and optionally 'max' frequency, in Hz. The values may change
+            between runs.
+        tolerance: accepted deviation from the bounds, as a fraction of them.
+        window_size: number of runs of the task over which events are counted.
     """
 
     def __init__(
@@ -34,16 +34,16 @@ class FrequencyStatusParam:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Least and greatest acceptable frequency, Hz."""
+        """Lowest and highest acceptable frequency, in Hz."""
         least = self.freq_bound["min"] * (1 - self.tolerance)
         return least, self.freq_bound.get("max", math.inf) * (1 + self.tolerance)
 
 
 class FrequencyStatus(DiagnosticTask):
-    """Whether something happens as often as it should; :meth:`tick` each time.
+    """Check of the rate of an event, for which :meth:`tick` must be called.
 
     Args:
-        clock: tells the time; of the default context if not given.
+        clock: default: the clock of the default context.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class FrequencyStatus(DiagnosticTask):
         self.clear()
 
     def clear(self) -> None:
-        """Begin anew."""
+        """Reset the counts."""
         with self.lock:
             size = self.params.window_size
             self.count = 0
@@ -69,7 +69,7 @@ class FrequencyStatus(DiagnosticTask):
             self.hist_indx = 0
 
     def tick(self) -> None:
-        """It happened."""
+        """Count an event."""
         with self.lock:
             self.count += 1
 
@@ -77,7 +77,7 @@ class FrequencyStatus(DiagnosticTask):
         with self.lock:
             events, window_s = self._next_window()
             count = self.count
-        # No time has gone by (two runs at one instant): nothing can be said.
+        # With two runs at one instant there is no rate.
         frequency = events / window_s if window_s > 0 else math.nan
         least, most = self.params.bounds
         if events == 0:
@@ -96,7 +96,7 @@ class FrequencyStatus(DiagnosticTask):
         return stat
 
     def _next_window(self) -> tuple[int, float]:
-        """Events and seconds since ``window_size`` runs ago."""
+        """Return events and seconds since ``window_size`` runs ago."""
         now, oldest = self._clock.now(), self.hist_indx
         events = self.count - self.seq_nums[oldest]
         window_s = (now - self.times[oldest]).nanoseconds * 1e-9
@@ -117,7 +117,7 @@ class FrequencyStatus(DiagnosticTask):
 
 
 class TimeStampStatusParam:
-    """What :class:`TimeStampStatus` accepts, seconds from a stamp to its arrival."""
+    """Accepted delays from stamp to arrival of :class:`TimeStampStatus`, in s."""
 
     def __init__(self, min_acceptable: float = -1, max_acceptable: float = 5) -> None:
         self.max_acceptable = max_acceptable
@@ -125,10 +125,10 @@ class TimeStampStatusParam:
 
 
 class TimeStampStatus(DiagnosticTask):
-    """Whether stamps are about now; :meth:`tick` with each one.
+    """Check of stamps, with each of which :meth:`tick` must be called.
 
     Args:
-        clock: tells the time; of the default context if not given.
+        clock: default: the clock of the default context.
     """
 
     def __init__(
@@ -143,15 +143,15 @@ class TimeStampStatus(DiagnosticTask):
         self.lock = threading.Lock()
         self._clock = clock or Clock(clock_type=ClockType.ROS_TIME)
         self.early_count = self.late_count = self.zero_count = 0
-        self._forget()
+        self._reset()
 
-    def _forget(self) -> None:
+    def _reset(self) -> None:
         self.zero_seen = False
         self.max_delta = self.min_delta = 0.0
         self.deltas_valid = False
 
     def tick(self, stamp: Time | float) -> None:
-        """Something arrives that bears this stamp (a Time, or seconds)."""
+        """Check a stamp (a Time or seconds) against the current time."""
         seconds = stamp.nanoseconds * 1e-9 if isinstance(stamp, Time) else float(stamp)
         with self.lock:
             if seconds == 0:
@@ -165,7 +165,7 @@ class TimeStampStatus(DiagnosticTask):
 
     def run(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         with self.lock:
-            stat.summary(*self._judged())
+            stat.summary(*self._summary())
             for key, value in (
                 ("Earliest timestamp delay:", f"{self.min_delta:f}"),
                 ("Latest timestamp delay:", f"{self.max_delta:f}"),
@@ -182,11 +182,11 @@ class TimeStampStatus(DiagnosticTask):
                 ("Zero seen diagnostic update count:", f"{self.zero_count}"),
             ):
                 stat.add(key, value)
-            self._forget()
+            self._reset()
         return stat
 
-    def _judged(self) -> tuple[bytes, str]:
-        """Level and message; of several faults the last one, all are counted."""
+    def _summary(self) -> tuple[bytes, str]:
+        """Return level and message of the last of several faults; count all."""
         if not self.deltas_valid and not self.zero_seen:
             return DiagnosticStatus.WARN, "No data since last update."
         bad = DiagnosticStatus.ERROR
@@ -207,7 +207,7 @@ class TimeStampStatus(DiagnosticTask):
 
 
 class Heartbeat(DiagnosticTask):
-    """Says that the node is alive."""
+    """Task that reports that the node runs."""
 
     def __init__(self) -> None:
         super().__init__("Heartbeat")

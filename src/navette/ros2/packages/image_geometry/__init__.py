@@ -1,4 +1,4 @@
-"""image_geometry: pixels and points of cameras."""
+"""image_geometry: camera models for pixels and points."""
 
 from navette.ros2.packages.image_geometry.cameramodels import (
     PinholeCameraModel,

@@ -1,8 +1,8 @@
-"""image_geometry.cameramodels: pixels and points of cameras.
+"""image_geometry.cameramodels: camera models for pixels and points.
 
-Points are metres in the camera's optical frame (x right, y down, z ahead); pixels are
-(u, v) with u to the right. Matrices are ``numpy.matrix``, as programs expect of this
-package: ``*`` multiplies them. Source: the definition of sensor_msgs/msg/CameraInfo.
+Points are in m in the camera's optical frame (x right, y down, z forward); pixels are
+(u, v) with u to the right. Matrices are ``numpy.matrix``, as in ROS 2: ``*`` multiplies
+them. Source: the definition of sensor_msgs/msg/CameraInfo.
 """
 
 # ruff: noqa: N802 - the names are image_geometry's
@@ -22,10 +22,10 @@ Point = tuple[float, float, float]
 
 
 class PinholeCameraModel:
-    """One camera, by its CameraInfo.
+    """Model of one camera from its CameraInfo.
 
-    ``K`` and ``P`` are those of the image as it is sent: scaled by the binning, moved
-    by the region of interest. ``full_K`` and ``full_P`` are those of the whole sensor.
+    ``K`` and ``P`` belong to the published image: they include binning and the region
+    of interest. ``full_K`` and ``full_P`` belong to the whole sensor.
     """
 
     def __init__(self) -> None:
@@ -47,7 +47,7 @@ class PinholeCameraModel:
         self.mapy: Any = None
 
     def fromCameraInfo(self, msg: CameraInfo) -> None:
-        """Take the parameters of a message; a region of zeros is the whole image."""
+        """Set the parameters; a region of interest of zeros is the whole image."""
         self.full_K, self.full_P = _matrix(3, 3, msg.k), _matrix(3, 4, msg.p)
         self.R = _matrix(3, 3, msg.r)
         self.D = _matrix(len(msg.d), 1, msg.d) if len(msg.d) else None
@@ -61,21 +61,21 @@ class PinholeCameraModel:
         self.raw_roi = roi
         self.tf_frame = msg.header.frame_id
         self.stamp = msg.header.stamp
-        self.K, self.P = self._as_sent(self.full_K), self._as_sent(self.full_P)
+        self.K, self.P = self._cropped(self.full_K), self._cropped(self.full_P)
 
-    def _as_sent(self, full: Any) -> Any:
-        sent = full.copy()
-        assert self.raw_roi is not None, "set just before"
-        sent[0, 2] -= self.raw_roi.x_offset
-        sent[1, 2] -= self.raw_roi.y_offset
-        sent[0, [0, 2]] /= self.binning_x
-        sent[1, [1, 2]] /= self.binning_y
-        return sent
+    def _cropped(self, full: Any) -> Any:
+        cropped = full.copy()
+        assert self.raw_roi is not None, "set by the caller"
+        cropped[0, 2] -= self.raw_roi.x_offset
+        cropped[1, 2] -= self.raw_roi.y_offset
+        cropped[0, [0, 2]] /= self.binning_x
+        cropped[1, [1, 2]] /= self.binning_y
+        return cropped
 
     # -- rectifying ------------------------------------------------------------
 
     def rectifyImage(self, raw: Any, rectified: Any) -> None:
-        """Write the rectified image of ``raw`` into ``rectified``, of the same size."""
+        """Write the rectified image into ``rectified``, which has the same size."""
         import cv2
 
         self._check()
@@ -86,7 +86,7 @@ class PinholeCameraModel:
         cv2.remap(raw, self.mapx, self.mapy, cv2.INTER_CUBIC, rectified)
 
     def rectifyPoint(self, uv_raw: Sequence[float]) -> Any:
-        """Where a pixel of the raw image is in the rectified one: (2,) array."""
+        """Return the rectified position (2,) of a pixel of the raw image."""
         import cv2
 
         self._check()
@@ -96,38 +96,38 @@ class PinholeCameraModel:
     # -- pixels of the rectified image and points ------------------------------
 
     def project3dToPixel(self, point: Sequence[float]) -> Pixel:
-        """Where a point is seen; nan in the camera's own plane."""
+        """Return the pixel of a point; nan in the camera's plane."""
         self._check()
         u, v, w = np.asarray(self.P) @ [point[0], point[1], point[2], 1.0]
         return (float(u / w), float(v / w)) if w != 0 else (math.nan, math.nan)
 
     def projectPixelTo3dRay(self, uv: Sequence[float]) -> Point:
-        """The direction in which a pixel looks, of length 1."""
+        """Return the unit vector of a pixel's direction."""
         x = (uv[0] - self.cx()) / self.fx()
         y = (uv[1] - self.cy()) / self.fy()
         norm = math.sqrt(x * x + y * y + 1.0)
         return x / norm, y / norm, 1.0 / norm
 
     def getDeltaU(self, deltaX: float, Z: float) -> float:
-        """How many pixels to the right ``deltaX`` metres are at depth ``Z``."""
+        """Return the horizontal distance in pixels of ``deltaX`` m at depth ``Z`` m."""
         return self.fx() * deltaX / Z if Z != 0 else math.inf
 
     def getDeltaV(self, deltaY: float, Z: float) -> float:
-        """How many pixels down ``deltaY`` metres are at depth ``Z``."""
+        """Return the vertical distance in pixels of ``deltaY`` m at depth ``Z`` m."""
         return self.fy() * deltaY / Z if Z != 0 else math.inf
 
     def getDeltaX(self, deltaU: float, Z: float) -> float:
-        """How many metres to the right ``deltaU`` pixels are at depth ``Z``."""
+        """Return the horizontal distance in m of ``deltaU`` pixels at depth ``Z`` m."""
         return Z * deltaU / self.fx()
 
     def getDeltaY(self, deltaV: float, Z: float) -> float:
-        """How many metres down ``deltaV`` pixels are at depth ``Z``."""
+        """Return the vertical distance in m of ``deltaV`` pixels at depth ``Z`` m."""
         return Z * deltaV / self.fy()
 
     # -- parameters ------------------------------------------------------------
 
     def fullResolution(self) -> tuple[int, int]:
-        """Width and height of the whole sensor."""
+        """Return width and height of the whole sensor in pixels."""
         self._check()
         width, height = self.resolution
         return width, height
@@ -163,24 +163,24 @@ class PinholeCameraModel:
         return self._projection(1, 1)
 
     def Tx(self) -> float:
-        """``-fx`` times the metres from the left camera of a pair; 0 for that one."""
+        """Return ``-fx`` times the distance (m) to the left camera of a stereo pair."""
         return self._projection(0, 3)
 
     def Ty(self) -> float:
         return self._projection(1, 3)
 
     def fovX(self) -> float:
-        """Horizontal field of view of the whole sensor, radians."""
+        """Return the horizontal field of view of the whole sensor in rad."""
         self._check()
         return 2 * math.atan(self.width / (2 * float(self.full_P[0, 0])))
 
     def fovY(self) -> float:
-        """Vertical field of view of the whole sensor, radians."""
+        """Return the vertical field of view of the whole sensor in rad."""
         self._check()
         return 2 * math.atan(self.height / (2 * float(self.full_P[1, 1])))
 
     def tfFrame(self) -> str | None:
-        """The frame that the parameters' message named."""
+        """Return the frame of the CameraInfo."""
         return self.tf_frame
 
     def _projection(self, row: int, column: int) -> float:
@@ -190,14 +190,14 @@ class PinholeCameraModel:
     def _check(self) -> None:
         if self.P is None:
             raise InvalidValueError(
-                "camera model without parameters: call fromCameraInfo first"
+                "the camera model has no parameters; call fromCameraInfo first"
             )
 
 
 class StereoCameraModel:
-    """Two cameras side by side, rectified: a point's two pixels are in one row.
+    """Model of a rectified stereo pair: the two pixels of a point are in one row.
 
-    ``Q`` (4, 4) makes a point of (u, v, disparity, 1), with the left pixel.
+    ``Q`` (4, 4) converts (u, v, disparity, 1) of the left image to a point.
     """
 
     def __init__(self) -> None:
@@ -206,17 +206,17 @@ class StereoCameraModel:
         self.Q: Any = None
 
     def fromCameraInfo(self, left_msg: CameraInfo, right_msg: CameraInfo) -> None:
-        """Take the parameters of both.
+        """Set the parameters of both cameras.
 
         Raises:
-            InvalidValueError: the right one has no baseline.
+            InvalidValueError: the right camera has no baseline.
         """
         self.left.fromCameraInfo(left_msg)
         self.right.fromCameraInfo(right_msg)
         if self.right.Tx() == 0:
             raise InvalidValueError(
-                "right camera's P[0, 3] is 0: wanted -fx times the baseline; are left "
-                "and right exchanged?"
+                "P[0, 3] of the right camera is 0, expected -fx times the baseline; "
+                "the cameras may be swapped"
             )
         left, fx, fy = self.left, self.left.fx(), self.left.fy()
         baseline = -self.right.Tx() / self.right.fx()
@@ -227,19 +227,19 @@ class StereoCameraModel:
         self.Q[3, [2, 3]] = 1.0 / baseline, -self._offset() / baseline
 
     def _offset(self) -> float:
-        """The disparity of a point that is infinitely far away."""
+        """Return the disparity of a point at infinity."""
         return self.left.cx() - self.right.cx()
 
     def tfFrame(self) -> str | None:
-        """The left camera's."""
+        """Return the frame of the left camera."""
         return self.left.tfFrame()
 
     def project3dToPixel(self, point: Sequence[float]) -> tuple[Pixel, Pixel]:
-        """Where a point of the left camera's frame is seen, left and right."""
+        """Return the left and the right pixel of a point in the left camera's frame."""
         return self.left.project3dToPixel(point), self.right.project3dToPixel(point)
 
     def projectPixelTo3d(self, left_uv: Sequence[float], disparity: float) -> Point:
-        """The point at a left pixel; (0, 0, 0) if it is infinitely far away."""
+        """Return the point of a left pixel; (0, 0, 0) for a point at infinity."""
         self.left._check()
         x, y, z, w = self.Q @ [left_uv[0], left_uv[1], disparity, 1.0]
         if w == 0:
@@ -247,15 +247,15 @@ class StereoCameraModel:
         return float(x / w), float(y / w), float(z / w)
 
     def getZ(self, disparity: float) -> float:
-        """Depth (m) of what is seen with a disparity (pixels)."""
+        """Return the depth (m) for a disparity (pixels)."""
         shift = disparity - self._offset()
         return -self.right.Tx() / shift if shift != 0 else math.inf
 
     def getDisparity(self, Z: float) -> float:
-        """Disparity (pixels) with which a depth (m) is seen."""
+        """Return the disparity (pixels) for a depth (m)."""
         return -self.right.Tx() / Z + self._offset() if Z != 0 else math.inf
 
 
 def _matrix(rows: int, columns: int, values: Any) -> Any:
-    """A matrix of its own; by a view, since the constructor warns of its class."""
+    """Return a numpy.matrix; as a view, because its constructor emits a warning."""
     return np.array(values, dtype=np.float64).reshape(rows, columns).view(np.matrix)

@@ -1,4 +1,4 @@
-"""laser_geometry: scans as point clouds."""
+"""laser_geometry: conversion of scans to point clouds."""
 
 from navette.ros2.packages.laser_geometry.laser_geometry import LaserProjection
 

@@ -1,4 +1,4 @@
-"""laser_geometry.laser_geometry: scans as point clouds."""
+"""laser_geometry.laser_geometry: conversion of scans to point clouds."""
 
 # ruff: noqa: N802 - the names are laser_geometry's
 
@@ -16,11 +16,10 @@ from navette.ros2.packages.sensor_msgs_py.point_cloud2 import (
 
 
 class LaserProjection:
-    """Puts the hits of a scan into a cloud in the scan's own frame.
+    """Converter of the hits of a scan to a cloud in the scan's frame.
 
-    A hit is a range of at least ``range_min`` and below ``range_max``: everything else
-    (nan and inf too) is no point of the cloud. The beams' directions are kept from one
-    scan to the next of the same angles.
+    A hit is a range of at least ``range_min`` and below ``range_max``; other ranges,
+    nan and inf are left out. The directions of the beams are cached.
     """
 
     LASER_SCAN_INVALID = -1.0
@@ -28,14 +27,14 @@ class LaserProjection:
     LASER_SCAN_MAX_RANGE = -3.0
 
     class ChannelOption:
-        """What a point has beside x, y, z; to be or-ed."""
+        """Further fields of a point, combined with ``|``."""
 
         NONE = 0x00
         INTENSITY = 0x01  # "intensity", if the scan has any
         INDEX = 0x02  # "index": of the beam
         DISTANCE = 0x04  # "distances", metres
         TIMESTAMP = 0x08  # "stamps": seconds after the scan's stamp
-        VIEWPOINT = 0x10  # "vp_x", "vp_y", "vp_z": where the scanner was; the origin
+        VIEWPOINT = 0x10  # "vp_x", "vp_y", "vp_z": position of the scanner, 0
         DEFAULT = INTENSITY | INDEX
 
     _CHANNELS: ClassVar = (
@@ -47,7 +46,7 @@ class LaserProjection:
     )
 
     def __init__(self) -> None:
-        self._angles = (0, 0.0, 0.0)  # of the directions: how many, first, step
+        self._angles = (0, 0.0, 0.0)  # of the directions: number, first, increment
         self._directions = np.zeros((2, 0))
 
     def projectLaser(
@@ -56,20 +55,20 @@ class LaserProjection:
         range_cutoff: float = -1.0,
         channel_options: int = ChannelOption.DEFAULT,
     ) -> PointCloud2:
-        """The cloud of a scan, a point for each hit, in the order of the beams.
+        """Return the cloud of a scan with a point for each hit, in order of the beams.
 
         Args:
-            range_cutoff: metres; also leave out what is not nearer; below 0: nothing.
+            range_cutoff: upper limit of ranges in m; negative: no limit.
             channel_options: further fields, of :class:`ChannelOption`.
 
         Raises:
-            InvalidValueError: intensities that are not one for each range.
+            InvalidValueError: the numbers of intensities and ranges differ.
         """
         ranges = np.asarray(scan_in.ranges)
         if scan_in.intensities and len(scan_in.intensities) != len(ranges):
             raise InvalidValueError(
                 f"scan with {len(ranges)} ranges and {len(scan_in.intensities)} "
-                "intensities: wanted as many, or none"
+                "intensities: expected the same number, or none"
             )
         farthest = scan_in.range_max
         if range_cutoff >= 0:
@@ -108,10 +107,12 @@ class LaserProjection:
         ]
 
     def _directions_of(self, scan: LaserScan) -> NDArray[np.float64]:
-        """(2, N): cosine and sine of each beam's angle."""
-        wanted = len(scan.ranges), scan.angle_min, scan.angle_increment
-        if self._angles != wanted:
-            angles = scan.angle_min + np.arange(wanted[0]) * scan.angle_increment
+        """Return cosine and sine of each beam's angle, shape (2, N)."""
+        angles_of_scan = len(scan.ranges), scan.angle_min, scan.angle_increment
+        if self._angles != angles_of_scan:
+            angles = (
+                scan.angle_min + np.arange(angles_of_scan[0]) * scan.angle_increment
+            )
             self._directions = np.array([np.cos(angles), np.sin(angles)])
-            self._angles = wanted
+            self._angles = angles_of_scan
         return self._directions

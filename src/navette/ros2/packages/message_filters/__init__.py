@@ -1,4 +1,4 @@
-"""message_filters: caches and synchronizers of messages, chained by callbacks."""
+"""message_filters: caches and synchronizers of messages, connected by callbacks."""
 
 from navette.ros2.packages.message_filters.cache import Cache
 from navette.ros2.packages.message_filters.simple_filter import SimpleFilter, Subscriber

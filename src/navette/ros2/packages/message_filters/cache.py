@@ -1,4 +1,4 @@
-"""The newest messages of a filter, to be asked for by time."""
+"""Cache of the newest messages of a filter, with lookup by time."""
 
 # ruff: noqa: N802 - the names are message_filters'
 
@@ -15,14 +15,14 @@ from navette.runtime import Time
 
 
 class Cache(SimpleFilter):
-    """Keeps the ``cache_size`` messages that arrived last, in order of arrival.
+    """The last ``cache_size`` messages in order of arrival.
 
-    When stamps go back by more than a second (a bag that loops), it begins anew.
+    The cache is cleared when stamps jump backward by more than 1 s (a bag that loops).
 
     Args:
-        f: the filter to listen to.
-        allow_headerless: keep messages without a stamp by the time of their arrival,
-            which depends on delays; otherwise they are dropped.
+        f: the input filter.
+        allow_headerless: use the time of arrival, which depends on delays, for messages
+            without a stamp; otherwise these are dropped.
     """
 
     def __init__(
@@ -30,7 +30,7 @@ class Cache(SimpleFilter):
     ) -> None:
         super().__init__()
         if cache_size < 1:
-            raise InvalidValueError(f"cache_size {cache_size}: wanted at least 1")
+            raise InvalidValueError(f"cache_size {cache_size}: must be at least 1")
         self.cache_size = cache_size
         self.cache_msgs: list[Any] = []
         self.cache_times: list[Time] = []
@@ -43,11 +43,11 @@ class Cache(SimpleFilter):
         return self._stamps.allow_headerless
 
     def connectInput(self, f: Any) -> None:
-        """Listen to a filter."""
+        """Connect the input filter."""
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Keep a message and hand it on."""
+        """Store a message and pass it on."""
         stamp = self._stamps.read(msg)
         if stamp is None:
             return
@@ -63,39 +63,41 @@ class Cache(SimpleFilter):
         self.signalMessage(msg)
 
     def getInterval(self, from_stamp: Any, to_stamp: Any) -> list[Any]:
-        """The messages from one time to another, both included.
+        """Return the messages of an interval, ends included.
 
         Raises:
-            InvalidValueError: the interval ends before it starts.
+            InvalidValueError: the interval ends before its start.
         """
         start, end = as_time(from_stamp), as_time(to_stamp)
         if end < start:
-            raise InvalidValueError(f"interval from {start} to {end} ends too early")
+            raise InvalidValueError(
+                f"interval from {start} to {end} ends before its start"
+            )
         return [msg for msg, time in self._pairs() if start <= time <= end]
 
     def getElemAfterTime(self, stamp: Any) -> Any:
-        """The first kept message at the time or after it; None if there is none."""
+        """Return the first message in the cache at or after a time, or None."""
         time = as_time(stamp)
         return next((msg for msg, kept in self._pairs() if kept >= time), None)
 
     def getElemBeforeTime(self, stamp: Any) -> Any:
-        """The last kept message at the time or before it; None if there is none."""
+        """Return the last message in the cache at or before a time, or None."""
         time = as_time(stamp)
         older = [msg for msg, kept in self._pairs() if kept <= time]
         return older[-1] if older else None
 
     def getLatestTime(self) -> Time | None:
-        """Stamp of the message that arrived last; None if there is none."""
+        """Return the stamp of the message that arrived last, or None."""
         return self.cache_times[-1] if self.cache_times else None
 
     getLastestTime = getLatestTime
 
     def getOldestTime(self) -> Time | None:
-        """Stamp of the message that arrived first; None if there is none."""
+        """Return the stamp of the message that arrived first, or None."""
         return self.cache_times[0] if self.cache_times else None
 
     def getLast(self) -> Any:
-        """The first kept message that is not older than the last; None if none."""
+        """Return the first message that is not older than the last one, or None."""
         latest = self.getLatestTime()
         return None if latest is None else self.getElemAfterTime(latest)
 

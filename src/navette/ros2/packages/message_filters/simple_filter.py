@@ -1,4 +1,4 @@
-"""Filters call back with what comes out of them; a subscriber is the first of a chain.
+"""Base of filters, which pass messages to callbacks, and the subscriber filter.
 
 The names of methods are those of ROS's package.
 """
@@ -12,35 +12,34 @@ from navette.runtime import Clock, Node, ROSClock, Subscription
 
 
 class SimpleFilter:
-    """Anything with output: others connect to it by :meth:`registerCallback`."""
+    """Filter whose output goes to the callbacks of :meth:`registerCallback`."""
 
-    #: Tells the time of messages without a stamp; None where no node is known.
+    #: Clock for messages without a stamp; None if the filter has no node.
     clock: Clock | None = None
 
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
 
     def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:
-        """Call ``cb(*messages, *args)`` for each output; the connection's number."""
+        """Call ``cb(*messages, *args)`` for each output; return the connection."""
         connection = len(self.callbacks)
         self.callbacks[connection] = (cb, args)
         return connection
 
     def signalMessage(self, *msg: Any) -> None:
-        """Hand an output on to those who are connected, in their order."""
+        """Pass an output to the callbacks in the order of their registration."""
         for callback, args in tuple(self.callbacks.values()):
             callback(*msg, *args)
 
 
 class Subscriber(SimpleFilter):
-    """Takes what :meth:`Node.create_subscription` takes, but for the callback.
-
-    Everything a subscription has is reached through it, too.
+    """Filter whose input is a subscription; has the subscription's attributes too.
 
     Args:
-        node: whose subscription it is.
+        node: the node that subscribes.
         msg_type, topic: as for ``create_subscription``.
         qos_profile: profile or depth.
+        kwargs: as for ``create_subscription``.
     """
 
     def __init__(
@@ -60,20 +59,20 @@ class Subscriber(SimpleFilter):
         )
 
     def callback(self, msg: Any) -> None:
-        """A message arrived."""
+        """Pass a message on."""
         self.signalMessage(msg)
 
     def getTopic(self) -> str:
         return self.topic
 
     def __getattr__(self, key: str) -> Any:
-        if key == "sub":  # not made yet: the node refused it
+        if key == "sub":  # create_subscription raised
             raise AttributeError(key)
         return getattr(self.sub, key)
 
 
 def clock_of(*filters: Any) -> Clock:
-    """The clock of the first that has one; else the default context's."""
+    """Return the clock of the first filter that has one, or the default context's."""
     for each in filters:
         clock = getattr(each, "clock", None)
         if isinstance(clock, Clock):

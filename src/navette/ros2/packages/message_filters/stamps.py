@@ -1,4 +1,4 @@
-"""When a message was: by its header, or by the clock if that is allowed."""
+"""Stamps of messages, from the header or the clock."""
 
 import logging
 from typing import Any
@@ -6,18 +6,18 @@ from typing import Any
 from navette.runtime import Clock, ClockType, Time
 
 NEW_RUN_NS = 1_000_000_000
-"""Stamps that go back by more are of another run: a bag that loops, a reset."""
+"""Stamps that jump backward by more belong to another run (a looping bag, a reset)."""
 
 _LOG = logging.getLogger(__name__)
 
 
 class StampReader:
-    """Gives the stamp of each message that one filter receives.
+    """Reader of the stamps of a filter's messages.
 
     Args:
-        clock: tells the time of messages without a header.
-        allow_headerless: take them by the time of their arrival; else they are
-            dropped, which is logged once.
+        clock: clock for messages without a header.
+        allow_headerless: use the time of arrival for these messages; otherwise they
+            are dropped, with one log message.
     """
 
     def __init__(self, clock: Clock, *, allow_headerless: bool) -> None:
@@ -26,7 +26,7 @@ class StampReader:
         self._warned = False
 
     def read(self, msg: Any) -> Time | None:
-        """The stamp; None if there is none and the message is to be dropped."""
+        """Return the stamp; None if the message must be dropped."""
         stamp = getattr(getattr(msg, "header", None), "stamp", None)
         if stamp is not None:
             return as_time(stamp)
@@ -36,13 +36,13 @@ class StampReader:
         if not self._warned:
             self._warned = True
             _LOG.warning(
-                "dropped a %s: it has no header with a stamp; allow_headerless=True "
-                "takes such messages by the time of their arrival",
+                "dropped a %s without a stamp in a header; allow_headerless=True "
+                "uses the time of arrival for such messages",
                 type(msg).__name__,
             )
         return None
 
 
 def as_time(stamp: Any) -> Time:
-    """A stamp message as a Time of the ROS clock; a Time stays."""
+    """Convert a stamp message to a Time; return a Time unchanged."""
     return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)

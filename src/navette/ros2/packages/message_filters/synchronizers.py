@@ -1,4 +1,4 @@
-"""Sets of messages, one of each input, that belong to one time."""
+"""Synchronizers: sets of messages, one of each input, with matching stamps."""
 
 # ruff: noqa: N802 - the names are message_filters'
 
@@ -14,30 +14,32 @@ from navette.ros2.packages.message_filters.stamps import (
 )
 from navette.runtime import Clock, Duration
 
-#: Messages of one input that wait for their set: by stamp (ns).
+#: Messages of one input that wait for the other inputs, by stamp (ns).
 Queue = dict[int, Any]
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Calls back with one message of each input when all have the same stamp.
+    """Filter that outputs one message of each input when all have the same stamp.
+
+    The queues are cleared when an input's stamps jump backward by more than 1 s (a bag
+    that loops).
 
     Args:
-        fs: the filters to listen to.
-        queue_size: how many messages of each input wait for the others; of more, the
-            one with the oldest stamp goes. When an input's stamps go back by more than
-            a second (a bag that loops), what waited is forgotten.
+        fs: the input filters.
+        queue_size: number of waiting messages per input; the one with the oldest stamp
+            is dropped first.
     """
 
     def __init__(self, fs: Sequence[Any], queue_size: int) -> None:
         super().__init__()
         if queue_size < 1:
-            raise InvalidValueError(f"queue_size {queue_size}: wanted at least 1")
+            raise InvalidValueError(f"queue_size {queue_size}: must be at least 1")
         self.queue_size = queue_size
         self.clock: Clock = clock_of(*fs)
         self.connectInput(fs)
 
     def connectInput(self, fs: Sequence[Any]) -> None:
-        """Listen to the filters; what waited is forgotten."""
+        """Connect the input filters and clear the queues."""
         self.queues: list[Queue] = [{} for _ in fs]
         self.input_connections = [
             f.registerCallback(self.add, queue, index)
@@ -45,10 +47,10 @@ class TimeSynchronizer(SimpleFilter):
         ]
 
     def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
-        """A message of one input arrived.
+        """Add a message of one input.
 
         Raises:
-            MessageError: it has no header with a stamp.
+            MessageError: the message has no header with a stamp.
         """
         if not hasattr(getattr(msg, "header", None), "stamp"):
             raise MessageError(
@@ -61,7 +63,8 @@ class TimeSynchronizer(SimpleFilter):
 
     def _put(self, msg: Any, queue: Queue, stamp_ns: int) -> None:
         if queue and stamp_ns < max(queue) - NEW_RUN_NS:
-            # Else the newest, being the oldest by its stamp, would be dropped for ever.
+            # Otherwise all new messages would be dropped, as those with the oldest
+            # stamp.
             for each in self.queues:
                 each.clear()
         queue[stamp_ns] = msg
@@ -69,28 +72,27 @@ class TimeSynchronizer(SimpleFilter):
             del queue[min(queue)]
 
     def _emit(self, stamps_ns: Sequence[int]) -> None:
-        """Hand on the messages with these stamps, one of each queue."""
-        # Taken out first: a callback that raises must not get them again.
+        """Output the messages with these stamps, one of each queue."""
+        # Removed first, so that a callback that raises does not receive them again.
         self.signalMessage(
             *[q.pop(t) for q, t in zip(self.queues, stamps_ns, strict=True)]
         )
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """Calls back with one message of each input when their stamps are close.
+    """Filter that outputs one message of each input when their stamps are close.
 
-    Each arriving message is tried with those that wait: from every other input those
-    within ``slop`` of it, the nearest first (of the first other input all of them
-    against the nearest of the last, and so on); the first set whose stamps lie less
-    than ``slop`` apart goes out. So the result depends on the order of arrival, as in
-    ROS 2.
+    An arriving message is combined with the waiting messages of the other inputs within
+    ``slop`` of it, the nearest first; the last input varies fastest. The first set
+    whose stamps lie less than ``slop`` apart is output. As in ROS 2, the result depends
+    on the order of arrival.
 
     Args:
-        fs: the filters to listen to.
-        queue_size: how many messages of each input wait for the others.
-        slop: seconds; at 0 no set is ever close enough.
-        allow_headerless: take messages without a stamp by the time of their arrival,
-            which depends on delays; otherwise they are dropped.
+        fs: the input filters.
+        queue_size: number of waiting messages per input.
+        slop: longest time between the stamps of a set, in s; 0 matches no set.
+        allow_headerless: use the time of arrival, which depends on delays, for messages
+            without a stamp; otherwise these are dropped.
     """
 
     def __init__(
@@ -109,13 +111,13 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return self._stamps.allow_headerless
 
     def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
-        """A message of one input arrived."""
+        """Add a message of one input."""
         stamp = self._stamps.read(msg)
         if stamp is None:
             return
         stamp_ns = stamp.nanoseconds
         self._put(msg, my_queue, stamp_ns)
-        if stamp_ns not in my_queue:  # it was the oldest of too many
+        if stamp_ns not in my_queue:  # dropped: the queue is full of newer messages
             return
         choices = [
             [stamp_ns] if index == my_queue_index else self._near(queue, stamp_ns)
@@ -126,17 +128,17 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
             self._emit(chosen)
 
     def _near(self, queue: Queue, stamp_ns: int) -> list[int]:
-        """The stamps within slop of one, nearest first; earlier arrival first."""
+        """Return the stamps within slop, the nearest and then the earliest first."""
         slop_ns = self.slop.nanoseconds
         near = [each for each in queue if abs(each - stamp_ns) <= slop_ns]
         return sorted(near, key=lambda each: abs(each - stamp_ns))
 
 
 def _first_close(choices: Sequence[Sequence[int]], slop_ns: int) -> list[int] | None:
-    """The first of all combinations, the last varying fastest, that lies within slop.
+    """Return the first combination within slop; the last input varies fastest.
 
-    A start of a combination that is too wide already is not completed, so that many
-    waiting messages cost little.
+    A partial combination that is too wide is not completed, which keeps the cost low
+    with many waiting messages.
     """
     chosen: list[int] = []
 

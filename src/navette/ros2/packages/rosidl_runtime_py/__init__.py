@@ -1,4 +1,4 @@
-"""rosidl_runtime_py: messages as YAML, CSV and dicts; interfaces by name."""
+"""rosidl_runtime_py: messages as YAML, CSV and dict; lookup of interfaces."""
 
 from navette.ros2.packages.rosidl_runtime_py.convert import (
     get_message_slot_types,

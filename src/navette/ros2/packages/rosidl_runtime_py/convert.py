@@ -1,7 +1,7 @@
-"""rosidl_runtime_py.convert: messages as text, in the form ``ros2 topic echo`` prints.
+"""rosidl_runtime_py.convert: messages as text in the form of ``ros2 topic echo``.
 
-``truncate_length`` shortens arrays and texts to so many items and ends them in
-``...``; ``no_arr`` and ``no_str`` put the type and length in their place.
+``truncate_length`` limits the number of items of arrays and texts, which then end in
+``...``; ``no_arr`` and ``no_str`` replace arrays and texts by their type and length.
 """
 
 from array import array
@@ -28,7 +28,7 @@ _IDL_NAMES |= {"float32": "float", "float64": "double"}
 
 @dataclass(frozen=True, slots=True)
 class _Shortening:
-    """What is left out of a text."""
+    """Options to shorten a text."""
 
     length: int | None
     no_arr: bool
@@ -43,7 +43,7 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """The message as YAML; ``flow_style`` puts it on one line."""
+    """Return the message as YAML, on one line with ``flow_style``."""
     fields = _fields(msg, _Shortening(truncate_length, no_arr, no_str))
     return "".join(yaml_text(fields, Layout(flow_style)))
 
@@ -55,7 +55,7 @@ def message_to_csv(
     no_arr: bool = False,
     no_str: bool = False,
 ) -> str:
-    """The message's values, in the order of the definition, with commas between."""
+    """Return the message's values, separated by commas, in order of the fields."""
     shortening = _Shortening(truncate_length, no_arr, no_str)
     return ",".join(
         _csv(getattr(msg, name), shortening, field_type)
@@ -73,13 +73,14 @@ def yaml_pieces(
     flow_style: bool = False,
     width: int | None = None,
 ) -> Iterator[str]:
-    """A message or a sequence of one as YAML, as it would stand in the message's.
+    """Return a message or one of its sequences as pieces of YAML.
 
     Args:
-        width: numbers of arrays beside each other, in lines of so many characters.
+        width: number of characters per line for arrays of numbers; default: one number
+            per line.
 
     Returns:
-        Pieces: in turn what stands around the arrays of numbers, and such an array.
+        Alternately text without arrays of numbers, and one such array.
     """
     shortening = _Shortening(truncate_length, no_arr, no_str)
     return yaml_text(_plain(value, shortening, field_type), Layout(flow_style, width))
@@ -93,7 +94,7 @@ def value_to_csv(
     no_arr: bool = False,
     no_str: bool = False,
 ) -> str:
-    """A field's value as it would stand in :func:`message_to_csv`."""
+    """Return a field's value in the form of :func:`message_to_csv`."""
     return _csv(value, _Shortening(truncate_length, no_arr, no_str), field_type)
 
 
@@ -104,14 +105,14 @@ def message_to_ordereddict(
     no_arr: bool = False,
     no_str: bool = False,
 ) -> "OrderedDict[str, Any]":
-    """The message's fields by name, all the way down; arrays as lists."""
+    """Return the message's fields by name, recursively; arrays are lists."""
     shortening = _Shortening(truncate_length, no_arr, no_str)
     ordered: OrderedDict[str, Any] = _ordered(_fields(msg, shortening))
     return ordered
 
 
 def get_message_slot_types(msg: Message) -> "OrderedDict[str, FieldType]":
-    """The fields' types by name."""
+    """Return the types of the fields by name."""
     return OrderedDict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
 
 
@@ -182,7 +183,7 @@ def _csv(
 
 
 def _short(value: Any, length: int | None, end: str | None) -> Any:
-    """``value`` itself if it is short enough, else its start (and ``end``)."""
+    """Return a short value unchanged, of a long one its start followed by ``end``."""
     if length is None or len(value) <= length:
         return value
     start = value[:length]

@@ -1,4 +1,4 @@
-"""rosidl_runtime_py.get_interfaces: which interfaces there are, and their files."""
+"""rosidl_runtime_py.get_interfaces: lists of interfaces, and their files."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,48 +10,48 @@ from navette.ros2.workspace.package import INTERFACE_KINDS
 
 
 def get_interface_packages() -> dict[str, str]:
-    """Packages that define interfaces → their prefixes."""
+    """Return the prefixes of the packages that define interfaces, by name."""
     packages = find_packages().values()
     return {p.name: str(p.prefix) for p in packages if p.has_interfaces}
 
 
 def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """Packages → their interfaces (``msg/String``); all packages if none is named.
+    """Return the interfaces (``msg/String``) of packages; default: all packages.
 
-    Packages without interfaces are left out.
+    Packages without interfaces are omitted.
 
     Raises:
-        LookupError: a package is not found.
+        LookupError: a package does not exist.
     """
     return _interfaces(package_names, INTERFACE_KINDS)
 
 
 def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """As :func:`get_interfaces`, messages only."""
+    """As :func:`get_interfaces`, but only messages."""
     return _interfaces(package_names, ("msg",))
 
 
 def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """As :func:`get_interfaces`, services only."""
+    """As :func:`get_interfaces`, but only services."""
     return _interfaces(package_names, ("srv",))
 
 
 def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """As :func:`get_interfaces`, actions only."""
+    """As :func:`get_interfaces`, but only actions."""
     return _interfaces(package_names, ("action",))
 
 
 def get_interface_path(interface_name: str) -> str:
-    """The file that defines ``pkg/msg/Name`` (with or without ``.msg``).
+    """Return the file that defines ``pkg/msg/Name`` (with or without ``.msg``).
 
     Raises:
         ValueError: the name has the wrong form.
-        LookupError: no such package or interface; lists those known.
+        LookupError: the package or interface does not exist; lists the existing ones.
     """
     parts = interface_name.split("/")
     if len(parts) < 2 or not all(parts) or ".." in parts:
         raise InvalidNameError(
-            f"interface name {interface_name!r}: wanted 'package/msg/Name'"
+            f"interface name {interface_name!r}: expected 'package/msg/Name'"
         )
     share = find_package(parts[0]).share
     path = Path(share, *parts[1:])
@@ -66,10 +66,10 @@ def get_interface_path(interface_name: str) -> str:
 def _interfaces(names: Iterable[str], kinds: Iterable[str]) -> dict[str, list[str]]:
     kinds = tuple(kinds)
     loaded = set(msgs.packages())
-    wanted = list(names) or sorted({*get_interface_packages(), *loaded})
+    packages = list(names) or sorted({*get_interface_packages(), *loaded})
     found: dict[str, list[str]] = {}
-    for name in wanted:
-        # Interfaces that a program loaded itself need not lie in any package.
+    for name in packages:
+        # A program can load interfaces that do not belong to any package.
         listed = _loaded(name, kinds) if name in loaded else _in_files(name, kinds)
         if listed:
             found[name] = listed

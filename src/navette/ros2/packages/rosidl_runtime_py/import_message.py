@@ -1,4 +1,4 @@
-"""rosidl_runtime_py.import_message: the class that a field's type names."""
+"""rosidl_runtime_py.import_message: class of a field's type."""
 
 from typing import Any
 
@@ -9,10 +9,10 @@ _FEEDBACK = "_FeedbackMessage"
 
 
 def import_message_from_namespaced_type(message_type: Any) -> Any:
-    """The class of a type in ``SLOT_TYPES``, of a name, or of a NamespacedType.
+    """Return the class of a type in ``SLOT_TYPES``, a name, or a NamespacedType.
 
     Raises:
-        UnknownNameError: nobody defines it.
+        UnknownNameError: there is no such interface.
     """
     if isinstance(message_type, FieldType):
         name = message_type.base

@@ -1,8 +1,8 @@
-"""Arrays of numbers as YAML text, by the million.
+"""Fast YAML text of large arrays of numbers.
 
-A YAML emitter takes some microseconds a number, and an image has millions. So
-:mod:`.yaml_text` lets it write a mark in the place of each array, and what stands there
-is made here.
+A YAML emitter needs some microseconds per number, and an image has millions. So
+:mod:`.yaml_text` lets the emitter write a placeholder for each array, which the
+functions here replace.
 """
 
 import re
@@ -14,36 +14,36 @@ from typing import Any
 import numpy as np
 
 CUT = "..."
-"""The last item where an array is not shown whole."""
+"""The last item of a shortened array."""
 
 _UNSIGNED = [str(number) for number in range(256)]
-# By the byte that stands for the number.
+# Indexed by the unsigned byte.
 _SIGNED = [str(number) for number in (*range(128), *range(-128, 0))]
-# YAML wants a point in a number: 1e-05 would be a text.
+# A float in YAML requires a point: 1e-05 would be a text.
 _NO_POINT = re.compile(r"(?<![\d.])(\d+)e")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Numbers:
-    """A sequence of numbers or truth values of a message; ``is_cut``: its start."""
+    """Sequence of numbers or bools of a message; ``is_cut`` if it is shortened."""
 
     items: "np.ndarray[Any, Any] | array[Any] | list[bool]"
     is_cut: bool = False
 
     def plain(self) -> list[Any]:
-        """As a list that ends in :data:`CUT` if it is cut."""
+        """Return a list, which ends in :data:`CUT` if it is shortened."""
         items = self.items if isinstance(self.items, list) else self.items.tolist()
         return [*items, CUT] if self.is_cut else items
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """How arrays stand in a text.
+    """Layout of arrays in a text.
 
     Args:
-        flow: all of the text in one line, arrays in brackets.
-        width: of the terminal of a person who reads it: arrays in brackets, in lines
-            of at most so many characters. Without it an item a line.
+        flow: the whole text on one line, arrays in brackets.
+        width: arrays in brackets, in lines of at most this many characters, for a
+            terminal; None: one item per line.
     """
 
     flow: bool = False
@@ -53,7 +53,7 @@ class Layout:
 def with_numbers(
     around: Sequence[str], arrays: Sequence[Numbers], layout: Layout
 ) -> Iterator[str]:
-    """A text in pieces: in turn what stands around the arrays, and an array."""
+    """Yield alternately the text around the arrays and an array."""
     for numbers, before in zip(arrays, around, strict=False):
         line = before[before.rfind("\n") + 1 :]
         if layout.flow:
@@ -69,7 +69,7 @@ def with_numbers(
 
 
 def _in_rows(numbers: Numbers, indent: int, width: int) -> str:
-    """In brackets, in lines that end between two numbers."""
+    """Return the numbers in brackets, with line breaks between them."""
     room = max(width - indent - 1, 1)
     rows = re.compile(rf"(.{{1,{room}}}|\S+)(?:, |\Z)")
     between = f",\n{' ' * indent}"
@@ -93,7 +93,7 @@ def _yaml_words(values: "np.ndarray[Any, Any]", between: str) -> str:
 
 
 def python_words(values: "np.ndarray[Any, Any]", between: str) -> str:
-    """The numbers as Python writes them."""
+    """Return the numbers as Python formats them."""
     kind = values.dtype.kind
     if kind in "iu" and values.itemsize == 1:
         words = _UNSIGNED if kind == "u" else _SIGNED

@@ -1,4 +1,4 @@
-"""rosidl_runtime_py.set_message: fill a message from a dict, as YAML gives it."""
+"""rosidl_runtime_py.set_message: set the fields of a message from a dict."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -14,9 +14,9 @@ Setter = Callable[[Any], None]
 
 
 class UnknownFieldError(MessageError, AttributeError):
-    """A message has no field of that name.
+    """The message has no field of that name.
 
-    Also an ``AttributeError``, because that is what ROS 2's function raises.
+    Also an ``AttributeError``, which ROS 2's function raises.
     """
 
 
@@ -26,21 +26,22 @@ def set_message_fields(
     expand_header_auto: bool = False,
     expand_time_now: bool = False,
 ) -> list[Setter]:
-    """Set the fields that ``values`` names, all the way down.
+    """Set the fields in ``values``, recursively.
 
-    A nested message starts from its defaults. Text is read as a number where a number
-    is wanted, and a number is written where a text is.
+    A nested message starts from its defaults. Texts are converted to numbers and
+    numbers to texts according to the field's type.
 
     Args:
-        expand_header_auto: let ``auto`` for a header mean: stamp it when sent.
-        expand_time_now: let ``now`` for a time mean: the time when sent.
+        expand_header_auto: accept ``auto`` for a header, which is stamped later.
+        expand_time_now: accept ``now`` for a time, which is set later.
 
     Returns:
-        Functions that set those stamps; call each with a time message before sending.
+        Functions that set those stamps; to be called with a time message before
+        publishing.
 
     Raises:
-        UnknownFieldError: there is no such field; lists those known.
-        MessageError: a value does not fit.
+        UnknownFieldError: there is no such field; lists the existing ones.
+        MessageError: a value has the wrong type.
     """
     setters: list[Setter] = []
     filling = _Filling(expand_header_auto, expand_time_now, setters)
@@ -107,4 +108,4 @@ def _scalar(base: str, value: Any) -> Any:
     try:
         return float(value) if base.startswith("float") else int(value)
     except ValueError:
-        return value  # the field itself says what it wants
+        return value  # setting the field raises the error

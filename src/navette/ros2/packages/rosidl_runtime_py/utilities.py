@@ -1,4 +1,4 @@
-"""rosidl_runtime_py.utilities: classes of interfaces by their names."""
+"""rosidl_runtime_py.utilities: interface classes by name."""
 
 from typing import Any
 
@@ -7,18 +7,18 @@ from navette.errors import InvalidNameError, UnknownNameError
 
 
 class UnknownInterfaceError(UnknownNameError, AttributeError):
-    """Nobody defines an interface of that name.
+    """There is no interface of that name.
 
-    Also an ``AttributeError``, because that is what ROS 2's functions raise.
+    Also an ``AttributeError``, which ROS 2's functions raise.
     """
 
 
 def get_interface(identifier: str) -> Any:
-    """The class of ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``.
+    """Return the class of ``pkg/msg/Name``, ``pkg/srv/Name`` or ``pkg/action/Name``.
 
     Raises:
         ValueError: the name has the wrong form.
-        UnknownInterfaceError: nobody defines it; lists what the package has.
+        UnknownInterfaceError: there is no such interface; lists those of the package.
     """
     try:
         return msgs.get_interface(identifier)
@@ -27,21 +27,21 @@ def get_interface(identifier: str) -> Any:
 
 
 def get_message(identifier: str) -> Any:
-    """The class of a message; ``pkg/Name`` will do.
+    """Return the class of a message; accepts ``pkg/Name``.
 
     Raises:
-        ValueError: it is no message, or the name has the wrong form.
+        ValueError: the interface is not a message, or the name has the wrong form.
     """
     return _of_kind(identifier, "msg", "a message")
 
 
 def get_service(identifier: str) -> Any:
-    """The class of a service; ``pkg/Name`` will do."""
+    """Return the class of a service; accepts ``pkg/Name``."""
     return _of_kind(identifier, "srv", "a service")
 
 
 def get_action(identifier: str) -> Any:
-    """The class of an action; ``pkg/Name`` will do."""
+    """Return the class of an action; accepts ``pkg/Name``."""
     return _of_kind(identifier, "action", "an action")
 
 
@@ -60,12 +60,12 @@ def is_action(interface: Any) -> bool:
 _TESTS = {"msg": is_message, "srv": is_service, "action": is_action}
 
 
-def _of_kind(identifier: str, kind: str, wanted: str) -> Any:
+def _of_kind(identifier: str, kind: str, expected: str) -> Any:
     package, _, rest = identifier.partition("/")
     full = identifier if "/" in rest else f"{package}/{kind}/{rest}"
     interface = get_interface(full)
     if not _TESTS[kind](interface):
         raise InvalidNameError(
-            f"expected the full name of {wanted}, got {identifier!r}"
+            f"expected the full name of {expected}, got {identifier!r}"
         )
     return interface

@@ -1,4 +1,4 @@
-"""YAML of a message's values, in the form that ``ros2 topic echo`` prints."""
+"""YAML of a message's values in the form of ``ros2 topic echo``."""
 
 import re
 from collections.abc import Iterator
@@ -15,12 +15,12 @@ from navette.ros2.packages.rosidl_runtime_py.number_text import (
 
 # One line per value, however long; libyaml's width is a C int.
 _WIDTH = 2**31 - 1
-# YAML's emitter writes so few numbers soon enough.
+# Arrays with fewer numbers are left to the YAML emitter.
 _FEW = 16
 _INTEGER = "tag:yaml.org,2002:int"
 
 
-class _Gaps:
+class _Placeholders:
     """Arrays that are left out of a text, and the mark in place of each."""
 
     def __init__(self, mark: str, least: int) -> None:
@@ -35,46 +35,50 @@ class _Gaps:
         return dumper.represent_scalar(_INTEGER, self.mark)
 
 
-def _leaving(base: Any) -> Any:
-    """A YAML dumper that leaves out arrays."""
+def _dumper(base: Any) -> Any:
+    """Return a YAML dumper class that writes placeholders for arrays."""
 
     class Dumper(base):  # type: ignore[misc]
-        def __init__(self, *arguments: Any, gaps: _Gaps, **options: Any) -> None:
+        def __init__(
+            self, *arguments: Any, placeholders: _Placeholders, **options: Any
+        ) -> None:
             super().__init__(*arguments, **options)
-            self.gaps = gaps
+            self.placeholders = placeholders
 
-    Dumper.add_representer(Numbers, lambda dumper, n: dumper.gaps.represent(dumper, n))
+    Dumper.add_representer(
+        Numbers, lambda dumper, n: dumper.placeholders.represent(dumper, n)
+    )
     return Dumper
 
 
-_PYTHONS = _leaving(yaml.SafeDumper)
-_FASTER = _leaving(getattr(yaml, "CSafeDumper", yaml.SafeDumper))
+_PYTHON_DUMPER = _dumper(yaml.SafeDumper)
+_C_DUMPER = _dumper(getattr(yaml, "CSafeDumper", yaml.SafeDumper))
 
 
 def yaml_text(value: Any, layout: Layout) -> Iterator[str]:
-    """A value as YAML, in the pieces of :func:`with_numbers`.
+    """Return a value as YAML in the pieces of :func:`with_numbers`.
 
     Args:
-        value: dicts, lists, texts, numbers, and :class:`Numbers`.
+        value: dicts, lists, texts, numbers and :class:`Numbers`.
     """
     if isinstance(value, Numbers) and len(value.items):
         return with_numbers(("", "\n"), [value], layout)
-    dumper, mark = _FASTER, "0xa"
+    dumper, mark = _C_DUMPER, "0xa"
     while True:
-        gaps = _Gaps(mark, _FEW if layout.width is None else 1)
+        placeholders = _Placeholders(mark, _FEW if layout.width is None else 1)
         text: str = yaml.dump(
             value,
-            Dumper=partial(dumper, gaps=gaps),
+            Dumper=partial(dumper, placeholders=placeholders),
             allow_unicode=True,
             width=_WIDTH,
             default_flow_style=layout.flow,
             sort_keys=False,
         )
         around = text.split(mark)
-        if "\\U" in text and dumper is _FASTER:
-            dumper = _PYTHONS  # libyaml escapes an emoji, PyYAML writes it
-        elif len(around) > len(gaps.arrays) + 1:
-            # The mark stands in a text of the message; a longer one does not.
+        if "\\U" in text and dumper is _C_DUMPER:
+            dumper = _PYTHON_DUMPER  # libyaml escapes emojis, PyYAML does not
+        elif len(around) > len(placeholders.arrays) + 1:
+            # A text of the message contains the mark: use a longer one.
             mark = f"{mark}{max(re.findall('a+', text), key=len)}"
         else:
-            return with_numbers(around, gaps.arrays, layout)
+            return with_numbers(around, placeholders.arrays, layout)

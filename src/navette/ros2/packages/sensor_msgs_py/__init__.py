@@ -1,4 +1,4 @@
-"""sensor_msgs_py: point clouds as numpy arrays."""
+"""sensor_msgs_py: conversion of point clouds to numpy arrays."""
 
 from navette.ros2.packages.sensor_msgs_py import point_cloud2
 

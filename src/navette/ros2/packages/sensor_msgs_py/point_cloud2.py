@@ -1,7 +1,7 @@
-"""sensor_msgs_py.point_cloud2: PointCloud2 ↔ structured numpy arrays, without loops.
+"""sensor_msgs_py.point_cloud2: conversion of PointCloud2 to numpy arrays and back.
 
-An organised cloud has shape (width, height) here, as in ROS 2's own module, though the
-points lie row by row: ``points.reshape(cloud.height, cloud.width)`` is the picture.
+As in ROS 2, an organised cloud has shape (width, height) although its points are stored
+row by row: ``points.reshape(cloud.height, cloud.width)`` is the image.
 """
 
 import sys
@@ -35,9 +35,9 @@ _DATATYPES: dict[int, np.dtype[Any]] = {
 
 
 class PointCloudError(InvalidValueError, AssertionError):
-    """A cloud, its fields or its points do not fit together.
+    """A cloud, its fields and its points are inconsistent.
 
-    Also an ``AssertionError``, because that is what ROS 2's module raises.
+    Also an ``AssertionError``, which ROS 2's module raises.
     """
 
 
@@ -48,17 +48,17 @@ def read_points(
     uvs: Iterable[int] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """The points as a structured array: a view of the message's data where it can be.
+    """Return the points as a structured array, a view of the data if possible.
 
     Args:
-        field_names: read only these, in this order.
-        skip_nans: leave out points with a NaN in a read field (unless ``is_dense``
-            says that there are none).
-        uvs: numbers of the points to return (of those left after ``skip_nans``).
-        reshape_organized_cloud: shape (width, height) if the cloud is organised.
+        field_names: the fields to read, in this order; default: all.
+        skip_nans: leave out points with a NaN in a field that is read, unless the cloud
+            ``is_dense``.
+        uvs: indices of the points to return, counted after ``skip_nans``.
+        reshape_organized_cloud: return shape (width, height) for an organised cloud.
 
     Raises:
-        PointCloudError: an unknown field, or data shorter than width and height say.
+        PointCloudError: a field does not exist, or the data is too short.
     """
     points: NDArray[Any] = _rows(cloud).reshape(-1)
     if field_names is not None:
@@ -81,7 +81,7 @@ def read_points_numpy(
     uvs: Iterable[int] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """The points as a plain array (…, fields); all read fields have one type.
+    """Return the points as an array (…, fields); the fields must have one type.
 
     Raises:
         PointCloudError: as :func:`read_points`, or the types differ.
@@ -92,8 +92,8 @@ def read_points_numpy(
     if len(set(types.values())) > 1:
         listed = ", ".join(f"{name} {kind}" for name, kind in types.items())
         raise PointCloudError(
-            f"all fields need to have the same datatype, got {listed}; "
-            "name the fields to read, or use read_points()"
+            f"all fields must have the same datatype, got {listed}; "
+            "pass field_names, or use read_points()"
         )
     plain: NDArray[Any] = structured_to_unstructured(points)
     return plain
@@ -105,7 +105,7 @@ def read_points_list(
     skip_nans: bool = False,
     uvs: Iterable[int] | None = None,
 ) -> list[Any]:
-    """The points as named tuples of Python numbers; slow for large clouds."""
+    """Return the points as named tuples of Python numbers; slow for large clouds."""
     points = read_points(cloud, field_names, skip_nans, uvs)
     Point = namedtuple("Point", points.dtype.names or (), rename=True)  # type: ignore[misc]
     return list(map(Point._make, points.tolist()))
@@ -114,17 +114,17 @@ def read_points_list(
 def dtype_from_fields(
     fields: Iterable[PointField], point_step: int | None = None
 ) -> np.dtype[Any]:
-    """The structured dtype of one point.
+    """Return the structured dtype of one point.
 
-    A field with ``count`` > 1 becomes ``name_0``, ``name_1``, …; one without a name
-    ``unnamed_field_<its number>``.
+    A field with ``count`` > 1 becomes ``name_0``, ``name_1``, …; a field without a name
+    becomes ``unnamed_field_<index>``.
 
     Args:
-        point_step: bytes per point; by default as many as the fields need.
+        point_step: bytes per point; default: the size of the fields.
 
     Raises:
-        PointCloudError: an unknown datatype, a count of 0, a name used twice, or a
-            field that does not fit into ``point_step``.
+        PointCloudError: unknown datatype, count 0, repeated name, or a field beyond
+            ``point_step``.
     """
     names: list[str] = []
     formats: list[np.dtype[Any]] = []
@@ -153,23 +153,22 @@ def create_cloud(
     points: Any,
     point_step: int | None = None,
 ) -> PointCloud2:
-    """A cloud with the machine's byte order.
+    """Create a cloud in native byte order.
 
     Args:
-        points: (N,) structured array of exactly the fields' dtype; or (N, fields)
-            plain array or list of points, if all fields have one type; lists of tuples
-            may mix types. With one dimension more, (width, height, …), the cloud is
-            organised.
-        point_step: bytes per point; by default as many as the fields need.
+        points: (N,) structured array with the fields' dtype; (N, fields) array if all
+            fields have one type; or list of tuples. With one more dimension, (width,
+            height, …), the cloud is organised.
+        point_step: bytes per point; default: the size of the fields.
 
     Raises:
-        PointCloudError: points that do not fit the fields.
+        PointCloudError: the points do not match the fields.
     """
     fields = list(fields)
     structured = _structured(points, dtype_from_fields(fields, point_step))
     if structured.ndim > 2:
         raise PointCloudError(
-            f"points of shape {structured.shape}: wanted one or two dimensions"
+            f"points of shape {structured.shape}: expected one or two dimensions"
         )
     width = structured.shape[0]
     step = structured.dtype.itemsize
@@ -187,7 +186,7 @@ def create_cloud(
 
 
 def create_cloud_xyz32(header: Header, points: Any) -> PointCloud2:
-    """A cloud of float32 x, y, z; ``points`` (N, 3) or organised (width, height, 3)."""
+    """Create a cloud of float32 x, y, z from (N, 3) or (width, height, 3) points."""
     fields = [
         PointField(name=name, offset=offset, datatype=PointField.FLOAT32, count=1)
         for name, offset in (("x", 0), ("y", 4), ("z", 8))
@@ -196,22 +195,22 @@ def create_cloud_xyz32(header: Header, points: Any) -> PointCloud2:
 
 
 def _rows(cloud: PointCloud2) -> NDArray[Any]:
-    """(height, width) points as they lie in the data; rows may be padded."""
+    """Return a (height, width) view of the data, in which rows may be padded."""
     if not isinstance(cloud, PointCloud2):
         raise PointCloudError(
-            f"wanted a sensor_msgs/msg/PointCloud2, got {type(cloud).__name__}"
+            f"expected a sensor_msgs/msg/PointCloud2, got {type(cloud).__name__}"
         )
     dtype = dtype_from_fields(cloud.fields, cloud.point_step)
     dtype = dtype.newbyteorder(">" if cloud.is_bigendian else "<")
     height, width, step = cloud.height, cloud.width, dtype.itemsize
-    row_step = max(cloud.row_step, width * step)  # left at 0 by many senders
+    row_step = max(cloud.row_step, width * step)  # many publishers leave it 0
     if height <= 1:
         row_step = width * step
     needed = (height - 1) * row_step + width * step if height and width else 0
     data = np.asarray(cloud.data)
     if data.size < needed:
         raise PointCloudError(
-            f"cloud of {width} × {height} points of {step} bytes: wanted {needed} "
+            f"cloud of {width} × {height} points of {step} bytes: expected {needed} "
             f"bytes of data, got {data.size}"
         )
     return np.ndarray((height, width), dtype, data.data, strides=(row_step, step))
@@ -229,7 +228,7 @@ def _known_names(names: Iterable[str], points: NDArray[Any]) -> list[str]:
 
 
 def _without_nans(points: NDArray[Any]) -> NDArray[np.bool_]:
-    """True for each point with a number in every field."""
+    """Return a mask of the points without a NaN."""
     keep = np.ones(len(points), dtype=bool)
     for name in points.dtype.names or ():
         if points.dtype[name].kind == "f":
@@ -239,11 +238,11 @@ def _without_nans(points: NDArray[Any]) -> NDArray[np.bool_]:
 
 def _scalar_type(field: PointField) -> np.dtype[Any]:
     if field.count <= 0:
-        raise PointCloudError(f"field {field.name!r}: cannot process a count of 0")
+        raise PointCloudError(f"field {field.name!r}: count 0 is not allowed")
     if field.datatype not in _DATATYPES:
         raise PointCloudError(
             f"field {field.name!r}: unknown datatype {field.datatype}; "
-            "wanted 1 (INT8) … 8 (FLOAT64)"
+            "allowed: 1 (INT8) … 8 (FLOAT64)"
         )
     return _DATATYPES[field.datatype]
 
@@ -264,13 +263,13 @@ def _from_plain(points: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
     names = dtype.names or ()
     if len({dtype[name] for name in names}) > 1:
         raise PointCloudError(
-            "all fields need to have the same datatype; pass a structured array "
-            f"otherwise, of dtype {dtype}"
+            "all fields must have the same datatype; otherwise pass a structured array "
+            f"of dtype {dtype}"
         )
     if points.ndim < 2 or points.shape[-1] != len(names):
         raise PointCloudError(
-            f"points of shape {points.shape}: wanted (…, {len(names)}) for the fields "
-            f"{', '.join(names)}"
+            f"points of shape {points.shape}: expected (…, {len(names)}) for "
+            f"the fields {', '.join(names)}"
         )
     structured: NDArray[Any] = unstructured_to_structured(points, dtype=dtype)
     return structured

@@ -1,4 +1,4 @@
-"""tf2_geometry_msgs: geometry messages in another frame."""
+"""tf2_geometry_msgs: transformation of geometry messages."""
 
 from navette.ros2.packages.tf2_geometry_msgs.tf2_geometry_msgs import (
     do_transform_point,

@@ -1,4 +1,4 @@
-"""tf2_geometry_msgs.tf2_geometry_msgs: geometry messages in another frame."""
+"""tf2_geometry_msgs.tf2_geometry_msgs: transformation of geometry messages."""
 
 from navette.runtime.tf import (
     do_transform_point,

@@ -1,4 +1,4 @@
-"""tf2_ros.buffer_client: a buffer that asks a server elsewhere (see buffer_server)."""
+"""tf2_ros.buffer_client: buffer that requests transforms from a buffer server."""
 
 from typing import Any
 
@@ -16,13 +16,12 @@ _PADDING = Duration(seconds=2.0)
 
 
 class BufferClient(BufferInterface):
-    """Looks transforms up by the action of a buffer server.
+    """Lookup of transforms by the action of a buffer server.
 
     Args:
-        ns: the action's name.
-        check_frequency: accepted as in ROS 2; nothing is polled here.
-        timeout_padding: how much longer than a lookup's own timeout to wait for the
-            server's answer.
+        ns: name of the action.
+        check_frequency: ignored, because the client does not poll.
+        timeout_padding: time that is added to a lookup's timeout for the response.
     """
 
     def __init__(
@@ -39,7 +38,7 @@ class BufferClient(BufferInterface):
         self.timeout_padding = timeout_padding
 
     def wait_for_server(self, timeout: Duration | None = None) -> bool:
-        """Let events run until the server is there; False after the timeout."""
+        """Run events until the server is available; return False after the timeout."""
         seconds = None if timeout is None else timeout.nanoseconds / 1e9
         return self.action_client.wait_for_server(seconds)
 
@@ -50,14 +49,14 @@ class BufferClient(BufferInterface):
         time: Time | TimeMsg,
         timeout: Duration | None = _NO_WAIT,
     ) -> TransformStamped:
-        """target_T_source at ``time``; events run while the server looks.
+        """Return target_T_source at ``time``; run events until the response arrives.
 
         Raises:
             LookupException, ConnectivityException, ExtrapolationException,
-            InvalidArgumentException: what the server met.
-            TimeoutException: it did not answer, or there is none.
+            InvalidArgumentException: the server's error.
+            TimeoutException: there is no server, or it did not respond in time.
         """
-        return self._ask(
+        return self._request(
             timeout,
             target_frame=target_frame,
             source_frame=source_frame,
@@ -73,8 +72,8 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration | None = _NO_WAIT,
     ) -> TransformStamped:
-        """Through a frame that does not move between the two times; raises as above."""
-        return self._ask(
+        """As :meth:`lookup_transform`, through a frame that does not move."""
+        return self._request(
             timeout,
             target_frame=target_frame,
             target_time=_time_message(target_time),
@@ -91,7 +90,7 @@ class BufferClient(BufferInterface):
         time: Time | TimeMsg,
         timeout: Duration | None = _NO_WAIT,
     ) -> bool:
-        """Whether :meth:`lookup_transform` gives an answer."""
+        """Whether :meth:`lookup_transform` succeeds."""
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
         except TransformException:
@@ -107,10 +106,10 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration | None = _NO_WAIT,
     ) -> bool:
-        """Whether :meth:`lookup_transform_full` gives an answer."""
-        ask = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        """Whether :meth:`lookup_transform_full` succeeds."""
+        query = (target_frame, target_time, source_frame, source_time, fixed_frame)
         try:
-            self.lookup_transform_full(*ask, timeout)
+            self.lookup_transform_full(*query, timeout)
         except TransformException:
             return False
         return True
@@ -120,24 +119,24 @@ class BufferClient(BufferInterface):
 
     # -- inside ----------------------------------------------------------------
 
-    def _ask(self, timeout: Duration | None, **goal: Any) -> TransformStamped:
+    def _request(self, timeout: Duration | None, **goal: Any) -> TransformStamped:
         if not self.action_client.server_is_ready():
             raise TimeoutException(
-                f"no buffer server serves {self.action_client.action_name}"
+                f"no buffer server for {self.action_client.action_name}"
             )
         timeout = timeout or _NO_WAIT
-        wanted: DurationMsg = timeout.to_msg()
+        duration: DurationMsg = timeout.to_msg()
         loop = self.node.context.loop
         padded_ns = timeout.nanoseconds + self.timeout_padding.nanoseconds
         until_ns = loop.clock.now_ns + padded_ns
         handle = self._await(
             self.action_client.send_goal_async(
-                LookupTransform.Goal(timeout=wanted, **goal)
+                LookupTransform.Goal(timeout=duration, **goal)
             ),
             until_ns,
         )
         if not handle.accepted:
-            raise TimeoutException("the buffer server refused the question")
+            raise TimeoutException("the buffer server rejected the request")
         result = self._await(handle.get_result_async(), until_ns).result
         if result.error.error != result.error.NO_ERROR:
             raise exception_of(result.error)
@@ -148,7 +147,7 @@ class BufferClient(BufferInterface):
         loop = self.node.context.loop
         loop.run(until_ns=until_ns, done=future.done, calling=True)
         if not future.done():
-            raise TimeoutException("the buffer server did not answer in time")
+            raise TimeoutException("the buffer server did not respond in time")
         return future.result()
 
 
@@ -156,5 +155,5 @@ def _time_message(time: Time | TimeMsg) -> TimeMsg:
     if isinstance(time, TimeMsg):
         return time
     if not isinstance(time, Time):
-        raise TypeError(f"wanted a Time, got {time!r}")
+        raise TypeError(f"expected a Time, got {time!r}")
     return time.to_msg()

@@ -1,6 +1,6 @@
-"""Answers for a buffer: the action that ``BufferClient`` asks.
+"""Server of a buffer's lookups as the action that ``BufferClient`` uses.
 
-In ROS 2 this is a program in C++, ``tf2_ros buffer_server``.
+In ROS 2 this is a C++ program, ``tf2_ros buffer_server``.
 """
 
 from typing import Any
@@ -13,10 +13,9 @@ from navette.runtime.callback_groups import ReentrantCallbackGroup
 
 
 class BufferServer:
-    """Serves the lookups of ``buffer`` as the action ``ns`` of a node.
+    """Action server ``ns`` of the lookups of ``buffer``.
 
-    A question waits for its transform as long as it says; others are answered
-    meanwhile.
+    A request waits for its transform up to its timeout; other requests run meanwhile.
     """
 
     def __init__(self, buffer: Buffer, node: Node, ns: str) -> None:
@@ -25,14 +24,14 @@ class BufferServer:
             node,
             LookupTransform,
             ns,
-            self._answer,
+            self._execute,
             callback_group=ReentrantCallbackGroup(),
         )
 
     def destroy(self) -> None:
         self._server.destroy()
 
-    def _answer(self, goal: Any) -> Any:
+    def _execute(self, goal: Any) -> Any:
         result = LookupTransform.Result()
         try:
             result.transform = self._look_up(goal.request)
@@ -43,18 +42,18 @@ class BufferServer:
             goal.succeed()
         return result
 
-    def _look_up(self, wanted: Any) -> Any:
-        timeout = Duration.from_msg(wanted.timeout)
-        source_time = Time.from_msg(wanted.source_time)
-        if not wanted.advanced:
+    def _look_up(self, request: Any) -> Any:
+        timeout = Duration.from_msg(request.timeout)
+        source_time = Time.from_msg(request.source_time)
+        if not request.advanced:
             return self._buffer.lookup_transform(
-                wanted.target_frame, wanted.source_frame, source_time, timeout
+                request.target_frame, request.source_frame, source_time, timeout
             )
         return self._buffer.lookup_transform_full(
-            wanted.target_frame,
-            Time.from_msg(wanted.target_time),
-            wanted.source_frame,
+            request.target_frame,
+            Time.from_msg(request.target_time),
+            request.source_frame,
             source_time,
-            wanted.fixed_frame,
+            request.fixed_frame,
             timeout,
         )

@@ -1,4 +1,4 @@
-"""tf2's exceptions as numbers of tf2_msgs/msg/TF2Error, and back."""
+"""Conversion between tf2's exceptions and tf2_msgs/msg/TF2Error."""
 
 from navette.msgs.tf2_msgs.msg import TF2Error
 from navette.ros2.packages.tf2_py import (
@@ -20,12 +20,12 @@ _KINDS: dict[int, type[TransformException]] = {
 
 
 def exception_of(error: TF2Error) -> TransformException:
-    """The exception that a server's answer means."""
+    """Return the exception of a server's error."""
     return _KINDS.get(error.error, TransformException)(error.error_string)
 
 
 def error_of(exception: TransformException) -> TF2Error:
-    """The answer that an exception means."""
+    """Return the error message of an exception."""
     for number, kind in _KINDS.items():
         if isinstance(exception, kind):
             return TF2Error(error=number, error_string=str(exception))

@@ -1,4 +1,4 @@
-"""tf2_sensor_msgs: point clouds in another frame."""
+"""tf2_sensor_msgs: transformation of point clouds."""
 
 from navette.ros2.packages.tf2_sensor_msgs.tf2_sensor_msgs import (
     do_transform_cloud,

@@ -1,6 +1,6 @@
-"""tf2_sensor_msgs.tf2_sensor_msgs: point clouds in another frame.
+"""tf2_sensor_msgs.tf2_sensor_msgs: transformation of point clouds.
 
-Importing it lets ``buffer.transform`` move PointCloud2 messages.
+Importing this module registers PointCloud2 for ``buffer.transform``.
 """
 
 import sys
@@ -34,7 +34,7 @@ _AXES: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 def transform_points(
     point_cloud: NDArray[Any], transform: Transform
 ) -> NDArray[np.float64]:
-    """p_a = R·p_b + t for all points.
+    """Transform points: p_a = R·p_b + t.
 
     Args:
         point_cloud: (N, 3) points (m) in b.
@@ -46,19 +46,20 @@ def transform_points(
     t, q = transform.translation, transform.rotation
     rotation: Quaternion = (q.x, q.y, q.z, q.w)
     R_transposed = np.array([rotate(rotation, axis) for axis in _AXES])
-    moved: NDArray[np.float64] = point_cloud @ R_transposed + (t.x, t.y, t.z)
-    return moved
+    transformed: NDArray[np.float64] = point_cloud @ R_transposed + (t.x, t.y, t.z)
+    return transformed
 
 
 def do_transform_cloud(
     cloud: PointCloud2, transform: Transform | TransformStamped
 ) -> PointCloud2:
-    """The cloud with x, y and z in the transform's frame, all else as it was.
+    """Return the cloud with x, y and z in the transform's frame.
 
-    Its stamp stays; the frame is the transform's, if that says one.
+    The stamp and other fields do not change. The cloud's frame becomes the frame of a
+    TransformStamped; a Transform has none.
 
     Raises:
-        PointCloudError: x, y or z is missing.
+        PointCloudError: the cloud has no field x, y or z.
     """
     header = Header(stamp=cloud.header.stamp, frame_id=cloud.header.frame_id)
     if isinstance(transform, TransformStamped):
@@ -67,8 +68,8 @@ def do_transform_cloud(
     names = dtype_from_fields(cloud.fields, cloud.point_step).names or ()
     if not {"x", "y", "z"} <= set(names):
         raise PointCloudError(
-            "the cloud needs the fields x, y and z for the transformation; "
-            f"it has {', '.join(names)}"
+            "the transformation requires the fields x, y and z; the cloud has "
+            f"{', '.join(names)}"
         )
     points = read_points(cloud).copy()  # native byte order, no padding of rows
     xyz = np.stack([points[axis] for axis in "xyz"], axis=-1)

@@ -1,9 +1,9 @@
-"""Euler angles by any of the 24 sequences of axes.
+"""Euler angles for any of the 24 sequences of axes.
 
-``axes`` is ``s`` (about fixed axes) or ``r`` (about axes that turn along), then three
-axes in the order of the rotations: ``sxyz`` is roll, pitch, yaw. A sequence about
-turning axes is the reversed sequence about fixed ones (K. Shoemake, "Euler angle
-conversion", Graphics Gems IV, 1994), so one case is computed.
+``axes`` is ``s`` (static axes) or ``r`` (rotating axes) and three axes in the order of
+the rotations: ``sxyz`` is roll, pitch, yaw. A sequence of rotating axes equals the
+reversed sequence of static axes (K. Shoemake, "Euler angle conversion", Graphics Gems
+IV, 1994), so that only one case is computed.
 """
 
 import math
@@ -22,49 +22,48 @@ _EPSILON = 4 * np.finfo(np.float64).eps
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Array:
-    """Angles (rad) → (x, y, z, w)."""
-    turning, letters = _parsed(axes)
+    """Convert angles (rad) to a quaternion (x, y, z, w)."""
+    rotating, order = _parsed(axes)
     rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
-    for index, angle in zip(letters, (ai, aj, ak), strict=True):
+    for index, angle in zip(order, (ai, aj, ak), strict=True):
         part = [0.0, 0.0, 0.0, math.cos(angle / 2)]
         part[index] = math.sin(angle / 2)
         step: Quaternion = (part[0], part[1], part[2], part[3])
-        rotation = multiply(rotation, step) if turning else multiply(step, rotation)
+        rotation = multiply(rotation, step) if rotating else multiply(step, rotation)
     return np.array(rotation)
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Array:
-    """Angles (rad) → 4 × 4 matrix."""
+    """Convert angles (rad) to a 4 × 4 matrix."""
     return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
 
 
 def euler_from_quaternion(
     quaternion: ArrayLike, axes: str = "sxyz"
 ) -> tuple[float, float, float]:
-    """(x, y, z, w) → angles (rad)."""
+    """Convert a quaternion (x, y, z, w) to angles (rad)."""
     return euler_from_matrix(quaternion_matrix(quaternion), axes)
 
 
 def euler_from_matrix(
     matrix: ArrayLike, axes: str = "sxyz"
 ) -> tuple[float, float, float]:
-    """3 × 3 or 4 × 4 rotation matrix → angles (rad).
+    """Convert a 3 × 3 or 4 × 4 rotation matrix to angles (rad).
 
-    Where two of them turn about the same axis (gimbal lock) the one about the last
-    fixed axis is 0.
+    In gimbal lock the angle about the last static axis is 0.
     """
-    turning, letters = _parsed(axes)
+    rotating, order = _parsed(axes)
     R = np.asarray(matrix, dtype=np.float64)[:3, :3]
-    first, second, third = letters[::-1] if turning else letters
+    first, second, third = order[::-1] if rotating else order
     if first == third:
         angles = _proper(R, first, second)
     else:
         angles = _three_axes(R, first, second, third)
-    return angles[::-1] if turning else angles
+    return angles[::-1] if rotating else angles
 
 
 def _three_axes(R: Array, i: int, j: int, k: int) -> tuple[float, float, float]:
-    """R = R_k(c) R_j(b) R_i(a) → a, b, c."""
+    """Return a, b, c of R = R_k(c) R_j(b) R_i(a)."""
     sign = _parity(i, j)
     cosine = math.hypot(R[i, i], R[j, i])
     b = math.atan2(-sign * R[k, i], cosine)
@@ -74,7 +73,7 @@ def _three_axes(R: Array, i: int, j: int, k: int) -> tuple[float, float, float]:
 
 
 def _proper(R: Array, i: int, j: int) -> tuple[float, float, float]:
-    """R = R_i(c) R_j(b) R_i(a) → a, b, c."""
+    """Return a, b, c of R = R_i(c) R_j(b) R_i(a)."""
     sign, m = _parity(i, j), 3 - i - j
     sine = math.hypot(R[i, j], R[i, m])
     b = math.atan2(sine, R[i, i])
@@ -88,17 +87,17 @@ def _proper(R: Array, i: int, j: int) -> tuple[float, float, float]:
 
 
 def _parity(i: int, j: int) -> int:
-    """1 if j follows i in x, y, z, x, …; else −1."""
+    """Return 1 if j follows i in x, y, z, x, …; else −1."""
     return 1 if (j - i) % 3 == 1 else -1
 
 
 def _parsed(axes: str) -> tuple[bool, tuple[int, int, int]]:
-    """Whether the axes turn along, and their numbers."""
+    """Return whether the axes rotate, and their indices."""
     match = _AXES.fullmatch(axes)
     if match is None:
         raise InvalidValueError(
-            f"axes {axes!r}: wanted s or r and three of x, y, z, no two equal ones in "
-            "a row, as in 'sxyz'"
+            f"axes {axes!r}: expected s or r and three of x, y, z without equal "
+            "neighbours, as in 'sxyz'"
         )
     first, second, third = ("xyz".index(letter) for letter in match.groups()[1:])
     return match[1] == "r", (first, second, third)

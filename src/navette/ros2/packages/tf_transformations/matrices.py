@@ -1,4 +1,4 @@
-"""Homogeneous matrices, 4 × 4: rotation in the upper left, translation on the right."""
+"""Homogeneous 4 × 4 matrices."""
 
 from collections.abc import Sequence
 
@@ -16,19 +16,19 @@ def identity_matrix() -> Array:
 
 
 def translation_matrix(direction: Sequence[float]) -> Array:
-    """Moves by (x, y, z)."""
+    """Return the matrix of a translation (x, y, z)."""
     matrix = np.eye(4)
     matrix[:3, 3] = direction[:3]
     return matrix
 
 
 def translation_from_matrix(matrix: ArrayLike) -> Array:
-    """How far it moves: (x, y, z)."""
+    """Return the translation (x, y, z) of a matrix."""
     return np.array(matrix, dtype=np.float64)[:3, 3].copy()
 
 
 def quaternion_matrix(quaternion: ArrayLike) -> Array:
-    """Turns as the quaternion does."""
+    """Return the matrix of a quaternion's rotation."""
     rotation = unit(quaternion)
     matrix = np.eye(4)
     matrix[:3, :3] = np.array([rotate(rotation, axis) for axis in _AXES]).T
@@ -36,10 +36,10 @@ def quaternion_matrix(quaternion: ArrayLike) -> Array:
 
 
 def quaternion_from_matrix(matrix: ArrayLike) -> Array:
-    """The quaternion (w ≥ 0) of a rotation matrix, 3 × 3 or 4 × 4.
+    """Return the quaternion (w ≥ 0) of a 3 × 3 or 4 × 4 rotation matrix.
 
-    The eigenvector of the largest eigenvalue of Bar-Itzhack's K, which also serves a
-    matrix that is a rotation but for rounding (Bar-Itzhack 2000, eq. 10).
+    It is the eigenvector of the largest eigenvalue of Bar-Itzhack's K, which tolerates
+    rounding errors in the matrix (Bar-Itzhack 2000, eq. 10).
     """
     R = np.asarray(matrix, dtype=np.float64)[:3, :3]
     K = np.zeros((4, 4))
@@ -51,7 +51,7 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Array:
 
 
 def concatenate_matrices(*matrices: ArrayLike) -> Array:
-    """Their product: the last one acts first."""
+    """Return the product of the matrices; the last one acts first."""
     product = np.eye(4)
     for matrix in matrices:
         product = product @ np.asarray(matrix, dtype=np.float64)

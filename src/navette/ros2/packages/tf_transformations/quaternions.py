@@ -13,50 +13,50 @@ Array = NDArray[np.float64]
 
 
 def as_quaternion(values: ArrayLike) -> Quaternion:
-    """Four numbers as a tuple.
+    """Return four numbers as a tuple.
 
     Raises:
-        InvalidValueError: not four.
+        InvalidValueError: there are not four numbers.
     """
     array = np.asarray(values, dtype=np.float64)
     if array.shape != (4,):
-        raise InvalidValueError(f"quaternion {values!r}: wanted (x, y, z, w)")
+        raise InvalidValueError(f"quaternion {values!r}: expected (x, y, z, w)")
     x, y, z, w = array.tolist()
     return (x, y, z, w)
 
 
 def unit(values: ArrayLike) -> Quaternion:
-    """A quaternion of length 1 in the same direction.
+    """Return the normalised quaternion.
 
     Raises:
-        InvalidValueError: not four numbers, or all of them zero.
+        InvalidValueError: there are not four numbers, or all are zero.
     """
     x, y, z, w = as_quaternion(values)
     norm = math.sqrt(x * x + y * y + z * z + w * w)
     if not norm > 0:
-        raise InvalidValueError(f"quaternion {values!r} is no rotation")
+        raise InvalidValueError(f"quaternion {values!r} is not a rotation")
     return (x / norm, y / norm, z / norm, w / norm)
 
 
 def quaternion_multiply(quaternion1: ArrayLike, quaternion0: ArrayLike) -> Array:
-    """The rotation ``quaternion0`` followed by ``quaternion1``."""
+    """Return the rotation ``quaternion0`` followed by ``quaternion1``."""
     return np.array(multiply(as_quaternion(quaternion1), as_quaternion(quaternion0)))
 
 
 def quaternion_conjugate(quaternion: ArrayLike) -> Array:
-    """(−x, −y, −z, w): the inverse of a unit quaternion."""
+    """Return (−x, −y, −z, w), the inverse of a unit quaternion."""
     x, y, z, w = as_quaternion(quaternion)
     return np.array([-x, -y, -z, w])
 
 
 def quaternion_inverse(quaternion: ArrayLike) -> Array:
-    """The quaternion that gives 1 when multiplied."""
+    """Return the multiplicative inverse."""
     conjugate = quaternion_conjugate(quaternion)
     return conjugate / np.dot(conjugate, conjugate)  # type: ignore[no-any-return]
 
 
 def quaternion_about_axis(angle: float, axis: Sequence[float]) -> Array:
-    """Rotation by ``angle`` (rad) about ``axis`` (of any length but 0)."""
+    """Return the rotation by ``angle`` (rad) about ``axis`` of any length but 0."""
     direction = np.asarray(axis, dtype=np.float64)[:3]
     length = float(np.linalg.norm(direction))
     if not length > 0:
@@ -66,5 +66,5 @@ def quaternion_about_axis(angle: float, axis: Sequence[float]) -> Array:
 
 
 def quaternion_slerp(quat0: ArrayLike, quat1: ArrayLike, fraction: float) -> Array:
-    """Between two rotations, the short way: 0 is the first, 1 the second."""
+    """Interpolate between two rotations along the shorter arc."""
     return np.array(slerp(unit(quat0), unit(quat1), fraction))
