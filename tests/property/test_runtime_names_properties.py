@@ -21,9 +21,7 @@ topic = st.one_of(
 
 
 @given(topic, token, namespace)
-def test_expanded_names_are_full_and_stay_as_they_are(
-    name: str, node: str, ns: str
-) -> None:
+def test_expansion_is_idempotent(name: str, node: str, ns: str) -> None:
     full = expand_topic_name(name, node, ns)
     assert validate_full_topic_name(full)
     assert expand_topic_name(full, node, ns) == full
@@ -38,7 +36,7 @@ def test_the_three_kinds_of_names(name: str, node: str, ns: str) -> None:
 
 
 @given(topic, topic, topic, token, namespace)
-def test_a_rule_moves_its_name_and_no_other(
+def test_a_rule_changes_its_name_only(
     match: str, replacement: str, name: str, node: str, ns: str
 ) -> None:
     remapper = NodeRemapper([RemapRule.parse(f"{match}:={replacement}")], node, ns)

@@ -1,4 +1,4 @@
-"""The loop: order by (time, sequence), the same in every run; queue depths."""
+"""Event order by (time, sequence), repeatability, queue depths."""
 
 from collections.abc import Callable
 
@@ -23,7 +23,7 @@ def test_events_run_by_time_then_by_sequence(times_ns: list[int]) -> None:
 
         loop.call_at(time_ns, note)
     loop.run()
-    # Those due at once (time 0) also wait in the heap: nothing jumps the queue.
+    # Events due immediately (time 0) are in the heap too and do not overtake others.
     assert order == sorted(order)
 
 
@@ -33,7 +33,7 @@ tree = st.recursive(
 
 
 @given(tree)
-def test_events_that_make_events_repeat_exactly(plan: object) -> None:
+def test_events_that_create_events_run_in_the_same_order(plan: object) -> None:
     def run() -> list[tuple[int, str]]:
         loop = EventLoop(VirtualClock())
         trace: list[tuple[int, str]] = []
@@ -84,9 +84,9 @@ def test_timers_fire_exactly_as_often_as_their_periods_fit(
 )
 def test_a_queue_holds_the_newest_depth_samples(depth: int, bursts: list[int]) -> None:
     with GraphHarness() as graph:
-        heard: list[int] = []
+        received: list[int] = []
         graph.node.create_subscription(
-            Int64, "t", lambda m: heard.append(int(m.data)), depth
+            Int64, "t", lambda m: received.append(int(m.data)), depth
         )
         publisher = graph.node.create_publisher(Int64, "t", 1)
         expected: list[int] = []
@@ -98,4 +98,4 @@ def test_a_queue_holds_the_newest_depth_samples(depth: int, bursts: list[int]) -
                 publisher.publish(Int64(data=value))
             graph.run_for(0.01)
             expected += burst[-depth:]
-        assert heard == expected
+        assert received == expected

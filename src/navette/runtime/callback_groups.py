@@ -91,10 +91,10 @@ class CallbackGroup:
     def begin_call(self) -> None:
         """Let servers run despite the hold until :meth:`end_call`."""
         self.calling += 1
-        servers = [entity for entity in self.parked if entity.answers_calls]
+        servers = [entity for entity in self.parked if entity.runs_during_calls]
         if servers and self.ready is not None:
             self.ready.extendleft(reversed(servers))
-            self.parked = deque(e for e in self.parked if not e.answers_calls)
+            self.parked = deque(e for e in self.parked if not e.runs_during_calls)
 
     def end_call(self) -> None:
         """Undo one :meth:`begin_call`."""

@@ -16,7 +16,7 @@ class Entity(ABC):
     #: Whether the entity runs while its group is held by a callback that waits for a
     #: service or an action (blocking or in an ``await``), because the server may be in
     #: the same group.
-    answers_calls = False
+    runs_during_calls = False
 
     group: CallbackGroup
 

@@ -271,7 +271,7 @@ class EventLoop:
     @staticmethod
     def _must_wait(entity: Entity) -> bool:
         group = entity.group
-        is_held = bool(group.held) and not (entity.answers_calls and group.calling)
+        is_held = bool(group.held) and not (entity.runs_during_calls and group.calling)
         return is_held and group.blocks(entity)
 
     def _take_turn(self) -> bool:
@@ -386,7 +386,7 @@ class EventLoop:
             entity = ready.popleft()
             group = entity.group
             rules = None
-            if group.held and not (entity.answers_calls and group.calling):
+            if group.held and not (entity.runs_during_calls and group.calling):
                 if group.blocks(entity) or not group.beginning_execution(entity):
                     self._park(entity)
                     continue

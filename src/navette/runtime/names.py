@@ -97,8 +97,8 @@ def _check_tokens(name: str, kind: type[NameValidationException]) -> None:
     for token in name[1:].split("/"):
         if not _TOKEN.match(token):
             reason = (
-                "each part must start with a letter or '_' and contain only "
-                "letters, digits and underscores"
+                "each part must only contain letters, digits and underscores and "
+                "must not start with a digit"
             )
             raise kind(name, reason, position)  # type: ignore[call-arg]
         position += len(token) + 1

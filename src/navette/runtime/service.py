@@ -28,7 +28,7 @@ class Service(ServiceEndpoint, Entity):
     """
 
     #: Runs also while a callback of its group waits for a response.
-    answers_calls = True
+    runs_during_calls = True
 
     __slots__ = (
         "_deferred",

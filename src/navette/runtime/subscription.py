@@ -80,13 +80,13 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         "_received",
         "_takes_info",
         "_watch",
-        "answers_calls",
         "endpoint",
         "event_handlers",
         "msg_type",
         "ports",
         "qos_profile",
         "raw",
+        "runs_during_calls",
         "shared",
     )
 
@@ -110,7 +110,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         self.qos_profile = qos_profile
         self.raw = raw
         self.shared = shared
-        self.answers_calls = False
+        self.runs_during_calls = False
         self.ports: list[SubscriptionPort] = []
         self.event_handlers: list[EventHandler] = watch.event_handlers
         # Number of samples queued without inspection; 0 with a content filter.

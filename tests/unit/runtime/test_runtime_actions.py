@@ -1,4 +1,4 @@
-"""Actions: goals from both ends, feedback, cancelling, results, failures."""
+"""Actions: goals, feedback, cancelling, results, failures."""
 
 from collections.abc import Callable
 from typing import Any
@@ -41,7 +41,7 @@ S = GoalStatus
 
 
 def count_up(goal: Any) -> Any:
-    """The goal's order in feedback messages, at once."""
+    """Publish feedback up to the goal's order and succeed immediately."""
     for number in range(goal.request.order):
         goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
     goal.succeed()
@@ -49,7 +49,7 @@ def count_up(goal: Any) -> Any:
 
 
 class Pair:
-    """A server and a client on nodes of their own."""
+    """A server and a client on separate nodes."""
 
     def __init__(self, graph: GraphHarness, execute: Any, **options: Any) -> None:
         self.graph = graph
@@ -61,7 +61,7 @@ class Pair:
         self.client = ActionClient(self.client_node, Fibonacci, "fib")
 
     def send(self, order: int = 3, **options: Any) -> Any:
-        """A goal's handle."""
+        """Return the handle of a new goal."""
         goal = Fibonacci.Goal(order=order)
         return self.wait(self.client.send_goal_async(goal, **options))
 
@@ -70,7 +70,7 @@ class Pair:
         return future.result()
 
     async def sleep(self, seconds: float) -> None:
-        """From within a coroutine: let time pass."""
+        """Sleep inside a coroutine."""
         over: Future[None] = Future()
         loop = self.graph.context.loop
         loop.call_at(
@@ -124,7 +124,7 @@ def test_a_rejected_goal_has_no_result(make: Make) -> None:
     assert pair.wait(handle.get_result_async()).status == S.STATUS_UNKNOWN
 
 
-def test_an_answer_that_is_none_rejects(make: Make) -> None:
+def test_a_goal_callback_that_returns_none_rejects(make: Make) -> None:
     assert not make(goal_callback=lambda goal: True).send().accepted
 
 
@@ -153,7 +153,7 @@ def test_blocking_calls_to_an_action_of_the_same_group(graph: GraphHarness) -> N
     assert states == [S.STATUS_SUCCEEDED]
 
 
-def cancel_politely(pair: Pair) -> Callable[[Any], Any]:
+def cancel_on_request(pair: Pair) -> Callable[[Any], Any]:
     async def execute(goal: Any) -> Any:
         for _ in range(10):
             if goal.is_cancel_requested:
@@ -168,7 +168,7 @@ def cancel_politely(pair: Pair) -> Callable[[Any], Any]:
 
 def test_cancel(make: Make) -> None:
     pair = make(cancel_callback=lambda goal: CancelResponse.ACCEPT)
-    pair.server.register_execute_callback(cancel_politely(pair))
+    pair.server.register_execute_callback(cancel_on_request(pair))
     handle = pair.send()
     pair.graph.run_for(1.2)
     assert handle.status == S.STATUS_EXECUTING
@@ -181,9 +181,9 @@ def test_cancel(make: Make) -> None:
     assert pair.graph.now_ns < 3_000_000_000
 
 
-def test_cancelling_is_refused_unless_allowed(make: Make) -> None:
+def test_cancelling_is_rejected_by_default(make: Make) -> None:
     pair = make()
-    pair.server.register_execute_callback(cancel_politely(pair))
+    pair.server.register_execute_callback(cancel_on_request(pair))
     handle = pair.send()
     canceled = pair.wait(handle.cancel_goal_async())
     assert canceled.return_code == CancelGoal.Response.ERROR_REJECTED
@@ -219,7 +219,7 @@ def test_cancel_by_id_and_time(make: Make) -> None:
     assert unknown.return_code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
 
 
-def test_a_goal_that_ends_while_cancelling_is_decided(make: Make) -> None:
+def test_a_goal_ends_during_the_cancel_callback(make: Make) -> None:
     goals: list[Any] = []
 
     def decide(goal: Any) -> CancelResponse:
@@ -267,14 +267,14 @@ def test_deferred_execution(make: Make) -> None:
     assert (response.status, list(response.result.sequence)) == (S.STATUS_ABORTED, [5])
 
 
-def test_no_final_state_means_aborted(make: Make) -> None:
+def test_a_goal_without_a_terminal_state_is_aborted(make: Make) -> None:
     pair = make(lambda goal: Fibonacci.Result(sequence=[1]))
     response = pair.send().get_result()
     assert response.status == S.STATUS_ABORTED
     assert list(response.result.sequence) == [1]
 
 
-def test_an_exception_surfaces_and_the_client_does_not_hang(make: Make) -> None:
+def test_an_exception_is_raised_and_the_client_gets_a_failure(make: Make) -> None:
     def fail(goal: Any) -> Any:
         raise ValueError("motor gone")
 
@@ -290,7 +290,7 @@ def test_an_exception_surfaces_and_the_client_does_not_hang(make: Make) -> None:
     assert result[0].result().status == S.STATUS_ABORTED
 
 
-def test_a_result_of_the_wrong_type_is_named(make: Make) -> None:
+def test_a_result_of_the_wrong_type_raises(make: Make) -> None:
     def execute(goal: Any) -> None:
         goal.succeed()
 
@@ -312,7 +312,7 @@ def test_a_failing_goal_callback_fails_the_request(make: Make) -> None:
         future.result()
 
 
-def test_results_are_kept_for_a_while(make: Make) -> None:
+def test_results_expire_after_their_timeout(make: Make) -> None:
     pair = make(result_timeout=2.0)
     handle = pair.send()
     pair.graph.run_for(1.9)
@@ -370,7 +370,7 @@ def test_waiting_for_the_server(graph: GraphHarness) -> None:
     assert client.wait_for_server()
 
 
-def test_wrong_use_is_named(make: Make, graph: GraphHarness) -> None:
+def test_invalid_arguments_raise(make: Make, graph: GraphHarness) -> None:
     pair = make()
     node: Any = graph.node
     with pytest.raises(

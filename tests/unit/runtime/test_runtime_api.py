@@ -1,4 +1,4 @@
-"""rclpy's module-level functions and what programs do with them."""
+"""rclpy's module-level functions and their use in programs."""
 
 import threading
 from collections.abc import Iterator
@@ -58,7 +58,7 @@ def test_life_cycle() -> None:
     assert navette.ok()
 
 
-def test_shutdown_after_a_signal_did_so_is_no_error() -> None:
+def test_shutdown_after_a_shutdown_by_signal_is_allowed() -> None:
     navette.init(args=[], clock=VirtualClock())
     navette.get_default_context().try_shutdown()  # as a signal does
     navette.shutdown()
@@ -80,7 +80,7 @@ def test_init_as_a_context_manager() -> None:
     assert not navette.ok()
 
 
-def test_shutdown_destroys_nodes_and_calls_back() -> None:
+def test_shutdown_destroys_nodes_and_runs_callbacks() -> None:
     start()
     called: list[str] = []
     navette.get_default_context().on_shutdown(lambda: called.append("down"))
@@ -106,7 +106,7 @@ def test_spin_until_shutdown_from_a_callback() -> None:
     assert not navette.ok()
 
 
-def test_virtual_spin_ends_when_nothing_is_left_to_happen() -> None:
+def test_virtual_spin_ends_when_no_event_is_left() -> None:
     start()
     navette.spin(navette.Node("idle"))
 
@@ -114,15 +114,15 @@ def test_virtual_spin_ends_when_nothing_is_left_to_happen() -> None:
 def test_spin_once_runs_one_event() -> None:
     start()
     node = navette.Node("n")
-    heard: list[str] = []
+    received: list[str] = []
     publisher = node.create_publisher(String, "t", 10)
-    node.create_subscription(String, "t", lambda m: heard.append(m.data), 10)
+    node.create_subscription(String, "t", lambda m: received.append(m.data), 10)
     for text in "abc":
         publisher.publish(String(data=text))
     navette.spin_once(node)
-    assert heard == ["a"]
+    assert received == ["a"]
     navette.spin_once(node, timeout_sec=0)
-    assert heard == ["a", "b"]
+    assert received == ["a", "b"]
 
 
 def test_spin_once_waits_for_the_timeout_at_most() -> None:
@@ -133,19 +133,19 @@ def test_spin_once_waits_for_the_timeout_at_most() -> None:
 
 
 def test_loop_with_spin_once_and_rate() -> None:
-    """The lecture's loop: publish, spin once, sleep; one message a turn is handled."""
+    """Publish, spin once, sleep: one message per turn is processed."""
     start()
     talker, listener = navette.Node("talker"), navette.Node("listener")
-    heard: list[str] = []
+    received: list[str] = []
     publisher = talker.create_publisher(String, "t", 10)
-    listener.create_subscription(String, "t", lambda m: heard.append(m.data), 2)
+    listener.create_subscription(String, "t", lambda m: received.append(m.data), 2)
     rate = listener.create_rate(10)
     for turn in range(3):
         for number in range(3):
             publisher.publish(String(data=f"{turn}{number}"))
         rate.sleep()
         navette.spin_once(listener, timeout_sec=0)
-    assert heard == ["01", "11", "21"]
+    assert received == ["01", "11", "21"]
 
 
 def test_spin_until_future_complete() -> None:
@@ -180,7 +180,7 @@ def test_spin_until_future_complete_inside_a_callback() -> None:
 
 
 def test_rate_sleeps_while_another_thread_spins() -> None:
-    """The usual rclpy program: spin in the background, a loop of one's own in front."""
+    """A common rclpy program: spin in a thread, a loop in the main thread."""
     navette.init(args=[])
     node = navette.Node("n")
     spinning = threading.Event()
@@ -203,10 +203,10 @@ def test_publishing_from_another_thread_wakes_the_spinning_one() -> None:
     navette.init(args=[])
     node = navette.Node("n")
     publisher = node.create_publisher(String, "t", 10)
-    heard: list[str] = []
+    received: list[str] = []
 
     def receive(message: String) -> None:
-        heard.append(message.data)
+        received.append(message.data)
         navette.shutdown()
 
     node.create_subscription(String, "t", receive, 10)
@@ -214,17 +214,17 @@ def test_publishing_from_another_thread_wakes_the_spinning_one() -> None:
     node.context.loop.call_soon(thread.start)
     navette.spin(node)
     thread.join()
-    assert heard == ["x"]
+    assert received == ["x"]
 
 
 def test_full_queue_fed_from_another_thread_keeps_the_newest() -> None:
     navette.init(args=[])
     node = navette.Node("n")
     publisher = node.create_publisher(String, "t", 10)
-    heard: list[str] = []
+    received: list[str] = []
 
     def receive(message: String) -> None:
-        heard.append(message.data)
+        received.append(message.data)
         if message.data == "last":
             navette.shutdown()
 
@@ -239,8 +239,8 @@ def test_full_queue_fed_from_another_thread_keeps_the_newest() -> None:
     node.context.loop.call_soon(thread.start)
     navette.spin(node)
     thread.join()
-    assert heard[-1] == "last"
-    numbers = [int(text) for text in heard[:-1]]
+    assert received[-1] == "last"
+    numbers = [int(text) for text in received[:-1]]
     assert numbers == sorted(set(numbers))
 
 
@@ -280,7 +280,7 @@ def test_executor_and_nodes_must_share_the_context() -> None:
         Executor(context=first, clock=VirtualClock())
 
 
-def test_executor_keeps_its_nodes() -> None:
+def test_executor_adds_and_removes_nodes() -> None:
     executor = navette.MultiThreadedExecutor(4, clock=VirtualClock())
     node = Node("n", context=executor.context)
     assert executor.add_node(node)
@@ -309,7 +309,7 @@ def test_executor_conditions() -> None:
     assert executor.now_ns == 5_500_000_000
 
 
-def test_a_nested_spin_does_not_swallow_a_stop() -> None:
+def test_a_nested_spin_does_not_clear_a_stop() -> None:
     executor = Executor(clock=VirtualClock())
     node = Node("n", context=executor.context)
     executor.add_node(node)
@@ -359,7 +359,7 @@ def test_domain_id(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class Picking(Executor):
-    """Runs what waits, one spin_once at a time, and notes whose it was."""
+    """Runs ready events one by one and records their nodes."""
 
     def __init__(self) -> None:
         super().__init__(clock=VirtualClock())
@@ -372,7 +372,7 @@ class Picking(Executor):
         handler()
 
 
-def test_an_executor_of_ones_own() -> None:
+def test_a_custom_executor() -> None:
     with Picking() as executor:
         node = Node("n", context=executor.context)
         executor.add_node(node)
@@ -426,7 +426,7 @@ def test_a_handler_may_run_inside_a_callback() -> None:
         assert ran == ["late"]
 
 
-def test_spin_once_on_a_context_that_is_over() -> None:
+def test_spin_once_after_shutdown_raises() -> None:
     start()
     node = Node("n")
     executor = navette.SingleThreadedExecutor()
@@ -436,7 +436,7 @@ def test_spin_once_on_a_context_that_is_over() -> None:
         executor.spin_once()
 
 
-def test_a_node_that_did_not_call_its_base_class_is_told_to() -> None:
+def test_a_missing_call_of_the_base_class_is_reported() -> None:
     class Forgot(Node):
         def __init__(self) -> None:
             self.create_timer(1.0, lambda: None)
@@ -456,7 +456,7 @@ def test_a_node_that_did_not_call_its_base_class_is_told_to() -> None:
 
 
 @pytest.mark.parametrize("not_a_node", [Node, None, "talker"])
-def test_only_nodes_are_spun(not_a_node: Any) -> None:
+def test_spinning_something_other_than_a_node_raises(not_a_node: Any) -> None:
     start()
     with pytest.raises(TypeError, match=r"node must be a Node, got"):
         navette.spin(not_a_node)

@@ -30,7 +30,7 @@ def make(graph: GraphHarness, name: str = "n") -> Node:
 
 
 def once(node: Node, callback: Callable[[], Any]) -> None:
-    """Call back from one timer event."""
+    """Run the callback in one timer event."""
 
     def fire() -> Any:
         timer.cancel()
@@ -45,7 +45,7 @@ def serving(graph: GraphHarness) -> tuple[Node, Client]:
     return node, node.create_client(AddTwoInts, "add")
 
 
-def test_a_service_of_the_same_group(graph: GraphHarness) -> None:
+def test_awaiting_a_service_of_the_same_group(graph: GraphHarness) -> None:
     node, client = serving(graph)
     order: list[str] = []
 
@@ -61,7 +61,7 @@ def test_a_service_of_the_same_group(graph: GraphHarness) -> None:
     assert node.default_callback_group.calling == 0
 
 
-def test_the_order_is_the_same_every_time() -> None:
+def test_the_order_is_the_same_in_every_run() -> None:
     def run() -> list[str]:
         with GraphHarness() as graph:
             node, client = serving(graph)
@@ -86,7 +86,7 @@ def test_the_order_is_the_same_every_time() -> None:
     assert run() == first
 
 
-def test_through_coroutines_and_tasks(graph: GraphHarness) -> None:
+def test_awaiting_through_coroutines_and_tasks(graph: GraphHarness) -> None:
     node, client = serving(graph)
     sums: list[int] = []
 
@@ -123,7 +123,7 @@ def test_servers_that_await_each_other_in_one_group(graph: GraphHarness) -> None
     assert sums == [6]
 
 
-def test_a_request_that_waited_already_does_not_block_ones_own(
+def test_an_earlier_queued_request_does_not_block_a_call(
     graph: GraphHarness,
 ) -> None:
     node, client = serving(graph)
@@ -145,7 +145,7 @@ def test_a_request_that_waited_already_does_not_block_ones_own(
     assert (sums, waiting.result().sum) == ([4], 1)
 
 
-def test_nothing_else_of_the_group_starts_meanwhile(graph: GraphHarness) -> None:
+def test_other_callbacks_of_the_group_are_held_meanwhile(graph: GraphHarness) -> None:
     node, remote = make(graph), make(graph, "remote")
     gate: Future[None] = Future()
     seen: list[str] = []
@@ -172,7 +172,7 @@ def test_nothing_else_of_the_group_starts_meanwhile(graph: GraphHarness) -> None
     assert seen == ["answered", "topic"]
 
 
-def test_the_group_is_closed_again_after_the_answer(graph: GraphHarness) -> None:
+def test_the_group_is_held_again_after_the_response(graph: GraphHarness) -> None:
     node, client = serving(graph)
     remote = graph.node.create_client(AddTwoInts, "/add")
     gate: Future[None] = Future()
@@ -188,9 +188,9 @@ def test_the_group_is_closed_again_after_the_answer(graph: GraphHarness) -> None
     assert not waiting.done()
 
 
-def test_a_task_that_is_cancelled_closes_its_group(graph: GraphHarness) -> None:
+def test_a_cancelled_task_ends_the_call_of_its_group(graph: GraphHarness) -> None:
     node = make(graph)
-    client = node.create_client(AddTwoInts, "nobody")
+    client = node.create_client(AddTwoInts, "no_server")
 
     async def ask() -> None:
         await client.call_async(AddTwoInts.Request())
@@ -203,9 +203,11 @@ def test_a_task_that_is_cancelled_closes_its_group(graph: GraphHarness) -> None:
     assert group.calling == 0
 
 
-def test_a_cancelled_call_resumes_and_closes_the_group(graph: GraphHarness) -> None:
+def test_a_cancelled_call_resumes_its_coroutine(
+    graph: GraphHarness,
+) -> None:
     node = make(graph)
-    client = node.create_client(AddTwoInts, "nobody")
+    client = node.create_client(AddTwoInts, "no_server")
     answers: list[Any] = []
 
     async def ask() -> None:
@@ -224,7 +226,7 @@ def test_a_cancelled_call_resumes_and_closes_the_group(graph: GraphHarness) -> N
 @pytest.mark.parametrize(
     "group", [MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup]
 )
-def test_an_action_of_the_same_group(
+def test_awaiting_an_action_of_the_same_group(
     graph: GraphHarness, group: type[CallbackGroup]
 ) -> None:
     node = make(graph)
@@ -237,11 +239,11 @@ def test_an_action_of_the_same_group(
         goal.succeed()
         return Fibonacci.Result(sequence=[0, 1])
 
-    def hear(message: Any) -> None:
+    def receive(message: Any) -> None:
         seen.append(list(message.feedback.sequence))
 
     async def ask() -> None:
-        goal = await client.send_goal_async(Fibonacci.Goal(order=2), hear)
+        goal = await client.send_goal_async(Fibonacci.Goal(order=2), receive)
         assert goal is not None
         answer = await goal.get_result_async()
         seen.append(list(answer.result.sequence))
@@ -253,7 +255,7 @@ def test_an_action_of_the_same_group(
     assert seen == [[0], [1], [0, 1]]
 
 
-def test_feedback_comes_during_a_blocking_call(graph: GraphHarness) -> None:
+def test_feedback_arrives_during_a_blocking_call(graph: GraphHarness) -> None:
     node = make(graph)
     seen: list[Any] = []
 

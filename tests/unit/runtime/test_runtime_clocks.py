@@ -1,4 +1,4 @@
-"""Virtual, paced and system clocks, on a wall clock that the test moves."""
+"""Virtual, paced and system clocks, with a fake wall clock."""
 
 import pytest
 
@@ -9,7 +9,7 @@ from navette.runtime.clock import Wakeup
 
 
 class FakeWall:
-    """Stands in for the ``time`` module: waits move it, nothing else does."""
+    """Fake ``time`` module that only waits advance."""
 
     def __init__(self) -> None:
         self.now_s = 1000.0
@@ -22,7 +22,7 @@ class FakeWall:
 
 
 class FakeWakeup(Wakeup):
-    """A wait takes its whole time, or ends at once if ``is_set``."""
+    """A wait takes its full time, or ends immediately if ``is_set``."""
 
     def __init__(self, wall: FakeWall) -> None:
         super().__init__()
@@ -45,14 +45,14 @@ def wall(monkeypatch: pytest.MonkeyPatch) -> FakeWall:
     return fake
 
 
-def test_virtual_clock_is_there_at_once(wall: FakeWall) -> None:
+def test_virtual_clock_jumps_to_the_target(wall: FakeWall) -> None:
     clock, wakeup = VirtualClock(5), FakeWakeup(wall)
     assert clock.go_to(10**12, wakeup)
     assert clock.now_ns == 10**12
     assert wakeup.waits_s == []
 
 
-def test_virtual_clock_never_goes_back(wall: FakeWall) -> None:
+def test_virtual_clock_is_monotonic(wall: FakeWall) -> None:
     clock = VirtualClock(10)
     clock.go_to(5, FakeWakeup(wall))
     assert clock.now_ns == 10
@@ -67,7 +67,7 @@ def test_paced_clock_waits_at_its_factor(wall: FakeWall) -> None:
     assert clock.lag_s == 0.0
 
 
-def test_paced_clock_makes_up_for_a_short_delay(wall: FakeWall) -> None:
+def test_paced_clock_catches_up_after_a_short_delay(wall: FakeWall) -> None:
     clock, wakeup = PacedClock(1.0), FakeWakeup(wall)
     clock.go_to(10**9, wakeup)
     wall.now_s += 0.1
@@ -75,7 +75,7 @@ def test_paced_clock_makes_up_for_a_short_delay(wall: FakeWall) -> None:
     assert wakeup.waits_s == pytest.approx([1.0, 0.9])
 
 
-def test_paced_clock_does_not_rush_after_a_long_delay(wall: FakeWall) -> None:
+def test_paced_clock_does_not_catch_up_after_a_long_delay(wall: FakeWall) -> None:
     clock, wakeup = PacedClock(1.0), FakeWakeup(wall)
     clock.go_to(10**9, wakeup)
     wall.now_s += 10.0
@@ -85,14 +85,14 @@ def test_paced_clock_does_not_rush_after_a_long_delay(wall: FakeWall) -> None:
     assert wakeup.waits_s[-1] == pytest.approx(1.0)
 
 
-def test_paced_clock_stays_where_it_is_when_woken(wall: FakeWall) -> None:
+def test_paced_clock_does_not_advance_when_woken(wall: FakeWall) -> None:
     clock, wakeup = PacedClock(1.0), FakeWakeup(wall)
     wakeup.is_set = True
     assert not clock.go_to(10**9, wakeup)
     assert clock.now_ns == 0
 
 
-def test_paused_clock_stands(wall: FakeWall) -> None:
+def test_paused_clock_does_not_advance(wall: FakeWall) -> None:
     clock, wakeup = PacedClock(1.0), FakeWakeup(wall)
     clock.paused = True
     wakeup.is_set = True
@@ -106,7 +106,7 @@ def test_paused_clock_stands(wall: FakeWall) -> None:
     assert wakeup.waits_s[-1] == pytest.approx(0.25)
 
 
-def test_system_clock_waits_for_real(wall: FakeWall) -> None:
+def test_system_clock_waits(wall: FakeWall) -> None:
     clock, wakeup = SystemClock(), FakeWakeup(wall)
     start = clock.now_ns
     assert clock.go_to(start + 2 * 10**9, wakeup)
@@ -116,12 +116,12 @@ def test_system_clock_waits_for_real(wall: FakeWall) -> None:
 
 
 @pytest.mark.parametrize("factor", [0.0, -1.0, float("inf"), float("nan")])
-def test_wrong_factor_is_refused(factor: float) -> None:
+def test_invalid_factor_raises(factor: float) -> None:
     with pytest.raises(InvalidValueError, match="real-time factor"):
         PacedClock(factor)
 
 
-def test_wrong_start_is_refused() -> None:
+def test_negative_start_raises() -> None:
     with pytest.raises(InvalidValueError, match="start"):
         VirtualClock(-1)
 

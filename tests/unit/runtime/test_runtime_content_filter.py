@@ -1,4 +1,4 @@
-"""Content filters: which messages pass; errors of an expression."""
+"""Content filters: messages that pass, errors of an expression."""
 
 from typing import Any
 
@@ -125,7 +125,7 @@ def test_a_filter_can_be_set_changed_and_removed(graph: GraphHarness) -> None:
     subscription.set_content_filter("data > %0", ["15"])
     assert subscription.is_cft_enabled
     assert subscription.get_content_filter() == ("data > %0", ["15"])
-    # A message that does not pass takes no place in the queue.
+    # A message that does not pass takes no queue slot.
     for number in (20, 1, 2, 30, 3, 4):
         publisher.publish(Int32(data=number))
     graph.run_for(0.1)
@@ -141,7 +141,7 @@ def test_a_filter_can_be_set_changed_and_removed(graph: GraphHarness) -> None:
     assert received == [20, 30, 2, 3]
 
 
-def test_from_the_start_and_with_a_full_queue(graph: GraphHarness) -> None:
+def test_a_filter_from_the_start_with_a_full_queue(graph: GraphHarness) -> None:
     publisher, subscription, received = collected(
         graph, content_filter_options=ContentFilterOptions("data > %0", ["0"])
     )
@@ -152,7 +152,7 @@ def test_from_the_start_and_with_a_full_queue(graph: GraphHarness) -> None:
     assert received == [2, 3]
 
 
-def test_a_wrong_filter_creates_no_subscription(graph: GraphHarness) -> None:
+def test_an_invalid_filter_creates_no_subscription(graph: GraphHarness) -> None:
     made = node(graph, "n")
     options = ContentFilterOptions("nope = 1", [])
     with pytest.raises(ContentFilterError, match="'nope': std_msgs/String has no such"):

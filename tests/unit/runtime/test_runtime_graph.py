@@ -1,4 +1,4 @@
-"""Who is there: queries of a node, hooks for viewers."""
+"""Graph queries of a node and graph callbacks."""
 
 import pytest
 
@@ -50,8 +50,8 @@ def test_topics_and_counts(context: Context) -> None:
     mine = dict(a.get_publisher_names_and_types_by_node("b", "/ns"))
     assert "/ns/x" in mine
     assert "/chatter" not in mine
-    heard = a.get_subscriber_names_and_types_by_node("b", "ns")
-    assert ("/chatter", ["std_msgs/msg/String"]) in heard
+    received = a.get_subscriber_names_and_types_by_node("b", "ns")
+    assert ("/chatter", ["std_msgs/msg/String"]) in received
     with pytest.raises(UnknownNameError, match=r"node '/c'; known: /a, /ns/b"):
         a.get_publisher_names_and_types_by_node("c", "/")
 
@@ -98,13 +98,13 @@ def test_infos_of_services(context: Context) -> None:
     assert a.get_servers_info_by_service("stop") == []
 
 
-def test_infos_can_be_made_by_hand() -> None:
+def test_infos_can_be_constructed() -> None:
     assert TopicEndpointInfo(node_name="a").endpoint_type is EndpointTypeEnum.INVALID
     assert "Topic type hash: INVALID" in str(TopicEndpointInfo())
     assert ServiceEndpointInfo(endpoint_count=2) != ServiceEndpointInfo()
 
 
-def test_change_hook(context: Context) -> None:
+def test_change_callback(context: Context) -> None:
     changes: list[list[str]] = []
     graph = context.graph
     undo = graph.on_change(

@@ -1,4 +1,4 @@
-"""Callback groups with rules of a program's own."""
+"""Callback groups with a program's own rules."""
 
 from typing import Any
 
@@ -9,26 +9,26 @@ from navette.runtime.callback_groups import CallbackGroup
 
 
 class Bucket(CallbackGroup):
-    """A program's own rules: each callback takes a token."""
+    """Token bucket: each callback takes a token."""
 
     def __init__(self) -> None:
         super().__init__()
         self.tokens = 2
-        self.told: list[str] = []
-        self.is_coy = False
+        self.calls: list[str] = []
+        self.rejects = False
 
     def can_execute(self, entity: Any) -> bool:
         return self.tokens > 0
 
     def beginning_execution(self, entity: Any) -> bool:
-        if self.is_coy:
+        if self.rejects:
             return False
         self.tokens -= 1
-        self.told.append("begins")
+        self.calls.append("begins")
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        self.told.append("ends")
+        self.calls.append("ends")
 
 
 def bucket_node() -> tuple[Executor, Node, Bucket, list[float]]:
@@ -43,7 +43,7 @@ def bucket_node() -> tuple[Executor, Node, Bucket, list[float]]:
     return executor, node, bucket, times
 
 
-def test_a_group_with_rules_of_its_own() -> None:
+def test_a_custom_group() -> None:
     executor, node, bucket, times = bucket_node()
 
     def refill() -> None:
@@ -52,19 +52,19 @@ def test_a_group_with_rules_of_its_own() -> None:
     node.create_timer(1.05, refill)
     executor.spin_for(2_200_000_000)
     assert times == pytest.approx([0.1, 0.2, 1.05, 2.1])
-    assert bucket.told == ["begins", "ends"] * 4
+    assert bucket.calls == ["begins", "ends"] * 4
     assert not bucket.can_execute(None)
 
 
-def test_rules_that_change_their_mind_at_the_last_moment_stop_nothing() -> None:
+def test_a_rejection_right_before_the_callback_does_not_stop_the_loop() -> None:
     executor, node, bucket, times = bucket_node()
-    bucket.is_coy = True
+    bucket.rejects = True
     ticks: list[int] = []
     node.create_timer(0.5, lambda: ticks.append(1))
     executor.spin_for(1_000_000_000)
     assert (times, len(ticks)) == ([], 2)
     executor.remove_node(node)
-    bucket.is_coy = False
+    bucket.rejects = False
     executor.spin_for(1_000_000_000)
     assert times == []
     executor.add_node(node)
@@ -72,7 +72,7 @@ def test_rules_that_change_their_mind_at_the_last_moment_stop_nothing() -> None:
     assert len(times) == 1
 
 
-def test_rules_hear_of_the_end_of_a_coroutine() -> None:
+def test_the_group_is_notified_of_the_end_of_a_coroutine() -> None:
     executor, node, bucket, _ = bucket_node()
     future: Future[None] = Future(executor=executor)
 
@@ -83,7 +83,7 @@ def test_rules_hear_of_the_end_of_a_coroutine() -> None:
     guard = node.create_guard_condition(waits, callback_group=bucket)
     guard.trigger()
     executor.spin_for(50_000_000)
-    assert bucket.told == ["begins"]
+    assert bucket.calls == ["begins"]
     future.set_result(None)
     executor.spin_for(10_000_000)
-    assert bucket.told == ["begins", "ends"]
+    assert bucket.calls == ["begins", "ends"]

@@ -1,4 +1,4 @@
-"""Polling by handles, as programs do that have a copy of rclpy's wait_for_message."""
+"""Polling by handles, as in programs with a copy of rclpy's wait_for_message."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ def never(message: Any) -> None:
 
 
 def lonely(graph: GraphHarness) -> Node:
-    return Node("lonely", context=graph.context)  # in no executor
+    return Node("lonely", context=graph.context)  # without an executor
 
 
 def test_samples_are_taken_one_by_one(graph: GraphHarness) -> None:
@@ -44,7 +44,7 @@ def test_samples_are_taken_one_by_one(graph: GraphHarness) -> None:
         assert handle.take_message(String, raw=False) is None
 
 
-def test_what_expired_is_not_taken(graph: GraphHarness) -> None:
+def test_expired_samples_are_not_taken(graph: GraphHarness) -> None:
     qos = QoSProfile(depth=10, lifespan=Duration(seconds=1))
     subscription = lonely(graph).create_subscription(String, "/t", never, 10)
     publisher = graph.node.create_publisher(String, "/t", qos)

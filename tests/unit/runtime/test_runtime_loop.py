@@ -20,7 +20,7 @@ def loop() -> EventLoop:
     return EventLoop(VirtualClock())
 
 
-def test_events_run_by_time_then_by_order_of_making(loop: EventLoop) -> None:
+def test_events_run_by_time_then_by_order_of_creation(loop: EventLoop) -> None:
     order: list[str] = []
     for time_ns, name in ((20, "c"), (10, "a"), (20, "d"), (10, "b")):
         loop.call_at(time_ns, lambda name=name: order.append(name))
@@ -30,7 +30,7 @@ def test_events_run_by_time_then_by_order_of_making(loop: EventLoop) -> None:
     assert loop.clock.now_ns == 20
 
 
-def test_an_event_made_for_the_present_comes_after_those_that_are_ready(
+def test_an_event_for_the_current_time_runs_after_the_ready_events(
     loop: EventLoop,
 ) -> None:
     order: list[str] = []
@@ -45,7 +45,7 @@ def test_an_event_made_for_the_present_comes_after_those_that_are_ready(
     assert order == ["first", "second", "made at 10 for 10"]
 
 
-def test_run_until_includes_that_time_and_ends_at_it(loop: EventLoop) -> None:
+def test_run_until_includes_the_end_time(loop: EventLoop) -> None:
     hits: list[int] = []
     for time_ns in (5, 10, 11):
         loop.call_at(time_ns, lambda t=time_ns: hits.append(t))
@@ -55,7 +55,7 @@ def test_run_until_includes_that_time_and_ends_at_it(loop: EventLoop) -> None:
     assert (hits, loop.clock.now_ns) == ([5, 10, 11], 100)
 
 
-def test_a_canceled_call_does_not_happen_nor_move_time(loop: EventLoop) -> None:
+def test_a_cancelled_call_neither_runs_nor_advances_time(loop: EventLoop) -> None:
     loop.call_at(50, lambda: pytest.fail("was canceled")).cancel()
     loop.run()
     assert loop.clock.now_ns == 0
@@ -69,7 +69,7 @@ def test_a_limit_counts_events(loop: EventLoop) -> None:
     assert hits == [0, 1]
 
 
-def test_done_is_asked_between_events(loop: EventLoop) -> None:
+def test_done_is_checked_between_events(loop: EventLoop) -> None:
     hits: list[int] = []
     for number in range(3):
         loop.call_soon(lambda n=number: hits.append(n))
@@ -79,13 +79,13 @@ def test_done_is_asked_between_events(loop: EventLoop) -> None:
     assert hits == [0, 1, 2]
 
 
-def test_closed_loop_runs_nothing(loop: EventLoop) -> None:
+def test_a_closed_loop_runs_no_events(loop: EventLoop) -> None:
     loop.call_soon(lambda: pytest.fail("must not run"))
     loop.close()
     loop.run()
 
 
-def test_error_names_source_and_stamp_and_keeps_the_cause(loop: EventLoop) -> None:
+def test_an_error_names_source_stamp_and_cause(loop: EventLoop) -> None:
     def bad() -> None:
         raise ValueError("broken")
 
@@ -98,7 +98,7 @@ def test_error_names_source_and_stamp_and_keeps_the_cause(loop: EventLoop) -> No
     assert isinstance(caught.value.__cause__, ValueError)
 
 
-def test_the_loop_goes_on_after_an_error_if_asked_to(loop: EventLoop) -> None:
+def test_the_loop_can_run_again_after_an_error(loop: EventLoop) -> None:
     hits: list[str] = []
 
     def bad() -> None:
@@ -112,7 +112,7 @@ def test_the_loop_goes_on_after_an_error_if_asked_to(loop: EventLoop) -> None:
     assert hits == ["after"]
 
 
-def test_nested_run_lets_other_events_happen_in_between(loop: EventLoop) -> None:
+def test_other_events_run_during_a_nested_run(loop: EventLoop) -> None:
     order: list[str] = []
 
     def waits() -> None:
@@ -144,7 +144,7 @@ def test_error_inside_a_nested_run_is_wrapped_once(loop: EventLoop) -> None:
 
 
 class _DemandingError(UnicodeError):
-    """An exception of a program that cannot be made without arguments."""
+    """An exception that cannot be constructed without arguments."""
 
     def __new__(cls, code: int) -> "_DemandingError":
         return super().__new__(cls)
@@ -155,10 +155,10 @@ class _DemandingError(UnicodeError):
 
 
 class _FinalError(Exception):
-    """One that may not be derived from."""
+    """An exception that cannot be subclassed."""
 
     def __init_subclass__(cls, *, allowed: bool) -> None:
-        """Wants an argument that nobody gives."""
+        """Require a keyword argument of every subclass."""
 
 
 @pytest.mark.parametrize(
@@ -175,7 +175,7 @@ class _FinalError(Exception):
     ],
     ids=lambda error: type(error).__name__,
 )
-def test_a_programs_own_except_catches_what_its_callback_raised(
+def test_an_except_clause_catches_the_callbacks_exception(
     loop: EventLoop, error: Exception
 ) -> None:
     def bad() -> None:
@@ -191,7 +191,7 @@ def test_a_programs_own_except_catches_what_its_callback_raised(
     assert text.endswith(f"{type(error).__name__}: {error}")
 
 
-def test_attributes_are_the_originals(loop: EventLoop) -> None:
+def test_the_error_has_the_original_attributes(loop: EventLoop) -> None:
     def bad() -> None:
         raise _DemandingError(7)
 
@@ -202,7 +202,7 @@ def test_attributes_are_the_originals(loop: EventLoop) -> None:
     assert not hasattr(caught.value, "colour")
 
 
-def test_what_may_not_be_derived_from_is_the_cause(loop: EventLoop) -> None:
+def test_an_exception_that_cannot_be_subclassed_is_the_cause(loop: EventLoop) -> None:
     def bad() -> None:
         raise _FinalError("end")
 
@@ -213,7 +213,7 @@ def test_what_may_not_be_derived_from_is_the_cause(loop: EventLoop) -> None:
 
 
 def test_call_from_another_thread_wakes_a_waiting_loop() -> None:
-    # The system clock with nothing to do waits until somebody calls.
+    # With the system clock and no events, the loop waits for a call.
     executor = Executor(clock=None, context=_context())
     arrived: list[int] = []
 
@@ -230,7 +230,7 @@ def test_call_from_another_thread_wakes_a_waiting_loop() -> None:
     assert arrived == [threading.get_ident()]
 
 
-def test_calls_of_other_threads_are_no_events_that_are_counted() -> None:
+def test_calls_of_other_threads_do_not_count_as_events() -> None:
     loop = EventLoop(VirtualClock())
     order: list[str] = []
     loop.call_soon(lambda: order.append("event"))
@@ -240,7 +240,7 @@ def test_calls_of_other_threads_are_no_events_that_are_counted() -> None:
     assert order == ["asked", "event"]
 
 
-def test_only_one_thread_drives_and_the_other_sees_the_result() -> None:
+def test_one_thread_drives_and_the_other_gets_the_result() -> None:
     executor = Executor(context=_context())
     future: Future[str] = Future(executor=executor)
     spinning = threading.Event()
@@ -260,9 +260,6 @@ def _context() -> Context:
     context = Context()
     context.init(args=[])
     return context
-
-
-# -- callback groups -----------------------------------------------------------
 
 
 @pytest.mark.parametrize("reentrant", [False, True])
@@ -292,10 +289,7 @@ def test_group_decides_what_may_start_while_a_callback_waits(reentrant: bool) ->
         assert order == ["slow begins", "other group", "slow ends", "same group"]
 
 
-# -- coroutines ----------------------------------------------------------------
-
-
-def test_coroutine_callback_waits_without_stopping_others() -> None:
+def test_a_waiting_coroutine_does_not_block_others() -> None:
     context = Context(clock=VirtualClock())
     node = Node("n", context=context)
     executor = Executor(context=context)
@@ -303,19 +297,19 @@ def test_coroutine_callback_waits_without_stopping_others() -> None:
     order: list[str] = []
     answer: Future[int] = Future(executor=executor)
 
-    async def asks() -> None:
+    async def call() -> None:
         timer.cancel()
-        order.append("asks")
+        order.append("call")
         order.append(f"got {await answer}")
 
-    timer = node.create_timer(1.0, asks, ReentrantCallbackGroup())
+    timer = node.create_timer(1.0, call, ReentrantCallbackGroup())
     context.loop.call_at(2_000_000_000, lambda: answer.set_result(42))
     context.loop.call_at(1_500_000_000, lambda: order.append("meanwhile"))
     executor.spin_for(3_000_000_000)
-    assert order == ["asks", "meanwhile", "got 42"]
+    assert order == ["call", "meanwhile", "got 42"]
 
 
-def test_suspended_coroutine_keeps_its_exclusive_group() -> None:
+def test_a_suspended_coroutine_holds_its_exclusive_group() -> None:
     context = Context(clock=VirtualClock())
     node = Node("n", context=context)
     executor = Executor(context=context)
@@ -323,12 +317,12 @@ def test_suspended_coroutine_keeps_its_exclusive_group() -> None:
     order: list[str] = []
     answer: Future[None] = Future(executor=executor)
 
-    async def asks() -> None:
+    async def call() -> None:
         first.cancel()
         await answer
         order.append("resumed")
 
-    first = node.create_timer(1.0, asks)
+    first = node.create_timer(1.0, call)
     second = node.create_timer(1.5, lambda: (order.append("second"), second.cancel()))
     context.loop.call_at(2_000_000_000, lambda: answer.set_result(None))
     executor.spin_for(3_000_000_000)
@@ -354,7 +348,7 @@ def test_coroutine_that_raises_after_a_wait_stops_the_executor() -> None:
     assert caught.value.stamp_ns == 1_500_000_000
 
 
-def test_task_gives_its_result_and_can_be_awaited(loop: EventLoop) -> None:
+def test_a_task_has_a_result_and_can_be_awaited(loop: EventLoop) -> None:
     async def inner() -> int:
         return 20
 
@@ -367,7 +361,7 @@ def test_task_gives_its_result_and_can_be_awaited(loop: EventLoop) -> None:
     assert task.result() == 21
 
 
-def test_error_of_an_awaited_task_goes_to_who_awaits(loop: EventLoop) -> None:
+def test_an_error_of_a_task_is_raised_where_it_is_awaited(loop: EventLoop) -> None:
     async def inner() -> None:
         raise ValueError("inner")
 
@@ -383,7 +377,7 @@ def test_error_of_an_awaited_task_goes_to_who_awaits(loop: EventLoop) -> None:
     assert task.result() == "caught inner"
 
 
-def test_error_of_a_task_nobody_awaits_stops_the_loop(loop: EventLoop) -> None:
+def test_an_error_of_an_unawaited_task_stops_the_loop(loop: EventLoop) -> None:
     async def bad() -> None:
         raise ValueError("unseen")
 
@@ -392,7 +386,7 @@ def test_error_of_a_task_nobody_awaits_stops_the_loop(loop: EventLoop) -> None:
         loop.run()
 
 
-def test_awaiting_something_foreign_is_a_clear_error(loop: EventLoop) -> None:
+def test_awaiting_a_foreign_awaitable_raises(loop: EventLoop) -> None:
     class Foreign:
         def __await__(self):  # type: ignore[no-untyped-def]
             yield "foreign"
@@ -405,7 +399,7 @@ def test_awaiting_something_foreign_is_a_clear_error(loop: EventLoop) -> None:
         loop.run()
 
 
-def test_future_rules(loop: EventLoop) -> None:
+def test_future_states(loop: EventLoop) -> None:
     seen: list[object] = []
     future: Future[int] = Future()
     future.add_done_callback(lambda f: seen.append(f.result()))
@@ -423,14 +417,14 @@ def test_future_rules(loop: EventLoop) -> None:
 
 
 class Turn:
-    """Lets asyncio's other tasks go on."""
+    """Lets other asyncio tasks run."""
 
     def __await__(self) -> Iterator[None]:
         yield
 
 
 def test_futures_are_awaited_by_asyncio_while_another_task_spins() -> None:
-    """As the asyncio client of the ROS 2 examples does."""
+    """As in the asyncio client of the ROS 2 examples."""
     loop = EventLoop(VirtualClock())
     future: Future[str] = Future(executor=loop)
     never: Future[str] = Future(executor=loop)
@@ -461,8 +455,8 @@ def test_futures_are_awaited_by_asyncio_while_another_task_spins() -> None:
     assert asyncio.run(main()) == ["done"] * 3
 
 
-def test_what_other_threads_ask_is_done_in_their_order(loop: EventLoop) -> None:
-    """Also where each asks for attention while an earlier one is done."""
+def test_calls_of_other_threads_run_in_order(loop: EventLoop) -> None:
+    """Also if each call wakes the loop while an earlier one runs."""
     done: list[int] = []
 
     def ask() -> None:

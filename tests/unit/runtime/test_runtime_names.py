@@ -1,4 +1,4 @@
-"""Names: the tables of the ROS 2 design document."""
+"""Graph resource names, with the tables of the ROS 2 design document."""
 
 import pytest
 
@@ -62,7 +62,7 @@ def test_good_names() -> None:
     assert validate_full_topic_name("/a/_b")
 
 
-def test_error_points_at_the_place() -> None:
+def test_the_error_marks_the_position() -> None:
     with pytest.raises(InvalidNameError) as caught:
         validate_topic_name("ab cd")
     assert "'ab cd'" in str(caught.value)
@@ -88,12 +88,12 @@ def test_remapping(rule: str, name: str, expected: str) -> None:
     assert remapper.resolve(name) == expected
 
 
-def test_the_first_matching_rule_wins() -> None:
+def test_the_first_matching_rule_applies() -> None:
     rules = [RemapRule.parse("a:=b"), RemapRule.parse("a:=c")]
     assert NodeRemapper(rules, "n", "/").resolve("a") == "/b"
 
 
-def test_only_expand_leaves_remapping_out() -> None:
+def test_only_expand_skips_remapping() -> None:
     remapper = NodeRemapper([RemapRule.parse("a:=b")], "n", "/")
     assert remapper.resolve("a", only_expand=True) == "/a"
 

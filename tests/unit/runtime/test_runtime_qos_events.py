@@ -1,4 +1,4 @@
-"""Deadlines, liveliness, QoS from outside, compatibility."""
+"""Deadlines, liveliness, QoS overrides, compatibility."""
 
 from typing import Any
 
@@ -42,11 +42,11 @@ from navette.testing import GraphHarness
 Changed = QoSLivelinessChangedInfo
 
 
-def test_deadlines_of_both_ends(graph: GraphHarness) -> None:
+def test_deadlines_of_publisher_and_subscription(graph: GraphHarness) -> None:
     qos = QoSProfile(depth=10, deadline=Duration(seconds=0.6))
     offered: list[Any] = []
     requested: list[Any] = []
-    heard: list[float] = []
+    received: list[float] = []
     publisher = graph.node.create_publisher(
         String,
         "t",
@@ -56,15 +56,15 @@ def test_deadlines_of_both_ends(graph: GraphHarness) -> None:
     graph.node.create_subscription(
         String,
         "t",
-        lambda m: heard.append(graph.now_ns / 1e9),
+        lambda m: received.append(graph.now_ns / 1e9),
         qos,
         event_callbacks=SubscriptionEventCallbacks(deadline=requested.append),
     )
     graph.run_for(5.0)
-    assert offered == []  # counts from the first message on
+    assert offered == []  # starts with the first message
     timer = graph.node.create_timer(0.5, lambda: publisher.publish(String()))
     graph.run_for(2.0)
-    assert (offered, requested, len(heard)) == ([], [], 4)
+    assert (offered, requested, len(received)) == ([], [], 4)
     timer.cancel()
     graph.run_for(1.3)
     assert offered == requested == [QoSCountInfo(1, 1), QoSCountInfo(2, 1)]
@@ -78,7 +78,7 @@ def test_deadlines_of_both_ends(graph: GraphHarness) -> None:
     assert len(requested) > 10
 
 
-def test_liveliness_of_automatic_publishers(graph: GraphHarness) -> None:
+def test_automatic_liveliness(graph: GraphHarness) -> None:
     changes: list[Any] = []
     graph.node.create_subscription(
         String,
@@ -94,7 +94,7 @@ def test_liveliness_of_automatic_publishers(graph: GraphHarness) -> None:
     assert changes == [Changed(1, 0, 1, 0), Changed(0, 0, -1, 0)]
 
 
-def test_liveliness_of_a_publisher_that_asserts_itself(graph: GraphHarness) -> None:
+def test_manual_liveliness(graph: GraphHarness) -> None:
     qos = QoSProfile(
         depth=10,
         liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
@@ -138,7 +138,7 @@ def test_liveliness_of_a_publisher_that_asserts_itself(graph: GraphHarness) -> N
     assert (changes[-1], len(lost)) == (Changed(0, 0, -1, 0), 1)
 
 
-def test_an_assertion_that_not_all_hear_is_warned_about_once(
+def test_an_assertion_that_misses_a_subscription_is_warned_about_once(
     graph: GraphHarness, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     qos = QoSProfile(
@@ -147,18 +147,18 @@ def test_an_assertion_that_not_all_hear_is_warned_about_once(
         liveliness_lease_duration=Duration(seconds=1),
     )
     publisher = graph.node.create_publisher(String, "t", qos)
-    said: list[str] = []
-    graph.context.log.sinks.append(lambda record: said.append(record.message))
+    reported: list[str] = []
+    graph.context.log.sinks.append(lambda record: reported.append(record.message))
     publisher.assert_liveliness()
-    assert said == []
+    assert reported == []
     monkeypatch.setattr(type(publisher.ports[0]), "assert_alive", lambda _: False)
     for _ in range(2):
         publisher.assert_liveliness()
-    assert len(said) == 1
-    assert "publish one within the lease" in said[0]
+    assert len(reported) == 1
+    assert "publish one within the lease" in reported[0]
 
 
-def test_an_assertion_without_a_lease_is_nothing(graph: GraphHarness) -> None:
+def test_an_assertion_without_a_lease_has_no_effect(graph: GraphHarness) -> None:
     graph.node.create_publisher(String, "t", 10).assert_liveliness()
 
 
@@ -173,7 +173,7 @@ def overriding(graph: GraphHarness, **overrides: Any) -> Node:
     )
 
 
-def test_qos_from_outside(graph: GraphHarness) -> None:
+def test_qos_overrides(graph: GraphHarness) -> None:
     node = overriding(
         graph,
         **{
@@ -207,7 +207,7 @@ def test_qos_from_outside(graph: GraphHarness) -> None:
     assert not node.has_parameter("qos_overrides./t.subscription_b.lifespan")
 
 
-def test_qos_from_outside_may_be_refused(graph: GraphHarness) -> None:
+def test_qos_overrides_can_be_rejected(graph: GraphHarness) -> None:
     node = overriding(graph, **{"publisher.depth": 70})
 
     def check(qos: QoSProfile) -> Any:
@@ -241,7 +241,7 @@ def test_compatibility() -> None:
     assert "subscription reliability" in reason
 
 
-def test_names_of_older_programs() -> None:
+def test_deprecated_names() -> None:
     assert (
         QoSReliabilityPolicy.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT
         is ReliabilityPolicy.BEST_EFFORT
@@ -256,7 +256,7 @@ def aging(graph: GraphHarness, **qos: Any) -> Any:
     return node.create_publisher(String, "news", profile)
 
 
-def test_late_joiners_get_no_expired_samples(graph: GraphHarness) -> None:
+def test_late_subscriptions_get_no_expired_samples(graph: GraphHarness) -> None:
     latched = DurabilityPolicy.TRANSIENT_LOCAL
     publisher = aging(graph, durability=latched)
     publisher.publish(String(data="old"))
@@ -264,40 +264,42 @@ def test_late_joiners_get_no_expired_samples(graph: GraphHarness) -> None:
     publisher.publish(String(data="young"))
     graph.run_for(0.6)
     node = graph.add(Node("late", context=graph.context))
-    heard: list[str] = []
+    received: list[str] = []
     read: list[str] = []
     qos = QoSProfile(depth=5, durability=latched)
-    node.create_subscription(String, "news", lambda m: heard.append(m.data), qos)
+    node.create_subscription(String, "news", lambda m: received.append(m.data), qos)
     node.create_subscription(
         String, "news", lambda m, _: read.append(m.data), qos, shared=True
     )
     graph.run_for(0.1)
-    assert heard == read == ["young"]
+    assert received == read == ["young"]
 
 
-def test_what_expires_in_the_queue_is_dropped(graph: GraphHarness) -> None:
+def test_samples_that_expire_in_the_queue_are_dropped(graph: GraphHarness) -> None:
     publisher = aging(graph)
-    node = Node("slow", context=graph.context)  # in no executor: its events wait
-    heard: list[str] = []
+    node = Node(
+        "slow", context=graph.context
+    )  # without an executor its events are parked
+    received: list[str] = []
     raw: list[bytes] = []
-    node.create_subscription(String, "news", lambda m: heard.append(m.data), 10)
+    node.create_subscription(String, "news", lambda m: received.append(m.data), 10)
     node.create_subscription(String, "news", raw.append, 10, raw=True)
     taken = node.create_subscription(String, "news", print, 10)
     message = String(data="old")
     publisher.publish(message)
     graph.run_for(0.9)
-    message.data = "young"  # and the one under way stays as it was
+    message.data = "young"  # the published sample does not change
     publisher.publish(message)
     graph.run_for(0.2)
     assert taken.take() == String(data="young")
     assert taken.take() is None
     graph.add(node)
     graph.run_for(0.1)
-    assert heard == ["young"]
+    assert received == ["young"]
     assert len(raw) == 1
 
 
-def test_a_lifespan_is_also_that_of_bytes(graph: GraphHarness) -> None:
+def test_a_lifespan_applies_to_serialised_messages(graph: GraphHarness) -> None:
     publisher = aging(graph, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     publisher.publish(serialize(String(data="bytes")))
     probe = graph.collect("/news", String, latched=True)
@@ -309,9 +311,9 @@ def test_a_lifespan_is_also_that_of_bytes(graph: GraphHarness) -> None:
     assert late.count == 0
 
 
-def test_lost_messages_are_told(graph: GraphHarness) -> None:
-    told: list[QoSCountInfo] = []
-    callbacks = SubscriptionEventCallbacks(message_lost=told.append)
+def test_lost_messages_are_reported(graph: GraphHarness) -> None:
+    reported: list[QoSCountInfo] = []
+    callbacks = SubscriptionEventCallbacks(message_lost=reported.append)
     node = graph.add(Node("n", context=graph.context))
     subscription = node.create_subscription(
         String, "news", print, 1, event_callbacks=callbacks
@@ -320,10 +322,10 @@ def test_lost_messages_are_told(graph: GraphHarness) -> None:
     for which, count in ((subscription, 2), (other, 9), (subscription, 1)):
         graph.context.graph.message_lost(which.endpoint, count)
     graph.run_for(0.1)
-    assert told == [QoSCountInfo(2, 2), QoSCountInfo(3, 1)]
+    assert reported == [QoSCountInfo(2, 2), QoSCountInfo(3, 1)]
 
 
-def test_handlers_tell_what_there_are_callbacks_for(graph: GraphHarness) -> None:
+def test_event_handlers_list_the_callbacks(graph: GraphHarness) -> None:
     node = graph.add(Node("n", context=graph.context))
     publisher = node.create_publisher(
         String, "news", 1, event_callbacks=PublisherEventCallbacks(matched=print)
@@ -342,7 +344,7 @@ def test_handlers_tell_what_there_are_callbacks_for(graph: GraphHarness) -> None
     assert node.create_publisher(String, "news", 1).event_handlers == []
 
 
-def test_best_available_goes_with_every_deadline_and_lease() -> None:
+def test_best_available_matches_every_deadline_and_lease() -> None:
     best = QoSProfile(
         depth=1,
         deadline=DeadlineBestAvailable,

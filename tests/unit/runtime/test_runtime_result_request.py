@@ -1,4 +1,4 @@
-"""A result is asked for again when the time of a request is over."""
+"""A request for a result is repeated after a timeout."""
 
 from typing import Any, cast
 
@@ -13,8 +13,8 @@ from navette.runtime.exceptions import ServiceFailedError, ServiceTimeoutError
 SECOND = 1_000_000_000
 
 
-class Asked:
-    """In the place of a client: what was asked, and is there a server."""
+class FakeClient:
+    """Records requests; a test sets whether a server exists."""
 
     def __init__(self) -> None:
         self.futures: list[Future[Any]] = []
@@ -30,37 +30,37 @@ class Asked:
 
 class Bench:
     def __init__(self) -> None:
-        self.asked = Asked()
+        self.asked = FakeClient()
         self.clock = VirtualClock()
         client = cast("Client", self.asked)
         self.future = ResultRequest(client, "result?", self.clock).future
 
-    def time_is_over(self, after_ns: int) -> None:
+    def time_out(self, after_ns: int) -> None:
         self.clock.go_to(self.clock.now_ns + after_ns, Wakeup())
         self.asked.futures[-1].set_exception(ServiceTimeoutError("no answer"))
 
 
-def test_it_is_asked_again_until_there_is_an_answer() -> None:
+def test_the_request_is_repeated_until_a_response_arrives() -> None:
     bench = Bench()
     for _ in range(3):
-        bench.time_is_over(600 * SECOND)
+        bench.time_out(600 * SECOND)
         assert not bench.future.done()
     assert len(bench.asked.futures) == 4
     bench.asked.futures[-1].set_result("result")
     assert bench.future.result() == "result"
 
 
-def test_it_is_given_up_when_there_is_no_server() -> None:
+def test_the_request_is_not_repeated_without_a_server() -> None:
     bench = Bench()
     bench.asked.is_served = False
-    bench.time_is_over(600 * SECOND)
+    bench.time_out(600 * SECOND)
     with pytest.raises(ServiceTimeoutError, match="no answer"):
         bench.future.result()
 
 
-def test_a_server_that_always_says_time_is_over_is_not_asked_without_end() -> None:
+def test_an_early_timeout_is_not_retried() -> None:
     bench = Bench()
-    bench.time_is_over(1)
+    bench.time_out(1)
     with pytest.raises(ServiceTimeoutError):
         bench.future.result()
     assert len(bench.asked.futures) == 1
@@ -73,9 +73,9 @@ def test_a_failure_is_passed_on() -> None:
         bench.future.result()
 
 
-def test_cancelled_at_either_end() -> None:
+def test_cancelling_either_future_cancels_the_other() -> None:
     given_up, destroyed = Bench(), Bench()
-    given_up.time_is_over(600 * SECOND)
+    given_up.time_out(600 * SECOND)
     given_up.future.cancel()
     assert given_up.asked.futures[-1].cancelled()
     destroyed.asked.futures[0].cancel()

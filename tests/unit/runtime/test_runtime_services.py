@@ -1,4 +1,4 @@
-"""Services and clients: calls from everywhere, coroutines, failures, graph queries."""
+"""Services and clients: calls, coroutines, failures, graph queries."""
 
 import threading
 from typing import Any
@@ -90,7 +90,7 @@ def test_call_from_a_callback_to_a_service_of_the_same_group(
         order.append("asked")
         order.append(f"sum {client.call(AddTwoInts.Request(a=4)).sum}")
 
-    def other() -> None:  # of the held group, and no service: it waits
+    def other() -> None:  # not a service, so it is held with its group
         order.append("other")
 
     node.create_timer(1.0, timer)
@@ -118,7 +118,7 @@ def test_services_that_call_each_other_in_one_group(graph: GraphHarness) -> None
     assert sums == [6]
 
 
-def test_a_request_that_waited_already_does_not_block_ones_own(
+def test_an_earlier_queued_request_does_not_block_a_call(
     graph: GraphHarness,
 ) -> None:
     node = make(graph, "n")
@@ -200,7 +200,7 @@ def test_a_coroutine_awaits_a_call_within_its_own_group(graph: GraphHarness) -> 
     assert sums == [8]
 
 
-def test_an_exception_surfaces_and_the_client_does_not_hang(
+def test_an_exception_is_raised_and_the_client_gets_a_failure(
     graph: GraphHarness,
 ) -> None:
     def fail(request: Any, response: Any) -> Any:
@@ -216,7 +216,9 @@ def test_an_exception_surfaces_and_the_client_does_not_hang(
         future.result()
 
 
-def test_an_exception_of_a_coroutine_is_told_too(graph: GraphHarness) -> None:
+def test_an_exception_of_a_coroutine_reaches_the_client(
+    graph: GraphHarness,
+) -> None:
     async def fail(request: Any, response: Any) -> Any:
         raise ValueError("late")
 
@@ -228,7 +230,7 @@ def test_an_exception_of_a_coroutine_is_told_too(graph: GraphHarness) -> None:
     assert isinstance(future.exception(), ServiceFailedError)
 
 
-def test_a_callback_that_returns_nothing_is_told_what_to_return(
+def test_a_callback_that_returns_none_raises(
     graph: GraphHarness,
 ) -> None:
     _, client = pair(graph, lambda request, response: None)
@@ -250,8 +252,8 @@ def test_timeout(graph: GraphHarness) -> None:
         client.get_pending_request(1)
 
 
-def test_nobody_serves(graph: GraphHarness) -> None:
-    client = graph.node.create_client(Trigger, "nobody")
+def test_a_call_without_a_server_times_out(graph: GraphHarness) -> None:
+    client = graph.node.create_client(Trigger, "no_server")
     with pytest.raises(TimeoutError, match="has no server"):
         client.call(Trigger.Request(), 0.5)
     assert not client.wait_for_service(timeout_sec=0.5)
@@ -267,7 +269,7 @@ def test_wait_for_service(graph: GraphHarness) -> None:
     assert client.service_is_ready()
 
 
-def test_a_removed_request_is_not_answered(graph: GraphHarness) -> None:
+def test_a_removed_request_stays_pending(graph: GraphHarness) -> None:
     _, client = pair(graph)
     future = client.call_async(AddTwoInts.Request())
     client.remove_pending_request(future)
@@ -275,7 +277,7 @@ def test_a_removed_request_is_not_answered(graph: GraphHarness) -> None:
     assert not future.done()
 
 
-def test_the_first_of_two_servers_counts(graph: GraphHarness) -> None:
+def test_the_response_of_the_first_of_two_servers_counts(graph: GraphHarness) -> None:
     _, client = pair(graph)
     make(graph, "second").create_service(
         AddTwoInts, "add", lambda request, response: AddTwoInts.Response(sum=-1)
@@ -284,7 +286,7 @@ def test_the_first_of_two_servers_counts(graph: GraphHarness) -> None:
     graph.run_for(1.0)
 
 
-def test_wrong_types_are_loud(graph: GraphHarness) -> None:
+def test_wrong_types_raise(graph: GraphHarness) -> None:
     node: Any = graph.node
     with pytest.raises(NoTypeSupportImportedException, match="String, which is a mess"):
         node.create_service(String, "s", add)

@@ -1,4 +1,4 @@
-"""What SIGTERM does, and what init and shutdown do about it."""
+"""SIGTERM and its handlers."""
 
 import contextvars
 import signal
@@ -28,7 +28,7 @@ from navette.runtime.signals import (
 @pytest.fixture(autouse=True)
 def fresh_default_context() -> Iterator[None]:
     reset_default_context()
-    # Who is shut down by another thread leaves its handler, as Python wants it.
+    # A shutdown by another thread cannot remove the handler (a rule of Python).
     uninstall_signal_handlers()
     yield
     get_default_context().try_shutdown()
@@ -45,7 +45,7 @@ def test_init_installs_and_shutdown_removes() -> None:
     assert signal.getsignal(signal.SIGTERM) is before
 
 
-def test_a_context_of_ones_own_installs_only_what_is_asked() -> None:
+def test_a_custom_context_installs_the_given_handlers_only() -> None:
     context = navette.Context()
     with navette.init(args=[], context=context, clock=VirtualClock()):
         assert get_current_signal_handlers_options() is SignalHandlerOptions.NO
@@ -54,7 +54,7 @@ def test_a_context_of_ones_own_installs_only_what_is_asked() -> None:
     assert get_current_signal_handlers_options() is SignalHandlerOptions.SIGINT
 
 
-def test_handlers_of_others_stay() -> None:
+def test_handlers_of_the_program_stay() -> None:
     before = signal.signal(signal.SIGTERM, signal.SIG_IGN)
     try:
         install_signal_handlers()
@@ -92,7 +92,7 @@ def _sigterm_reaches_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
     assert ends == [signal.SIGTERM]
 
 
-def test_sigterm_ends_the_spin_and_the_program_goes_on() -> None:
+def test_sigterm_ends_the_spin_and_the_program_continues() -> None:
     program = """
         import navette, os, signal
         navette.init(args=[])

@@ -68,7 +68,7 @@ def test_time() -> None:
     assert stamp_to_ns(ns_to_stamp(123_456_789_012)) == 123_456_789_012
 
 
-def test_time_mistakes() -> None:
+def test_invalid_times_raise() -> None:
     with pytest.raises(TypeError, match="cannot compare times"):
         _ = Time() == Time(clock_type=ClockType.ROS_TIME)
     with pytest.raises(TypeError, match="cannot compare times"):
@@ -87,7 +87,7 @@ def test_time_mistakes() -> None:
         Time.from_msg("x")  # type: ignore[arg-type]
 
 
-def test_every_clock_of_a_virtual_context_tells_its_time() -> None:
+def test_every_clock_of_a_virtual_context_has_its_time() -> None:
     context = Context(clock=VirtualClock(5 * S))
     for kind in (ClockType.SYSTEM_TIME, ClockType.STEADY_TIME, ClockType.ROS_TIME):
         clock = Clock(clock_type=kind, context=context)
@@ -111,11 +111,8 @@ def test_clock_sleeps(graph: GraphHarness) -> None:
         clock.sleep_for(Duration(seconds=1))
 
 
-# -- simulated time from outside -----------------------------------------------
-
-
-class ByHand(ContextClock):
-    """A clock of the "real" kind that the test moves: it never waits."""
+class ManualClock(ContextClock):
+    """Clock that is not virtual and that the test advances; never waits."""
 
     def __init__(self) -> None:
         self.ns = 100 * S
@@ -132,8 +129,8 @@ class ByHand(ContextClock):
 
 @pytest.fixture
 def outside() -> tuple[Executor, Node, Node]:
-    """An executor, a node on simulated time, and the one that publishes /clock."""
-    executor = Executor(clock=ByHand())
+    """An executor, a node with simulated time, and a node that publishes /clock."""
+    executor = Executor(clock=ManualClock())
     node = Node("n", context=executor.context)
     simulator = Node("simulator", context=executor.context)
     for each in (node, simulator):
@@ -152,11 +149,11 @@ def test_node_follows_the_clock_topic(outside: tuple[Executor, Node, Node]) -> N
         clock.publish(ClockMsg(clock=ns_to_stamp(tenth * S // 10)))
         executor.spin_for(0)
     assert fired == [S, 2 * S]
-    assert executor.now_ns == 100 * S  # and it took no time of the outside
+    assert executor.now_ns == 100 * S  # the context's time did not advance
     assert simulator.get_clock().now().nanoseconds == 100 * S
 
 
-def test_clock_set_back_is_a_jump_and_timers_go_on(
+def test_a_clock_set_back_is_a_jump_and_timers_continue(
     outside: tuple[Executor, Node, Node],
 ) -> None:
     executor, node, simulator = outside
@@ -205,8 +202,8 @@ def test_simulated_time_can_be_switched_off_again(
     assert not result.successful
 
 
-def test_use_sim_time_from_outside_by_argument() -> None:
-    context = Context(clock=ByHand())
+def test_use_sim_time_as_an_argument() -> None:
+    context = Context(clock=ManualClock())
     context.init(["--ros-args", "-p", "use_sim_time:=true"])
     node = Node("n", context=context)
     clock = node.get_clock()
@@ -215,7 +212,7 @@ def test_use_sim_time_from_outside_by_argument() -> None:
     assert node.count_subscribers("/clock") == 1
 
 
-def test_use_sim_time_changes_nothing_where_time_is_simulated(
+def test_use_sim_time_has_no_effect_under_a_virtual_clock(
     graph: GraphHarness,
 ) -> None:
     graph.node.set_parameters([Parameter("use_sim_time", value=True)])
@@ -224,7 +221,7 @@ def test_use_sim_time_changes_nothing_where_time_is_simulated(
     assert graph.node.count_subscribers("/clock") == 0
 
 
-def test_jump_threshold_mistakes(graph: GraphHarness) -> None:
+def test_invalid_jump_thresholds_raise(graph: GraphHarness) -> None:
     zero = Duration()
     with pytest.raises(ValueError, match="min_backward"):
         JumpThreshold(min_forward=None, min_backward=zero)
@@ -259,7 +256,7 @@ def test_forward_jumps_are_reported_from_the_threshold_on(
     assert jumps == [2 * S]
 
 
-def test_a_time_in_a_message_is_told_how_to_become_one() -> None:
+def test_a_time_assigned_to_a_message_field_raises_with_a_hint() -> None:
     with pytest.raises(
         AssertionError, match=r"is Time, expected .* \(use its to_msg\(\)"
     ):

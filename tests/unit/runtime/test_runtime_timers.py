@@ -1,4 +1,4 @@
-"""Timers and rates under virtual time, as rcl counts them."""
+"""Timers and rates under virtual time, with rcl's timing."""
 
 import pytest
 
@@ -10,14 +10,14 @@ from navette.testing import GraphHarness
 S = 1_000_000_000
 
 
-def test_timer_calls_back_every_period(graph: GraphHarness) -> None:
+def test_a_timer_runs_every_period(graph: GraphHarness) -> None:
     stamps: list[int] = []
     graph.node.create_timer(0.1, lambda: stamps.append(graph.now_ns))
     graph.run_for(0.35)
     assert stamps == [S // 10, 2 * S // 10, 3 * S // 10]
 
 
-def test_timers_of_one_time_run_in_the_order_of_their_arming(
+def test_timers_of_one_time_run_in_scheduling_order(
     graph: GraphHarness,
 ) -> None:
     order: list[str] = []
@@ -27,7 +27,7 @@ def test_timers_of_one_time_run_in_the_order_of_their_arming(
     assert order == ["fast", "slow", "fast"]
 
 
-def test_cancel_reset_and_questions(graph: GraphHarness) -> None:
+def test_cancel_reset_and_state(graph: GraphHarness) -> None:
     hits: list[int] = []
     timer = graph.node.create_timer(1.0, lambda: hits.append(graph.now_ns))
     graph.run_for(0.25)
@@ -57,7 +57,7 @@ def test_cancel_from_its_own_callback(graph: GraphHarness) -> None:
     assert hits == [S // 2]
 
 
-def test_reset_while_due_starts_over(graph: GraphHarness) -> None:
+def test_reset_of_a_due_timer_restarts_the_period(graph: GraphHarness) -> None:
     hits: list[int] = []
     resets = graph.node.create_timer(1.0, lambda: (due.reset(), resets.cancel()))
     due = graph.node.create_timer(1.0, lambda: hits.append(graph.now_ns))
@@ -71,11 +71,11 @@ def test_late_timer_skips_and_keeps_its_phase(graph: GraphHarness) -> None:
     def tick() -> None:
         stamps.append(graph.now_ns)
         if len(stamps) == 1:
-            graph.executor.spin_for(round(0.35 * S))  # blocks its own group
+            graph.executor.spin_for(round(0.35 * S))  # holds its own group
 
     graph.node.create_timer(0.1, tick)
     graph.run_for(0.65)
-    # Due at 0.2 while blocked until 0.45: called once then, next in phase at 0.5.
+    # Due at 0.2 but held until 0.45: one call then, the next in phase at 0.5.
     assert stamps == [S // 10, round(0.45 * S), S // 2, round(0.6 * S)]
 
 
@@ -90,7 +90,7 @@ def test_autostart_off_waits_for_reset(graph: GraphHarness) -> None:
     assert hits == [3 * S]
 
 
-def test_callback_may_ask_for_the_timer_info(graph: GraphHarness) -> None:
+def test_a_callback_may_take_the_timer_info(graph: GraphHarness) -> None:
     infos: list[TimerInfo] = []
     graph.node.create_timer(0.5, lambda info: infos.append(info))
     graph.run_for(0.5)
@@ -104,7 +104,7 @@ def test_period_must_be_positive(graph: GraphHarness, period: float) -> None:
         graph.node.create_timer(period, lambda: None)
 
 
-def test_destroyed_timer_is_gone(graph: GraphHarness) -> None:
+def test_a_destroyed_timer_does_not_run(graph: GraphHarness) -> None:
     timer = graph.node.create_timer(0.1, lambda: pytest.fail("was destroyed"))
     assert timer in list(graph.node.timers)
     assert graph.node.destroy_timer(timer)
@@ -124,10 +124,7 @@ def test_raising_timer_names_node_timer_and_stamp(graph: GraphHarness) -> None:
     assert caught.value.stamp_ns == S // 2
 
 
-# -- Rate ----------------------------------------------------------------------
-
-
-def test_rate_in_plain_code_lets_events_happen(graph: GraphHarness) -> None:
+def test_events_run_while_a_rate_sleeps_in_plain_code(graph: GraphHarness) -> None:
     ticks: list[int] = []
     graph.node.create_timer(0.1, lambda: ticks.append(graph.now_ns))
     rate = graph.node.create_rate(2.0)
@@ -136,7 +133,7 @@ def test_rate_in_plain_code_lets_events_happen(graph: GraphHarness) -> None:
         rate.sleep()
         stamps.append(graph.now_ns)
     assert stamps == [S // 2, S, 3 * S // 2]
-    # The tick of 1.5 s comes after the sleep's end, which was made earlier.
+    # The tick at 1.5 s runs after the end of the sleep, which was scheduled earlier.
     assert len(ticks) == 14
 
 
@@ -152,11 +149,11 @@ def test_rate_inside_a_callback_does_not_deadlock(graph: GraphHarness) -> None:
 
     timer = graph.node.create_timer(1.0, slow)
     graph.run_for(3.0)
-    # The rate began at 0: the first sleep ends at once, as in ROS.
+    # The rate started at 0: the first sleep ends immediately, as in ROS.
     assert [stamp for _, stamp in log] == [S, round(1.1 * S), round(1.2 * S)]
 
 
-def test_rate_that_comes_late_skips_whole_periods(graph: GraphHarness) -> None:
+def test_a_late_rate_skips_whole_periods(graph: GraphHarness) -> None:
     rate = graph.node.create_rate(1.0)
     graph.run_for(2.5)
     rate.sleep()
@@ -179,6 +176,6 @@ def test_shutdown_ends_a_sleep(graph: GraphHarness) -> None:
         rate.sleep()
 
 
-def test_wrong_rate_is_refused(graph: GraphHarness) -> None:
+def test_an_invalid_rate_raises(graph: GraphHarness) -> None:
     with pytest.raises(InvalidValueError, match="rate must be > 0 Hz, got 0"):
         graph.node.create_rate(0)

@@ -33,31 +33,35 @@ def test_talker_and_listener() -> None:
     talker = Node("talker", context=context)
     listener = Node("listener", context=context)
     publisher = talker.create_publisher(String, "chatter", 10)
-    heard: list[str] = []
-    listener.create_subscription(String, "chatter", lambda m: heard.append(m.data), 10)
+    received: list[str] = []
+    listener.create_subscription(
+        String, "chatter", lambda m: received.append(m.data), 10
+    )
     talker.create_timer(
-        0.5, lambda: publisher.publish(String(data=f"hello {len(heard)}"))
+        0.5, lambda: publisher.publish(String(data=f"hello {len(received)}"))
     )
     executor = Executor(context=context)
     executor.add_node(talker)
     executor.add_node(listener)
     executor.spin_for(2_000_000_000)
-    assert heard == ["hello 0", "hello 1", "hello 2", "hello 3"]
+    assert received == ["hello 0", "hello 1", "hello 2", "hello 3"]
 
 
 @pytest.mark.parametrize(("depth", "expected"), [(1, ["9"]), (3, ["7", "8", "9"])])
 def test_queue_keeps_the_newest(
     graph: GraphHarness, depth: int, expected: list[str]
 ) -> None:
-    heard: list[str] = []
-    graph.node.create_subscription(String, "t", lambda m: heard.append(m.data), depth)
+    received: list[str] = []
+    graph.node.create_subscription(
+        String, "t", lambda m: received.append(m.data), depth
+    )
     for number in range(10):
         graph.publish("t", String(data=str(number)))
     graph.run_for(0)
-    assert heard == expected
+    assert received == expected
 
 
-def test_callback_may_ask_for_the_message_info(graph: GraphHarness) -> None:
+def test_a_callback_may_take_the_message_info(graph: GraphHarness) -> None:
     infos: list[MessageInfo] = []
     graph.node.create_subscription(String, "t", lambda m, info: infos.append(info), 10)
     graph.run_for(1.5)
@@ -84,7 +88,7 @@ def test_callback_with_a_default_argument_gets_the_message_only(
     assert seen == ["mine"]
 
 
-def test_raw_gives_and_takes_bytes(graph: GraphHarness) -> None:
+def test_raw_subscriptions_and_publishing_bytes(graph: GraphHarness) -> None:
     seen: list[bytes] = []
     graph.node.create_subscription(String, "t", seen.append, 10, raw=True)
     publisher = graph.node.create_publisher(String, "t", 10)
@@ -93,7 +97,7 @@ def test_raw_gives_and_takes_bytes(graph: GraphHarness) -> None:
     assert seen == [serialize(String(data="over the wire"))]
 
 
-def test_wrong_message_type_is_refused(graph: GraphHarness) -> None:
+def test_a_wrong_message_type_raises(graph: GraphHarness) -> None:
     publisher = graph.node.create_publisher(String, "t", 10)
     with pytest.raises(MessageError, match=r"/t: expected std_msgs/msg/String, got"):
         publisher.publish(Float64())  # type: ignore[arg-type]
@@ -101,7 +105,7 @@ def test_wrong_message_type_is_refused(graph: GraphHarness) -> None:
         publisher.publish("text")  # type: ignore[arg-type]
 
 
-def test_other_type_on_the_topic_is_loud_and_leaves_nothing_behind(
+def test_another_type_on_the_topic_raises_and_leaves_no_endpoint(
     graph: GraphHarness,
 ) -> None:
     graph.node.create_publisher(String, "t", 10)
@@ -186,14 +190,14 @@ def test_counts(graph: GraphHarness) -> None:
     assert publisher.get_subscription_count() == 0
 
 
-def test_destroyed_publisher_refuses(graph: GraphHarness) -> None:
+def test_a_destroyed_publisher_raises(graph: GraphHarness) -> None:
     publisher = graph.node.create_publisher(String, "t", 10)
     assert graph.node.destroy_publisher(publisher)
     with pytest.raises(InvalidHandle, match="/t"):
         publisher.publish(String())
 
 
-def test_destroyed_subscription_gets_nothing_not_even_what_was_queued(
+def test_a_destroyed_subscription_gets_no_queued_samples(
     graph: GraphHarness,
 ) -> None:
     subscription = graph.node.create_subscription(
@@ -206,15 +210,15 @@ def test_destroyed_subscription_gets_nothing_not_even_what_was_queued(
 
 def test_messages_wait_until_the_node_is_added(graph: GraphHarness) -> None:
     node = Node("late", context=graph.context)
-    heard: list[str] = []
-    node.create_subscription(String, "t", lambda m: heard.append(m.data), 2)
+    received: list[str] = []
+    node.create_subscription(String, "t", lambda m: received.append(m.data), 2)
     for text in "abc":
         graph.publish("t", String(data=text))
     graph.run_for(1.0)
-    assert heard == []
+    assert received == []
     graph.add(node)
     graph.run_for(0)
-    assert heard == ["b", "c"]
+    assert received == ["b", "c"]
 
 
 def test_raising_callback_names_node_topic_and_stamp(graph: GraphHarness) -> None:
@@ -231,13 +235,13 @@ def test_raising_callback_names_node_topic_and_stamp(graph: GraphHarness) -> Non
     )
 
 
-def test_not_callable_callback_is_refused(graph: GraphHarness) -> None:
+def test_a_callback_that_is_not_callable_raises(graph: GraphHarness) -> None:
     with pytest.raises(TypeError, match="not callable"):
         graph.node.create_subscription(String, "t", None, 10)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("qos", [-1, "10", True, None])
-def test_wrong_qos_is_refused(graph: GraphHarness, qos: Any) -> None:
+def test_invalid_qos_raises(graph: GraphHarness, qos: Any) -> None:
     with pytest.raises((InvalidValueError, TypeError)):
         graph.node.create_publisher(String, "t", qos)
 
@@ -253,7 +257,7 @@ def test_callback_can_be_replaced(graph: GraphHarness) -> None:
     assert seen == ["new"]
 
 
-def test_endless_ping_pong_does_not_keep_timers_from_running(
+def test_endless_ping_pong_does_not_starve_timers(
     graph: GraphHarness,
 ) -> None:
     hits = 0

@@ -1,4 +1,4 @@
-"""~/get_type_description: what others are told about types."""
+"""The service ~/get_type_description."""
 
 import re
 from collections.abc import Callable
@@ -63,9 +63,7 @@ def test_a_message(ask: Ask) -> None:
         "rcl_interfaces/msg/ParameterDescriptor",
     ],
 )
-def test_the_definition_can_be_put_together_from_the_answer(
-    ask: Ask, name: str
-) -> None:
+def test_the_response_contains_the_whole_definition(ask: Ask, name: str) -> None:
     answer = ask(name)
     assert definition_of(name, answer).startswith(definition_text(name).split("=")[0])
     parts = {s.type_name: s.encoding for s in answer.type_sources}
@@ -77,7 +75,7 @@ def test_the_definition_can_be_put_together_from_the_answer(
     }
 
 
-def test_types_made_at_run_time(ask: Ask) -> None:
+def test_types_registered_at_run_time(ask: Ask) -> None:
     load_definition_text("described_cases/msg/Odd", "int8 x\n")
     answer = ask("described_cases/msg/Odd", include_type_sources=False)
     assert answer.successful
@@ -85,22 +83,20 @@ def test_types_made_at_run_time(ask: Ask) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "given", "said"),
+    ("name", "given", "reported"),
     [
         ("std_msgs/msg/Strung", "", "Strung"),
         ("nonsense", "", "nonsense"),
         ("std_msgs/msg/String", "RIHS01_00", "is RIHS01_.*, not RIHS01_00"),
     ],
 )
-def test_what_cannot_be_told_is_said(
-    ask: Ask, name: str, given: str, said: str
-) -> None:
+def test_the_failure_reason(ask: Ask, name: str, given: str, reported: str) -> None:
     answer = ask(name, type_hash=given)
     assert not answer.successful
-    assert re.search(said, answer.failure_reason)
+    assert re.search(reported, answer.failure_reason)
 
 
-def test_it_can_be_left_out(graph: GraphHarness) -> None:
+def test_the_service_can_be_disabled(graph: GraphHarness) -> None:
     off = Parameter("start_type_description_service", ParameterType.BOOL, False)
     node = graph.add(Node("quiet", context=graph.context, parameter_overrides=[off]))
     names = [name for name, _ in node.get_service_names_and_types_by_node("quiet", "/")]

@@ -64,7 +64,7 @@ def test_wait_for_message(graph: GraphHarness) -> None:
     graph.publish_every(1.0, "/t", lambda now_ns: String(data=str(now_ns)))
     found = wait_for_message(String, graph.node, "/t", time_to_wait=5.0)
     assert found == (True, String(data="1000000000"))
-    lonely = Node("lonely", context=graph.context)  # in no executor
+    lonely = Node("lonely", context=graph.context)  # without an executor
     assert wait_for_message(String, lonely, "/t")[1] == String(data="2000000000")
     assert wait_for_message(String, graph.node, "/x", time_to_wait=2) == (False, None)
     assert graph.now_ns == 4_000_000_000
@@ -75,7 +75,7 @@ def test_wait_for_message_from_a_callback(graph: GraphHarness) -> None:
     graph.publish_every(1.0, "/t", lambda now_ns: String(data=str(now_ns)))
     node = graph.add(Node("n", context=graph.context))
     found: list[object] = []
-    # It waits for longer than its period: the run must end all the same.
+    # The wait is longer than the timer period; the run must still end.
     node.create_timer(
         0.5, lambda: found.append(wait_for_message(String, node, "/t")[0])
     )
@@ -112,7 +112,7 @@ def test_a_node_without_executor_has_no_callbacks() -> None:
 
 
 class Doorbell(Waitable[str]):
-    """A program's own waitable: rings on a guard condition or when a timer is due."""
+    """Custom waitable that runs on a guard condition or when a timer is due."""
 
     def __init__(self, node: Node) -> None:
         super().__init__(ReentrantCallbackGroup())
@@ -148,7 +148,7 @@ class Doorbell(Waitable[str]):
         return NumberOfEntities(num_gcs=1, num_timers=1)
 
 
-def test_a_waitable_of_ones_own(graph: GraphHarness) -> None:
+def test_a_custom_waitable(graph: GraphHarness) -> None:
     node = graph.add(Node("n", context=graph.context))
     bell = Doorbell(node)
     node.add_waitable(bell)
@@ -165,7 +165,7 @@ def test_a_waitable_of_ones_own(graph: GraphHarness) -> None:
     assert list(node.waitables) == []
 
 
-def test_a_waitable_that_raises_is_named(graph: GraphHarness) -> None:
+def test_an_exception_of_a_waitable_names_it(graph: GraphHarness) -> None:
     class Broken(Doorbell):
         async def execute(self, taken_data: str) -> None:
             raise ValueError(taken_data)
@@ -178,7 +178,7 @@ def test_a_waitable_that_raises_is_named(graph: GraphHarness) -> None:
         graph.run_for(1.0)
 
 
-def test_what_a_waitable_must_say() -> None:
+def test_methods_that_a_waitable_must_implement() -> None:
     waitable: Waitable[Any] = Waitable(ReentrantCallbackGroup())
     wait_set = WaitSet(print)
     for call in (

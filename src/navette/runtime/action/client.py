@@ -145,7 +145,7 @@ class ActionClient(Waitable[Any]):
             shared=True,
         )
         # Processed also while a callback of the same group waits for the result.
-        self._feedback.answers_calls = self._status.answers_calls = True
+        self._feedback.runs_during_calls = self._status.runs_during_calls = True
         node.add_waitable(self)
 
     @property

@@ -249,11 +249,11 @@ class ActionServer(Waitable[Any]):
         key = bytes(request.goal_id.uuid)
         response = self._action_type.Impl.SendGoalService.Response()
         if key not in self._goals:
-            answer = await await_or_execute(self._goal_callback, request.goal)
-            response.accepted = answer is GoalResponse.ACCEPT
-            if not isinstance(answer, GoalResponse):
+            decision = await await_or_execute(self._goal_callback, request.goal)
+            response.accepted = decision is GoalResponse.ACCEPT
+            if not isinstance(decision, GoalResponse):
                 self._logger.warning(
-                    f"goal rejected: the goal callback returned {answer!r}, not a "
+                    f"goal rejected: the goal callback returned {decision!r}, not a "
                     "GoalResponse"
                 )
         if not response.accepted:
@@ -297,9 +297,9 @@ class ActionServer(Waitable[Any]):
         )
         canceling = []
         for goal in candidates:
-            answer = await await_or_execute(self._cancel_callback, goal)
+            decision = await await_or_execute(self._cancel_callback, goal)
             # The goal may have ended while the callback awaited.
-            if answer is CancelResponse.ACCEPT and goal.is_active:
+            if decision is CancelResponse.ACCEPT and goal.is_active:
                 goal.update_state(GoalEvent.CANCEL_GOAL)
                 canceling.append(goal.goal_info)
         if candidates and not canceling:
@@ -319,10 +319,10 @@ class ActionServer(Waitable[Any]):
             self._result_service.send_response(unknown, request_id)
             return
 
-        def answer(future: Future[Any]) -> None:
+        def respond(future: Future[Any]) -> None:
             self._result_service.send_response(future.result(), request_id)
 
-        goal.result.add_done_callback(answer)
+        goal.result.add_done_callback(respond)
 
     def _expire(self, key: bytes) -> None:
         self._goals.pop(key).destroy()
