@@ -1,14 +1,14 @@
-"""Two nodes meet on a topic: one talks, the other listens.
+"""A talker and a listener on one topic.
 
-The virtual clock jumps from event to event, so two seconds take no time. Leave it out
-and the nodes talk in real time.
+The virtual clock jumps from event to event: two seconds pass in an instant. Without it
+the nodes run in real time.
 
 Prints::
 
-    heard: Hello, world 1
-    heard: Hello, world 2
-    heard: Hello, world 3
-    heard: Hello, world 4
+    received: Hello, world 1
+    received: Hello, world 2
+    received: Hello, world 3
+    received: Hello, world 4
 """
 
 import navette
@@ -19,10 +19,10 @@ class Talker(navette.Node):
     def __init__(self):
         super().__init__("talker")
         self.publisher = self.create_publisher(String, "chatter", 10)
-        self.create_timer(0.5, self.talk)
+        self.create_timer(0.5, self.on_timer)
         self.count = 0
 
-    def talk(self):
+    def on_timer(self):
         self.count += 1
         self.publisher.publish(String(data=f"Hello, world {self.count}"))
 
@@ -30,10 +30,10 @@ class Talker(navette.Node):
 class Listener(navette.Node):
     def __init__(self):
         super().__init__("listener")
-        self.create_subscription(String, "chatter", self.hear, 10)
+        self.create_subscription(String, "chatter", self.on_message, 10)
 
-    def hear(self, message):
-        print("heard:", message.data)
+    def on_message(self, message):
+        print("received:", message.data)
 
 
 with navette.init(clock=navette.VirtualClock()):

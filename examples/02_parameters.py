@@ -1,11 +1,11 @@
-"""Parameters: declared with a default, set from a file, changed while running.
+"""Parameters: declare a default, set from a file, change while running.
 
 Prints::
 
     after 1 s: 0.5 m
     /cart: speed_mps is now 2.0
     after 2 s: 2.5 m
-    refused: parameter 'speed_mps': 9.0 is out of range 0 … 2
+    rejected: parameter 'speed_mps': 9.0 is out of range 0 … 2
 """
 
 import tempfile
@@ -29,16 +29,16 @@ class Cart(navette.Node):
         descriptor = ParameterDescriptor(floating_point_range=[allowed])
         self.declare_parameter("speed_mps", 1.0, descriptor)
         self.add_post_set_parameters_callback(self.on_changed)
-        self.create_timer(0.1, self.roll)
-        self.way = 0.0
+        self.create_timer(0.1, self.on_timer)
+        self.distance = 0.0
 
     def on_changed(self, parameters):
         for parameter in parameters:
             name = self.get_fully_qualified_name()
             print(f"{name}: {parameter.name} is now {parameter.value}")
 
-    def roll(self):
-        self.way += 0.1 * self.get_parameter("speed_mps").value
+    def on_timer(self):
+        self.distance += 0.1 * self.get_parameter("speed_mps").value
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -50,10 +50,10 @@ cart = Cart()
 executor = navette.SingleThreadedExecutor()
 executor.add_node(cart)
 executor.spin_for(1_000_000_000)
-print(f"after 1 s: {cart.way:.1f} m")
+print(f"after 1 s: {cart.distance:.1f} m")
 cart.set_parameters([Parameter("speed_mps", value=2.0)])
 executor.spin_for(1_000_000_000)
-print(f"after 2 s: {cart.way:.1f} m")
+print(f"after 2 s: {cart.distance:.1f} m")
 (result,) = cart.set_parameters([Parameter("speed_mps", value=9.0)])
-print("refused:", result.reason)
+print("rejected:", result.reason)
 navette.shutdown()

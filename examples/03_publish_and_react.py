@@ -1,7 +1,7 @@
-"""A queue of one: a node that reacts wants the newest message, not every message.
+"""Queue depth: a node that reacts needs the newest message, not every message.
 
-Three measurements arrive at once. The brake has a queue of one and sees the last of
-them only; the log, with a queue of ten, sees all.
+Three measurements arrive at once. The brake, with a depth of 1, receives only the last;
+the log, with a depth of 10, receives all.
 
 Prints::
 

@@ -1,7 +1,7 @@
-"""Transforms: where in the map is what the laser sees, and where was it before?
+"""Transforms: the position of a laser hit in the map, now and at an earlier time.
 
-The laser sits 0.3 m ahead of the base, which drives along the map's y axis at 1 m/s
-and sees something 2 m ahead of the laser.
+The laser is mounted 0.3 m ahead of the base, which drives along the map's y axis at
+1 m/s. The hit is 2 m ahead of the laser.
 
 Prints::
 
@@ -16,7 +16,7 @@ from navette.msgs.geometry_msgs.msg import PointStamped, TransformStamped
 
 
 def transform(parent, child, *, x=0.0, y=0.0, yaw=0.0):
-    """parent_T_child."""
+    """Return parent_T_child, planar."""
     message = TransformStamped(child_frame_id=child)
     message.header.frame_id = parent
     message.transform.translation.x = x
@@ -50,7 +50,7 @@ with navette.init(clock=navette.VirtualClock()):
     executor.add_node(robot)
     executor.add_node(watcher)
     executor.spin_for(1_000_000_000)
-    for seconds in (1.0, 0.25):  # between two poses: interpolated
+    for seconds in (1.0, 0.25):  # the second is interpolated between two poses
         seen = PointStamped()
         seen.header.frame_id = "laser"
         seen.header.stamp = navette.Time(nanoseconds=round(seconds * 1e9)).to_msg()

@@ -1,4 +1,4 @@
-"""The whole stack: a simulated robot drives to two goals in a world it does not know.
+"""The whole stack: a simulated robot drives to two goals without a map.
 
 Prints::
 

@@ -1,6 +1,6 @@
-"""Other methods and a slower robot, by a ROS 2 parameter file.
+"""Select other methods and a lower speed with a ROS 2 parameter file.
 
-What the file does not name stays as the robot's own file says.
+Other parameters keep the values of the robot's own file.
 
 Prints::
 

@@ -1,4 +1,4 @@
-"""A message type of your own, loaded from a ``.msg`` file while the program runs.
+"""Define a message type and load it from a ``.msg`` file at run time.
 
 Prints::
 

@@ -1,9 +1,9 @@
-"""Record a run as an MCAP bag, and read it back with the ``mcap`` library.
+"""Record a run as an MCAP bag and read it with the ``mcap`` library.
 
 Prints::
 
     profile: ros2
-    /map is there: True
+    /map is recorded: True
     from (-7.5, -7.5), driving after 2.00 s: True
 """
 
@@ -41,7 +41,7 @@ with tempfile.TemporaryDirectory() as folder:
         ]
 
 print("profile:", profile)
-print("/map is there:", "/map" in topics)
+print("/map is recorded:", "/map" in topics)
 start, last = truth[0].pose.pose.position, truth[-1]
 seconds = last.header.stamp.sec + last.header.stamp.nanosec / 1e9
 is_driving = last.twist.twist.linear.x > 0.5

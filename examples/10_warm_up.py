@@ -1,14 +1,14 @@
-"""The warm-up: "Hello, ROS 2!" on /test_topic every 500 ms, with a timer.
+"""A timer: publish "Hello, ROS 2!" on /test_topic every 500 ms.
 
-Look at it from a second terminal while it runs in real time (without the virtual
-clock): ``navette topic echo /test_topic``.
+In real time, without the virtual clock, inspect it from a second terminal:
+``navette topic echo /test_topic``.
 
 Prints::
 
     0.5 s: Hello, ROS 2!
     1.0 s: Hello, ROS 2!
     1.5 s: Hello, ROS 2!
-    cancelled: nothing more
+    cancelled: no further messages
 """
 
 import navette
@@ -38,4 +38,4 @@ with navette.init(clock=navette.VirtualClock()):
     executor.spin_for(1_700_000_000)
     node.timer.cancel()
     executor.spin_for(5_000_000_000)
-    print("cancelled: nothing more")
+    print("cancelled: no further messages")

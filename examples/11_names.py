@@ -1,18 +1,18 @@
-"""Names: global, relative and private ones, a namespace, and remapping from outside.
+"""Names: global, relative and private names, namespaces and remapping.
 
-The node below never changes; what its names mean is said by who starts it: here by the
-arguments of ``navette.init``, on the command line by
-``navette run 11_names.py --ros-args -r …``, in a launch file by ``remappings``.
+The node's code stays the same. Its names are remapped by the arguments of
+``navette.init`` here, by ``navette run 11_names.py --ros-args -r …`` on the command
+line, and by ``remappings`` in a launch file.
 
 Prints::
 
     as written, in namespace /left:
-        /clock_of_all  <- /clock_of_all
+        /shared_clock  <- /shared_clock
         speed          <- /left/speed
         wheel/speed    <- /left/wheel/speed
         ~/state        <- /left/drive/state
     with -r __ns:=/right -r __node:=motor -r speed:=velocity -r ~/state:=/state:
-        /clock_of_all  <- /clock_of_all
+        /shared_clock  <- /shared_clock
         speed          <- /right/velocity
         wheel/speed    <- /right/wheel/speed
         ~/state        <- /state
@@ -21,7 +21,7 @@ Prints::
 import navette
 from navette.msgs.std_msgs.msg import Empty
 
-NAMES = ("/clock_of_all", "speed", "wheel/speed", "~/state")
+NAMES = ("/shared_clock", "speed", "wheel/speed", "~/state")
 
 
 class Drive(navette.Node):

@@ -1,6 +1,7 @@
 """Logging: five levels, to console, file and /rosout; once, throttled, skip first.
 
-A node's level is its own: ``--ros-args --log-level door:=debug``, or from the program.
+Each node has its own level: set it with ``--ros-args --log-level door:=debug`` or in
+the program.
 
 Prints::
 
@@ -9,10 +10,10 @@ Prints::
     INFO [door] open 2
     INFO [door] open 3
     INFO [door] open 4
-    ERROR [door] it sticks, said every second only
+    ERROR [door] stuck (at most once a second)
     INFO [door] open 5
-    FATAL [door] fell off, and only the first time was not said
-    DEBUG [door] now that debug is on, this is heard as well
+    FATAL [door] fell off (the first time is skipped)
+    DEBUG [door] debug messages are enabled
     lines in the file: 9
 """
 
@@ -34,12 +35,12 @@ class Door(navette.Node):
     def swing(self):
         log = self.get_logger()
         self.count += 1
-        log.debug("not heard: the level is INFO")
+        log.debug("not logged: the level is INFO")
         log.info(f"open {self.count}")
         log.warning("the hinge squeaks", once=True)
         if self.count >= 4:
-            log.error("it sticks, said every second only", throttle_duration_sec=1.0)
-            log.fatal("fell off, and only the first time was not said", skip_first=True)
+            log.error("stuck (at most once a second)", throttle_duration_sec=1.0)
+            log.fatal("fell off (the first time is skipped)", skip_first=True)
 
 
 def show(entry):
@@ -50,13 +51,13 @@ with tempfile.TemporaryDirectory() as folder:
     file = Path(folder) / "door.log"
     arguments = ["--ros-args", "--disable-stdout-logs", "--log-file", str(file)]
     with navette.init(args=arguments, clock=navette.VirtualClock()):
-        door, ear = Door(), navette.Node("ear")
-        ear.create_subscription(Log, "/rosout", show, 10)
+        door, listener = Door(), navette.Node("listener")
+        listener.create_subscription(Log, "/rosout", show, 10)
         executor = navette.SingleThreadedExecutor()
         executor.add_node(door)
-        executor.add_node(ear)
+        executor.add_node(listener)
         executor.spin_for(2_100_000_000)
         door.get_logger().set_level(navette.LoggingSeverity.DEBUG)
-        door.get_logger().debug("now that debug is on, this is heard as well")
+        door.get_logger().debug("debug messages are enabled")
         executor.spin_for(100_000_000)
     print("lines in the file:", len(file.read_text().splitlines()))

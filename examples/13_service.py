@@ -1,10 +1,10 @@
-"""A service: one node asks, another answers; also from inside a callback.
+"""A service: call it from outside and from inside a callback.
 
 Prints::
 
-    asked from outside: 2 + 3 = 5
-    asked and awaited in a timer: 20 + 22 = 42
-    asked and waited for in a timer: 1 + 1 = 2
+    called from outside: 2 + 3 = 5
+    awaited in a timer: 20 + 22 = 42
+    blocking call in a timer: 1 + 1 = 2
 """
 
 import navette
@@ -21,29 +21,29 @@ class Adder(navette.Node):
         return response
 
 
-class Asker(navette.Node):
+class Caller(navette.Node):
     def __init__(self):
-        super().__init__("asker")
+        super().__init__("caller")
         self.client = self.create_client(AddTwoInts, "add")
-        self.create_timer(1.0, self.ask_and_await)
-        self.create_timer(1.2, self.ask_and_wait)
+        self.create_timer(1.0, self.call_and_await)
+        self.create_timer(1.2, self.call_and_block)
 
-    async def ask_and_await(self):
-        answer = await self.client.call_async(AddTwoInts.Request(a=20, b=22))
-        print("asked and awaited in a timer: 20 + 22 =", answer.sum)
+    async def call_and_await(self):
+        response = await self.client.call_async(AddTwoInts.Request(a=20, b=22))
+        print("awaited in a timer: 20 + 22 =", response.sum)
 
-    def ask_and_wait(self):
-        # On ROS 2 this needs a second thread and callback group, or it waits for ever.
-        answer = self.client.call(AddTwoInts.Request(a=1, b=1))
-        print("asked and waited for in a timer: 1 + 1 =", answer.sum)
+    def call_and_block(self):
+        # ROS 2 deadlocks here without a second thread and callback group.
+        response = self.client.call(AddTwoInts.Request(a=1, b=1))
+        print("blocking call in a timer: 1 + 1 =", response.sum)
 
 
 with navette.init(clock=navette.VirtualClock()):
-    adder, asker = Adder(), Asker()
+    adder, caller = Adder(), Caller()
     executor = navette.SingleThreadedExecutor()
     executor.add_node(adder)
-    executor.add_node(asker)
-    future = asker.client.call_async(AddTwoInts.Request(a=2, b=3))
+    executor.add_node(caller)
+    future = caller.client.call_async(AddTwoInts.Request(a=2, b=3))
     executor.spin_until_future_complete(future)
-    print("asked from outside: 2 + 3 =", future.result().sum)
+    print("called from outside: 2 + 3 =", future.result().sum)
     executor.spin_for(1_500_000_000)

@@ -1,4 +1,4 @@
-"""An action: a goal that takes time, with feedback, a result, and a way to cancel it.
+"""An action: a task with feedback and a result that can be cancelled.
 
 Prints::
 
@@ -52,10 +52,10 @@ def show(message):
     print(f"feedback: {message.feedback.left} m to go")
 
 
-async def drive(client, metres, patience_s=None):
+async def drive(client, metres, cancel_after_s=None):
     goal = await client.send_goal_async(Roll.Goal(metres=metres), show)
-    if patience_s is not None:
-        driver.create_timer(patience_s, goal.cancel_goal_async)
+    if cancel_after_s is not None:
+        driver.create_timer(cancel_after_s, goal.cancel_goal_async)
     answer = await goal.get_result_async()
     names = {v: n for n, v in vars(GoalStatus).items() if n.startswith("STATUS_")}
     print(f"{names[answer.status]} after {answer.result.seconds} s")
@@ -68,5 +68,5 @@ with navette.init(clock=navette.VirtualClock()):
     executor.add_node(roller)
     executor.add_node(driver)
     executor.spin_until_future_complete(executor.create_task(drive(client, 3)))
-    task = executor.create_task(drive(client, 10, patience_s=2.5))
+    task = executor.create_task(drive(client, 10, cancel_after_s=2.5))
     executor.spin_until_future_complete(task)

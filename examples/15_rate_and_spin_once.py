@@ -1,7 +1,7 @@
-"""A loop of one's own: ``ok``, ``spin_once`` and a ``Rate``, as in older programs.
+"""A loop in the program: ``ok``, ``spin_once`` and a ``Rate``, as in older programs.
 
-A timer is mostly the better choice: the executor calls it. The loop below does its own
-work, and between two rounds lets one callback run that is due.
+A timer is usually the better choice. The loop below does its own work and runs one due
+callback per iteration.
 
 Prints::
 
@@ -21,7 +21,7 @@ rate = node.create_rate(10.0)  # Hz
 
 while navette.ok():
     rate.sleep()
-    navette.spin_once(node, timeout_sec=0.0)  # what is due; waits for nothing
+    navette.spin_once(node, timeout_sec=0.0)  # one due callback, without waiting
     seconds = node.get_clock().now().nanoseconds / 1e9
     print(f"{seconds:.1f} s: {len(ticks)} tick{'s' if len(ticks) > 1 else ''}")
     if len(ticks) == 3:

@@ -1,7 +1,7 @@
-"""A launch file: many nodes with namespaces, remaps, parameters, one after the other.
+"""A launch file: nodes with namespaces, remappings and parameters, in sequence.
 
-Both texts run on ROS 2 as they are. On the command line:
-``navette launch greet.launch.py word:=Servus`` (or ``--processes``: one each).
+Program and launch file also run on ROS 2. On the command line: ``navette launch
+greet.launch.py word:=Servus``; ``--processes`` starts a process per node.
 
 Prints::
 

@@ -1,7 +1,7 @@
-"""Driving by topic, as one drives a turtle: commands in, poses out, a square drawn.
+"""Drive a square with velocity commands and read the pose, as with turtlesim.
 
-A command names only what it means: the rest of the message stays zero. On the command
-line: ``navette topic pub /cmd_vel geometry_msgs/Twist '{linear: {x: 0.2}}' -r 10``.
+Fields that a command omits stay zero. On the command line:
+``navette topic pub /cmd_vel geometry_msgs/Twist '{linear: {x: 0.2}}' -r 10``.
 
 Prints::
 
@@ -21,7 +21,7 @@ from navette.navigation.stack.robot import simulate_robot
 
 GO = from_dict(Twist, {"linear": {"x": 0.2}})  # m/s
 TURN = from_dict(Twist, {"angular": {"z": 0.5}})  # rad/s
-SIDE = [(GO, 1.0 / 0.2), (TURN, math.pi / 2 / 0.5)]  # for so many seconds
+SIDE = [(GO, 1.0 / 0.2), (TURN, math.pi / 2 / 0.5)]  # command, seconds
 
 
 class Turtle(navette.Node):
@@ -35,7 +35,7 @@ class Turtle(navette.Node):
         self.position = message.pose.pose.position
 
     def drive(self, command, seconds):
-        """Send a command for a while, then let the robot come to rest."""
+        """Publish a command for some time, then stop the robot."""
         for _ in range(round(seconds * 20)):
             self.publisher.publish(command)
             executor.spin_for(50_000_000)

@@ -1,10 +1,10 @@
-"""A Husky drives to a pillar: a P controller, a marker, and a service to stop it.
+"""A Husky drives to a pillar: a P controller, a marker and a service that stops it.
 
 Prints::
 
     after 5 s: stopped at x = 3.8 m
     after 9 s: driving at x = 4.6 m
-    after 40 s: 2.0 m in front of the pillar, marked at (3.0, 0.0) before the laser
+    after 40 s: 2.0 m in front of the pillar, marker at (3.0, 0.0) in the laser frame
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ from navette.msgs.std_srvs.srv import SetBool
 from navette.msgs.visualization_msgs.msg import Marker
 from navette.navigation.stack.robot import simulate_robot
 
-GAIN = 1.5  # rad/s of turn for each rad that the pillar is off the axis
+GAIN = 1.5  # turn rate (rad/s) per bearing error (rad)
 STOP_AT_M = 2.0
 
 
@@ -55,11 +55,11 @@ class PillarDriver(navette.Node):
         self.markers.publish(marker)
 
 
-class Person(navette.Node):
-    """Asks the driver to stop and to go on, and looks at what it does."""
+class Operator(navette.Node):
+    """Stops and resumes the driver and observes it."""
 
     def __init__(self):
-        super().__init__("person")
+        super().__init__("operator")
         self.client = self.create_client(SetBool, "/pillar_driver/drive")
         self.create_subscription(Odometry, "/odom/filtered", self.on_odometry, 1)
         self.create_subscription(Marker, "/pillar_driver/pillar", self.on_marker, 1)
@@ -70,7 +70,7 @@ class Person(navette.Node):
     def on_marker(self, message):
         self.marker = message.pose.position
 
-    def say(self, *, drive):
+    def set_driving(self, *, drive):
         future = self.client.call_async(SetBool.Request(data=drive))
         executor.spin_until_future_complete(future)
         executor.spin_for(1_000_000_000)
@@ -79,16 +79,16 @@ class Person(navette.Node):
 
 with navette.init(clock=navette.VirtualClock()):
     executor = navette.SingleThreadedExecutor()
-    driver, person = PillarDriver(), Person()
-    for node in (simulate_robot("pillar", "husky"), driver, person):
+    driver, operator = PillarDriver(), Operator()
+    for node in (simulate_robot("pillar", "husky"), driver, operator):
         executor.add_node(node)
     executor.spin_for(4_000_000_000)
-    print(f"after 5 s: {person.say(drive=False)} at x = {person.x:.1f} m")
+    print(f"after 5 s: {operator.set_driving(drive=False)} at x = {operator.x:.1f} m")
     executor.spin_for(3_000_000_000)
-    print(f"after 9 s: {person.say(drive=True)} at x = {person.x:.1f} m")
+    print(f"after 9 s: {operator.set_driving(drive=True)} at x = {operator.x:.1f} m")
     executor.spin_for(31_000_000_000)
-    seen = f"({person.marker.x:.1f}, {person.marker.y:.1f})"
+    seen = f"({operator.marker.x:.1f}, {operator.marker.y:.1f})"
     print(
         f"after 40 s: {driver.distance:.1f} m in front of the pillar, "
-        f"marked at {seen} before the laser"
+        f"marker at {seen} in the laser frame"
     )

@@ -1,12 +1,13 @@
-"""A chain of three nodes: raw samples, checked and gathered in batches, summed up.
+"""A chain of three nodes: raw samples are validated, batched and summarized.
 
-Each node owns an algorithm that knows no topic; the message types are the chain's own.
+Each node owns an algorithm that is independent of topics; the message types are defined
+at run time.
 
 Prints::
 
     batch of 3 at 0.5 s: mean [2.3, 2.0, 3.0]
     batch of 3 at 0.9 s: mean [6.0, 2.0, 3.0]
-    7 samples in 0.9 s, 1 refused, 2 batches
+    7 samples in 0.9 s, 1 rejected, 2 batches
 """
 
 import tempfile
@@ -32,15 +33,15 @@ with tempfile.TemporaryDirectory() as folder:
 
 
 class Batcher:
-    """Reads samples and hands them on in batches; counts what it refused."""
+    """Collects valid samples in batches and counts rejected ones."""
 
     def __init__(self, size):
-        self.size, self.samples, self.refused = size, [], 0
+        self.size, self.samples, self.rejected = size, [], 0
 
     def add(self, raw):
-        """The batch that this sample completes, or None."""
+        """Add a sample; return the batch that it completes, or None."""
         if not raw.valid:
-            self.refused += 1
+            self.rejected += 1
             return None
         pairs = (part.split(":") for part in raw.data.split(";"))
         values = {name: float(value) for name, value in pairs}
@@ -103,6 +104,6 @@ with navette.init(clock=navette.VirtualClock()):
         executor.add_node(node)
     executor.spin_for(900_000_000)
     print(
-        f"{aggregator.raw} samples in 0.9 s, {transformer.batcher.refused} refused, "
+        f"{aggregator.raw} samples in 0.9 s, {transformer.batcher.rejected} rejected, "
         f"{aggregator.batches} batches"
     )

@@ -1,6 +1,6 @@
-"""A managed node: configured, activated and stopped from outside.
+"""A lifecycle node: another node configures, activates and deactivates it.
 
-Its publisher is silent unless the node is active. On the command line:
+Its publisher publishes only while the node is active. On the command line:
 ``navette lifecycle set /camera configure``.
 
 Prints::
@@ -9,7 +9,7 @@ Prints::
     activate: active
     published while active: 3
     deactivate: inactive
-    published in all: 3
+    published in total: 3
     cleanup: unconfigured
 """
 
@@ -34,8 +34,8 @@ class Camera(navette.LifecycleNode):
         return navette.TransitionCallbackReturn.SUCCESS
 
 
-def ask(kind, name, request):
-    client = person.create_client(kind, f"/camera/{name}")
+def call(kind, name, request):
+    client = operator.create_client(kind, f"/camera/{name}")
     future = client.call_async(request)
     executor.spin_until_future_complete(future)
     return future.result()
@@ -43,23 +43,23 @@ def ask(kind, name, request):
 
 def change(what):
     transition = Transition(id=getattr(Transition, f"TRANSITION_{what.upper()}"))
-    done = ask(ChangeState, "change_state", ChangeState.Request(transition=transition))
-    state = ask(GetState, "get_state", GetState.Request()).current_state.label
-    return state if done.success else "refused"
+    done = call(ChangeState, "change_state", ChangeState.Request(transition=transition))
+    state = call(GetState, "get_state", GetState.Request()).current_state.label
+    return state if done.success else "rejected"
 
 
 with navette.init(clock=navette.VirtualClock()):
     executor = navette.SingleThreadedExecutor()
-    camera, person, seen = Camera(), navette.Node("person"), []
+    camera, operator, images = Camera(), navette.Node("operator"), []
     executor.add_node(camera)
-    executor.add_node(person)
-    person.create_subscription(Empty, "image", seen.append, 10)
+    executor.add_node(operator)
+    operator.create_subscription(Empty, "image", images.append, 10)
     print("configure:", change("configure"))
     executor.spin_for(500_000_000)
     print("activate:", change("activate"))
     executor.spin_for(310_000_000)
-    print("published while active:", len(seen))
+    print("published while active:", len(images))
     print("deactivate:", change("deactivate"))
     executor.spin_for(500_000_000)
-    print("published in all:", len(seen))
+    print("published in total:", len(images))
     print("cleanup:", change("cleanup"))

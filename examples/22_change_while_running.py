@@ -1,14 +1,14 @@
-"""Sliders: another node (or the live view) changes parameters while the robot drives.
+"""Change parameters from another node while the robot drives, as the live view does.
 
-Every node has the services of its parameters; a change that the node refuses is said to
-who asked, and everybody can hear of those that happened.
+Every node serves its parameters. A rejected change is reported to the caller; accepted
+changes are published on /parameter_events.
 
 Prints::
 
     at 1 s: 0.5 m/s
-    heard: /driver changed speed_mps to 0.8
+    event: /driver changed speed_mps to 0.8
     at 2 s: 0.8 m/s
-    refused: speed_mps must stay below 1.0 for a radius below 2.0 m
+    rejected: speed_mps must stay below 1.0 for a radius below 2.0 m
     at 3 s: 0.8 m/s
 """
 
@@ -24,18 +24,18 @@ class Driver(navette.Node):
         self.add_on_set_parameters_callback(self.check)
 
     def check(self, parameters):
-        wanted = {p.name: p.value for p in parameters}
-        radius = wanted.get("radius_m", self.get_parameter("radius_m").value)
-        if wanted.get("speed_mps", 0.0) >= 1.0 and radius < 2.0:
+        requested = {p.name: p.value for p in parameters}
+        radius = requested.get("radius_m", self.get_parameter("radius_m").value)
+        if requested.get("speed_mps", 0.0) >= 1.0 and radius < 2.0:
             reason = "speed_mps must stay below 1.0 for a radius below 2.0 m"
             return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)
 
 
-def hear(event):
+def on_event(event):
     for changed in event.changed_parameters:
         value = navette.Parameter.from_parameter_msg(changed).value
-        print(f"heard: {event.node} changed {changed.name} to {value}")
+        print(f"event: {event.node} changed {changed.name} to {value}")
 
 
 def wait_for(future):
@@ -49,16 +49,16 @@ def report(seconds):
 
 with navette.init(clock=navette.VirtualClock()):
     executor = navette.SingleThreadedExecutor()
-    driver, person = Driver(), navette.Node("person")
+    driver, operator = Driver(), navette.Node("operator")
     executor.add_node(driver)
-    executor.add_node(person)
-    person.create_subscription(ParameterEvent, "/parameter_events", hear, 10)
-    sliders = navette.AsyncParameterClient(person, "driver")
+    executor.add_node(operator)
+    operator.create_subscription(ParameterEvent, "/parameter_events", on_event, 10)
+    sliders = navette.AsyncParameterClient(operator, "driver")
     for second, speed in enumerate((None, 0.8, 1.2), start=1):
         if speed is not None:
             change = [Parameter("speed_mps", value=speed)]
             (result,) = wait_for(sliders.set_parameters(change)).results
             if not result.successful:
-                print("refused:", result.reason)
+                print("rejected:", result.reason)
         executor.spin_for(1_000_000_000)
         report(second)

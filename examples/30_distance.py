@@ -1,8 +1,8 @@
-"""How far did the car drive? A node over an algorithm that knows no node, and a bag.
+"""Measure the distance that a car drove: a node around an algorithm, and a bag.
 
-The recording is fed to the node in lock-step, faster than real time. What the node
-sums, a parameter file says. Navette's own node does the same and more:
-``navette run odom_integrator`` beside ``navette bag play examples/data/drive.mcap``.
+The recording is replayed to the node in lock-step, faster than real time. A parameter
+file selects the method. The built-in node does the same and more: ``navette run
+odom_integrator`` beside ``navette bag play examples/data/drive.mcap``.
 
 Prints::
 
@@ -29,7 +29,7 @@ trip:
 
 
 class Trip(navette.Node):
-    """Converts, calls the algorithm, publishes: what a node does."""
+    """Converts messages, calls the algorithm, publishes the result."""
 
     def __init__(self, context):
         super().__init__("trip", context=context)

@@ -1,18 +1,18 @@
 """An extended Kalman filter on a recorded drive: wheels, IMU and GNSS → one pose.
 
-The wheels say 2 % too much, the IMU's turn rate is biased, a fix is off by half a metre
-and its antenna stands 0.6 m ahead of the axle. How far is each from the truth?
+Wheel odometry measures 2 % too much, the IMU's turn rate is biased, and GNSS fixes have
+an error of half a metre and an antenna 0.6 m ahead of the axle.
 
-The same on the command line, and as a picture::
+The same on the command line, with a plot::
 
     navette bag replay drive.mcap --node ekf --params-file ekf.yaml --record way.mcap
     navette bag plot way.mcap /odom/filtered.pose.pose.position.x:y
 
 Prints::
 
-    wheels:            8.34 m off at worst, 4.54 m on average
-    wheels, imu:       3.50 m off at worst, 1.09 m on average
-    wheels, imu, gps:  0.63 m off at worst, 0.25 m on average
+    wheels:            8.34 m maximum error, 4.54 m mean error
+    wheels, imu:       3.50 m maximum error, 1.09 m mean error
+    wheels, imu, gps:  0.63 m maximum error, 0.25 m mean error
 """
 
 import tempfile
@@ -28,7 +28,7 @@ from navette.navigation.localization.ekf.node import EkfNode
 from navette.navigation.stack.replay import Replay
 
 DRIVE = Path(__file__).parent / "data" / "drive.mcap"
-# In robot_localization's words. The order of the 15: x y z, roll pitch yaw, vx vy vz,
+# robot_localization's parameters. Order of the 15: x y z, roll pitch yaw, vx vy vz,
 # vroll vpitch vyaw, ax ay az.
 PARAMETERS = """
 ekf:
@@ -53,7 +53,7 @@ GPS = """
 
 
 def track(path, topic):
-    """Stamps (N,) in s and positions (N, 2) in m of a topic's poses."""
+    """Return stamps (N,) in s and positions (N, 2) in m of a topic's poses."""
     with open_bag(path) as bag:
         messages = [deserialize(m.data, Odometry) for m in bag.messages([topic])]
     stamps = [
@@ -64,7 +64,7 @@ def track(path, topic):
 
 
 def filtered(parameters, folder):
-    """The way that the filter says the car took."""
+    """Return the filtered track."""
     file, way = folder / "ekf.yaml", folder / "way.mcap"
     file.write_text(parameters)
     arguments = ["--ros-args", "--params-file", file]
@@ -88,5 +88,5 @@ with tempfile.TemporaryDirectory() as folder:
         x, y = (np.interp(stamps, true_stamps, true_places[:, i]) for i in (0, 1))
         off = np.hypot(places[:, 0] - x, places[:, 1] - y)
         print(
-            f"{name:18} {off.max():.2f} m off at worst, {off.mean():.2f} m on average"
+            f"{name:18} {off.max():.2f} m maximum error, {off.mean():.2f} m mean error"
         )

@@ -1,10 +1,10 @@
-"""Writes drive.mcap, the recording that examples and tutorial use.
+"""Write drive.mcap, the recording of the examples and the tutorial.
 
     python examples/data/make_drive.py examples/data/drive.mcap
 
-A small car drives through a few streets for 60 s. On its roof is a GNSS receiver
-(position, velocity; and as NavSatFix, worse), on its axle are wheel sensors, in its
-middle is an IMU whose rate is biased. The same seed gives the same file, byte for byte.
+A small car drives through a few streets for 60 s. It has a GNSS receiver (position,
+velocity; less accurate as NavSatFix), wheel encoders and an IMU with a biased rate.
+The same seed gives the same file, byte for byte.
 """
 
 import math
@@ -29,8 +29,8 @@ from navette.runtime import ns_to_stamp
 START_NS = 1_760_000_000_000_000_000
 EAST_M, NORTH_M, HEIGHT_M = 294_000.0, 5_070_000.0, 62.0  # UTM, zone 18
 LATITUDE_DEG, LONGITUDE_DEG = 45.75, -73.65
-# Seconds, speed (m/s) and turn rate (rad/s) of each piece of the way.
-WAY = (
+# Duration (s), speed (m/s) and turn rate (rad/s) of each segment.
+SEGMENTS = (
     (2, 0.0, 0.0),
     (10, 2.0, 0.0),
     (4, 1.6, math.pi / 8),
@@ -49,14 +49,14 @@ LATCHED = OfferedQos(durability="transient_local", depth=1)
 
 
 def drive():
-    """(N, 6) every 10 ms: x, y, z (m), yaw (rad), speed (m/s), turn rate (rad/s)."""
+    """Return (N, 6) every 10 ms: x, y, z (m), yaw (rad), m/s, rad/s."""
     rows = []
     x = y = yaw = speed = rate = 0.0
-    for seconds, wanted_speed, wanted_rate in WAY:
+    for seconds, target_speed, target_rate in SEGMENTS:
         for _ in range(round(seconds / STEP_S)):
             rows.append((x, y, 0.5 * math.sin(x / 20), yaw, speed, rate))
-            speed += STEP_S * (wanted_speed - speed) / 0.4
-            rate += STEP_S * (wanted_rate - rate) / 0.15
+            speed += STEP_S * (target_speed - speed) / 0.4
+            rate += STEP_S * (target_rate - rate) / 0.15
             x += STEP_S * speed * math.cos(yaw)
             y += STEP_S * speed * math.sin(yaw)
             yaw += STEP_S * rate
@@ -64,7 +64,7 @@ def drive():
 
 
 class Recording:
-    """Adds messages of one topic after the other; :meth:`write` sorts them."""
+    """Collects messages of several topics; :meth:`write` sorts them by stamp."""
 
     def __init__(self):
         self.messages = []
@@ -124,7 +124,7 @@ def add_wheels(bag, rng, stamp_ns, row):
 
 def add_imu(bag, rng, stamp_ns, row):
     message = stamped(Imu(), stamp_ns, "imu")
-    message.orientation_covariance[0] = -1.0  # it has no compass
+    message.orientation_covariance[0] = -1.0  # no compass
     message.angular_velocity.z = round(row[5] + 0.004 + rng.normal(0, 0.01), 4)
     message.angular_velocity_covariance[8] = 0.01**2
     message.linear_acceleration.z = 9.81
@@ -161,7 +161,7 @@ def add_truth(bag, stamp_ns, row):
 
 
 def add_frames(bag, stamp_ns):
-    """Where IMU and antenna sit on the car."""
+    """Add the mounting poses of IMU and antenna."""
     transforms = []
     for frame, place in (("imu", (0.3, 0.0, 0.4)), ("antenna", (0.6, 0.0, 1.5))):
         transform = stamped(TransformStamped(child_frame_id=frame), 0, "base_link")
