@@ -251,7 +251,7 @@ def test_findings_describe_the_problem(tmp_path: Path) -> None:
     assert "header and index disagree" in findings(chunk.position + 9, 1)
     assert "its index lacks" in findings(index + 9 + 6 + 1, 1)
     assert "the footer is missing" in findings(len(sound) - 1, 1)
-    assert "does not begin as one" in findings(1, 1)
+    assert "the magic bytes are missing" in findings(1, 1)
 
 
 def test_decreasing_stamps_are_a_warning(tmp_path: Path) -> None:
