@@ -25,6 +25,7 @@ from navette.transports import (
 
 LATCHED = EndpointQos(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = EndpointQos(reliability=ReliabilityPolicy.BEST_EFFORT)
+BEST_AVAILABLE = EndpointQos(durability=DurabilityPolicy.BEST_AVAILABLE)
 
 
 class Bench:
@@ -154,10 +155,13 @@ def test_a_late_joiner_receives_the_last_depth_samples(bench: Bench) -> None:
     newest, _ = bench.subscription(qos=one_only)
     shared, _ = bench.subscription(qos=LATCHED, shared=True)
     volatile, _ = bench.subscription()
-    until(lambda: (len(all_kept), len(shared), len(newest)) == (3, 3, 1), "the history")
+    either, _ = bench.subscription(qos=BEST_AVAILABLE)
+    received = (all_kept, shared, either, newest)
+    until(lambda: [len(each) for each in received] == [3, 3, 3, 1], "the history")
     bench.settle()
     assert texts(all_kept) == ["m3", "m4", "m5"]
     assert texts(shared) == ["m3", "m4", "m5"]
+    assert texts(either) == ["m3", "m4", "m5"]
     assert texts(newest) == ["m5"]
     assert volatile == []
 

@@ -67,7 +67,9 @@ class ZenohSubscription(SubscriptionPort):
         self._subscriber: Any = declare_subscriber(
             owner.session.zenoh,
             entity.key,
-            entity.qos,
+            # Not the announced QoS, in which BEST_AVAILABLE is volatile: a
+            # subscription that accepts either durability fetches the history.
+            entity.matches.endpoint.qos,
             self._on_sample,
             retransmits=retransmits,
         )
