@@ -1,8 +1,7 @@
-"""Fifty processes of four topics each: from ``navette launch`` until all know all.
+"""Fifty processes of four topics each: from ``navette launch`` to complete discovery.
 
-Each is a Python program under ``navette run`` with a session of its own with the
-network, linked to the other 49. The time is that of the last one to see 50 nodes and
-200 topics.
+Each process is a Python program under ``navette run`` with its own session, linked to
+the other 49. The time is that of the last process to discover 50 nodes and 200 topics.
 """
 
 import sys
@@ -18,7 +17,7 @@ TESTS = Path(__file__).parent.parent / "tests"
 
 
 def best_time() -> Figure:
-    """The quickest of some rounds: the machine may have other things to do."""
+    """Return the best of several rounds, because of other load."""
     sys.path += [str(TESTS), str(TESTS / "conformance")]
     from many import meet
 
@@ -27,11 +26,11 @@ def best_time() -> Figure:
         with tempfile.TemporaryDirectory() as folder:
             meeting = meet(COUNT, Path(folder), patience_s=60.0)
         if len(meeting.complete) < COUNT:
-            raise SystemExit(f"not all know all: {meeting.last}")
+            raise SystemExit(f"discovery incomplete: {meeting.last}")
         times.append(max(meeting.complete.values()))
         cpu.append(meeting.cpu_s)
     note = "best of " + ", ".join(f"{each:.1f}" for each in sorted(times))
-    note += f"; {min(cpu):.1f} s of CPU with their end"
+    note += f"; {min(cpu):.1f} s of CPU including their end"
     name = f"{COUNT} processes, {COUNT * 4} topics"
     return Figure(name, min(times), "s", TARGET_S, note=note)
 

@@ -1,9 +1,9 @@
-"""There and back between two processes of one machine, beside Zenoh and a peer.
+"""Round trips between two processes of one machine, compared with Zenoh and a peer.
 
-The same bytes, as a sensor_msgs/Image, go to a second process, which sends them back:
-Navette's nodes with queues, CDR and executor; zenoh-python, which moves bytes that
-nobody makes or reads; zenoh-ros2-sdk, on the same wire contract. Zenoh's shared
-memory is on in all of them. Half the time of a round trip is a message's latency.
+The same bytes, as a sensor_msgs/Image, are sent to a second process, which returns
+them: Navette's nodes with queues, CDR and executor; zenoh-python, which moves bytes
+without encoding; zenoh-ros2-sdk, with the same wire format. All use Zenoh's shared
+memory. Half the time of a round trip is the latency of a message.
 """
 
 import os
@@ -28,10 +28,10 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
-# -- the three ways, each a pair of "send this" and "call me with what comes" --------
+# -- the three implementations, each a function to send and one to subscribe --------
 
 
-def navette_way(name: str, size: int, out: str, back: str) -> Any:
+def navette_peer(name: str, size: int, out: str, back: str) -> Any:
     from navette.msgs.sensor_msgs.msg import Image
     from navette.runtime import Context, Executor, Node, QoSProfile
 
@@ -58,7 +58,7 @@ def navette_way(name: str, size: int, out: str, back: str) -> Any:
     return image, publisher.publish, listen, close
 
 
-def zenoh_way(name: str, size: int, out: str, back: str) -> Any:
+def zenoh_peer(name: str, size: int, out: str, back: str) -> Any:
     import zenoh
 
     config = zenoh.Config()
@@ -79,7 +79,7 @@ def zenoh_way(name: str, size: int, out: str, back: str) -> Any:
     return bytes(size), publisher.put, listen, session.close
 
 
-def sdk_way(name: str, size: int, out: str, back: str) -> Any:
+def sdk_peer(name: str, size: int, out: str, back: str) -> Any:
     import numpy as np
     from zenoh_ros2_sdk import ROS2Publisher, ROS2Subscriber
 
@@ -114,12 +114,16 @@ def sdk_way(name: str, size: int, out: str, back: str) -> Any:
     return fields, send, listen, publisher.close
 
 
-WAYS = {"navette": navette_way, "zenoh-python": zenoh_way, "zenoh-ros2-sdk": sdk_way}
+PEERS = {
+    "navette": navette_peer,
+    "zenoh-python": zenoh_peer,
+    "zenoh-ros2-sdk": sdk_peer,
+}
 
 
-def echo(way: str, size: int) -> None:
+def echo(peer: str, size: int) -> None:
     """The second process: sends back what comes until its input ends."""
-    _, send, listen, close = WAYS[way]("echo", size, "/back", "/there")
+    _, send, listen, close = PEERS[peer]("echo", size, "/back", "/there")
     listen(send)
     print("ready", flush=True)
     sys.stdin.read()
@@ -127,11 +131,11 @@ def echo(way: str, size: int) -> None:
 
 
 class Loop:
-    """A way with an echo in another process; calling it goes there and back once."""
+    """One implementation with an echo in another process; a call is one round trip."""
 
     children: ClassVar[list[subprocess.Popen[str]]] = []
 
-    def __init__(self, way: str, size: int, stack: ExitStack) -> None:
+    def __init__(self, peer: str, size: int, stack: ExitStack) -> None:
         ends = [f"tcp/127.0.0.1:{free_port()}" for _ in range(2)]
         common = {
             "NAVETTE_ROUTER": f"tcp/127.0.0.1:{free_port()}",
@@ -140,10 +144,10 @@ class Loop:
         os.environ.update(common, BENCH_LISTEN=ends[0], BENCH_CONNECT=ends[1])
         # Navette's router serves the peer as well.
         router = None
-        if way == "zenoh-ros2-sdk":
-            router = navette_way("router", 1, "/unused", "/unused_back")
+        if peer == "zenoh-ros2-sdk":
+            router = navette_peer("router", 1, "/unused", "/unused_back")
             stack.callback(router[3])
-        self.message, self._send, listen, close = WAYS[way](
+        self.message, self._send, listen, close = PEERS[peer](
             "bench", size, "/there", "/back"
         )
         self._came = threading.Event()
@@ -154,7 +158,7 @@ class Loop:
             "BENCH_CONNECT": ends[0],
         }
         self._process = subprocess.Popen(
-            [sys.executable, __file__, "--echo", way, str(size)],
+            [sys.executable, __file__, "--echo", peer, str(size)],
             env=environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -191,19 +195,19 @@ class Loop:
 
 def build(stack: ExitStack) -> Benchmark:
     bench = Benchmark("network", __doc__, budget_s=1.5)
-    ways = [
+    peers = [
         w
-        for w in WAYS
+        for w in PEERS
         if w == "navette" or optional(w.replace("-", "_").replace("_python", ""))
     ]
     for label, size in SIZES.items():
-        loops = {way: Loop(way, size, stack) for way in ways}
-        bench.case(f"{label}, there and back", loops)
+        loops = {peer: Loop(peer, size, stack) for peer in peers}
+        bench.case(f"{label}, round trip", loops)
 
     def throughput() -> Figure:
-        times = bench.results["8 MB, there and back"]["navette"]
+        times = bench.results["8 MB, round trip"]["navette"]
         return Figure(
-            "8 MB images, both ways together",
+            "8 MB images, both directions together",
             2 * (8 << 20) / 1e6 / (times.median_ms / 1e3),
             "MB/s",
             more_is_better=True,

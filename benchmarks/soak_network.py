@@ -86,25 +86,25 @@ class Talker(Node):
 
 
 class Listener(Node):
-    """Hears everything and answers."""
+    """Subscribes to all topics and serves requests."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("listener", context=context)
-        self.heard = {"/image": 0, "/map": 0, "/value": 0}
+        self.received = {"/image": 0, "/map": 0, "/value": 0}
         for topic, kind, qos in (
             ("/image", Image, 5),
             ("/map", OccupancyGrid, LATCHED),
             ("/value", Float64, 100),
         ):
-            self.create_subscription(kind, topic, self.hearing(topic), qos)
+            self.create_subscription(kind, topic, self.counter_of(topic), qos)
         self.create_service(Trigger, "/ask", self.answer)
-        self.create_timer(5.0, lambda: print(self.heard, flush=True))
+        self.create_timer(5.0, lambda: print(self.received, flush=True))
 
-    def hearing(self, topic: str):  # type: ignore[no-untyped-def]
-        def hear(_: object) -> None:
-            self.heard[topic] += 1
+    def counter_of(self, topic: str):  # type: ignore[no-untyped-def]
+        def count(_: object) -> None:
+            self.received[topic] += 1
 
-        return hear
+        return count
 
     def answer(
         self, request: Trigger.Request, response: Trigger.Response
@@ -170,7 +170,7 @@ def soak(minutes: float, service_timeout_s: float, *, new_names: bool) -> None:
         for process in (talker, listener):
             process.terminate()
     assert listener.stdout is not None
-    print("heard", listener.stdout.read().splitlines()[-1])
+    print("received", listener.stdout.read().splitlines()[-1])
     for who, samples in memory.items():
         grown = growth(samples)
         print(f"{who}: grew {grown:+.1f} MB:", "flat" if grown < FLAT_MB else "GROWS")

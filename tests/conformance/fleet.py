@@ -1,4 +1,4 @@
-"""Real programs that run beside each other, and what they have printed."""
+"""Programs in processes of their own, and their output."""
 
 import json
 import math
@@ -14,13 +14,13 @@ from typing import Any
 
 PROGRAMS = Path(__file__).parent / "programs"
 STACK = ("costmap", "map_memory", "planner", "control")
-PATIENCE_S = 180.0  # never reached but by a fault
+PATIENCE_S = 180.0  # reached only by a defect
 
 
 def until(
     check: Callable[[], bool], what: str, *, patience_s: float = PATIENCE_S
 ) -> None:
-    """Look again and again; real programs have no virtual clock."""
+    """Poll until the condition holds; real programs have no virtual clock."""
     pause = threading.Event()
     for _ in range(round(patience_s / 0.05)):
         if check():
@@ -30,7 +30,7 @@ def until(
 
 
 class Fleet:
-    """Programs of ``navette run``, each a process; ``with`` ends them."""
+    """Programs under ``navette run``, each in a process; ``with`` ends them."""
 
     def __init__(self, folder: Path, env: Mapping[str, str]) -> None:
         self._folder = folder
@@ -44,8 +44,8 @@ class Fleet:
         prefix: Sequence[str] = (),
         env: Mapping[str, str] | None = None,
     ) -> None:
-        """``navette run WORDS…``; its output goes to a file of its name."""
-        if name in self.running:  # a new one in its place
+        """Start ``navette run WORDS…``; its output goes to a file named ``name``."""
+        if name in self.running:  # replaced by a new one
             self.running[name].wait(20.0)
         with (self._folder / name).open("wb") as file:
             self.running[name] = subprocess.Popen(
@@ -55,29 +55,29 @@ class Fleet:
                 stderr=subprocess.STDOUT,
             )
 
-    def said(self, name: str) -> list[str]:
-        """The whole lines that a program printed so far."""
+    def output(self, name: str) -> list[str]:
+        """Return the complete lines that a program has printed."""
         text = (self._folder / name).read_text(encoding="utf-8")
         return text[: text.rfind("\n") + 1].splitlines()
 
     def track(self, key: str) -> dict[str, Any]:
-        """What ``track.py``, started as ``track``, said last of ``key``; else empty."""
-        for line in reversed(self.said("track")):
+        """Return the last record of ``track.py`` with ``key``, else an empty one."""
+        for line in reversed(self.output("track")):
             if line.startswith("{") and f'"{key}"' in line:
                 return dict(json.loads(line))
         return {}
 
     def speed(self) -> float:
-        """How fast the robot is now, in m/s; not a number before it is known."""
+        """Return the robot's speed in m/s; NaN before the first record."""
         return float(self.track("speed").get("speed", math.nan))
 
     def standstill(self) -> float:
-        """How long, by the robot's clock, it takes from now until the robot stands."""
-        for _ in range(2):  # what is said next may have been heard before
-            said = len(self.said("track"))
-            until(lambda said=said: len(self.said("track")) > said, "news of the robot")
+        """Return the time on the robot's clock until it is stationary."""
+        for _ in range(2):  # the next record may be older than this call
+            count = len(self.output("track"))
+            until(lambda count=count: len(self.output("track")) > count, "a record")
         begin = float(self.track("speed")["time"])
-        until(lambda: abs(self.speed()) < 0.01, "standing")
+        until(lambda: abs(self.speed()) < 0.01, "the stationary robot")
         return float(self.track("speed")["time"]) - begin
 
     def __enter__(self) -> "Fleet":

@@ -1,4 +1,4 @@
-"""Many processes that start at once, as one launch file, and find each other."""
+"""Many processes that start together from one launch file, and discover each other."""
 
 import os
 import re
@@ -14,7 +14,7 @@ from navette.runtime.clock import Stopwatch
 
 PROGRAM = Path(__file__).parent / "programs" / "one_of_many.py"
 DOMAIN = "93"
-_SAID = re.compile(r"(\d+) sees (all: )?(\d+) nodes (\d+) topics")
+_REPORT = re.compile(r"(\d+) sees (all: )?(\d+) nodes (\d+) topics")
 _LAUNCH = """
 from launch import LaunchDescription
 from launch_ros.actions import Node
@@ -30,22 +30,26 @@ def generate_launch_description():
 
 @dataclass(frozen=True)
 class Meeting:
-    """``complete``: seconds from the start until each saw all, by its number.
+    """Result of :func:`meet`.
 
-    ``last``: the nodes and topics that each saw in the end. ``said``: all output.
-    ``cpu_s``: what all of it took, the end included; unlike the time hardly more where
-    the machine has other things to do. Nothing else may be waited for meanwhile.
+    Attributes:
+        complete: process number → seconds from the start until it has discovered all.
+        last: process number → nodes and topics that it has discovered.
+        output: all output.
+        code: exit code of the launch.
+        cpu_s: CPU time of all processes including their end; depends less than the
+            wall time on other load. The caller must not wait for other children.
     """
 
     complete: dict[int, float]
     last: dict[int, tuple[int, int]]
-    said: str
+    output: str
     code: int
     cpu_s: float
 
 
 def meet(count: int, folder: Path, patience_s: float) -> Meeting:
-    """Launch so many processes of four topics each; ends when all see all."""
+    """Launch ``count`` processes of four topics each until all have discovered all."""
     file = folder / "many.launch.py"
     file.write_text(_LAUNCH.format(program=str(PROGRAM), count=count))
     watch, before = Stopwatch(), os.times()
@@ -71,7 +75,7 @@ def meet(count: int, folder: Path, patience_s: float) -> Meeting:
         assert process.stdout is not None
         for line in process.stdout:
             lines.append(line)
-            found = _SAID.search(line)
+            found = _REPORT.search(line)
             if found is None:
                 continue
             number = int(found[1])

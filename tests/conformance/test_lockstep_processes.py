@@ -55,8 +55,10 @@ def drive(folder: Path) -> bytes:
         run = ("--lockstep", names, "--lockstep-until", str(UNTIL_S))
         fleet.start("sim", "navette", "sim", *WORLD, *run)
         for name in fleet.running:
-            assert end_of(fleet, name) == 0, f"{name}: {fleet.said(name)}"
-        assert any("lock-step: 600 steps to 6 s" in line for line in fleet.said("sim"))
+            assert end_of(fleet, name) == 0, f"{name}: {fleet.output(name)}"
+        assert any(
+            "lock-step: 600 steps to 6 s" in line for line in fleet.output("sim")
+        )
     return bag.read_bytes()
 
 
@@ -85,11 +87,11 @@ def test_a_process_that_fails_or_hangs_is_named(
             follow(fleet, stage, *WORLD)
         run = ("--lockstep", "planner,control", "--lockstep-limit", limit)
         fleet.start("sim", "navette", "sim", *WORLD, *run)
-        until(lambda: "begins, with" in "".join(fleet.said("sim")), "the beginning")
+        until(lambda: "begins, with" in "".join(fleet.output("sim")), "the beginning")
         fleet.running["control"].send_signal(kind)
         assert end_of(fleet, "sim") == 1
         assert end_of(fleet, "planner") == 1
-        (error,) = [line for line in fleet.said("sim") if "navette:" in line]
+        (error,) = [line for line in fleet.output("sim") if "navette:" in line]
         assert error.startswith(f"navette: lock-step: {error_text}")
         assert "/control" in error  # and the nodes that wait for its messages
-        assert "the simulator is gone" in fleet.said("planner")[-1]
+        assert "the simulator is gone" in fleet.output("planner")[-1]

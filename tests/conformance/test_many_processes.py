@@ -1,4 +1,4 @@
-"""The stack as processes: it drives, and stops without its controller."""
+"""The stack as processes: drives, and stops without its controller."""
 
 import math
 import os
@@ -16,9 +16,9 @@ pytestmark = [
     pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's"),
 ]
 
-# The command timeout (0.5 s), braking, and how often it is looked.
-STANDS_WITHIN_S = 1.5
-GOAL = (-3.0, -7.0)  # 8 m: far enough for what happens on the way
+# The command timeout (0.5 s), braking, and the polling period.
+STOPS_WITHIN_S = 1.5
+GOAL = (-3.0, -7.0)  # 8 m: far enough for the events of the test
 
 
 @pytest.fixture
@@ -39,15 +39,15 @@ def drive_to(fleet: Fleet, name: str, x: float, y: float) -> None:
 
 
 def test_the_split_stack_drives_and_stops_without_its_controller(fleet: Fleet) -> None:
-    """Course world, six processes: frozen, thawed, killed, started anew, arrived."""
+    """The controller is stopped, continued, killed and restarted; the robot arrives."""
     drive_to(fleet, "missions", *GOAL)
     control = fleet.running["control"]
     control.send_signal(signal.SIGSTOP)
-    assert fleet.standstill() < STANDS_WITHIN_S
+    assert fleet.standstill() < STOPS_WITHIN_S
     control.send_signal(signal.SIGCONT)
     until(lambda: fleet.speed() > 0.5, "driving again")
     control.send_signal(signal.SIGKILL)
-    assert fleet.standstill() < STANDS_WITHIN_S
+    assert fleet.standstill() < STOPS_WITHIN_S
     fleet.start("control", "navette", "control", "--world", "course")
     until(lambda: fleet.speed() > 0.3, "driving with a new controller")
     until(lambda: fleet.track("planner")["planner"] == "reached", "the goal")

@@ -1,4 +1,4 @@
-"""A robot and a laptop: what crosses the wire between them, and what if it fails."""
+"""A robot and a laptop, and failures of the network between them."""
 
 import itertools
 import json
@@ -15,11 +15,11 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(REASON), reason=REASON)]
 
 
 class TwoFleets:
-    """Programs on the robot and on the laptop; the router is on the robot."""
+    """Programs on the robot and on the laptop; the robot runs the router."""
 
     def __init__(self, fleet: Fleet, machines: Machines) -> None:
         self._fleet, self._machines = fleet, machines
-        self.said, self.track, self.speed = fleet.said, fleet.track, fleet.speed
+        self.output, self.track, self.speed = fleet.output, fleet.track, fleet.speed
         self.standstill = fleet.standstill
 
     @property
@@ -43,12 +43,12 @@ def fleet(tmp_path: Path) -> Iterator[TwoFleets]:
     env = {"NAVETTE_ROUTER": f"tcp/{ROBOT}:7447"}
     with Machines(seed=1) as machines, Fleet(tmp_path, env) as programs:
         yield TwoFleets(programs, machines)
-        machines.wire.mend()  # a good-bye over a bad wire takes its time
+        machines.wire.restore()  # closing a session over a bad wire takes long
 
 
 @pytest.fixture
 def hasty(tmp_path: Path) -> Iterator[TwoFleets]:
-    """Programs that give a link up after two seconds, not ten."""
+    """Programs that close a silent link after two seconds instead of ten."""
     config = {
         "scouting": {"multicast": {"enabled": False}},
         "transport": {"link": {"tx": {"lease": 2000}}},
@@ -64,10 +64,10 @@ def hasty(tmp_path: Path) -> Iterator[TwoFleets]:
     }
     with Machines(seed=1, hasty=True) as machines, Fleet(tmp_path, env) as programs:
         yield TwoFleets(programs, machines)
-        machines.wire.mend()
+        machines.wire.restore()
 
 
-def test_what_is_reliable_survives_a_late_lossy_and_broken_wire(
+def test_retransmitted_messages_survive_delay_loss_and_a_cut(
     hasty: TwoFleets,
 ) -> None:
     fleet = hasty
@@ -75,23 +75,23 @@ def test_what_is_reliable_survives_a_late_lossy_and_broken_wire(
     fleet.laptop("numbers", str(PROGRAMS / "note_down.py"))
 
     def numbers() -> list[int]:
-        return [int(line) for line in fleet.said("numbers") if line.isdigit()]
+        return [int(line) for line in fleet.output("numbers") if line.isdigit()]
 
     until(lambda: len(numbers()) > 20, "the first numbers")
     fleet.wire.delay_s, fleet.wire.loss = 0.1, 0.05
     worse = len(numbers())
     until(lambda: len(numbers()) > worse + 25, "numbers on a bad wire")
     fleet.wire.is_cut = True
-    # Longer than the link lasts: all that is between the two is lost.
-    until(lambda: "alone" in fleet.said("numbers"), "the end of the link")
+    # Until the link is closed: all samples in its queue are lost.
+    until(lambda: "alone" in fleet.output("numbers"), "the end of the link")
     cut = numbers()[-1]
     fleet.wire.is_cut = False
     until(lambda: numbers()[-1] > cut + 150, "numbers after the cut")
-    heard = numbers()
-    assert [b - a for a, b in itertools.pairwise(heard)] == [1] * (len(heard) - 1)
+    received = numbers()
+    assert [b - a for a, b in itertools.pairwise(received)] == [1] * (len(received) - 1)
 
 
-def test_the_robot_stops_when_cut_off_and_goes_on_when_it_is_back(
+def test_the_robot_stops_during_a_cut_and_continues_after_it(
     fleet: TwoFleets,
 ) -> None:
     fleet.robot("sim", "navette", "sim", "--world", "arena", "--robot", "jackal")
@@ -103,13 +103,13 @@ def test_the_robot_stops_when_cut_off_and_goes_on_when_it_is_back(
     fleet.wire.delay_s, fleet.wire.loss = 0.1, 0.05
     until(lambda: fleet.speed() > 0.5, "driving over a bad wire")
     fleet.wire.is_cut = True
-    # The command timeout (0.5 s), braking from cruise speed, a look at the log.
+    # The command timeout (0.5 s), braking from cruise speed, the polling period.
     assert fleet.standstill() < 2.0
     fleet.wire.is_cut = False
     until(lambda: fleet.speed() > 0.3, "driving again")
     far = fleet.track("speed")["x"] + 0.5
     until(lambda: fleet.track("speed")["x"] > far, "half a metre on a bad wire")
-    fleet.wire.mend()  # five times as fast
+    fleet.wire.restore()  # five times as fast
     until(lambda: fleet.track("planner")["planner"] == "reached", "the goal")
     where = fleet.track("speed")
     assert math.dist((where["x"], where["y"]), (-1.0, -7.0)) < 0.6

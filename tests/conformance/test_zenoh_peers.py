@@ -1,4 +1,4 @@
-"""Two independent programs that speak rmw_zenoh: zenoh-ros2-sdk and pyzeros."""
+"""Two independent peers with rmw_zenoh's wire format: zenoh-ros2-sdk, pyzeros."""
 
 import os
 import subprocess
@@ -22,14 +22,14 @@ pytestmark = pytest.mark.slow
 PEERS = Path(__file__).parent / "peers"
 HASHES = [type_hash("std_msgs/msg/String"), type_hash("std_srvs/srv/SetBool")]
 PROGRAMS = {"zenoh-ros2-sdk": "sdk_peer.py", "pyzeros": "pyzeros_peer.py"}
-# pyzeros compiles its codecs where it finds none (in .cydr_cache): 9 CPU seconds, and
-# 37 with the optimisation that a few messages do not need.
+# pyzeros compiles its codecs if .cydr_cache has none: 9 CPU seconds, and 37 with the
+# optimisation that a few messages do not need.
 COMPILING_S = 300.0
 ENV = {"PYTHONWARNINGS": "ignore", "CFLAGS": "-O0 -g0"}
 
 
 class Peer:
-    """A running peer; what it has printed is in a file."""
+    """A running peer; its output is in a file."""
 
     def __init__(self, program: str, port: int, output: Path) -> None:
         self._output = output
@@ -43,12 +43,12 @@ class Peer:
                 text=True,
             )
 
-    def tell(self, line: str) -> None:
+    def send(self, line: str) -> None:
         assert self._process.stdin is not None
         self._process.stdin.write(f"{line}\n")
         self._process.stdin.flush()
 
-    def said(self, start: str) -> list[str]:
+    def printed(self, start: str) -> list[str]:
         text = self._output.read_text(encoding="utf-8")
         lines = text[: text.rfind("\n") + 1].splitlines()
         return [line for line in lines if line.startswith(start)]
@@ -63,7 +63,7 @@ class Peer:
 
 
 class Meeting:
-    """A peer, and a node of ours on the same network."""
+    """A peer and a node of Navette on the same network."""
 
     def __init__(self, peer: Peer, node: Node, executor: Executor) -> None:
         self.peer = peer
@@ -91,7 +91,7 @@ def meeting(
     executor.add_node(node)
     peer = Peer(PROGRAMS[request.param], port, tmp_path / "peer")
     try:
-        until(lambda: bool(peer.said("ready")), "the peer", patience_s=COMPILING_S)
+        until(lambda: bool(peer.printed("ready")), "the peer", patience_s=COMPILING_S)
         yield Meeting(peer, node, executor)
         assert peer.end() == 0
     finally:
@@ -99,29 +99,33 @@ def meeting(
         context.shutdown()
 
 
-def test_topics_both_ways(meeting: Meeting) -> None:
-    heard: list[tuple[str, int]] = []
+def test_topics_in_both_directions(meeting: Meeting) -> None:
+    received: list[tuple[str, int]] = []
 
-    def hear(message: Any, info: Any) -> None:
-        heard.append((message.data, info["publication_sequence_number"]))
+    def receive(message: Any, info: Any) -> None:
+        received.append((message.data, info["publication_sequence_number"]))
 
     node, peer = meeting.node, meeting.peer
-    subscription = node.create_subscription(String, "/from_peer", hear, 10)
+    subscription = node.create_subscription(String, "/from_peer", receive, 10)
     publisher = node.create_publisher(String, "/to_peer", 10)
     meeting.until(lambda: subscription.get_publisher_count() == 1, "the publisher")
     meeting.until(lambda: publisher.get_subscription_count() == 1, "the subscription")
     for number in range(3):
-        peer.tell(f"publish text-{number}")
+        peer.send(f"publish text-{number}")
         publisher.publish(String(data=f"ours-{number}"))
-    meeting.until(lambda: len(heard) == 3, "the peer's messages")
-    meeting.until(lambda: len(peer.said("heard")) == 3, "our messages")
-    assert [text for text, _ in heard] == ["text-0", "text-1", "text-2"]
-    numbers = [number for _, number in heard]
+    meeting.until(lambda: len(received) == 3, "the peer's messages")
+    meeting.until(lambda: len(peer.printed("received")) == 3, "our messages")
+    assert [text for text, _ in received] == ["text-0", "text-1", "text-2"]
+    numbers = [number for _, number in received]
     assert numbers == list(range(numbers[0], numbers[0] + 3))
-    assert peer.said("heard") == ["heard ours-0", "heard ours-1", "heard ours-2"]
+    assert peer.printed("received") == [
+        "received ours-0",
+        "received ours-1",
+        "received ours-2",
+    ]
 
 
-def test_services_both_ways(meeting: Meeting) -> None:
+def test_services_in_both_directions(meeting: Meeting) -> None:
     node, peer = meeting.node, meeting.peer
 
     def switch(request: Any, response: Any) -> Any:
@@ -129,9 +133,9 @@ def test_services_both_ways(meeting: Meeting) -> None:
         return response
 
     node.create_service(SetBool, "/our_switch", switch)
-    peer.tell("call")
-    meeting.until(lambda: bool(peer.said("answer")), "our answer")
-    assert peer.said("answer") == ["answer True by us"]
+    peer.send("call")
+    meeting.until(lambda: bool(peer.printed("reply")), "our reply")
+    assert peer.printed("reply") == ["reply True by us"]
     client = node.create_client(SetBool, "/peer_switch")
     meeting.until(client.service_is_ready, "the peer's server")
     future = client.call_async(SetBool.Request(data=True))
@@ -139,7 +143,7 @@ def test_services_both_ways(meeting: Meeting) -> None:
     assert (future.result().success, future.result().message) == (True, "by the peer")
 
 
-def test_we_list_the_peers_graph(meeting: Meeting) -> None:
+def test_navette_lists_the_peers_graph(meeting: Meeting) -> None:
     node = meeting.node
     graph = node.context.graph
 
@@ -152,7 +156,7 @@ def test_we_list_the_peers_graph(meeting: Meeting) -> None:
     def services() -> dict[str, list[str]]:
         return dict(node.get_service_names_and_types())
 
-    # Tokens come in bunches, in no order.
+    # Tokens arrive in batches, in any order.
     meeting.until(
         lambda: bool(clients() and publishers()) and "/peer_switch" in services(),
         "all that the peer made",
@@ -169,14 +173,14 @@ def test_we_list_the_peers_graph(meeting: Meeting) -> None:
 
 
 @pytest.mark.parametrize("meeting", ["zenoh-ros2-sdk"], indirect=True)
-def test_the_peer_lists_our_graph(meeting: Meeting) -> None:
+def test_the_peer_lists_navettes_graph(meeting: Meeting) -> None:
     node, peer = meeting.node, meeting.peer
     node.create_publisher(String, "/ours", QoSProfile(depth=3))
     node.create_service(SetBool, "/our_switch", lambda request, response: response)
 
     def lists(line: str) -> bool:
-        peer.tell("topics")  # it asks the network anew each time
-        return line in peer.said(line.split()[0])
+        peer.send("topics")  # it queries the network each time
+        return line in peer.printed(line.split()[0])
 
     meeting.until(lambda: lists("topic /ours std_msgs/msg/String"), "our topic")
     meeting.until(

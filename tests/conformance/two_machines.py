@@ -1,7 +1,7 @@
-"""Two machines on this one: network namespaces, and a wire between them that can fail.
+"""Two simulated machines: network namespaces with a wire between them that can fail.
 
-Each namespace has a TUN device; a thread carries the IP packets from one to the other,
-late, slowly, not at all (a share of them, by a seed), or none while the wire is cut.
+Each namespace has a TUN device. A thread carries the IP packets between them with a
+delay, a limited rate and a random loss, or not at all while the wire is cut.
 """
 
 import fcntl
@@ -21,12 +21,12 @@ ROBOT, LAPTOP = "10.77.0.1", "10.77.0.2"
 
 _TUNSETIFF, _IFF_TUN, _IFF_NO_PI = 0x400454CA, 0x0001, 0x1000
 _MTU = 1500
-# A slow wire has so much on it at most; what is more is lost, as at a router's queue.
-_LONGEST_QUEUE_S = 0.2
+# Longest queue of a slow wire; further packets are lost, as in a router.
+_MAX_QUEUE_S = 0.2
 
 
 def why_not() -> str:
-    """Why two machines cannot be made here; empty where they can."""
+    """Return why namespaces cannot be created here; empty if they can."""
     try:
         with Machines():
             return ""
@@ -39,7 +39,7 @@ def _now() -> float:
 
 
 class Wire:
-    """Carries packets between two TUN devices, as well or as badly as it is told."""
+    """Carries packets between two TUN devices with configurable faults."""
 
     def __init__(self, ends: tuple[int, int], *, seed: int = 0) -> None:
         self.delay_s = 0.0
@@ -54,8 +54,8 @@ class Wire:
         self._thread = threading.Thread(target=self._carry, name="wire")
         self._thread.start()
 
-    def mend(self) -> None:
-        """As it was at first: nothing is late, nothing is lost."""
+    def restore(self) -> None:
+        """Remove all faults."""
         self.delay_s, self.loss, self.is_cut = 0.0, 0.0, False
         self.bytes_per_s = math.inf
 
@@ -88,22 +88,24 @@ class Wire:
                 other = self._ends[1 - self._ends.index(end)]
                 heapq.heappush(waiting, (arrival, number, other, packet))
 
-    def _arrival(self, way: int, size: int) -> float | None:
-        """When a packet that is sent now is there; None: never."""
+    def _arrival(self, direction: int, size: int) -> float | None:
+        """Return the arrival time of a packet that is sent now; None: lost."""
         now = _now()
-        start = max(now, self._free_at[way])
+        start = max(now, self._free_at[direction])
         is_lost = self.is_cut or self._rng.random() < self.loss
-        if is_lost or start - now > _LONGEST_QUEUE_S:
+        if is_lost or start - now > _MAX_QUEUE_S:
             return None
-        self._free_at[way] = start + size / self.bytes_per_s
-        return self._free_at[way] + self.delay_s
+        self._free_at[direction] = start + size / self.bytes_per_s
+        return self._free_at[direction] + self.delay_s
 
 
 class Machines:
-    """A robot and a laptop with a wire between them; ``with`` makes and ends them.
+    """A robot and a laptop with a wire between them; ``with`` creates and removes them.
 
-    ``hasty`` machines send again for 3 s, not for a quarter of an hour, what nobody
-    confirms. Zenoh's close of a lost link waits for that, up to 10 s (SO_LINGER).
+    Args:
+        hasty: TCP gives up after 3 s without an acknowledgement, instead of a quarter
+            of an hour. Zenoh's close of a lost link waits for that, up to 10 s
+            (SO_LINGER).
     """
 
     def __init__(self, *, seed: int = 0, hasty: bool = False) -> None:
@@ -156,7 +158,7 @@ class Machines:
 
 
 def _hurry(name: str) -> None:
-    """Where /proc/sys cannot be written to, what follows takes longer; no more."""
+    """Shorten TCP's retries; without write access to /proc/sys tests take longer."""
     write = ["sh", "-c", "echo 3 > /proc/sys/net/ipv4/tcp_retries2"]
     words = ["ip", "netns", "exec", name, *write]
     subprocess.run(words, check=False, capture_output=True)

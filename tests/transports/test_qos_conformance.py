@@ -263,8 +263,8 @@ def test_assertions_without_messages_keep_a_publisher_alive(ends: Ends) -> None:
 
     until(has_matched, "the match")
     until(lambda: manual.subscription.get_publisher_count() == 1, "the match")
-    said: list[str] = []
-    ends.near.context.log.sinks.append(lambda record: said.append(record.message))
+    logged: list[str] = []
+    ends.near.context.log.sinks.append(lambda record: logged.append(record.message))
     received: list[Any] = []
     ends.far.context.graph.on_assertion(lambda *ends: received.append(ends))
     for count in (1, 2, 3):
@@ -275,4 +275,4 @@ def test_assertions_without_messages_keep_a_publisher_alive(ends: Ends) -> None:
     assert manual.changes == [Changed(1, 0, 1, 0)]
     ends.pass_time(0.2)
     assert manual.changes[1:] == [Changed(0, 1, -1, 1)]
-    assert said == []
+    assert logged == []

@@ -68,34 +68,34 @@ def transport_of(node: Node) -> ZenohTransport:
 
 def test_messages_of_a_late_publisher_arrive_once(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
-    heard: list[str] = []
-    here.create_subscription(String, "map", lambda m: heard.append(m.data), LATCHED)
+    received: list[str] = []
+    here.create_subscription(String, "map", lambda m: received.append(m.data), LATCHED)
     publisher = there.create_publisher(String, "map", LATCHED)
     for text in ("a", "b"):
         publisher.publish(String(data=text))
-    network.until(lambda: len(heard) >= 2, "both")
+    network.until(lambda: len(received) >= 2, "both")
     publisher.publish(String(data="c"))
-    network.until(lambda: len(heard) >= 3, "the third")
-    assert heard == ["a", "b", "c"]
+    network.until(lambda: len(received) >= 3, "the third")
+    assert received == ["a", "b", "c"]
 
 
 def test_reliable_and_keep_all_is_complete_and_in_order(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
     qos = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-    heard: list[float] = []
-    here.create_subscription(Float64, "t", lambda m: heard.append(m.data), qos)
+    received: list[float] = []
+    here.create_subscription(Float64, "t", lambda m: received.append(m.data), qos)
     publisher = there.create_publisher(Float64, "t", qos)
     until(lambda: publisher.get_subscription_count() == 1, "the match")
     for number in range(1000):
         publisher.publish(Float64(data=float(number)))
-    network.until(lambda: len(heard) >= 1000, "everything")
-    assert heard == list(range(1000))
+    network.until(lambda: len(received) >= 1000, "everything")
+    assert received == list(range(1000))
 
 
 def test_a_slow_subscription_keeps_the_newest(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
-    heard: list[str] = []
-    here.create_subscription(String, "t", lambda m: heard.append(m.data), 2)
+    received: list[str] = []
+    here.create_subscription(String, "t", lambda m: received.append(m.data), 2)
     last: list[str] = []
     here.create_subscription(String, "end", lambda m: last.append(m.data), 1)
     publisher = there.create_publisher(String, "t", 10)
@@ -108,18 +108,18 @@ def test_a_slow_subscription_keeps_the_newest(network: Network) -> None:
     waiting = next(s for s in here.subscriptions if s.topic == "/end")
     until(lambda: len(waiting._queue) == 1, "the arrival of all")
     network.until(lambda: last, "the end")
-    network.until(lambda: len(heard) >= 2, "what was kept")
-    assert heard == ["3", "4"]
+    network.until(lambda: len(received) >= 2, "what was kept")
+    assert received == ["3", "4"]
 
 
 def test_an_invalid_payload_is_dropped(
     network: Network,
 ) -> None:
     here, there = network.node("here"), network.node("there")
-    heard: list[Any] = []
+    received: list[Any] = []
     with_info: list[Any] = []
     raw: list[Any] = []
-    here.create_subscription(String, "t", heard.append, 10)
+    here.create_subscription(String, "t", received.append, 10)
     here.create_subscription(String, "t", lambda m, info: with_info.append(m.data), 10)
     here.create_subscription(String, "t", raw.append, 10, raw=True)
     publisher = there.create_publisher(String, "t", 10)
@@ -129,8 +129,8 @@ def test_an_invalid_payload_is_dropped(
     attachment = Attachment(1, 0, bytes(16)).encode()
     transport_of(there).session.zenoh.put(key, garbage, attachment=attachment)
     publisher.publish(String(data="fine"))
-    network.until(lambda: heard and with_info and len(raw) == 2, "the good one")
-    assert ([m.data for m in heard], with_info) == (["fine"], ["fine"])
+    network.until(lambda: received and with_info and len(raw) == 2, "the good one")
+    assert ([m.data for m in received], with_info) == (["fine"], ["fine"])
     assert raw == [garbage, serialize(String(data="fine"))]  # unchanged
 
 

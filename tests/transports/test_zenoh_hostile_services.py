@@ -139,7 +139,7 @@ def sum_of(replies: queue.Queue[zenoh.Reply]) -> int:
     return deserialize(answer.ok.payload.to_bytes(), AddTwoInts.Response).sum
 
 
-@pytest.mark.parametrize("first", ["client", "stranger"])
+@pytest.mark.parametrize("first", ["client", "forged"])
 def test_a_forged_request_does_not_block_the_real_one(
     pair: ZenohPair, first: str
 ) -> None:
@@ -152,8 +152,8 @@ def test_a_forged_request_does_not_block_the_real_one(
     if first == "client":
         client.request(AddTwoInts.Request(a=10), 5, 2)
         until(lambda: len(requests) == 2, "the real request")
-    stranger = send_request(pair, guess, a=666, source_ns=6)
-    if first == "stranger":
+    forged = send_request(pair, guess, a=666, source_ns=6)
+    if first == "forged":
         until(lambda: len(requests) == 2, "the forged request")
         client.request(AddTwoInts.Request(a=10), 5, 2)
     until(lambda: len(requests) == 3, "both requests")
@@ -161,7 +161,7 @@ def test_a_forged_request_does_not_block_the_real_one(
         server.reply(request.id, AddTwoInts.Response(sum=request.message.a))
     until(lambda: len(replies) == 2, "the replies")
     assert {r.sequence: r.message.sum for r in replies} == {1: 1, 2: 10}
-    assert sum_of(stranger) == 666
+    assert sum_of(forged) == 666
     assert len(server.waiting) == 0
 
 

@@ -167,10 +167,12 @@ def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
 
 
 def listen(node: Node) -> list[str]:
-    heard: list[str] = []
+    received: list[str] = []
     # No message may be dropped while the test waits without spinning.
-    node.create_subscription(String, "chatter", lambda m: heard.append(m.data), 10_000)
-    return heard
+    node.create_subscription(
+        String, "chatter", lambda m: received.append(m.data), 10_000
+    )
+    return received
 
 
 def spin_until(executor: Executor, condition: Any, what: str) -> None:
@@ -189,9 +191,9 @@ def test_two_processes_discover_each_other(
     # The graph is complete at once, without a discovery wait.
     assert "talker" in node.get_node_names()
     assert ("/chatter", ["std_msgs/msg/String"]) in node.get_topic_names_and_types()
-    heard = listen(node)
-    spin_until(executor, lambda: len(heard) >= 20, "20 messages")
-    numbers = [int(text.split()[1]) for text in heard]
+    received = listen(node)
+    spin_until(executor, lambda: len(received) >= 20, "20 messages")
+    numbers = [int(text.split()[1]) for text in received]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
@@ -199,14 +201,16 @@ def test_another_process_takes_over_when_the_router_is_killed(network: Network) 
     first = network.child(SILENT)
     network.child(TALKER, "talker")
     node, executor = network.node("listener")
-    heard = listen(node)
-    spin_until(executor, lambda: len(heard) >= 5, "messages")
+    received = listen(node)
+    spin_until(executor, lambda: len(received) >= 5, "messages")
     assert first.end()[0] == -signal.SIGKILL
     until(lambda: "first" not in node.get_node_names(), "the loss of its token")
     network.child(TALKER, "late")
-    spin_until(executor, lambda: any("late" in text for text in heard), "the newcomer")
-    spin_until(executor, lambda: len(heard) >= 50, "more messages")
-    numbers = [int(t.split()[1]) for t in heard if t.startswith("talker")]
+    spin_until(
+        executor, lambda: any("late" in text for text in received), "the newcomer"
+    )
+    spin_until(executor, lambda: len(received) >= 50, "more messages")
+    numbers = [int(t.split()[1]) for t in received if t.startswith("talker")]
     # The remaining processes are not affected.
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
@@ -238,7 +242,7 @@ def test_actions_parameters_logs_and_latched_maps_between_processes(
     node.create_subscription(String, "map", lambda m: maps.append(m.data), latched)
     past = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     node.create_subscription(Log, "/rosout", lambda m: logs.append(m.msg), past)
-    spin_until(executor, lambda: maps and "working" in logs, "what was said before")
+    spin_until(executor, lambda: maps and "working" in logs, "what was logged before")
     assert maps == ["the map"]
 
     parameters = AsyncParameterClient(node, "/worker")
@@ -270,9 +274,9 @@ def test_processes_that_start_together_agree_on_a_router(network: Network) -> No
         until(lambda racer=racer: "ready" in racer.lines, "a start")  # type: ignore[misc]
     node, executor = network.node("judge")
     assert names <= set(node.get_node_names())
-    heard = listen(node)
+    received = listen(node)
     spin_until(
-        executor, lambda: {text.split()[0] for text in heard} == names, "everybody"
+        executor, lambda: {text.split()[0] for text in received} == names, "everybody"
     )
 
 

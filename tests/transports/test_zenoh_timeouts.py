@@ -40,7 +40,7 @@ def test_a_request_without_a_reply_times_out(
     client = pair.far.connect(end(EndpointKind.CLIENT), replies.append)
     pair.settle()
     client.request(AddTwoInts.Request(), 0, 1)
-    until(lambda: bool(replies), "the end of its time")
+    until(lambda: bool(replies), "the timeout")
     reason = "no reply within 0.2 s (NAVETTE_SERVICE_TIMEOUT)"
     assert replies == [Reply(None, 1, reason, timed_out=True)]
     server.reply(requests[0].id, AddTwoInts.Response(sum=1))  # too late
@@ -131,11 +131,11 @@ def test_the_caller_gets_a_timeout_error(two: Two) -> None:
     client = two.here.create_client(AddTwoInts, "add")
     two.until(client.service_is_ready, "the server")
     future = client.call_async(AddTwoInts.Request())
-    two.until(future.done, "the end of its time")
+    two.until(future.done, "the timeout")
     with pytest.raises(ServiceTimeoutError, match=r"no reply within 0\.2 s"):
         future.result()
     gate.set_result(None)
-    two.until(lambda: ended, "the answer that nobody hears")
+    two.until(lambda: ended, "the late reply")
 
 
 @pytest.mark.parametrize("text", ["x", "0", "-1", "nan", "inf", "0.01", "1e9"])

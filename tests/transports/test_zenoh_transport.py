@@ -196,9 +196,9 @@ def test_a_message_is_serialised_once_and_only_for_a_subscription(
     first, _ = subscribe(pair.far_zenoh)
     second, _ = subscribe(pair.far_zenoh)
     pair.settle()
-    publisher.send(String(data="heard"), 0, 2)
+    publisher.send(String(data="received"), 0, 2)
     pair.settle()
-    assert (texts(first), texts(second), len(calls)) == (["heard"], ["heard"], 1)
+    assert (texts(first), texts(second), len(calls)) == (["received"], ["received"], 1)
 
 
 def test_raw_bytes_are_not_decoded(pair: ZenohPair) -> None:
@@ -257,11 +257,11 @@ def test_samples_of_a_publisher_of_another_topic_are_dropped(
     attachment = Attachment(1, 0, gid_of(token.key())).encode()
     with caplog.at_level(logging.WARNING):
         send_raw(pair, serialize(String(data="stop")), attachment)
-        send_raw(pair, serialize(String(data="of a stranger")), good(1))
+        send_raw(pair, serialize(String(data="of an unknown publisher")), good(1))
         pair.settle()
-    assert texts(items) == ["of a stranger"]
-    (said,) = (r.getMessage() for r in caplog.records if "ignored" in r.getMessage())
-    assert "sent on /elsewhere" in said
+    assert texts(items) == ["of an unknown publisher"]
+    (logged,) = (r.getMessage() for r in caplog.records if "ignored" in r.getMessage())
+    assert "sent on /elsewhere" in logged
 
 
 def test_a_payload_of_another_type_is_detected_when_it_is_taken(
@@ -447,8 +447,8 @@ def test_messages_of_one_context_do_not_return_over_the_network(
         node = Node("both", context=context)
         executor = Executor(context=context)
         executor.add_node(node)
-        heard: list[str] = []
-        node.create_subscription(String, "t", lambda m: heard.append(m.data), 10)
+        received: list[str] = []
+        node.create_subscription(String, "t", lambda m: received.append(m.data), 10)
         publisher = node.create_publisher(String, "t", 10)
         remote, _ = subscribe(pair.near_zenoh)
         # (a context of domain 0, the pair of domain 7: no remote subscription)
@@ -456,7 +456,7 @@ def test_messages_of_one_context_do_not_return_over_the_network(
         publisher.publish(String(data="once"))
         executor.spin_once(timeout_sec=0)
         executor.spin_once(timeout_sec=0)
-        assert (heard, remote) == (["once"], [])
+        assert (received, remote) == (["once"], [])
 
 
 def test_gids_of_the_graph_equal_those_on_the_wire(

@@ -1,4 +1,4 @@
-"""A pyzeros program that does what it is told, line by line, and says so.
+"""A pyzeros program that executes commands from standard input.
 
 Arguments: port of the router.
 """
@@ -16,7 +16,7 @@ from ros2_pyterfaces.cydr.std_srvs.srv import SetBool
 PORT = int(sys.argv[1])
 
 
-def say(*words: object) -> None:
+def report(*words: object) -> None:
     sys.stdout.write(" ".join(map(str, words)) + "\n")
     sys.stdout.flush()
 
@@ -44,12 +44,12 @@ async def answer(server: Any) -> None:
         responder.send()
 
 
-async def hear(subscription: Any) -> None:
+async def receive(subscription: Any) -> None:
     async for message in subscription.listen_reliable():
-        say("heard", text(message.data))
+        report("received", text(message.data))
 
 
-async def obey(publisher: Any, client: Any) -> None:
+async def run_commands(publisher: Any, client: Any) -> None:
     loop = asyncio.get_running_loop()
     while line := await loop.run_in_executor(None, sys.stdin.readline):
         match line.split():
@@ -57,11 +57,11 @@ async def obey(publisher: Any, client: Any) -> None:
                 publisher.publish(String(data=what.encode()))
             case ["call"]:
                 reply = await client.call_async(SetBool.Request(data=True))
-                say("answer", bool(reply.success), text(reply.message))
+                report("reply", bool(reply.success), text(reply.message))
 
 
 def compile_codecs() -> None:
-    """Those that it has not found compiled; half a minute of a busy machine."""
+    """Compile missing codecs; takes half a minute on a busy machine."""
     for kind in (String, SetBool.Request, SetBool.Response):
         kind().serialize()
 
@@ -72,12 +72,12 @@ async def main() -> None:
     with pyzeros.auto_context("peer", zenoh_session=session, domain_id=7):
         publisher = pyzeros.Pub(String, "/from_peer")
         tasks = [
-            asyncio.create_task(hear(pyzeros.Sub(String, "/to_peer"))),
+            asyncio.create_task(receive(pyzeros.Sub(String, "/to_peer"))),
             asyncio.create_task(answer(pyzeros.Server(SetBool, "/peer_switch"))),
         ]
         client = pyzeros.Client(SetBool, "/our_switch")
-        say("ready")
-        await obey(publisher, client)
+        report("ready")
+        await run_commands(publisher, client)
         for task in tasks:
             task.cancel()
     session.close()

@@ -1,4 +1,4 @@
-"""A zenoh-ros2-sdk program that does what it is told, line by line, and says so.
+"""A zenoh-ros2-sdk program that executes commands from standard input.
 
 Arguments: port of the router, type hashes of String and SetBool.
 """
@@ -19,7 +19,7 @@ SWITCH: dict[str, Any] = {
 }
 
 
-def say(*words: object) -> None:
+def report(*words: object) -> None:
     sys.stdout.write(" ".join(map(str, words)) + "\n")
     sys.stdout.flush()
 
@@ -30,25 +30,25 @@ def switch(request: Any) -> Any:
 
 publisher = sdk.ROS2Publisher("/from_peer", "std_msgs/msg/String", **TEXT)
 subscriber = sdk.ROS2Subscriber(
-    "/to_peer", "std_msgs/msg/String", lambda m: say("heard", m.data), **TEXT
+    "/to_peer", "std_msgs/msg/String", lambda m: report("received", m.data), **TEXT
 )
 server = sdk.ROS2ServiceServer("/peer_switch", "std_srvs/srv/SetBool", switch, **SWITCH)
 client = sdk.ROS2ServiceClient("/our_switch", "std_srvs/srv/SetBool", **SWITCH)
-say("ready")
+report("ready")
 for line in sys.stdin:
     match line.split():
         case ["publish", text]:
             publisher.publish(data=text)
         case ["call"]:
             reply = client.call(data=True)
-            say("answer", reply.success, reply.message)
+            report("reply", reply.success, reply.message)
         case ["topics"]:
             network = {"router_port": PORT, "domain_id": 7}
             for name, types in sdk.get_topic_names_and_types(**network):
-                say("topic", name, *types)
+                report("topic", name, *types)
             for name, types in sdk.get_service_names_and_types(**network):
-                say("service", name, *types)
-            say("listed")
+                report("service", name, *types)
+            report("listed")
 for end in (publisher, subscriber, server, client):
     end.close()
 sdk.ZenohSession.get_instance().close()

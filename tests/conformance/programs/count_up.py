@@ -1,4 +1,4 @@
-"""Publishes 1, 2, 3, … on /count, fifty a second, reliably."""
+"""Publishes 1, 2, 3, … on /count, reliably, 50 per second."""
 
 import sys
 

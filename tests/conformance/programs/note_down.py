@@ -1,4 +1,4 @@
-"""Prints each number that it hears on /count, and "alone" when nobody speaks."""
+"""Prints each number on /count, and "alone" without a matched publisher."""
 
 import sys
 

@@ -1,6 +1,6 @@
-"""A small node of four topics: says when it sees all that are to be there.
+"""A small node of four topics that reports when it has discovered all others.
 
-``one_of_many.py NUMBER OF``: the node's number, and how many there are.
+``one_of_many.py NUMBER OF``: the node's number, and the number of nodes.
 """
 
 import sys
@@ -12,12 +12,12 @@ from std_msgs.msg import String
 NUMBER, OF = (int(word) for word in rclpy.utilities.remove_ros_args(sys.argv)[1:3])
 TOPICS = 4
 LOOK_S = 0.1
-# Not each time: what is measured is not how fast fifty programs can write.
-LOOKS_A_REPORT = 20
+# Not at each look, because output is not part of the measurement.
+LOOKS_PER_REPORT = 20
 
 
 class OneOfMany(Node):
-    """Publishes nothing; counts the others."""
+    """Publishes nothing; counts nodes and topics."""
 
     def __init__(self) -> None:
         super().__init__(f"one_{NUMBER}")
@@ -31,11 +31,11 @@ class OneOfMany(Node):
     def _look(self) -> None:
         nodes = sum(name.startswith("one_") for name in self.get_node_names())
         topics = 0
-        if nodes == OF:  # the topics come with them
-            told = self.get_topic_names_and_types()
-            topics = sum(name.startswith("/many/") for name, _ in told)
+        if nodes == OF:  # topics are discovered with their nodes
+            found = self.get_topic_names_and_types()
+            topics = sum(name.startswith("/many/") for name, _ in found)
         self._looks += 1
-        if self._looks % LOOKS_A_REPORT == 0:
+        if self._looks % LOOKS_PER_REPORT == 0:
             sys.stdout.write(f"{NUMBER} sees {nodes} nodes {topics} topics\n")
         if (nodes, topics) == (OF, OF * TOPICS):
             self._timer.cancel()

@@ -14,10 +14,10 @@ from navette.runtime.lockstep import Coordinator, LockStepClock, Participant
 from navette.runtime.network import chosen_transport
 from navette.transports import Endpoint, EndpointKind, EndpointQos
 from navette.transports.lockstep import (
-    Grant,
     Participants,
-    Report,
     Sent,
+    StepGrant,
+    StepReport,
     StepWire,
     SubscriptionInfo,
 )
@@ -32,10 +32,10 @@ class FakeWire(StepWire):
     def __init__(self, session: str, participants: Participants) -> None:
         self._session = session
         self.present = participants
-        self.reports: list[Report] = []
-        self.grants: list[Grant] = []
-        self.on_report: Callable[[str, Report], None]
-        self.on_grant: Callable[[Grant], None]
+        self.reports: list[StepReport] = []
+        self.grants: list[StepGrant] = []
+        self.on_report: Callable[[str, StepReport], None]
+        self.on_grant: Callable[[StepGrant], None]
 
     @property
     def session(self) -> str:
@@ -44,16 +44,16 @@ class FakeWire(StepWire):
     def participants(self) -> Participants:
         return self.present
 
-    def send_report(self, report: Report) -> None:
+    def send_report(self, report: StepReport) -> None:
         self.reports.append(report)
 
-    def send_grant(self, grant: Grant) -> None:
+    def send_grant(self, grant: StepGrant) -> None:
         self.grants.append(grant)
 
-    def subscribe_reports(self, callback: Callable[[str, Report], None]) -> None:
+    def subscribe_reports(self, callback: Callable[[str, StepReport], None]) -> None:
         self.on_report = callback
 
-    def subscribe_grants(self, callback: Callable[[Grant], None]) -> None:
+    def subscribe_grants(self, callback: Callable[[StepGrant], None]) -> None:
         self.on_grant = callback
 
 
@@ -93,7 +93,7 @@ class ParticipantBench:
 
     def granted(self, step: int, until_ns: int, **more: Any) -> None:
         sent = more.pop("sent", {})
-        grant = Grant(SIM, step, until_ns, (ONE, TWO), sent)
+        grant = StepGrant(SIM, step, until_ns, (ONE, TWO), sent)
         self.wire.on_grant(replace(grant, **more))
 
 
@@ -101,7 +101,7 @@ def test_a_participant_stays_at_zero_and_reports_its_nodes() -> None:
     bench = ParticipantBench()
     turns(bench.clock, 3 * MS, times=3)
     assert bench.clock.now_ns == 0
-    assert bench.wire.reports == [Report(0, ("/planner",), 5, {SIM: 7}, {})]
+    assert bench.wire.reports == [StepReport(0, ("/planner",), 5, {SIM: 7}, {})]
 
 
 def test_a_participant_reports_new_endpoints() -> None:
@@ -272,7 +272,7 @@ class CoordinatorBench:
         node, own = {ONE: ("/planner", 3), TWO: ("/control", 4)}[session]
         seen = {SIM: 7, ONE: 3, TWO: 4}
         del seen[session]
-        report = Report(step, (node,), own, seen, {})
+        report = StepReport(step, (node,), own, seen, {})
         self.wire.on_report(session, replace(report, **more))
 
     def begin(self) -> None:
@@ -292,7 +292,7 @@ def test_the_run_begins_when_all_processes_know_all_endpoints() -> None:
     assert coordinated.wire.grants == []
     coordinated.receive(TWO, 0)
     turns(coordinated.clock)
-    assert coordinated.wire.grants == [Grant(SIM, 1, 10 * MS, (ONE, TWO), {})]
+    assert coordinated.wire.grants == [StepGrant(SIM, 1, 10 * MS, (ONE, TWO), {})]
     assert coordinated.clock.go_to(10 * MS, FakeWakeup())
     assert coordinated.clock.now_ns == 10 * MS
 

@@ -6,11 +6,17 @@ from typing import Any
 import pytest
 
 from navette.errors import DecodeError
-from navette.transports.lockstep import Grant, Report, Sent, parse_grant, parse_report
+from navette.transports.lockstep import (
+    Sent,
+    StepGrant,
+    StepReport,
+    parse_grant,
+    parse_report,
+)
 
 GID = bytes(range(16))
-REPORT = Report(3, ("/a", "/b/c"), 17, {"abc1": 4}, {GID: Sent("/a", 1, 2, 9)})
-GRANT = Grant("abc1", 4, 40_000_000, ("f0", "f1"), {GID: Sent("/a", 1, 2, 9)})
+REPORT = StepReport(3, ("/a", "/b/c"), 17, {"abc1": 4}, {GID: Sent("/a", 1, 2, 9)})
+GRANT = StepGrant("abc1", 4, 40_000_000, ("f0", "f1"), {GID: Sent("/a", 1, 2, 9)})
 
 
 def test_reports_and_grants_survive_encoding() -> None:

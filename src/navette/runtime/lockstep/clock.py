@@ -13,9 +13,9 @@ from collections.abc import Callable
 from navette.errors import LockStepError
 from navette.runtime.clock import ContextClock, Stopwatch, Wakeup
 from navette.transports.lockstep import (
-    Grant,
     Participants,
-    Report,
+    StepGrant,
+    StepReport,
     StepTraffic,
     StepWire,
 )
@@ -54,7 +54,7 @@ class LockStepClock(ContextClock):
         self._granted_ns = 0
         self._wire: StepWire | None = None
         self._wakeup: Wakeup | None = None
-        self._next: Grant | None = None  # granted; samples of the step before missing
+        self._next: StepGrant | None = None  # granted, waits for samples
         self._is_over = False
         self._waiting = Stopwatch()
         self.log_after_s = LOG_AFTER_S
@@ -111,7 +111,7 @@ class LockStepClock(ContextClock):
     def _wait_for_others(self, participants: Participants, wakeup: Wakeup) -> None:
         """Wait for reports or a grant: this process has no events left in the step."""
 
-    def _accept(self, grant: Grant) -> None:
+    def _accept(self, grant: StepGrant) -> None:
         """Begin the granted step when all samples of the previous one have arrived."""
         self._waiting = Stopwatch()
         if self.traffic.buffer.expect(grant.sent):
@@ -130,7 +130,7 @@ class LockStepClock(ContextClock):
                 f"{self.now_ns / 1e9:g} s: {missing}"
             )
 
-    def _begin(self, grant: Grant) -> None:
+    def _begin(self, grant: StepGrant) -> None:
         self._next = None
         self.step = grant.step
         self._granted_ns = grant.until_ns
@@ -139,8 +139,8 @@ class LockStepClock(ContextClock):
         self._waiting = Stopwatch()
         self.traffic.buffer.release(self.now_ns)
 
-    def _own_report(self, participants: Participants) -> Report:
-        return Report(
+    def _own_report(self, participants: Participants) -> StepReport:
+        return StepReport(
             self.step,
             participants.nodes,
             participants.own,

@@ -13,7 +13,13 @@ from navette.runtime.clock import (
     Wakeup,
 )
 from navette.runtime.lockstep.clock import LIMIT_S, REPEAT_S, LockStepClock
-from navette.transports.lockstep import Grant, Participants, Report, Sent, StepWire
+from navette.transports.lockstep import (
+    Participants,
+    Sent,
+    StepGrant,
+    StepReport,
+    StepWire,
+)
 
 STEP_S = 0.01
 _MAX_SESSIONS = 10_000
@@ -63,17 +69,17 @@ class Coordinator(LockStepClock):
         self._pace: ContextClock = VirtualClock()
         if speed != math.inf:
             self._pace = PacedClock(speed)
-        self._reports: dict[str, Report] = {}
+        self._reports: dict[str, StepReport] = {}
         #: Session → its named nodes; empty before the first step.
         self._roster: dict[str, tuple[str, ...]] = {}
-        self._last: Grant | None = None
+        self._last: StepGrant | None = None
         self._run = Stopwatch()
 
     def join(self, wire: StepWire) -> None:
         self._wire = wire
         wire.subscribe_reports(self._on_report)
 
-    def _on_report(self, session: str, report: Report) -> None:
+    def _on_report(self, session: str, report: StepReport) -> None:
         """Store a report; called in another thread, also with forged sessions."""
         if session not in self._reports and len(self._reports) >= _MAX_SESSIONS:
             return
@@ -131,7 +137,7 @@ class Coordinator(LockStepClock):
     # -- participants --------------------------------------------------------
 
     def _gathered(
-        self, participants: Participants, reports: dict[str, Report]
+        self, participants: Participants, reports: dict[str, StepReport]
     ) -> tuple[dict[str, tuple[str, ...]], list[str]]:
         """Return session → its named nodes, and what is missing."""
         here = {s: r for s, r in reports.items() if s in participants.seen}
@@ -165,7 +171,7 @@ class Coordinator(LockStepClock):
     def _incomplete(
         self,
         participants: Participants,
-        reports: dict[str, Report],
+        reports: dict[str, StepReport],
         roster: dict[str, tuple[str, ...]],
     ) -> list[str]:
         """Return which processes do not know all endpoints of another one yet."""
@@ -182,7 +188,7 @@ class Coordinator(LockStepClock):
 
     # -- steps -----------------------------------------------------------------
 
-    def _grant(self, reports: dict[str, Report]) -> None:
+    def _grant(self, reports: dict[str, StepReport]) -> None:
         sent: dict[bytes, Sent] = dict(self.traffic.sent_counter.changed())
         for session in self._roster:
             sent.update(reports[session].sent)
@@ -195,7 +201,7 @@ class Coordinator(LockStepClock):
         until_ns = self._granted_ns + (0 if is_last else self._step_ns)
         if self._end_ns is not None:
             until_ns = min(until_ns, self._end_ns)
-        grant = Grant(
+        grant = StepGrant(
             coordinator=self.wire.session,
             step=self.step + 1,
             until_ns=until_ns,

@@ -3,7 +3,7 @@
 from navette.errors import LockStepError
 from navette.runtime.clock import Wakeup
 from navette.runtime.lockstep.clock import LIMIT_S, REPEAT_S, LockStepClock
-from navette.transports.lockstep import Grant, Participants, Report, StepWire
+from navette.transports.lockstep import Participants, StepGrant, StepReport, StepWire
 
 
 class Participant(LockStepClock):
@@ -15,14 +15,14 @@ class Participant(LockStepClock):
     def __init__(self, limit_s: float = LIMIT_S) -> None:
         super().__init__(limit_s)
         self._coordinator = ""
-        self._received: Grant | None = None
-        self._reported: Report | None = None
+        self._received: StepGrant | None = None
+        self._reported: StepReport | None = None
 
     def join(self, wire: StepWire) -> None:
         self._wire = wire
         wire.subscribe_grants(self._on_grant)
 
-    def _on_grant(self, grant: Grant) -> None:
+    def _on_grant(self, grant: StepGrant) -> None:
         """Store a grant of this run's coordinator; called in another thread."""
         if self._coordinator not in ("", grant.coordinator) or self._is_old(grant):
             return
@@ -51,11 +51,11 @@ class Participant(LockStepClock):
         if not wakeup.wait(REPEAT_S):
             self._reported = None
 
-    def _is_old(self, grant: Grant) -> bool:
+    def _is_old(self, grant: StepGrant) -> bool:
         """Return whether the grant is a repetition."""
         return bool(self._coordinator) and grant.step <= self.step
 
-    def _is_news(self, report: Report) -> bool:
+    def _is_news(self, report: StepReport) -> bool:
         """Return whether the step or the endpoints changed since the last report."""
         before = self._reported
         return before is None or (
@@ -63,7 +63,7 @@ class Participant(LockStepClock):
             != (before.step, before.nodes, before.own, before.seen)
         )
 
-    def _check_and_accept(self, grant: Grant) -> None:
+    def _check_and_accept(self, grant: StepGrant) -> None:
         if self.wire.session not in grant.roster:
             names = ", ".join(self.wire.participants().nodes)
             raise LockStepError(

@@ -2,9 +2,9 @@
 
 from navette.transports.lockstep.records import (
     MAX_BYTES,
-    Grant,
-    Report,
     Sent,
+    StepGrant,
+    StepReport,
     parse_grant,
     parse_report,
 )
@@ -20,10 +20,10 @@ from navette.transports.lockstep.wire import Participants, StepTraffic, StepWire
 __all__ = [
     "MAX_BYTES",
     "BufferedSubscription",
-    "Grant",
+    "StepGrant",
     "Missing",
     "Participants",
-    "Report",
+    "StepReport",
     "SampleBuffer",
     "Sent",
     "SentCounter",

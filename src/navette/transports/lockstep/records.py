@@ -34,14 +34,14 @@ class Sent(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Report:
+class StepReport:
     """Sent by a process that has no events left in a step.
 
     Attributes:
         step: number of the step; 0 before the first.
         nodes: full names of its nodes.
         own: how many nodes and endpoints it has announced.
-        seen: session → how many nodes and endpoints of it the process knows.
+        seen: session → how many known nodes and endpoints of it.
         sent: publishers by gid that have sent samples since the last step.
     """
 
@@ -63,7 +63,7 @@ class Report:
 
 
 @dataclass(frozen=True)
-class Grant:
+class StepGrant:
     """Lets time advance to ``until_ns``, once all samples sent before have arrived.
 
     Attributes:
@@ -94,14 +94,14 @@ class Grant:
         return json.dumps(record, separators=(",", ":")).encode()
 
 
-def parse_report(data: bytes) -> Report:
+def parse_report(data: bytes) -> StepReport:
     """Decode a report.
 
     Raises:
         DecodeError: ``data`` is not a report.
     """
     record = _record(data, {"step", "nodes", "own", "seen", "sent"})
-    return Report(
+    return StepReport(
         step=_count(record["step"], "step"),
         nodes=_list(record["nodes"], "nodes", _name),
         own=_count(record["own"], "own"),
@@ -113,7 +113,7 @@ def parse_report(data: bytes) -> Report:
     )
 
 
-def parse_grant(data: bytes) -> Grant:
+def parse_grant(data: bytes) -> StepGrant:
     """Decode a grant.
 
     Raises:
@@ -123,7 +123,7 @@ def parse_grant(data: bytes) -> Grant:
     record = _record(data, fields)
     if not isinstance(record["is_last"], bool):
         raise DecodeError("is_last: expected true or false")
-    return Grant(
+    return StepGrant(
         coordinator=_session(record["coordinator"], "coordinator"),
         step=_count(record["step"], "step"),
         until_ns=_count(record["until_ns"], "until_ns"),

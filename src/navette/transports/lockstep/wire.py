@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from navette.transports.lockstep.records import Grant, Report
+from navette.transports.lockstep.records import StepGrant, StepReport
 from navette.transports.lockstep.sample_buffer import SampleBuffer
 from navette.transports.lockstep.sent_counter import SentCounter
 
@@ -47,17 +47,17 @@ class StepWire(ABC):
         """Return who is on the network; all observers here have been notified."""
 
     @abstractmethod
-    def send_report(self, report: Report) -> None:
+    def send_report(self, report: StepReport) -> None:
         """Send a report to the coordinator."""
 
     @abstractmethod
-    def send_grant(self, grant: Grant) -> None:
+    def send_grant(self, grant: StepGrant) -> None:
         """Send a grant to all participants."""
 
     @abstractmethod
-    def subscribe_reports(self, callback: Callable[[str, Report], None]) -> None:
+    def subscribe_reports(self, callback: Callable[[str, StepReport], None]) -> None:
         """Call back with session and report, in another thread."""
 
     @abstractmethod
-    def subscribe_grants(self, callback: Callable[[Grant], None]) -> None:
+    def subscribe_grants(self, callback: Callable[[StepGrant], None]) -> None:
         """Call back with every grant, in another thread."""

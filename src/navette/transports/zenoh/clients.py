@@ -9,7 +9,7 @@ from navette.errors import DecodeError
 from navette.msgs import deserialize, get_interface, serialize
 from navette.transports.service_ports import ClientPort, Reply, ReplySink
 from navette.transports.zenoh.attachment import Attachment, decode_attachment
-from navette.transports.zenoh.ports import Entity, PortOwner
+from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 
 _MAX_REASON_BYTES = 2000
 # Replies of unlisted sessions that are examined for one request.
@@ -27,7 +27,7 @@ class ZenohClient(ClientPort):
 
     __slots__ = ("_entity", "_is_open", "_owner", "_sink", "last", "matches")
 
-    def __init__(self, owner: PortOwner, entity: Entity, sink: ReplySink) -> None:
+    def __init__(self, owner: PortOwner, entity: ZenohEntity, sink: ReplySink) -> None:
         self.matches = entity.matches
         #: Newest sequence number, also of requests that had no remote server.
         self.last = entity.initial_sequence

@@ -15,7 +15,7 @@ _MAX_TOKENS = 100_000
 
 
 def known_to_router(settings: Settings) -> list[Token] | None:
-    """Return all nodes and endpoints that the router knows; None without a router.
+    """Return all nodes and endpoints in the router's graph; None without a router.
 
     Some of them may not be reachable from here.
     """

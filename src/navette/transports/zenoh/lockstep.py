@@ -8,9 +8,9 @@ import zenoh
 from navette.errors import DecodeError
 from navette.transports.lockstep import (
     MAX_BYTES,
-    Grant,
     Participants,
-    Report,
+    StepGrant,
+    StepReport,
     StepWire,
     parse_grant,
     parse_report,
@@ -19,7 +19,7 @@ from navette.transports.zenoh.transport import ZenohTransport
 
 SPACE = "navette_lockstep"
 
-T = TypeVar("T", Report, Grant)
+T = TypeVar("T", StepReport, StepGrant)
 
 
 class ZenohStepWire(StepWire):
@@ -50,17 +50,17 @@ class ZenohStepWire(StepWire):
             seen=seen,
         )
 
-    def send_report(self, report: Report) -> None:
+    def send_report(self, report: StepReport) -> None:
         self._report.put(report.encode())
 
-    def send_grant(self, grant: Grant) -> None:
+    def send_grant(self, grant: StepGrant) -> None:
         self._grant.put(grant.encode())
 
-    def subscribe_reports(self, callback: Callable[[str, Report], None]) -> None:
+    def subscribe_reports(self, callback: Callable[[str, StepReport], None]) -> None:
         self._subscribe("report", parse_report, callback)
 
-    def subscribe_grants(self, callback: Callable[[Grant], None]) -> None:
-        def from_coordinator(session: str, grant: Grant) -> None:
+    def subscribe_grants(self, callback: Callable[[StepGrant], None]) -> None:
+        def from_coordinator(session: str, grant: StepGrant) -> None:
             if grant.coordinator == session:
                 callback(grant)
 

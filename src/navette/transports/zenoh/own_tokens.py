@@ -8,7 +8,7 @@ import zenoh
 from navette.msgs import type_hash
 from navette.transports.base import Endpoint, EndpointKind, NodeInfo
 from navette.transports.zenoh.qos_text import announced
-from navette.transports.zenoh.session import Session
+from navette.transports.zenoh.session import ZenohSession
 from navette.transports.zenoh.token_pool import TokenPool
 from navette.transports.zenoh.tokens import EndpointToken, NodeToken, gid_of
 
@@ -22,7 +22,7 @@ class OwnTokens:
     """
 
     def __init__(
-        self, session: Session, domain_id: int, *, reuses_endpoints: bool
+        self, session: ZenohSession, domain_id: int, *, reuses_endpoints: bool
     ) -> None:
         self._session = session
         self._domain_id = domain_id

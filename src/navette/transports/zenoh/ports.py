@@ -5,11 +5,11 @@ from typing import Any, NamedTuple, Protocol
 
 from navette.transports.qos import EndpointQos
 from navette.transports.zenoh.matches import Matches
-from navette.transports.zenoh.session import Session
+from navette.transports.zenoh.session import ZenohSession
 
 
-class Entity(NamedTuple):
-    """One endpoint as the network knows it (rmw_zenoh's term).
+class ZenohEntity(NamedTuple):
+    """Identity of one local endpoint on the network.
 
     Attributes:
         matches: the remote endpoints that it exchanges samples with.
@@ -31,7 +31,7 @@ class PortOwner(Protocol):
     """The transport, as its ports see it."""
 
     @property
-    def session(self) -> Session:
+    def session(self) -> ZenohSession:
         """The session with the network."""
 
     @property

@@ -11,7 +11,7 @@ from navette.msgs import serialize
 from navette.transports.base import PublisherPort
 from navette.transports.encoded import Encoded
 from navette.transports.zenoh.attachment import Attachment
-from navette.transports.zenoh.ports import Entity, PortOwner
+from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.retransmission import declare_publisher
 
 
@@ -46,7 +46,7 @@ class ZenohPublisher(PublisherPort):
     def __init__(
         self,
         owner: PortOwner,
-        entity: Entity,
+        entity: ZenohEntity,
         *,
         retransmits: bool,
         count_sent: Callable[[int], None] | None = None,

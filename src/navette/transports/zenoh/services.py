@@ -17,7 +17,7 @@ from navette.transports.service_ports import (
     ServicePort,
 )
 from navette.transports.zenoh.attachment import Attachment, decode_attachment
-from navette.transports.zenoh.ports import Entity, PortOwner
+from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.queryables import Queryables
 
 # Requests that wait at one server, in number and in multiples of the longest message.
@@ -39,7 +39,7 @@ class ZenohService(ServicePort):
     def __init__(
         self,
         owner: PortOwner,
-        entity: Entity,
+        entity: ZenohEntity,
         sink: RequestSink,
         queryables: Queryables,
     ) -> None:
@@ -133,7 +133,7 @@ class WaitingRequests:
 
     The same request may arrive twice, by two routes: it is served once, and both
     queries are answered. Another request with the same client gid and number is a
-    request of its own: it may be forged, and the two cannot be told apart.
+    request of its own: it may be forged, and the two cannot be distinguished.
 
     Args:
         max_bytes: limit of all payloads together.

@@ -20,7 +20,7 @@ from navette.transports.zenoh.settings import Settings
 from navette.transports.zenoh.threads import provide_threads
 from navette.transports.zenoh.tokens import SPACE
 
-# The session waits so often and so long for tokens that the router knows; their process
+# The session waits so often and so long for tokens in the router's graph; their process
 # may be closing, or out of reach.
 _DISCOVERY_ATTEMPTS = 4
 _DISCOVERY_S = 0.25
@@ -32,10 +32,10 @@ _CHANNEL_SIZE = 10_000
 _MIN_PAUSE_S, _MAX_PAUSE_S = 0.002, 0.128
 _PAUSE_GROWTH = 4
 
-_open: "weakref.WeakSet[Session]" = weakref.WeakSet()
+_open: "weakref.WeakSet[ZenohSession]" = weakref.WeakSet()
 
 
-class Session:
+class ZenohSession:
     """A peer on the network, and the router if there was none.
 
     Args:
@@ -132,7 +132,7 @@ class Session:
         return samples
 
     def _complete_discovery(self, router: zenoh.Session) -> None:
-        """Wait until all tokens that the router knows are known here."""
+        """Wait until all tokens in the router's graph are known here."""
         known = _listed(router, self._tokens)
         for _ in range(_DISCOVERY_ATTEMPTS):
             missing = self.graph.wait_until_known(known, _DISCOVERY_S)
@@ -148,7 +148,7 @@ class Session:
 
 
 def _listed(router: zenoh.Session, tokens: str) -> set[str]:
-    """Return the tokens that the router knows."""
+    """Return the tokens in the router's graph."""
     replies = router.liveliness().get(tokens, timeout=_QUERY_S)
     return {str(reply.ok.key_expr) for reply in replies if reply.ok}
 

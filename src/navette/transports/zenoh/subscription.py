@@ -12,7 +12,7 @@ from navette.transports.encoded import Encoded
 from navette.transports.expiring import Lifespans
 from navette.transports.lockstep import BufferedSubscription
 from navette.transports.zenoh.attachment import decode_attachment
-from navette.transports.zenoh.ports import Entity, PortOwner
+from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.retransmission import declare_subscriber
 from navette.transports.zenoh.sequence_filter import SequenceFilter
 
@@ -47,7 +47,7 @@ class ZenohSubscription(SubscriptionPort):
     def __init__(
         self,
         owner: PortOwner,
-        entity: Entity,
+        entity: ZenohEntity,
         message_class: type,
         sink: Sink,
         *,

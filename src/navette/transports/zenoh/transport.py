@@ -26,12 +26,12 @@ from navette.transports.zenoh.clients import ZenohClient
 from navette.transports.zenoh.keys import data_key
 from navette.transports.zenoh.matches import Matches
 from navette.transports.zenoh.own_tokens import OwnTokens
-from navette.transports.zenoh.ports import Entity
+from navette.transports.zenoh.ports import ZenohEntity
 from navette.transports.zenoh.publisher import ZenohPublisher
 from navette.transports.zenoh.queryables import Queryables
 from navette.transports.zenoh.retransmission import retransmits
 from navette.transports.zenoh.services import ZenohService
-from navette.transports.zenoh.session import Session
+from navette.transports.zenoh.session import ZenohSession
 from navette.transports.zenoh.settings import Settings
 from navette.transports.zenoh.subscription import ZenohSubscription
 from navette.transports.zenoh.tokens import EndpointToken, gid_of
@@ -71,7 +71,7 @@ class ZenohTransport(Transport):
         self.domain_id = domain_id
         self.now_ns = now_ns
         self._traffic = traffic
-        self.session = Session(settings or Settings.from_environment(), domain_id)
+        self.session = ZenohSession(settings or Settings.from_environment(), domain_id)
         self._graph = self.session.graph
         self._assertions = LivelinessAssertions(
             self.session.zenoh, domain_id, self._graph.asserted
@@ -109,7 +109,7 @@ class ZenohTransport(Transport):
         return self._tokens.gid_for(endpoint)
 
     def advertise(self, endpoint: Endpoint, message_class: type) -> ZenohPublisher:
-        def make(entity: Entity) -> ZenohPublisher:
+        def make(entity: ZenohEntity) -> ZenohPublisher:
             self.own_gids.add(entity.gid)
             count_sent = None
             if self._traffic is not None:
@@ -128,7 +128,7 @@ class ZenohTransport(Transport):
     def subscribe(
         self, endpoint: Endpoint, message_class: type, sink: Sink, *, shared: bool
     ) -> ZenohSubscription:
-        def make(entity: Entity) -> ZenohSubscription:
+        def make(entity: ZenohEntity) -> ZenohSubscription:
             if endpoint.qos.asserts_itself:
                 # Before the token: a publisher may assert itself once it sees that.
                 self._assertions.receive()
@@ -208,17 +208,17 @@ class ZenohTransport(Transport):
 
     # -- inside ----------------------------------------------------------------
 
-    def _retransmits(self, entity: Entity) -> bool:
+    def _retransmits(self, entity: ZenohEntity) -> bool:
         if self._traffic is not None:  # publishers block there: no sample is lost
             return False
         topic = entity.matches.endpoint.topic
         return retransmits(entity.qos, topic, self.session.settings.retransmit)
 
-    def _open(self, endpoint: Endpoint, make: Callable[[Entity], P]) -> P:
+    def _open(self, endpoint: Endpoint, make: Callable[[ZenohEntity], P]) -> P:
         """Make a matched port, then announce it: its token means that it is ready."""
         token, initial_sequence = self._tokens.take(endpoint)
         matches = self._graph.add_local(endpoint, token.type_hash)
-        entity = Entity(
+        entity = ZenohEntity(
             matches,
             data_key(token.domain_id, token.topic, token.type_name, token.type_hash),
             gid_of(token.key()),
