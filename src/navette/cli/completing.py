@@ -1,7 +1,6 @@
-"""What the shell offers at Tab: names of what runs.
+"""Shell completion of names in the running system.
 
-A completion says nothing where it knows nothing: no message would fit into a half
-typed line.
+Errors give no completions: a message would appear in the line that is being typed.
 """
 
 import os
@@ -16,33 +15,38 @@ from navette.cli.completing_installed import (
     complete_action_types,
     complete_service_types,
 )
-from navette.cli.service_calls import Question, ask_all, managed_nodes, node_names
+from navette.cli.service_calls import (
+    ServiceRequest,
+    call_all,
+    managed_nodes,
+    node_names,
+)
 from navette.cli.session import connect, endpoints, is_hidden, service_endpoints
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
     from navette.runtime import Node
 
-_ANSWER_S = 0.5
+_RESPONSE_TIMEOUT_S = 0.5
 
 
 def complete_nodes(incomplete: str) -> list[str]:
-    """Full names of nodes."""
+    """Complete full names of nodes."""
     return running(incomplete, node_names)
 
 
 def complete_topics(incomplete: str) -> list[str]:
-    """Full names of topics."""
+    """Complete full names of topics."""
     return running(incomplete, lambda here: (e.topic for e in endpoints(here)))
 
 
 def complete_services(incomplete: str) -> list[str]:
-    """Full names of services."""
+    """Complete full names of services."""
     return running(incomplete, lambda here: (e.topic for e in service_endpoints(here)))
 
 
 def complete_actions(incomplete: str) -> list[str]:
-    """Full names of actions."""
+    """Complete full names of actions."""
     from navette.runtime.action import get_action_names_and_types
 
     return running(
@@ -51,8 +55,8 @@ def complete_actions(incomplete: str) -> list[str]:
 
 
 def complete_parameters(ctx: click.Context, incomplete: str) -> list[str]:
-    """Names of the parameters of the node named before."""
-    return _asked(
+    """Complete parameter names of the given node."""
+    return _called(
         ctx,
         incomplete,
         "list_parameters",
@@ -62,7 +66,7 @@ def complete_parameters(ctx: click.Context, incomplete: str) -> list[str]:
 
 
 def complete_parameter_value(ctx: click.Context, incomplete: str) -> list[str]:
-    """The value that the parameter named before has; of a switch, both."""
+    """Complete the current value of the given parameter; true and false for a bool."""
     name = str(ctx.params.get("name") or "")
     if not name:
         return []
@@ -78,7 +82,7 @@ def complete_parameter_value(ctx: click.Context, incomplete: str) -> list[str]:
             elif value is not None:
                 yield format_value(value)
 
-    return _asked(
+    return _called(
         ctx,
         incomplete,
         "get_parameters",
@@ -89,13 +93,13 @@ def complete_parameter_value(ctx: click.Context, incomplete: str) -> list[str]:
 
 
 def complete_managed_nodes(incomplete: str) -> list[str]:
-    """Full names of the nodes that have a lifecycle."""
+    """Complete full names of managed nodes."""
     return running(incomplete, managed_nodes)
 
 
 def complete_transitions(ctx: click.Context, incomplete: str) -> list[str]:
-    """Labels of the transitions that the node named before can make now."""
-    return _asked(
+    """Complete labels of the transitions available in the given node."""
+    return _called(
         ctx,
         incomplete,
         "get_available_transitions",
@@ -105,7 +109,7 @@ def complete_transitions(ctx: click.Context, incomplete: str) -> list[str]:
 
 
 def complete_type_of_service(ctx: click.Context, incomplete: str) -> list[str]:
-    """The type of the service named before, if it is served; else every type."""
+    """Complete the type of the given service; all types if it has no server."""
     name = f"/{str(ctx.params.get('service') or '').lstrip('/')}"
     served = running(
         incomplete,
@@ -115,7 +119,7 @@ def complete_type_of_service(ctx: click.Context, incomplete: str) -> list[str]:
 
 
 def complete_type_of_action(ctx: click.Context, incomplete: str) -> list[str]:
-    """The type of the action named before, if there is one; else every type."""
+    """Complete the type of the given action; all types if it has no server."""
     from navette.runtime.action import get_action_names_and_types
 
     name = f"/{str(ctx.params.get('action') or '').lstrip('/')}"
@@ -127,17 +131,17 @@ def complete_type_of_action(ctx: click.Context, incomplete: str) -> list[str]:
 
 
 def complete_message_values(ctx: click.Context, incomplete: str) -> list[str]:
-    """The message of the type named before with its defaults, to edit."""
+    """Complete a message of the given type with its defaults, to edit."""
     return _prototype(str(ctx.params.get("type_name") or ""), "msg", incomplete)
 
 
 def complete_request(ctx: click.Context, incomplete: str) -> list[str]:
-    """Of ``service call NAME``: the type, then the request with its defaults."""
+    """Complete ``service call NAME``: the type, then a request with its defaults."""
     return _type_or_values(ctx, incomplete, "srv", complete_type_of_service)
 
 
 def complete_goal(ctx: click.Context, incomplete: str) -> list[str]:
-    """Of ``action send_goal NAME``: the type, then the goal with its defaults."""
+    """Complete ``action send_goal NAME``: the type, then a goal with its defaults."""
     return _type_or_values(ctx, incomplete, "action", complete_type_of_action)
 
 
@@ -154,7 +158,7 @@ def _type_or_values(
 
 
 def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
-    """Nothing where somebody has begun to type the values."""
+    """Return the default values as YAML, unless values are already being typed."""
     if incomplete or not type_name:
         return []
     from navette.cli.message_types import full_type_name, installed_class
@@ -165,25 +169,25 @@ def _prototype(type_name: str, kind: str, incomplete: str) -> list[str]:
         if cls is not None:
             part: Any = getattr(cls, "Goal", getattr(cls, "Request", cls))
             text = message_to_yaml(part(), flow_style=True).strip()
-            # Fish and zsh quote by themselves what is inserted.
+            # fish and zsh quote completions themselves.
             in_bash = os.environ.get("_NAVETTE_COMPLETE", "").startswith("bash")
             return [f'"{text}"' if in_bash else text]
     return []
 
 
 def running(incomplete: str, names: "Callable[[Node], Iterable[str]]") -> list[str]:
-    """Names out of what runs; those for machines only where their start is typed."""
+    """Complete names of the running system; hidden ones only after a typed ``_``."""
     hidden = "_" in incomplete
     with suppress(NavetteError, click.exceptions.Exit), connect() as here:
         found = [n for n in names(here) if hidden or not is_hidden(n)]
-        # A name may be typed without the slash that it begins with.
+        # The leading slash is optional.
         if incomplete and not incomplete.startswith("/"):
             found += [name.removeprefix("/") for name in found]
         return chosen(incomplete, found)
     return []
 
 
-def _asked(
+def _called(
     ctx: click.Context,
     incomplete: str,
     service: str,
@@ -191,12 +195,12 @@ def _asked(
     words: Callable[[Any], Iterable[str]],
     **fields: Any,
 ) -> list[str]:
-    """Words out of what the node named before answers."""
+    """Complete words from the response of a service of the given node."""
     node = str(ctx.params.get("node_name") or "").strip("/")
-    question = Question(f"/{node}/{service}", type_name, fields)
+    request = ServiceRequest(f"/{node}/{service}", type_name, fields)
 
-    def ask(here: "Node") -> Iterable[str]:
-        (answer,) = ask_all(here, [question], _ANSWER_S)
+    def call(here: "Node") -> Iterable[str]:
+        (answer,) = call_all(here, [request], _RESPONSE_TIMEOUT_S)
         return words(answer.response) if answer.response is not None else ()
 
-    return running(incomplete, ask) if node else []
+    return running(incomplete, call) if node else []

@@ -1,4 +1,4 @@
-"""What the shell offers at Tab: names of what is installed, and files here."""
+"""Shell completion of installed names and of files."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -7,12 +7,12 @@ import click
 
 
 def complete_from(*words: str) -> Callable[[str], list[str]]:
-    """One of a few words."""
+    """Return a completer of fixed words."""
     return lambda incomplete: chosen(incomplete, words)
 
 
 def complete_types(incomplete: str) -> list[str]:
-    """Every interface that is installed, as ``pkg/msg/Name``."""
+    """Complete all installed interfaces, as ``pkg/msg/Name``."""
     return _types(incomplete, "msg", "srv", "action")
 
 
@@ -29,14 +29,14 @@ def complete_action_types(incomplete: str) -> list[str]:
 
 
 def complete_packages(incomplete: str) -> list[str]:
-    """Packages, installed or in the workspace."""
+    """Complete packages, installed or in the workspace."""
     from navette.ros2.workspace import find_packages
 
     return chosen(incomplete, find_packages())
 
 
 def complete_programs(ctx: click.Context, incomplete: str) -> list[str]:
-    """Of ``navette run``: packages with programs, those of a package, files here."""
+    """Complete ``navette run``: packages with programs, programs, Python files."""
     from navette.ros2.workspace import find_packages
 
     before = list(ctx.params.get("words") or ())
@@ -52,7 +52,7 @@ def complete_programs(ctx: click.Context, incomplete: str) -> list[str]:
 
 
 def complete_launch_files(ctx: click.Context, incomplete: str) -> list[str]:
-    """Of ``navette launch``: files here, packages, the launch files of a package."""
+    """Complete ``navette launch``: packages, launch files."""
     from navette.ros2.workspace import find_packages
 
     before = list(ctx.params.get("words") or ())
@@ -71,14 +71,14 @@ def _files_here(pattern: str) -> list[str]:
 
 
 def complete_worlds(incomplete: str) -> list[str]:
-    """Built-in worlds; the shell offers files where none begins so."""
+    """Complete built-in worlds."""
     from navette.sim.library import world_names
 
     return chosen(incomplete, world_names())
 
 
 def complete_robots(incomplete: str) -> list[str]:
-    """Built-in robots; the shell offers files where none begins so."""
+    """Complete built-in robots."""
     from navette.sim.library import robot_names
 
     return chosen(incomplete, robot_names())
@@ -99,5 +99,5 @@ def _types(incomplete: str, *kinds: str) -> list[str]:
 
 
 def chosen(incomplete: str, names: Iterable[str]) -> list[str]:
-    """Those that begin so, sorted."""
+    """Return the names with the given prefix, sorted."""
     return sorted({name for name in names if name.startswith(incomplete)})

@@ -9,7 +9,13 @@ from navette.cli.completing import complete_nodes
 from navette.cli.completing_installed import complete_packages
 from navette.cli.options import Argument, Option
 from navette.cli.output import show, show_json, styled
-from navette.cli.service_calls import Answer, Question, ask_all, chosen_node, node_names
+from navette.cli.service_calls import (
+    ServiceRequest,
+    ServiceResponse,
+    call_all,
+    chosen_node,
+    node_names,
+)
 from navette.cli.session import FAILED, connect, fail, service_endpoints
 from navette.cli.stderr import note
 from navette.errors import InvalidValueError
@@ -59,8 +65,8 @@ def list_(
     """List containers and the components in them."""
     with connect() as here:
         names = [_chosen(here, container)] if container else containers(here)
-        questions = [_question(name, "list_nodes") for name in names]
-        answers = dict(zip(names, ask_all(here, questions), strict=True))
+        requests = [_request(name, "list_nodes") for name in names]
+        answers = dict(zip(names, call_all(here, requests), strict=True))
     held = {
         name: dict(zip(r.unique_ids, r.full_node_names, strict=True))
         for name, (r, _) in answers.items()
@@ -129,7 +135,7 @@ def load(
     }
     with connect() as here:
         name = _chosen(here, container)
-        (answer,) = ask_all(here, [_question(name, "load_node", **fields)], _LOAD_S)
+        (answer,) = call_all(here, [_request(name, "load_node", **fields)], _LOAD_S)
     response = _succeeded(answer, f"Failed to load component {plugin}")
     number, node = response.unique_id, response.full_node_name
     if quiet:
@@ -150,8 +156,8 @@ def unload(
     with connect() as here:
         name = _chosen(here, container)
         for number in component_uid:
-            question = _question(name, "unload_node", unique_id=number)
-            (answer,) = ask_all(here, [question])
+            request = _request(name, "unload_node", unique_id=number)
+            (answer,) = call_all(here, [request])
             where = f"component {number} from '{name}' container node"
             _succeeded(answer, f"Failed to unload {where}")
             show(str(number) if quiet else f"Unloaded {where}")
@@ -195,12 +201,12 @@ def _chosen(here: "Node", name: str) -> str:
     return full
 
 
-def _question(container: str, service: str, **fields: Any) -> Question:
+def _request(container: str, service: str, **fields: Any) -> ServiceRequest:
     name = f"{container}/_container/{service}"
-    return Question(name, _SERVICES[service], fields)
+    return ServiceRequest(name, _SERVICES[service], fields)
 
 
-def _succeeded(answer: Answer, otherwise: str) -> Any:
+def _succeeded(answer: ServiceResponse, otherwise: str) -> Any:
     """The response; ends the command if there is none, or one of failure."""
     if answer.response is None:
         fail(f"{otherwise}: {answer.reason}")

@@ -33,7 +33,7 @@ def raise_at_interrupt() -> None:
 
 
 @contextmanager
-def dying_on_signals() -> Iterator[None]:
+def default_signal_action() -> Iterator[None]:
     """Inside, Ctrl-C and SIGTERM end the process by their default action, silently."""
     with _handling(signal.SIG_DFL):
         yield

@@ -1,4 +1,4 @@
-"""``navette lifecycle``: managed nodes, their states and transitions."""
+"""``navette lifecycle``: states and transitions of managed nodes."""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,15 +10,15 @@ from navette.cli.nearest import did_you_mean
 from navette.cli.options import Argument, Option
 from navette.cli.output import harmless, show, show_json, styled
 from navette.cli.service_calls import (
-    ANSWER_S,
     GET_STATE,
-    Question,
-    answer,
-    ask,
-    ask_all,
+    RESPONSE_TIMEOUT_S,
+    ServiceRequest,
+    call,
+    call_all,
     chosen_node,
     managed_nodes,
     note_none,
+    response_of,
 )
 from navette.cli.session import FAILED, connect, fail, wait_for
 from navette.cli.stderr import note
@@ -33,25 +33,29 @@ lifecycle = Group(
 
 NodeName = Annotated[
     str,
-    Argument(metavar="NODE", help="As /camera.", complete=complete_managed_nodes),
+    Argument(
+        metavar="NODE",
+        help="Node name, such as /camera.",
+        complete=complete_managed_nodes,
+    ),
 ]
 Hidden = Annotated[
-    bool, Option("--include-hidden-nodes", help="Also nodes named _name.")
+    bool, Option("--include-hidden-nodes", help="Include hidden nodes (_name).")
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 
 @lifecycle.command()
 def nodes(
     all_: Annotated[
-        bool, Option("--all", "-a", help="Also hidden ones (_name).")
+        bool, Option("--all", "-a", help="Include hidden nodes (_name).")
     ] = False,
     count: Annotated[
-        bool, Option("--count-nodes", "-c", help="Only their number.")
+        bool, Option("--count-nodes", "-c", help="Print only the number.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """List the managed nodes."""
+    """List managed nodes."""
     with connect() as here:
         names = managed_nodes(here, hidden=all_)
         if not (names or count or as_json):
@@ -71,19 +75,21 @@ def get(
         str | None,
         Argument(
             metavar="[NODE]",
-            help="By default every managed node.",
+            help="Default: all managed nodes.",
             complete=complete_managed_nodes,
         ),
     ] = None,
     include_hidden_nodes: Hidden = False,
     as_json: Json = False,
 ) -> None:
-    """Print the state that managed nodes are in."""
+    """Print the state of managed nodes."""
     with connect() as here:
         every = managed_nodes(here, hidden=include_hidden_nodes)
         names = [_managed(here, node_name)] if node_name else every
-        questions = [Question(f"{name}/get_state", GET_STATE, {}) for name in names]
-        answers = dict(zip(names, ask_all(here, questions), strict=True))
+        questions = [
+            ServiceRequest(f"{name}/get_state", GET_STATE, {}) for name in names
+        ]
+        answers = dict(zip(names, call_all(here, questions), strict=True))
         if not (names or as_json):
             note_none(here, "managed nodes")
     states = {n: a.response.current_state for n, a in answers.items() if a.response}
@@ -109,12 +115,12 @@ def set_(
         str,
         Argument(
             metavar="TRANSITION",
-            help="As configure, activate, deactivate, cleanup, shutdown, or its id.",
+            help="configure, activate, deactivate, cleanup, shutdown, or an id.",
             complete=complete_transitions,
         ),
     ],
 ) -> None:
-    """Take a managed node through a transition."""
+    """Trigger a transition of a managed node."""
     with connect() as here:
         name = _managed(here, node_name)
         available = transitions(here, name)
@@ -129,11 +135,11 @@ def set_(
 def list_(
     node_name: NodeName,
     all_: Annotated[
-        bool, Option("--all", "-a", help="Also from other states.")
+        bool, Option("--all", "-a", help="Include transitions from other states.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """List the transitions that a managed node can make now."""
+    """List the transitions available in the current state of a managed node."""
     with connect() as here:
         name = _managed(here, node_name)
         found = transitions(here, name, every=all_)
@@ -148,38 +154,38 @@ def list_(
 
 
 def transitions(here: "Node", name: str, *, every: bool = False) -> list[Any]:
-    """TransitionDescriptions: those of the present state, or all."""
+    """Return the TransitionDescriptions of the current state, or of all states."""
     service = "get_transition_graph" if every else "get_available_transitions"
     type_name = "lifecycle_msgs/srv/GetAvailableTransitions"
-    return list(ask(here, f"{name}/{service}", type_name).available_transitions)
+    return list(call(here, f"{name}/{service}", type_name).available_transitions)
 
 
 def _change(here: "Node", name: str, transition: Any) -> Any:
-    """Ask for a transition and wait as long as it takes: drivers take their time."""
+    """Request a transition and wait for its end, which can take long for a driver."""
     from navette.msgs.lifecycle_msgs.srv import ChangeState
 
     client = here.create_client(ChangeState, f"{name}/change_state")
-    if not client.wait_for_service(ANSWER_S):
-        fail(f"nobody serves {client.srv_name}")
+    if not client.wait_for_service(RESPONSE_TIMEOUT_S):
+        fail(f"no server of {client.srv_name}")
     asked = client.call_async(ChangeState.Request(transition=transition))
-    if not wait_for(here, asked.done, ANSWER_S):
-        note(f"{name} is at it; Ctrl-C ends the wait for it, not the transition")
+    if not wait_for(here, asked.done, RESPONSE_TIMEOUT_S):
+        note(f"waiting for {name}; Ctrl-C stops the wait, not the transition")
         wait_for(here, lambda: asked.done() or not client.service_is_ready())
-    got = answer(asked, client.srv_name)
+    got = response_of(asked, client.srv_name)
     return fail(got.reason) if got.response is None else got.response
 
 
 def _managed(here: "Node", name: str) -> str:
-    """The full name of a managed node; ends the command where it is none."""
+    """Return the full name of a managed node; the command fails for other nodes."""
     full = chosen_node(here, name)
     known = managed_nodes(here, hidden=True)
     if full not in known:
-        fail(f"node {full} is not managed; managed: {', '.join(known) or 'none'}")
+        fail(f"node {full} is not managed; managed nodes: {', '.join(known) or 'none'}")
     return full
 
 
 def _chosen(wanted: str, available: list[Any]) -> Any:
-    """The transition of a label or, failing that, of an id."""
+    """Return the transition with a label or, failing that, with an id."""
     for each in available:
         if each.label == wanted:
             return each
@@ -189,8 +195,8 @@ def _chosen(wanted: str, available: list[Any]) -> Any:
     hint = did_you_mean(wanted, [each.label for each in available])
     lines = "".join(f"\n- {each.label} [{each.id}]" for each in available)
     return fail(
-        f"no transition {wanted!r} from this state{hint or ','} available ones"
-        f" are:{lines or ' none'}"
+        f"no transition {wanted!r} from the current state{hint}\navailable transitions:"
+        f"{lines or ' none'}"
     )
 
 

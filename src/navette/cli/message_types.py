@@ -1,4 +1,4 @@
-"""Which type a topic has, and its class, from wherever somebody defines it."""
+"""Find the type of a topic and its class: installed, from a peer or the workspace."""
 
 from typing import Any
 
@@ -16,10 +16,10 @@ from navette.transports import Endpoint
 def topic_class(
     node: Node, topic: str, type_name: str | None = None, timeout_s: float | None = None
 ) -> Any:
-    """The message class of a topic: that of the given type, or of what is published.
+    """Return the message class of a topic, by default of the type in use.
 
-    Waits (and says so) where nobody has the topic yet. Ends the command where it has
-    several types, another one than given, or none in time.
+    Waits for the first endpoint of the topic. The command fails if the topic has
+    several types, another type than given, or no endpoint before the timeout.
     """
     name = node.resolve_topic_name(topic)
     if type_name is not None:
@@ -28,30 +28,28 @@ def topic_class(
         return cls
     if not endpoints(node, name):
         near = did_you_mean(name, (each.topic for each in endpoints(node)))
-        note(f"waiting for {name}, which nobody publishes yet{near}")
+        note(f"waiting for a publisher on {name}{near}")
         if not wait_for(node, lambda: bool(endpoints(node, name)), timeout_s):
-            fail(f"nobody published {name} in {timeout_s:g} s")
+            fail(f"no publisher on {name} in {timeout_s:g} s")
     found = endpoints(node, name)
     types = sorted({each.type_name for each in found})
     if len(types) > 1:
-        fail(
-            f"{name} has several types ({', '.join(types)}): say which, after its name"
-        )
+        fail(f"{name} has several types ({', '.join(types)}): give one after the name")
     return interface_class(node, types[0], found, kind="msg")
 
 
 def interface_class(
     node: Node, type_name: str, of: list[Endpoint], *, kind: str = ""
 ) -> Any:
-    """The class of a type: known here, described by its users, or in the workspace.
+    """Return the class of a type: known here, described by a peer, or in the workspace.
 
     Args:
-        of: endpoints of the topic or service; those who have the type describe it.
-        kind: ``msg``, ``srv`` or ``action``; lets ``pkg/Name`` do.
+        of: endpoints of the topic or service, whose nodes are asked for the definition.
+        kind: ``msg``, ``srv`` or ``action``, to expand ``pkg/Name``.
     """
     name = full_type_name(type_name, kind)
     if kind and name.split("/")[1] != kind:
-        raise InvalidNameError(f"type {type_name!r}: wanted package/{kind}/Name")
+        raise InvalidNameError(f"type {type_name!r} is not package/{kind}/Name")
     try:
         cls = msgs.get_interface(name)
     except UnknownNameError:
@@ -61,7 +59,7 @@ def interface_class(
 
 
 def full_type_name(type_name: str, kind: str) -> str:
-    """``pkg/Name`` → ``pkg/<kind>/Name``; full names stay.
+    """Expand ``pkg/Name`` to ``pkg/<kind>/Name``; full names are unchanged.
 
     Raises:
         InvalidNameError: neither of the two forms.
@@ -73,7 +71,7 @@ def full_type_name(type_name: str, kind: str) -> str:
 
 
 def installed_class(name: str) -> Any:
-    """The class of a type that is installed or in the workspace; None if it is not."""
+    """Return the class of an installed or workspace type; None if there is none."""
     from navette.ros2.workspace import activate
 
     for look_further in (lambda: None, activate):
@@ -98,9 +96,9 @@ def _class_from_outside(node: Node, name: str, of: list[Endpoint]) -> Any:
     found = installed_class(name)
     if found is None:
         fail(
-            f"type {name} is not known here"
+            f"type {name} is not installed"
             + (
-                f", and those who use it do not describe it ({reason})"
+                f", and the nodes that use it do not describe it ({reason})"
                 if reason
                 else near_types(name)
             )
@@ -109,12 +107,12 @@ def _class_from_outside(node: Node, name: str, of: list[Endpoint]) -> Any:
 
 
 def if_unknown(name: str) -> str:
-    """For a type that nobody uses: what was probably meant if nobody defines it."""
+    """Suggest similar types if the type is not installed."""
     return "" if installed_class(name) is not None else near_types(name)
 
 
 def near_types(name: str) -> str:
-    """What was probably meant: another name of that package, or that name elsewhere."""
+    """Suggest types of the same package, or the same name in other packages."""
     *rest, last = name.split("/")
     every = (
         (package, f"{package}/{kind}/{each}")
@@ -131,16 +129,16 @@ def near_types(name: str) -> str:
 def _check_type(topic: str, given: str, found: list[Endpoint]) -> None:
     types = sorted({each.type_name for each in found})
     if types and given not in types:
-        fail(f"{topic} is of type {', '.join(types)}, not {given}")
+        fail(f"{topic} has type {', '.join(types)}, not {given}")
 
 
 def _check_hash(name: str, of: list[Endpoint]) -> None:
-    """Programs whose definitions differ exchange nothing: say so, loudly."""
+    """Report nodes whose definition of the type differs: they cannot communicate."""
     here = msgs.type_hash(name)
     for each in of:
         if each.type_name == name and each.type_hash not in ("", here):
             note(
                 f"{each.node_full_name} has another definition of {name} "
-                f"({each.type_hash[:17]}…, here {here[:17]}…): nothing it sends or "
-                "takes can be read"
+                f"({each.type_hash[:17]}…, here {here[:17]}…): messages cannot be "
+                "exchanged with it"
             )

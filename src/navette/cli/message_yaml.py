@@ -1,4 +1,4 @@
-"""Messages as YAML: in a pipe as ROS 2 prints them, on a terminal for people."""
+"""Format messages as YAML: as ROS 2 does in a pipe, more compact on a terminal."""
 
 import re
 import shutil
@@ -19,14 +19,14 @@ def yaml_of(
     indent: int = 0,
     **shortened: Any,
 ) -> str:
-    """A message, or a sequence that is a field of one.
+    """Format a message, or a field that is a sequence.
 
-    For a person the numbers of an array stand beside each other and names apart from
-    values, and what others sent does not act on the terminal.
+    On a terminal, numbers of an array share lines, field names have a colour, and
+    control characters are escaped.
 
     Args:
-        indent: of a person's lines, in characters.
-        shortened: as of ``message_to_yaml``.
+        indent: of the lines on a terminal, in characters.
+        shortened: arguments of ``message_to_yaml``.
     """
     from navette.ros2.packages.rosidl_runtime_py.convert import yaml_pieces
 
@@ -34,7 +34,7 @@ def yaml_of(
         return "".join(yaml_pieces(value, field_type, **shortened))
     width = shutil.get_terminal_size().columns - indent
     pieces = yaml_pieces(value, field_type, **shortened, width=width)
-    # Arrays of numbers, every second piece, have nothing to escape or to colour.
+    # Every second piece is an array of numbers, without text to escape or to colour.
     text = "".join(p if n % 2 else _readable(p) for n, p in enumerate(pieces))
     return re.sub("^(?=.)", " " * indent, text, flags=re.MULTILINE) if indent else text
 

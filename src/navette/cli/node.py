@@ -1,4 +1,4 @@
-"""``navette node``: which nodes run, and what each says and hears."""
+"""``navette node``: running nodes, their topics, services and actions."""
 
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,20 +18,20 @@ node = Group(
     help="List and inspect nodes.",
 )
 
-Json = Annotated[bool, Option("--json", help="Print JSON, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 
 @node.command("list")
 def list_(
     all_: Annotated[
-        bool, Option("--all", "-a", help="Also hidden ones (_name).")
+        bool, Option("--all", "-a", help="Include hidden nodes (_name).")
     ] = False,
     count: Annotated[
-        bool, Option("--count-nodes", "-c", help="Only their number.")
+        bool, Option("--count-nodes", "-c", help="Print only the number.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """List the nodes that run."""
+    """List nodes."""
     with connect() as here:
         names = node_names(here, hidden=all_)
         if not (names or count or as_json):
@@ -42,7 +42,7 @@ def list_(
         show_json(names)
     else:
         if len(set(names)) < len(names):
-            note("some nodes share a name: which of them answers is chance")
+            note("some nodes share a name: service calls reach any one of them")
         for name in names:
             show(name)
 
@@ -51,27 +51,29 @@ def list_(
 def info(
     name: Annotated[
         str,
-        Argument(metavar="NODE", help="As /planner.", complete=complete_nodes),
+        Argument(
+            metavar="NODE", help="Node name, such as /planner.", complete=complete_nodes
+        ),
     ],
     include_hidden: Annotated[
         bool,
-        Option("--include-hidden", help="Also hidden topics, services, actions."),
+        Option("--include-hidden", help="Include hidden topics, services and actions."),
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Say what a node subscribes to, publishes, serves and calls."""
+    """Show the topics, services and actions of a node."""
     with connect() as here:
         full = chosen_node(here, name)
         same = node_names(here, hidden=True).count(full)
         if same > 1:
-            note(f"{same} nodes are named {full}: this is all of them together")
+            note(f"{same} nodes are named {full}; showing all of them together")
         sections = _sections(here, full, hidden=include_hidden)
     if as_json:
         keyed = {title.lower().replace(" ", "_"): s for title, s in sections.items()}
         show_json({"node": full, **keyed})
         return
     if is_terminal():
-        _show_to_a_person(full, sections)
+        _show_in_columns(full, sections)
         return
     show(full)
     for title, names in sections.items():
@@ -80,8 +82,8 @@ def info(
         show("\n".join(f"    {name}: {', '.join(names[name])}" for name in names))
 
 
-def _show_to_a_person(full: str, sections: dict[str, dict[str, list[str]]]) -> None:
-    """Types in a column; in the background what is empty or as in every node."""
+def _show_in_columns(full: str, sections: dict[str, dict[str, list[str]]]) -> None:
+    """Print types in a column; empty sections and standard endpoints are dim."""
     show(styled(full, bold=True))
     rows = [(n, ", ".join(t)) for names in sections.values() for n, t in names.items()]
     lines = iter(beside(rows, indent=4, fades=_is_usual))
@@ -99,7 +101,7 @@ def _is_usual(name: str) -> bool:
 def _sections(
     here: "Node", full: str, *, hidden: bool
 ) -> dict[str, dict[str, list[str]]]:
-    """Heading → name → types."""
+    """Return the types by heading and name."""
     from navette.runtime.action import (
         get_action_client_names_and_types_by_node,
         get_action_server_names_and_types_by_node,

@@ -1,4 +1,4 @@
-"""Asks a node what a type is that only it knows (``~/get_type_description``)."""
+"""Request type definitions from other nodes (``~/get_type_description``)."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _SERVICE = "get_type_description"
 _SEPARATOR = "=" * 80
 _MOST_TYPES = 500
 
-# FieldType's numbers: scalars, and what arrays and sequences add to them.
+# Constants of type_description_interfaces/msg/FieldType: scalars, offsets of arrays.
 _SCALARS = {
     2: "int8", 3: "uint8", 4: "int16", 5: "uint16", 6: "int32", 7: "uint32",
     8: "int64", 9: "uint64", 10: "float32", 11: "float64", 13: "char", 15: "bool",
@@ -25,23 +25,23 @@ _SCALARS = {
 _NESTED = 1
 _BOUNDED_STRINGS = (21, 22)
 _ARRAY, _BOUNDED_SEQUENCE, _SEQUENCE = 48, 96, 144
-# The one member that an empty definition has on the wire.
+# Serialized empty definitions have this member.
 _PLACEHOLDER = "structure_needs_at_least_one_member"
 
 
 @dataclass(frozen=True)
 class Definition:
-    """The text that ``register_definition`` takes, or why there is none."""
+    """A definition for ``register_definition``, or the reason for its absence."""
 
     text: str | None
     reason: str = ""
 
 
 def described_by_peers(node: Node, type_name: str, of: list[Endpoint]) -> Definition:
-    """The first definition that those of the endpoints who have the type give.
+    """Return the first definition from the nodes that use the type.
 
-    Who publishes or serves is asked before who listens; and who has the type on other
-    topics where these do not say (peers that are no ROS nodes describe nothing).
+    Publishers and servers are asked before subscribers and clients, and nodes that use
+    the type on other topics last. Peers that are not ROS nodes have no definition.
     """
     users = _users(type_name, of)
     hashes = {each.type_hash for each in users}
@@ -59,7 +59,7 @@ def described_by_peers(node: Node, type_name: str, of: list[Endpoint]) -> Defini
 
 def _users(type_name: str, of: list[Endpoint]) -> list[Endpoint]:
     gives = (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
-    # An action's users have its parts: pkg/action/Name_SendGoal.
+    # Endpoints of an action have the types of its parts: pkg/action/Name_SendGoal.
     users = [e for e in of if f"{e.type_name}_".startswith(f"{type_name}_")]
     return sorted(users, key=lambda each: each.kind not in gives)
 
@@ -84,7 +84,7 @@ def fetch_definition(node: Node, of: str, type_name: str) -> Definition:
     try:
         response = client.call(request, timeout_sec=ANSWER_TIMEOUT_S)
     except TimeoutError:
-        return Definition(None, f"no answer in {ANSWER_TIMEOUT_S:g} s")
+        return Definition(None, f"no response in {ANSWER_TIMEOUT_S:g} s")
     except NavetteError as error:
         return Definition(None, str(error))
     finally:
@@ -95,9 +95,9 @@ def fetch_definition(node: Node, of: str, type_name: str) -> Definition:
 
 
 def definition_of(type_name: str, response: Any) -> str:
-    """The definition's text out of a response: as it was written, if that was sent.
+    """Return the text of a definition from a response: its source if included.
 
-    Without it constants and defaults are missing: they do not travel.
+    Without the source, constants and defaults are missing.
     """
     sources = {
         source.type_name: source.raw_file_contents
@@ -124,7 +124,7 @@ def _is_message(name: str) -> bool:
 
 
 def _tops(type_name: str, parts: dict[str, Any]) -> list[Any]:
-    """The message itself, or the parts that a service's or action's file has."""
+    """Return the message, or the parts of a service or action."""
     endings: Sequence[str] = {
         "srv": ("_Request", "_Response"),
         "action": ("_Goal", "_Result", "_Feedback"),

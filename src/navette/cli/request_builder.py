@@ -1,4 +1,4 @@
-"""Requests and goals out of what a person typed, as partial YAML."""
+"""Build messages, requests and goals from partial YAML."""
 
 import sys
 from collections.abc import Sequence
@@ -11,10 +11,10 @@ MOST_BYTES = 4 * 1024 * 1024  # of text on standard input
 
 
 def filled(message_class: Any, text: str) -> Any:
-    """A message with the fields that ``text`` names; the others keep their defaults.
+    """Build a message with the fields in ``text``; others keep their defaults.
 
     Raises:
-        InvalidValueError: not a YAML mapping, or a field or value does not fit.
+        InvalidValueError: not a YAML mapping, unknown field, or wrong type of value.
     """
     from navette.ros2.packages.rosidl_runtime_py import set_message_fields
 
@@ -26,10 +26,10 @@ def filled(message_class: Any, text: str) -> Any:
 
 
 def from_yaml(text: str) -> Any:
-    """What a piece of YAML says.
+    """Parse YAML.
 
     Raises:
-        InvalidValueError: it is no YAML.
+        InvalidValueError: not YAML.
     """
     import yaml
 
@@ -41,10 +41,10 @@ def from_yaml(text: str) -> Any:
 
 
 def from_yaml_file(path: Path) -> list[Any]:
-    """What each of the documents in a file says, with ``---`` between them.
+    """Parse the YAML documents of a file, separated by ``---``.
 
     Raises:
-        InvalidValueError: it cannot be read, is no YAML, or there is none in it.
+        InvalidValueError: the file cannot be read, is not YAML, or is empty.
     """
     import yaml
 
@@ -57,15 +57,15 @@ def from_yaml_file(path: Path) -> list[Any]:
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise InvalidValueError(f"{path} is not YAML: {error}") from None
     if not documents:
-        raise InvalidValueError(f"{path}: there is no message in it")
+        raise InvalidValueError(f"{path} contains no messages")
     return documents
 
 
 def from_stdin() -> str:
-    """All of standard input.
+    """Read standard input to its end.
 
     Raises:
-        InvalidValueError: more than a message may hold.
+        InvalidValueError: the input is too long.
     """
     text = sys.stdin.read(MOST_BYTES + 1)
     if len(text) > MOST_BYTES:
@@ -74,7 +74,7 @@ def from_stdin() -> str:
 
 
 def is_type_name(text: str, kind: str) -> bool:
-    """Whether a word is the name of an interface: ``pkg/srv/Name`` or ``pkg/Name``."""
+    """Whether a word is an interface name: ``pkg/srv/Name`` or ``pkg/Name``."""
     parts = text.split("/")
     if len(parts) == 3 and parts[1] != kind:
         return False
@@ -82,16 +82,16 @@ def is_type_name(text: str, kind: str) -> bool:
 
 
 def type_and_values(words: Sequence[str], kind: str) -> tuple[str | None, str | None]:
-    """The arguments ``[TYPE] [YAML]`` apart; the first may be left out.
+    """Split the arguments ``[TYPE] [YAML]``; both are optional.
 
     Raises:
-        InvalidValueError: more words than that.
+        InvalidValueError: too many words.
     """
     rest = list(words)
     type_name = rest.pop(0) if rest and is_type_name(rest[0], kind) else None
     if len(rest) > 1:
         raise InvalidValueError(
-            f"{' '.join(words)!r}: wanted [TYPE] [YAML]; quote the YAML, as in"
+            f"{' '.join(words)!r} is not [TYPE] [YAML]; quote the YAML, as in"
             " '{a: 1, b: 2}'"
         )
     return type_name, rest[0] if rest else None

@@ -1,4 +1,4 @@
-"""Asking running nodes by their services, all at once, and not for ever."""
+"""Calls to services of running nodes: concurrent, with a timeout."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,115 +18,114 @@ from navette.cli.stderr import note
 if TYPE_CHECKING:
     from navette.runtime import Future, Node
 
-ANSWER_S = 2.0
-"""Who has not answered by then hangs, or is stopped."""
+RESPONSE_TIMEOUT_S = 2.0
 
-_patience_s = ContextVar("_patience_s", default=ANSWER_S)
+_timeout_s = ContextVar("_timeout_s", default=RESPONSE_TIMEOUT_S)
 
 GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
-class Question(NamedTuple):
-    """A request: to which service, of which type, with which fields."""
+class ServiceRequest(NamedTuple):
+    """A request to a service."""
 
     service: str
     type_name: str
     fields: dict[str, Any]
 
 
-class Answer(NamedTuple):
-    """A response, or why there is none."""
+class ServiceResponse(NamedTuple):
+    """A response, or the reason for its absence."""
 
     response: Any
     reason: str = ""
 
 
 @contextmanager
-def patient(seconds: float) -> Iterator[None]:
-    """Inside, answers are waited for so long."""
-    before = _patience_s.set(seconds)
+def response_timeout(seconds: float) -> Iterator[None]:
+    """Set the default timeout inside the block."""
+    before = _timeout_s.set(seconds)
     try:
         yield
     finally:
-        _patience_s.reset(before)
+        _timeout_s.reset(before)
 
 
-def patience_s() -> float:
-    """How long an answer is waited for, in seconds."""
-    return _patience_s.get()
+def response_timeout_s() -> float:
+    """Return the default timeout in seconds."""
+    return _timeout_s.get()
 
 
-def ask_all(
-    node: "Node", questions: Sequence[Question], timeout_s: float | None = None
-) -> list[Answer]:
-    """Ask all of them at the same time; an answer each, in that order.
+def call_all(
+    node: "Node", requests: Sequence[ServiceRequest], timeout_s: float | None = None
+) -> list[ServiceResponse]:
+    """Send all requests concurrently; return a response for each, in order.
 
-    A service that nobody serves is not waited for, the others for :func:`patience_s`
-    if no time is given.
+    Services without a server are not waited for. The default timeout is
+    :func:`response_timeout_s`.
     """
     from navette.msgs import get_interface
 
     there = served(node)
     futures: list[Future[Any] | None] = []
-    for question in questions:
-        if question.service not in there:
+    for each in requests:
+        if each.service not in there:
             futures.append(None)
             continue
-        client = node.create_client(get_interface(question.type_name), question.service)
-        request = client.srv_type.Request(**question.fields)
+        client = node.create_client(get_interface(each.type_name), each.service)
+        request = client.srv_type.Request(**each.fields)
         futures.append(client.call_async(request))
-    limit_s = patience_s() if timeout_s is None else timeout_s
+    limit_s = response_timeout_s() if timeout_s is None else timeout_s
     wait_for(node, lambda: all(f is None or f.done() for f in futures), limit_s)
     return [
-        answer(future, question.service)
-        for future, question in zip(futures, questions, strict=True)
+        response_of(future, each.service)
+        for future, each in zip(futures, requests, strict=True)
     ]
 
 
 def served(node: "Node") -> set[str]:
-    """Full names of the services that somebody serves."""
+    """Return the full names of services that have a server."""
     from navette.transports import EndpointKind
 
     return {e.topic for e in service_endpoints(node, kind=EndpointKind.SERVICE)}
 
 
-def answer(future: Any, service: str) -> Answer:
-    """What a future of a response has come to; None: nobody was asked."""
+def response_of(future: Any, service: str) -> ServiceResponse:
+    """Return the result of a future; None stands for a service without server."""
     if future is None:
-        return Answer(None, f"nobody serves {service}")
+        return ServiceResponse(None, f"no server of {service}")
     if not future.done():
-        return Answer(None, f"service {service}: no answer")
+        return ServiceResponse(None, f"service {service}: no response")
     if future.exception() is not None:
-        return Answer(None, str(future.exception()))
-    return Answer(future.result())
+        return ServiceResponse(None, str(future.exception()))
+    return ServiceResponse(future.result())
 
 
-def ask(node: "Node", service: str, type_name: str, **fields: Any) -> Any:
-    """Ask one; ends the command if there is no answer."""
-    (got,) = ask_all(node, [Question(service, type_name, fields)])
+def call(node: "Node", service: str, type_name: str, **fields: Any) -> Any:
+    """Call one service; the command fails if there is no response."""
+    (got,) = call_all(node, [ServiceRequest(service, type_name, fields)])
     if got.response is None:
         fail(got.reason)
     return got.response
 
 
 def node_names(node: "Node", *, hidden: bool = False) -> list[str]:
-    """Full names of the nodes that run, this one aside; a name per node, sorted."""
+    """Return the full names of all other nodes, sorted; duplicate names are kept."""
     names = node.get_fully_qualified_node_names()
     names.remove(node.get_fully_qualified_name())
     return sorted(name for name in names if hidden or not is_hidden(name))
 
 
 def note_none(node: "Node", what: str) -> None:
-    """Say why a list is empty: nothing runs here, or none of that kind."""
+    """Explain an empty list: no such thing, or no nodes at all in this domain."""
     if node_names(node, hidden=True) or endpoints(node):
         note(f"no {what}")
     else:
         domain = node.context.get_domain_id()
-        note(f"no {what}: nothing runs in domain {domain} (ROS_DOMAIN_ID)")
+        note(f"no {what}: no nodes run in domain {domain} (ROS_DOMAIN_ID)")
 
 
 def managed_nodes(here: "Node", *, hidden: bool = False) -> list[str]:
-    """Full names of the nodes that serve their state, sorted."""
+    """Return the full names of nodes with a lifecycle, sorted."""
     from navette.transports import EndpointKind
 
     serving = {
@@ -138,23 +137,20 @@ def managed_nodes(here: "Node", *, hidden: bool = False) -> list[str]:
 
 
 def chosen_node(node: "Node", name: str, known: Sequence[str] | None = None) -> str:
-    """The full name of a node that runs; ends the command where there is none.
+    """Return the full name of a running node; the command fails if there is none.
 
     Args:
-        name: as typed; a leading slash may be left out.
-        known: those to choose from, where not all will do.
+        name: with or without a leading slash.
+        known: the allowed nodes; None allows all.
     """
     full = "/" + name.strip("/")
     every = node_names(node, hidden=True)
     if full in (every if known is None else known):
         return full
     if full in every:
-        fail(f"node {full} is not one of those: {', '.join(known or ()) or 'none'}")
+        fail(f"node {full} is not one of {', '.join(known or ()) or 'none'}")
     if not every:
-        fail(
-            f"no node {full}: nothing runs here (or not with this ROS_DOMAIN_ID and"
-            " NAVETTE_ROUTER)"
-        )
+        fail(f"no node {full}: no nodes run with this ROS_DOMAIN_ID and NAVETTE_ROUTER")
     return fail(
         f"no node {full}{did_you_mean(full, every if known is None else known)}"
     )

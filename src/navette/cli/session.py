@@ -1,12 +1,12 @@
-"""Looking in from outside: how a verb joins what runs, waits, and leaves.
+"""Connection of a verb to the running system: connect, wait, query the graph.
 
 ::
 
     with connect() as node:
         for endpoint in endpoints(node, "/map"):
             …
-        if not wait_for(node, lambda: something_came, 5.0):
-            fail("nothing came")
+        if not wait_for(node, lambda: received, 5.0):
+            fail("no message received")
 """
 
 import os
@@ -18,7 +18,7 @@ import click
 
 from navette.cli.gc_tuning import collect
 from navette.cli.interruption import (
-    dying_on_signals,
+    default_signal_action,
     ending_on_signals,
     interruptible,
 )
@@ -46,42 +46,39 @@ FAILED = 1
 def connect(
     context: "Context | None" = None, *, node_name: str | None = None
 ) -> "Iterator[Node]":
-    """A node of this process that sees all that runs; its callbacks run in waits.
+    """Yield a node connected to the network; its callbacks run in :func:`wait_for`.
 
-    Ctrl-C and SIGTERM inside end the command with exit code 130 or 143; what a
-    callback raises comes out as it was raised.
+    Ctrl-C and SIGTERM end the block with exit code 130 or 143. Exceptions of callbacks
+    propagate unchanged.
 
     Args:
-        context: where to look instead of on the network; stays open.
-        node_name: by default ``_navette_<pid>``, which listings leave out.
+        context: context to use instead of a new one; it is not shut down.
+        node_name: default: the hidden name ``_navette_<pid>``.
     """
     from navette.runtime import Executor, Node
 
-    with ExitStack() as leaving:
+    with ExitStack() as cleanup:
         if context is None:
-            # Nothing is to be cleaned up while it joins, and nothing should wait for
-            # the network to hear of it when it leaves.
-            leaving.enter_context(dying_on_signals())
-            joined = _outside()
-            leaving.callback(joined.try_shutdown)
-        else:
-            joined = context
+            # Connecting and disconnecting need no cleanup on a signal.
+            cleanup.enter_context(default_signal_action())
+            context = _network_context()
+            cleanup.callback(context.try_shutdown)
         node = Node(
             node_name or f"_navette_{os.getpid()}",
-            context=joined,
+            context=context,
             use_global_arguments=False,
             enable_rosout=False,
             start_parameter_services=False,
         )
-        leaving.callback(node.destroy_node)
-        executor = Executor(context=joined)
+        cleanup.callback(node.destroy_node)
+        executor = Executor(context=context)
         executor.add_node(node)
         collect()
         try:
             with ending_on_signals():
                 yield node
         except CallbackError as error:
-            # The verb's own callbacks: where they hang is no news to anybody.
+            # Unwrap errors of the verb's own callbacks: their location adds nothing.
             if isinstance(error.__cause__, Exception):
                 raise error.__cause__ from None
             raise
@@ -90,10 +87,10 @@ def connect(
 def wait_for(
     node: "Node", condition: Callable[[], bool], timeout_s: float | None = None
 ) -> bool:
-    """Let events run until the condition holds; tells whether it does.
+    """Run callbacks until the condition is true; return whether it is.
 
-    Without a timeout it ends only so, or by Ctrl-C (under a virtual clock also when
-    nothing is left to happen).
+    Without a timeout only the condition or Ctrl-C ends the wait (with a virtual clock
+    also the last event).
     """
     timeout_ns = None if timeout_s is None else round(timeout_s * 1e9)
     executor = node.executor
@@ -108,14 +105,14 @@ def wait_for(
 
 
 def follow_clock(node: "Node") -> None:
-    """Let the node's clock tell simulated time, that of ``/clock``."""
+    """Set the node's clock to simulated time (``/clock``)."""
     from navette.runtime import Parameter
 
     node.set_parameters([Parameter("use_sim_time", value=True)])
 
 
 def is_simulated(node: "Node") -> bool:
-    """Whether somebody publishes ``/clock``."""
+    """Whether ``/clock`` has a publisher."""
     from navette.transports import EndpointKind
 
     return bool(endpoints(node, "/clock", kind=EndpointKind.PUBLISHER))
@@ -124,7 +121,7 @@ def is_simulated(node: "Node") -> bool:
 def endpoints(
     node: "Node", topic: str | None = None, *, kind: "EndpointKind | None" = None
 ) -> "list[Endpoint]":
-    """Publishers and subscriptions that run; not those of ``node`` itself."""
+    """Return the publishers and subscriptions of other nodes."""
     own = node.get_fully_qualified_name()
     found = node.context.graph.endpoints(topic, kind=kind)
     return [each for each in found if each.node_full_name != own]
@@ -133,30 +130,30 @@ def endpoints(
 def service_endpoints(
     node: "Node", service: str | None = None, *, kind: "EndpointKind | None" = None
 ) -> "list[Endpoint]":
-    """Servers and clients that run; not those of ``node`` itself."""
+    """Return the service servers and clients of other nodes."""
     own = node.get_fully_qualified_name()
     found = node.context.graph.service_endpoints(service, kind=kind)
     return [each for each in found if each.node_full_name != own]
 
 
 def is_hidden(name: str) -> bool:
-    """Whether a topic's, service's or node's name is for machines, as ROS 2 says."""
+    """Whether the name is hidden as in ROS 2: a part begins with ``_``."""
     return any(token.startswith("_") for token in name.split("/"))
 
 
 def is_of_every_node(service: str) -> bool:
-    """Whether it is one of the services that every node has."""
+    """Whether the service is a standard service of every node."""
     return service.rpartition("/")[2] in _EVERY_NODE_SERVES
 
 
 def fail(message: str) -> Never:
-    """End the command: what was asked for failed (exit code 1)."""
+    """Print an error and end the command with exit code 1."""
     complain(message)
     raise click.exceptions.Exit(FAILED)
 
 
-def _outside() -> "Context":
-    """A context of its own that says on standard error only what went wrong."""
+def _network_context() -> "Context":
+    """Return a new context that logs only warnings and errors."""
     from navette.errors import NetworkError
     from navette.runtime import Context, LoggingSeverity, SystemClock
     from navette.runtime.context import current_scope

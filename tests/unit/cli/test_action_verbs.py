@@ -106,7 +106,7 @@ def test_looking(here: World, counter: Counter) -> None:
     assert here.said("action", "type", "/count") == f"{TYPE}\n"
     assert here.said("action", "find", "example_interfaces/Fibonacci") == "/count\n"
     done = here.run("action", "find", "nav2_msgs/action/Spin")
-    assert done == ("", "navette: no action is of type nav2_msgs/action/Spin\n", 1)
+    assert done == ("", "navette: no action has type nav2_msgs/action/Spin\n", 1)
     info = (
         "Action: /count\nAction clients: 1\n    /counter\n"
         "Action servers: 1\n    /counter\n"
@@ -126,7 +126,7 @@ def test_a_mistyped_action(here: World, counter: Counter, verb: str) -> None:
     done = here.run("action", verb, "/cuont")
     assert (done.out, done.code) == ("", 1)
     hint = "did you mean /count?"
-    assert done.err == f"navette: nobody serves the action /cuont; {hint}\n"
+    assert done.err == f"navette: no server of the action /cuont; {hint}\n"
 
 
 @pytest.mark.parametrize("words", [[TYPE, "{order: 2}"], ["{order: 2}"]])
@@ -182,13 +182,13 @@ def test_a_server_that_goes_away(here: World, counter: Counter) -> None:
     counter.node.create_timer(2.5, counter.server.destroy)
     done = here.run("action", "send_goal", "/count", "{order: 50}")
     assert done.code == 1
-    assert done.err == "navette: action /count: its server has gone\n"
+    assert done.err == "navette: action /count: the server was closed\n"
 
 
 def test_nobody_serves(here: World, counter: Counter) -> None:
     done = here.run("action", "send_goal", "/cuont", TYPE, "-w", "1")
     assert (done.out, done.code) == ("", 1)
-    assert done.err.endswith("nobody serves the action /cuont; did you mean /count?\n")
+    assert done.err.endswith("no server of the action /cuont; did you mean /count?\n")
 
 
 def test_a_wrong_goal_is_not_sent(here: World, counter: Counter) -> None:

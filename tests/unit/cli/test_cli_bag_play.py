@@ -173,7 +173,7 @@ def test_piped_it_is_plain(bag: Path) -> None:
     [
         (["--topics", "/scan"], "unknown topic '/scan'; known: /chatter"),
         (["-r", "0"], "rate 0.0: wanted"),
-        (["-s", "99"], "start offset 99 s: the bag is only 60.000 s long"),
+        (["-s", "99"], "start offset 99 s: the bag has only 60.000 s"),
     ],
 )
 def test_mistakes_are_named(bag: Path, words: list[str], said: str) -> None:

@@ -108,7 +108,7 @@ def test_list(sample_bag: Path, tmp_path: Path) -> None:
         str(sample_bag),
         str(tmp_path / "broken.mcap"),
     ]
-    assert "does not begin as one" in lines[2]
+    assert "the magic bytes are missing" in lines[2]
     told = json.loads(run("list", "-r", "--json", tmp_path).stdout)
     assert [each["messages"] for each in told] == [20, 3, 0]
     assert run("list", tmp_path / "below" / "..", "--json").exit_code == 0

@@ -10,7 +10,7 @@ import pytest
 from navette.cli import interruption
 from navette.cli.commands import LazyGroup
 from navette.cli.interruption import (
-    dying_on_signals,
+    default_signal_action,
     ending_on_signals,
     interruptible,
     raise_at_interrupt,
@@ -99,7 +99,7 @@ def test_an_event_that_does_not_end_is_given_up(
 
 def test_what_is_ignored_stays_ignored() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with dying_on_signals(), ending_on_signals():
+    with default_signal_action(), ending_on_signals():
         signal.raise_signal(signal.SIGINT)
     raise_at_interrupt()
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
@@ -111,7 +111,7 @@ def test_what_is_ignored_stays_ignored() -> None:
 )
 def test_verbs_that_have_to_clean_up_hear_of_it(verb: str, handler: object) -> None:
     group = LazyGroup("navette", commands=list(VERBS))
-    with dying_on_signals():
+    with default_signal_action():
         assert signal.getsignal(signal.SIGINT) is signal.SIG_DFL
         group.resolve_command(click.Context(group), [verb])
         assert signal.getsignal(signal.SIGINT) is handler

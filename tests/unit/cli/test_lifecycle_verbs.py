@@ -58,7 +58,7 @@ def test_a_transition_that_takes_its_time(here: World) -> None:
     node.create_service(ChangeState, "~/change_state", change)
     done = here.run("lifecycle", "set", "driver", "configure")
     assert (done.out, done.code) == ("Transitioning successful\n", 0)
-    assert done.err.startswith("/driver is at it")
+    assert done.err.startswith("waiting for /driver")
 
 
 def test_nodes(here: World) -> None:
@@ -95,8 +95,8 @@ def test_a_transition_that_is_not_there(here: World) -> None:
     done = here.run("lifecycle", "set", "camera", "configur")
     assert done.code == 1
     assert done.err == (
-        "navette: no transition 'configur' from this state; did you mean configure?"
-        " available ones are:\n- configure [1]\n- shutdown [5]\n"
+        "navette: no transition 'configur' from the current state; did you mean"
+        " configure?\navailable transitions:\n- configure [1]\n- shutdown [5]\n"
     )
 
 
@@ -119,7 +119,7 @@ def test_list(here: World) -> None:
 @pytest.mark.parametrize(
     ("name", "reason"),
     [
-        ("plain", "node /plain is not managed; managed: /arm, /camera"),
+        ("plain", "node /plain is not managed; managed nodes: /arm, /camera"),
         ("camra", "no node /camra; did you mean /camera?"),
     ],
 )

@@ -105,15 +105,15 @@ def test_where_nothing_runs() -> None:
         done = here.run("node", "info", "/planner")
     assert done.code == 1
     assert done.err == (
-        "navette: no node /planner: nothing runs here (or not with this ROS_DOMAIN_ID"
-        " and NAVETTE_ROUTER)\n"
+        "navette: no node /planner: no nodes run with this ROS_DOMAIN_ID and"
+        " NAVETTE_ROUTER\n"
     )
 
 
 def test_an_empty_list_says_why() -> None:
     with world() as here:
         domain = here.context.get_domain_id()
-        nothing = f": nothing runs in domain {domain} (ROS_DOMAIN_ID)\n"
+        nothing = f": no nodes run in domain {domain} (ROS_DOMAIN_ID)\n"
         for words, what in (
             (("node", "list"), "nodes"),
             (("service", "list"), "services"),

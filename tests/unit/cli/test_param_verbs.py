@@ -75,7 +75,7 @@ def test_list_with_types(here: World, driver: Node) -> None:
 def test_a_text_that_yaml_reads_otherwise(here: World, driver: Node) -> None:
     done = here.run("param", "set", "driver", "topic", "5")
     assert done.code == 1
-    assert done.err.endswith("""5 is INTEGER, expected STRING; as a text: "'5'"\n""")
+    assert done.err.endswith("""5 is INTEGER, expected STRING; for a string: "'5'"\n""")
     here.said("param", "set", "driver", "topic", "'5'")
     assert driver.get_parameter("topic").value == "5"
 
@@ -222,7 +222,7 @@ def test_load_of_a_file_for_others(here: World, driver: Node, tmp_path: Path) ->
     done = here.run("param", "load", "driver", str(file))
     assert done.code == 1
     assert done.err == (
-        f"navette: {file}: nothing for /driver; it has values for /planner\n"
+        f"navette: {file} has no values for /driver, only for /planner\n"
     )
 
 
@@ -256,13 +256,13 @@ def test_a_node_that_hangs_is_named(here: World, driver: Node) -> None:
     here.graph.executor.remove_node(driver)
     done = here.run("param", "list")
     assert done.out == ""
-    assert done.err == "/driver: service /driver/list_parameters: no answer\n"
+    assert done.err == "/driver: service /driver/list_parameters: no response\n"
 
 
 def test_a_parameter_without_a_value(here: World, driver: Node) -> None:
     driver.declare_parameter("mode", Parameter.Type.STRING)
     done = here.run("param", "get", "driver", "mode")
-    assert done.err == "navette: node /driver: mode: declared, but without a value\n"
+    assert done.err == "navette: node /driver: mode: declared but not set\n"
     done = here.run("param", "set", "driver", "mode", "5")
     assert "parameter 'mode': 5 is INTEGER, expected STRING" in done.err
     assert here.said("param", "set", "driver", "mode", "fast")

@@ -115,13 +115,13 @@ def test_a_type_that_nobody_knows_ends_the_command(
 ) -> None:
     with connect(server.context) as node, pytest.raises(click.exceptions.Exit):
         interface_class(node, "nowhere_msgs/Thing", endpoints(node), kind="msg")
-    assert "type nowhere_msgs/msg/Thing is not known here" in capsys.readouterr().err
+    assert "type nowhere_msgs/msg/Thing is not installed" in capsys.readouterr().err
 
 
 def test_a_type_of_another_kind_is_refused(server: Node) -> None:
     with connect(server.context) as node:
         assert interface_class(node, "std_srvs/SetBool", [], kind="srv") is SetBool
-        with pytest.raises(InvalidNameError, match="wanted package/srv/Name"):
+        with pytest.raises(InvalidNameError, match="is not package/srv/Name"):
             interface_class(node, "std_msgs/msg/Bool", [], kind="srv")
         with pytest.raises(InvalidNameError):
             interface_class(node, "no/such/form/of/name", [])
@@ -139,4 +139,4 @@ def test_another_definition_than_here_is_said(
     assert said.startswith(
         "/server has another definition of std_srvs/srv/SetBool (RIHS01_0000000000…"
     )
-    assert "nothing it sends or takes can be read" in said
+    assert "messages cannot be exchanged with it" in said

@@ -70,7 +70,7 @@ def test_type_and_find(here: World, adder: Node) -> None:
     assert here.said("service", "find", ADD) == "/add\n"
     assert here.said("service", "find", "std_srvs/SetBool", "-c") == "1\n"
     done = here.run("service", "find", "std_srvs/srv/Empty")
-    assert done == ("", "navette: no service is of type std_srvs/srv/Empty\n", 1)
+    assert done == ("", "navette: no service has type std_srvs/srv/Empty\n", 1)
 
 
 def test_info(here: World, adder: Node) -> None:
@@ -92,7 +92,7 @@ def test_info(here: World, adder: Node) -> None:
 def test_a_mistyped_service(here: World, adder: Node, verb: str) -> None:
     done = here.run("service", verb, "/ad")
     assert (done.out, done.code) == ("", 1)
-    assert done.err == "navette: nobody serves /ad; did you mean /add?\n"
+    assert done.err == "navette: no server of /ad; did you mean /add?\n"
 
 
 @pytest.mark.parametrize(
@@ -145,7 +145,7 @@ def test_call_at_a_rate(here: World, adder: Node) -> None:
         (["/add", "[1, 2]"], "is expected to be a dictionary"),
         (["/add", "{a: one}"], "Request.a: 'one' is str, expected an integer"),
         (["/add", ADD, "{a: 1}", "{b: 1}"], "quote the YAML"),
-        (["/add", "-r", "0"], "--rate 0: wanted more than 0 Hz"),
+        (["/add", "-r", "0"], "--rate 0 is not above 0 (in Hz)"),
     ],
 )
 def test_a_wrong_request_is_not_sent(
@@ -160,16 +160,16 @@ def test_call_of_another_type(here: World, adder: Node) -> None:
     done = here.run("service", "call", "/add", "std_srvs/srv/SetBool")
     assert done.code == 1
     assert done.err == (
-        f"navette: service /add is of type {ADD}, not std_srvs/srv/SetBool\n"
+        f"navette: service /add has type {ADD}, not std_srvs/srv/SetBool\n"
     )
 
 
 def test_call_of_a_type_that_nobody_knows(here: World, adder: Node) -> None:
     done = here.run("service", "call", "/add", "no_such/srv/Type")
     assert done.code == 1
-    assert done.err == "navette: type no_such/srv/Type is not known here\n"
+    assert done.err == "navette: type no_such/srv/Type is not installed\n"
     done = here.run("service", "call", "/add", "std_srvs/srv/SetBol")
-    assert done.err.endswith(" known here; did you mean std_srvs/srv/SetBool?\n")
+    assert done.err.endswith(" not installed; did you mean std_srvs/srv/SetBool?\n")
 
 
 def test_call_gives_up(here: World, adder: Node) -> None:
@@ -177,7 +177,7 @@ def test_call_gives_up(here: World, adder: Node) -> None:
     assert (done.out, done.code) == ("", 1)
     assert done.err == (
         "waiting for service /ad to become available; did you mean /add?\n"
-        "navette: nobody serves /ad; did you mean /add?\n"
+        "navette: no server of /ad; did you mean /add?\n"
     )
     assert here.graph.now_ns == 2_000_000_000
 
@@ -217,5 +217,5 @@ def test_echo(here: World, adder: Node) -> None:
 def test_echo_says_that_nobody_tells(here: World, adder: Node) -> None:
     done = here.run("service", "echo", "/add")
     assert (
-        "nobody publishes /add/_service_event: is service introspection on" in done.err
+        "no publisher on /add/_service_event: enable service introspection" in done.err
     )

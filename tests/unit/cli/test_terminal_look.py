@@ -16,7 +16,7 @@ from navette.msgs.std_msgs.msg import String
 from navette.runtime import Node
 
 # The last one after the others are imported: they take what it has.
-ASKING = ("node", "param.verbs", "service.looking", "output")
+ASKING = ("node", "param.verbs", "service.listing", "output")
 
 
 @pytest.fixture(autouse=True)
@@ -65,7 +65,7 @@ def test_param_list(here: World) -> None:
 def test_service_list(here: World) -> None:
     done = here.run("service", "list")
     assert done.out == "/add\n"
-    assert done.err == "and 7 that every node has (-a lists them)\n"
+    assert done.err == "and 7 that every node has (-a shows them)\n"
     assert len(here.said("service", "list", "-a").splitlines()) == 8
     assert here.said("service", "list", "-t") == (
         "/add  example_interfaces/srv/AddTwoInts\n"

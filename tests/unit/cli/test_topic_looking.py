@@ -95,7 +95,7 @@ def test_nothing_running_is_said_beside_the_result() -> None:
         shown = navette("topic", "list")
     assert shown.exit_code == 0
     assert shown.stdout == ""
-    assert shown.stderr.startswith("no topics: nothing runs in domain ")
+    assert shown.stderr.startswith("no topics: no nodes run in domain ")
 
 
 def test_info(talker: Node) -> None:
@@ -175,5 +175,5 @@ def test_the_domain_as_an_option(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", "0")  # put back afterwards
     with shared_graph():
         shown = navette("--domain-id", "57", "topic", "list")
-    assert shown.stderr == "no topics: nothing runs in domain 57 (ROS_DOMAIN_ID)\n"
+    assert shown.stderr == "no topics: no nodes run in domain 57 (ROS_DOMAIN_ID)\n"
     assert navette("--domain-id", "233", "topic", "list").exit_code == 2

@@ -182,7 +182,7 @@ def test_a_topic_of_another_type_and_an_unknown_type_are_refused(
     hear(listener, String, "chatter")
     with pytest.raises(click.exceptions.Exit):
         pub(listener, "chatter", "std_msgs/Bool", times=1)
-    assert "/chatter is of type std_msgs/msg/String" in capsys.readouterr().err
+    assert "/chatter has type std_msgs/msg/String" in capsys.readouterr().err
     with pytest.raises((click.exceptions.Exit, UnknownNameError)):
         pub(listener, "other", "no_such_msgs/msg/Thing", times=1)
     assert "no_such_msgs" in capsys.readouterr().err

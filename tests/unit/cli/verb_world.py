@@ -15,17 +15,17 @@ from navette.errors import NavetteError
 from navette.testing import GraphHarness
 
 _JOINING = (
-    "action.goals",
-    "action.looking",
+    "action.send_goal",
+    "action.listing",
     "component",
     "completing",
     "doctor.command",
     "lifecycle",
     "node",
     "param.verbs",
-    "service.calling",
-    "service.echoing",
-    "service.looking",
+    "service.call",
+    "service.echo",
+    "service.listing",
 )
 
 

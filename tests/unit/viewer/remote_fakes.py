@@ -9,7 +9,7 @@ from navette.msgs.rcl_interfaces.msg import Parameter as ParameterMsg
 from navette.runtime import Future, Parameter
 from navette.viewer.service_calls import ServiceCalls
 
-Answer = Callable[[Any], Any]
+ServiceResponse = Callable[[Any], Any]
 
 
 class Clock:
@@ -37,7 +37,7 @@ class World:
     def __init__(self) -> None:
         self.clock = Clock()
         self.service_calls = ServiceCalls(self.connect, self.clock)
-        self.answers: dict[str, Answer] = {}
+        self.answers: dict[str, ServiceResponse] = {}
         self.calls: list[Call] = []
         self.clients: list[str] = []
 

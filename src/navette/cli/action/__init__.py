@@ -1,4 +1,4 @@
-"""``navette action …``: who serves which actions; and sending goals."""
+"""``navette action``: list and inspect actions, and send goals."""
 
 from navette.cli.action.verbs import action
 

@@ -18,8 +18,8 @@ ActionType = Annotated[
     str,
     Argument(
         metavar="TYPE",
-        help="As example_interfaces/action/Fibonacci.",
+        help="Action type, such as example_interfaces/action/Fibonacci.",
         complete=complete_action_types,
     ),
 ]
-Json = Annotated[bool, Option("--json", help="One JSON value, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]

@@ -1,4 +1,4 @@
-"""The verbs of ``navette interface``, and their options."""
+"""The verbs of ``navette interface``."""
 
 import sys
 from collections.abc import Iterable
@@ -21,35 +21,35 @@ TypeName = Annotated[
     str,
     Argument(
         metavar="TYPE",
-        help="pkg/msg/Name, pkg/srv/Name or pkg/action/Name; - reads it from"
+        help="pkg/msg/Name, pkg/srv/Name or pkg/action/Name. - reads the name from"
         " standard input, as in navette topic type /odom | navette interface show -.",
         complete=complete_types,
     ),
 ]
-OnlyMsgs = Annotated[bool, Option("--only-msgs", "-m", help="Messages.")]
-OnlySrvs = Annotated[bool, Option("--only-srvs", "-s", help="Services.")]
-OnlyActions = Annotated[bool, Option("--only-actions", "-a", help="Actions.")]
-Json = Annotated[bool, Option("--json", help="One JSON value, for programs.")]
+OnlyMsgs = Annotated[bool, Option("--only-msgs", "-m", help="List messages.")]
+OnlySrvs = Annotated[bool, Option("--only-srvs", "-s", help="List services.")]
+OnlyActions = Annotated[bool, Option("--only-actions", "-a", help="List actions.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 
 @interface.command("show")
 def show(
     type_name: TypeName,
     all_comments: Annotated[
-        bool, Option("--all-comments", help="Those of contained types too.")
+        bool, Option("--all-comments", help="Also print comments of nested types.")
     ] = False,
     no_comments: Annotated[
-        bool, Option("--no-comments", help="No comments, no empty lines.")
+        bool, Option("--no-comments", help="Omit comments and empty lines.")
     ] = False,
 ) -> None:
-    """Print a definition, with those it contains indented below.
+    """Print a definition, with nested types indented.
 
-    A type that is not installed is asked of the programs that run.
+    The definition of a type that is not installed is requested from running nodes.
     """
     from navette.cli.interface.definitions import Comments, definition_lines
 
     if all_comments and no_comments:
-        raise InvalidValueError("--all-comments and --no-comments: wanted one of them")
+        raise InvalidValueError("--all-comments and --no-comments cannot be combined")
     comments = Comments.OWN
     if all_comments or no_comments:
         comments = Comments.ALL if all_comments else Comments.NONE
@@ -63,7 +63,7 @@ def list_(
     only_actions: OnlyActions = False,
     as_json: Json = False,
 ) -> None:
-    """List all interfaces: Navette's, the workspace's and installed ones."""
+    """List all interfaces: of Navette, the workspace and installed packages."""
     from navette.cli.interface import listing
 
     kinds = listing.chosen_kinds(only_msgs, only_srvs, only_actions)
@@ -81,7 +81,7 @@ def package(
         str,
         Argument(
             metavar="PACKAGE",
-            help="The package's name.",
+            help="Package name.",
             complete=complete_packages,
         ),
     ],
@@ -123,10 +123,10 @@ def _put_all(names: Iterable[str], *, as_json: bool) -> None:
 def proto(
     type_name: TypeName,
     no_quotes: Annotated[
-        bool, Option("--no-quotes", help="Without quotes around it.")
+        bool, Option("--no-quotes", help="Omit the enclosing quotes.")
     ] = False,
 ) -> None:
-    """Print a message, a request or a goal with its defaults, as YAML to edit."""
+    """Print a message, request or goal with its defaults as YAML."""
     from navette.cli.interface.definitions import prototype
 
     yaml = prototype(_typed(type_name))
@@ -134,10 +134,10 @@ def proto(
 
 
 def _typed(type_name: str) -> str:
-    """The name, or a line of standard input in its place."""
+    """Return the name; for ``-`` a line of standard input."""
     if type_name != "-":
         return type_name
     if sys.stdin.isatty():
-        raise InvalidValueError("-: wanted a type's name on standard input")
+        raise InvalidValueError("-: standard input is a terminal, pipe a type name")
     name = sys.stdin.readline(1000).strip()
-    return name or fail("no type on standard input")
+    return name or fail("no type name on standard input")

@@ -1,4 +1,4 @@
-"""The text of a definition, from a file, from what is loaded, or from a peer."""
+"""Definitions of interfaces: from files, from loaded classes, or from running nodes."""
 
 from collections.abc import Iterator
 from enum import Enum
@@ -26,24 +26,24 @@ _INDENT, _INDENT_ON_TERMINAL = "\t", "    "
 
 
 class Comments(Enum):
-    """Which comments are shown."""
+    """Which comments are printed."""
 
     NONE = 0
-    OWN = 1  # not those of contained types
+    OWN = 1  # not those of nested types
     ALL = 2
 
 
 def definition_lines(name: str, comments: Comments) -> list[str]:
-    """The definition, and below each field of a message type that type's, indented.
+    """Return the lines of a definition, with the fields of nested types indented.
 
-    Ends the command where nobody knows the type.
+    The command fails if the type is unknown here and to all running nodes.
     """
     name = _full_name(name)
     return list(_Texts(name).lines(name, comments, 0))
 
 
 def prototype(name: str) -> str:
-    """YAML of a message, request or goal with its defaults."""
+    """Return a message, request or goal with its defaults as YAML."""
     name = _full_name(name)
     cls = installed_class(name)
     if cls is None:
@@ -55,7 +55,7 @@ def prototype(name: str) -> str:
 
 
 class _Texts:
-    """Definitions by name; what a peer sent along goes before what is installed."""
+    """Definitions by name; a peer's definition takes precedence over installed ones."""
 
     def __init__(self, top: str) -> None:
         self._sent: dict[str, str] = {}
@@ -76,7 +76,7 @@ class _Texts:
     def _text(self, name: str) -> str:
         sent = self._sent.get(name)
         text = self._installed(name) if sent is None else sent
-        assert text is not None, f"{name} is contained in a checked definition"
+        assert text is not None, f"{name} is nested in a checked definition"
         return text
 
     @staticmethod
@@ -92,20 +92,20 @@ class _Texts:
 
 
 def _sent_by_peers(name: str) -> dict[str, str]:
-    """Ask the programs that run; ends the command if none of them knows."""
+    """Request a definition from running nodes; the command fails if there is none."""
     with connect() as node:
         definition = described_by_peers(
             node, name, [*endpoints(node), *service_endpoints(node)]
         )
     if definition.text is None:
         fail(f"no interface {name}{near_types(name)}")
-    read_definition(name, definition.text)  # bounded, and nothing contains itself
+    read_definition(name, definition.text)  # checks size and recursion
     sections = split_sections(name, definition.text, f"definition of {name}")
     return {full_name(each): text for each, text in sections}
 
 
 def _full_name(name: str) -> str:
-    """``pkg/Name`` → the message, service or action of that name, if there is one."""
+    """Expand ``pkg/Name`` to the message, service or action with that name."""
     package, _, rest = name.partition("/")
     if not rest and (near := near_types(name)):
         fail(f"no interface {name}{near}")
@@ -120,7 +120,7 @@ def _full_name(name: str) -> str:
 
 
 def _shown(line: str, comments: Comments) -> str | None:
-    """The line as it is printed; None = not at all."""
+    """Return the line to print; None to omit it."""
     bare = without_comment(line)
     if comments is Comments.NONE:
         return bare.strip() or None
@@ -128,7 +128,7 @@ def _shown(line: str, comments: Comments) -> str | None:
 
 
 def _contained_type(owner: str, line: str) -> str | None:
-    """The message type of the field that the line defines, if that is one."""
+    """Return the message type of the field that the line defines, if any."""
     bare = without_comment(line).strip()
     if not bare or bare == _SEPARATOR:
         return None

@@ -1,4 +1,4 @@
-"""Which interfaces there are, by kind and package."""
+"""List interfaces by kind and package."""
 
 from collections.abc import Iterable
 from enum import Enum
@@ -13,7 +13,7 @@ from navette.ros2.packages.rosidl_runtime_py.get_interfaces import (
 
 
 class Kind(Enum):
-    """What an interface is; the value is the folder of its files."""
+    """Kind of an interface; the value is the folder of its files."""
 
     MESSAGE = "msg"
     SERVICE = "srv"
@@ -25,17 +25,17 @@ class Kind(Enum):
 
 
 def chosen_kinds(msgs: bool, srvs: bool, actions: bool) -> list[Kind]:
-    """Those asked for; all if none is."""
+    """Return the selected kinds; all if none is selected."""
     chosen = [
         kind
-        for kind, is_asked in zip(Kind, (msgs, srvs, actions), strict=True)
-        if is_asked
+        for kind, is_selected in zip(Kind, (msgs, srvs, actions), strict=True)
+        if is_selected
     ]
     return chosen or list(Kind)
 
 
 def interfaces(kind: Kind) -> list[str]:
-    """Full names of all of a kind, sorted."""
+    """Return the sorted full names of all interfaces of a kind."""
     return sorted(
         f"{package}/{name}"
         for package, names in get_interfaces().items()
@@ -45,7 +45,7 @@ def interfaces(kind: Kind) -> list[str]:
 
 
 def interfaces_of(package: str, kinds: Iterable[Kind]) -> list[str]:
-    """Full names of a package's; ends the command if there is no such package."""
+    """Return the full names of a package's interfaces; fail if it is unknown."""
     try:
         found = get_interfaces([package]).get(package, [])
     except UnknownNameError:
@@ -55,7 +55,7 @@ def interfaces_of(package: str, kinds: Iterable[Kind]) -> list[str]:
 
 
 def packages(kinds: Iterable[Kind]) -> list[str]:
-    """Packages that have interfaces of those kinds, sorted."""
+    """Return the sorted names of packages with interfaces of these kinds."""
     chosen = tuple(f"{kind.value}/" for kind in kinds)
     return sorted(
         package

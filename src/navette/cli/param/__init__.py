@@ -1,4 +1,4 @@
-"""``navette param …``: the parameters of nodes that run."""
+"""``navette param``: parameters of running nodes."""
 
 from navette.cli.param.verbs import param
 

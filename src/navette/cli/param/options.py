@@ -7,17 +7,19 @@ from navette.cli.options import Argument, Option
 
 NodeName = Annotated[
     str,
-    Argument(metavar="NODE", help="As /planner.", complete=complete_nodes),
+    Argument(
+        metavar="NODE", help="Node name, such as /planner.", complete=complete_nodes
+    ),
 ]
 AnyNode = Annotated[
     str | None,
-    Argument(metavar="[NODE]", help="By default every node.", complete=complete_nodes),
+    Argument(metavar="[NODE]", help="Default: all nodes.", complete=complete_nodes),
 ]
 Name = Annotated[
     str,
     Argument(
         metavar="NAME",
-        help="The parameter's name, as limits.max_speed_mps.",
+        help="Parameter name, such as limits.max_speed_mps.",
         complete=complete_parameters,
     ),
 ]
@@ -25,15 +27,15 @@ Names = Annotated[
     list[str],
     Argument(
         metavar="NAME...",
-        help="The parameters' names.",
+        help="Parameter names.",
         complete=complete_parameters,
     ),
 ]
 Hidden = Annotated[
-    bool, Option("--include-hidden-nodes", help="Also nodes named _name.")
+    bool, Option("--include-hidden-nodes", help="Include hidden nodes (_name).")
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
 Timeout = Annotated[
     float,
-    Option("--timeout", min=0.0, metavar="S", help="Wait so long for answers."),
+    Option("--timeout", min=0, metavar="S", help="Timeout of each response."),
 ]

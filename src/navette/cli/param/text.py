@@ -1,4 +1,4 @@
-"""Parameters in words, as ``ros2 param`` has them."""
+"""Format parameters as ``ros2 param`` does."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -22,13 +22,13 @@ _LABELS = {
 
 
 def labelled(parameter: "Parameter[Any]") -> str:
-    """As ``ros2 param get`` prints it."""
+    """Format a value as ``ros2 param get`` does."""
     label = _LABELS.get(parameter.type_.name)
     return f"{label} {parameter.value}" if label else "Parameter not set."
 
 
 def plain(parameter: "Parameter[Any]") -> Any:
-    """The value as JSON has it; bytes as numbers."""
+    """Return the value for JSON; bytes become numbers."""
     value = parameter.value
     if isinstance(value, list):
         return [item[0] if isinstance(item, bytes) else item for item in value]
@@ -36,7 +36,7 @@ def plain(parameter: "Parameter[Any]") -> Any:
 
 
 def type_word(kind: int) -> str:
-    """``string array`` for STRING_ARRAY, as ROS 2's command says it."""
+    """Return ``string array`` for STRING_ARRAY, as ROS 2's command prints it."""
     from navette.runtime.parameter import ParameterType
 
     name: str = ParameterType(kind).name.lower().replace("_", " ")
@@ -60,7 +60,7 @@ def descriptor_dict(descriptor: Any) -> dict[str, Any]:
 
 
 def descriptor_lines(descriptor: Any) -> list[str]:
-    """As ``ros2 param describe`` prints it, without the name."""
+    """Format a descriptor as ``ros2 param describe`` does, without the name."""
     lines = [f"  Type: {type_word(descriptor.type)}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")
@@ -85,27 +85,27 @@ def _limits(descriptor: Any) -> Any:
 def name_lines(
     found: dict[str, list[str]],
     kinds: dict[tuple[str, str], str],
-    held: dict[tuple[str, str], str],
+    shown_values: dict[tuple[str, str], str],
     *,
     with_nodes: bool,
 ) -> Iterator[str]:
-    """A name per line; for a person with its value, in columns.
+    """Yield a line per name, on a terminal with the values in columns.
 
     Args:
-        found: node → names.
-        kinds: (node, name) → type, where they are wanted.
-        held: (node, name) → value, where a person reads it.
+        found: names by node.
+        kinds: types by (node, name); empty: not printed.
+        shown_values: values by (node, name); empty: not printed.
     """
     for node, names in found.items():
         if with_nodes and names:
             yield styled(f"{node}:", bold=True)
-        if not held:
+        if not shown_values:
             for name in names:
                 kind = f" (type: {kinds[node, name]})" if kinds else ""
                 yield harmless(f"  {name}{kind}")
             continue
         rows = [
-            (name, *([kinds[node, name]] if kinds else []), held[node, name])
+            (name, *([kinds[node, name]] if kinds else []), shown_values[node, name])
             for name in names
         ]
         width = max(map(len, names), default=0)

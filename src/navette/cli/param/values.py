@@ -1,4 +1,4 @@
-"""The parameters of running nodes, as the verbs of ``navette param`` need them."""
+"""Get, set, describe and dump the parameters of running nodes."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import zip_longest
@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from navette.cli.nearest import did_you_mean
 from navette.cli.param.text import type_word
-from navette.cli.service_calls import Question, answer, ask_all, patience_s, served
+from navette.cli.service_calls import (
+    ServiceRequest,
+    call_all,
+    response_of,
+    response_timeout_s,
+    served,
+)
 from navette.cli.session import fail, wait_for
 from navette.errors import ParameterError
 
@@ -17,46 +23,46 @@ if TYPE_CHECKING:
 
 
 class Listed(NamedTuple):
-    """Names by node, and why some nodes gave none."""
+    """Parameter names by node, and reasons by node that did not respond."""
 
     found: dict[str, list[str]]
-    silent: dict[str, str]
+    unanswered: dict[str, str]
 
 
 class Dumped(NamedTuple):
-    """Values by node and name, and what had to be left out."""
+    """Values by node and name, and remarks on omitted ones."""
 
     found: dict[str, dict[str, Any]]
     remarks: list[str]
 
 
 def names(here: "Node", nodes: Sequence[str], prefixes: Iterable[str] = ()) -> Listed:
-    """The names of all the nodes' parameters, sorted; all nodes are asked at once.
+    """Return the sorted parameter names of several nodes, with concurrent requests.
 
-    A node that does not serve its parameters has none.
+    Nodes without parameter services are left out.
     """
     fields = {"prefixes": list(prefixes)}
     found: dict[str, list[str]] = {}
-    silent: dict[str, str] = {}
+    unanswered: dict[str, str] = {}
     there = served(here)
     nodes = [node for node in nodes if f"{node}/list_parameters" in there]
-    answers = ask_all(here, [_question(n, "list_parameters", fields) for n in nodes])
+    answers = call_all(here, [_request(n, "list_parameters", fields) for n in nodes])
     for node, (response, reason) in zip(nodes, answers, strict=True):
         if response is None:
-            silent[node] = reason
+            unanswered[node] = reason
         else:
             found[node] = sorted(response.result.names)
-    return Listed(found, silent)
+    return Listed(found, unanswered)
 
 
 def types(
     here: "Node", found: Mapping[str, Sequence[str]]
 ) -> dict[tuple[str, str], str]:
-    """(node, name) → ROS 2's word for the type."""
+    """Return ROS 2's name of each type by (node, name)."""
     nodes = [node for node in found if found[node]]
-    answers = ask_all(
+    answers = call_all(
         here,
-        [_question(n, "get_parameter_types", {"names": list(found[n])}) for n in nodes],
+        [_request(n, "get_parameter_types", {"names": list(found[n])}) for n in nodes],
     )
     kinds: dict[tuple[str, str], str] = {}
     for node, (response, _) in zip(nodes, answers, strict=True):
@@ -70,14 +76,14 @@ def types(
 def held(
     here: "Node", found: Mapping[str, Sequence[str]]
 ) -> dict[tuple[str, str], str]:
-    """(node, name) → the value in a parameter file's words; ``-`` without one."""
+    """Return values by (node, name) as in a parameter file; ``-`` if not set."""
     from navette.runtime.parameter import parameter_value_to_python
     from navette.runtime.parameter_files import format_value
 
     nodes = [node for node in found if found[node]]
-    answers = ask_all(
+    answers = call_all(
         here,
-        [_question(n, "get_parameters", {"names": list(found[n])}) for n in nodes],
+        [_request(n, "get_parameters", {"names": list(found[n])}) for n in nodes],
     )
     texts: dict[tuple[str, str], str] = {}
     for node, (response, _) in zip(nodes, answers, strict=True):
@@ -89,7 +95,7 @@ def held(
 
 
 def get(here: "Node", node: str, wanted: Sequence[str]) -> "dict[str, Parameter[Any]]":
-    """The values of a node's parameters; ends the command if one is not there."""
+    """Return parameters of a node; the command fails if one does not exist."""
     found = _found(here, node, wanted)
     if len(found) != len(wanted):
         _fail_unknown(here, node, wanted)
@@ -99,7 +105,7 @@ def get(here: "Node", node: str, wanted: Sequence[str]) -> "dict[str, Parameter[
 def _found(
     here: "Node", node: str, wanted: Sequence[str]
 ) -> "dict[str, Parameter[Any]]":
-    """All the values; none at all if one of them is not there."""
+    """Return all values; an empty dictionary if one of them does not exist."""
     from navette.runtime import Parameter
     from navette.runtime.parameter import ParameterType, parameter_value_to_python
 
@@ -113,11 +119,10 @@ def _found(
 
 
 def set_values(here: "Node", node: str, values: Mapping[str, Any]) -> list[Any]:
-    """Set a node's parameters one by one; a SetParametersResult each.
+    """Set a node's parameters one by one; return a SetParametersResult for each.
 
-    A value is sent as the type that the node declared: a whole number as a double, an
-    empty list as any list. What is refused is not altered; a refusal of an unknown
-    name says which are near.
+    A value is converted to the declared type: an integer to a double, an empty list to
+    a list of any type. For an unknown name the reason suggests similar names.
     """
     from navette.runtime import Parameter
     from navette.runtime.parameter import ParameterType, coerced
@@ -133,7 +138,7 @@ def set_values(here: "Node", node: str, values: Mapping[str, Any]) -> list[Any]:
             declared = ParameterType(kind)
             parameter = Parameter(name, declared, coerced(name, value, declared))
         except (ParameterError, ValueError):
-            # The node says what it thinks of that.
+            # The node reports the error.
             parameter = Parameter(name, value=value)
         parameters.append(parameter)
     results = list(_answered(here, client.set_parameters(parameters), node).results)
@@ -148,22 +153,22 @@ def set_values(here: "Node", node: str, values: Mapping[str, Any]) -> list[Any]:
 
 
 def _explain(here: "Node", node: str, refused: Mapping[str, Any]) -> None:
-    """Say what is near a name that is not there; take a value that is there for set.
+    """Suggest similar names, and accept read-only parameters that have the value.
 
-    The latter are read-only: a dump has them, and can be loaded nevertheless.
+    A dump contains read-only parameters, and loading it should succeed.
     """
     known = names(here, [node]).found.get(node, [])
     there = _found(here, node, [name for name in refused if name in known])
     for name, (parameter, result) in refused.items():
         if name not in known and (hint := did_you_mean(name, known)):
-            # Instead of all the names that there are.
+            # Shorter than the node's list of all names.
             result.reason = f"node {node} has no parameter {name!r}{hint}"
         elif there.get(name) == parameter:
-            result.successful, result.reason = True, "it is so already"
+            result.successful, result.reason = True, "unchanged"
 
 
 def delete(here: "Node", node: str, name: str) -> Any:
-    """Take a parameter away; the node's SetParametersResult."""
+    """Delete a parameter; return the node's SetParametersResult."""
     client = _client(here, node)
     if name not in (known := names(here, [node]).found.get(node, [])):
         fail(f"node {node} has no parameter {name!r}{did_you_mean(name, known)}")
@@ -171,7 +176,7 @@ def delete(here: "Node", node: str, name: str) -> Any:
 
 
 def describe(here: "Node", node: str, wanted: Sequence[str]) -> list[Any]:
-    """Descriptors of a node's parameters; ends the command if one is not there."""
+    """Return parameter descriptors; the command fails if one does not exist."""
     client = _client(here, node)
     response = _answered(here, client.describe_parameters(list(wanted)), node)
     if len(response.descriptors) != len(wanted):
@@ -180,17 +185,17 @@ def describe(here: "Node", node: str, wanted: Sequence[str]) -> list[Any]:
 
 
 def dump(here: "Node", nodes: Sequence[str]) -> Dumped:
-    """All values that a parameter file can hold."""
+    """Return all values that a parameter file can contain."""
     from navette.runtime.parameter import ParameterType, parameter_value_to_python
 
     listed = names(here, nodes)
-    remarks = [f"{node}: {reason}" for node, reason in listed.silent.items()]
-    asked = [
-        _question(node, "get_parameters", {"names": found})
+    remarks = [f"{node}: {reason}" for node, reason in listed.unanswered.items()]
+    requests = [
+        _request(node, "get_parameters", {"names": found})
         for node, found in listed.found.items()
     ]
     values: dict[str, dict[str, Any]] = {}
-    answers = ask_all(here, asked)
+    answers = call_all(here, requests)
     for (node, found), (response, reason) in zip(
         listed.found.items(), answers, strict=True
     ):
@@ -202,7 +207,7 @@ def dump(here: "Node", nodes: Sequence[str]) -> Dumped:
             kind = ParameterType(value.type)
             if kind in (ParameterType.NOT_SET, ParameterType.BYTE_ARRAY):
                 remarks.append(
-                    f"{node}: {name} is left out: {type_word(kind)} has no form in YAML"
+                    f"{node}: {name} omitted: YAML cannot represent {type_word(kind)}"
                 )
             else:
                 values[node][name] = parameter_value_to_python(value)
@@ -210,14 +215,14 @@ def dump(here: "Node", nodes: Sequence[str]) -> Dumped:
 
 
 def as_file(values: Mapping[str, Mapping[str, Any]]) -> str:
-    """A parameter file of (node → name → value)."""
+    """Format values by node and name as a parameter file."""
     from navette.runtime.parameter_files import format_parameters
 
     return format_parameters(values)
 
 
 def write(values: Mapping[str, Mapping[str, Any]], folder: Path) -> list[Path]:
-    """A file per node, named as ROS 2 does: ``/ns/node`` → ``ns__node.yaml``."""
+    """Write a file per node, named as in ROS 2: ``ns__node.yaml`` for ``/ns/node``."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for node, own in values.items():
@@ -228,7 +233,7 @@ def write(values: Mapping[str, Mapping[str, Any]], folder: Path) -> list[Path]:
 
 
 def from_file(path: Path, node: str, *, use_wildcard: bool) -> dict[str, Any]:
-    """What a file has for a node, as at its start: the last entry that fits wins."""
+    """Return a file's values for a node; the last matching entry wins."""
     from navette.runtime.overrides import ParameterOverrides
 
     overrides = ParameterOverrides()
@@ -239,51 +244,51 @@ def from_file(path: Path, node: str, *, use_wildcard: bool) -> dict[str, Any]:
     values = {name: each.value for name, each in overrides.for_node(node).items()}
     if not values:
         fail(
-            f"{path}: nothing for {node}; it has values for "
+            f"{path} has no values for {node}, only for "
             f"{', '.join(patterns) or 'no node'}"
         )
     return values
 
 
 def parsed(text: str) -> Any:
-    """The value that a person typed, read as YAML."""
+    """Parse a value as YAML."""
     from navette.runtime.parameter_files import parse_value
 
     return parse_value(text)
 
 
 def quoting_hint(text: str) -> str:
-    """How to write what a person meant as a text, and YAML reads otherwise."""
-    return "" if isinstance(parsed(text), str) else f"; as a text: \"'{text}'\""
+    """Explain how to quote a string that YAML parses as another type."""
+    return "" if isinstance(parsed(text), str) else f"; for a string: \"'{text}'\""
 
 
-def _question(node: str, name: str, fields: dict[str, Any]) -> Question:
+def _request(node: str, name: str, fields: dict[str, Any]) -> ServiceRequest:
     type_name = "".join(part.title() for part in name.split("_"))
-    return Question(f"{node}/{name}", f"rcl_interfaces/srv/{type_name}", fields)
+    return ServiceRequest(f"{node}/{name}", f"rcl_interfaces/srv/{type_name}", fields)
 
 
 def _client(here: "Node", node: str) -> "AsyncParameterClient":
     from navette.runtime.parameter_client import AsyncParameterClient
 
     client = AsyncParameterClient(here, node)
-    if not client.wait_for_services(patience_s()):
+    if not client.wait_for_services(response_timeout_s()):
         fail(f"node {node} has no parameter services")
     return client
 
 
 def _answered(here: "Node", future: Any, node: str) -> Any:
-    wait_for(here, future.done, patience_s())
-    got = answer(future, f"of {node}'s parameters")
+    wait_for(here, future.done, response_timeout_s())
+    got = response_of(future, f"of {node}'s parameters")
     if got.response is None:
         fail(got.reason)
     return got.response
 
 
 def _fail_unknown(here: "Node", node: str, wanted: Sequence[str]) -> None:
-    """Say which of the names the node does not have."""
+    """Fail with the name that the node does not have."""
     known = names(here, [node]).found.get(node, [])
     unknown = [name for name in wanted if name not in known]
     if not unknown:
-        fail(f"node {node}: {', '.join(wanted)}: declared, but without a value")
+        fail(f"node {node}: {', '.join(wanted)}: declared but not set")
     name = unknown[0]
     fail(f"node {node} has no parameter {name!r}{did_you_mean(name, known)}")

@@ -1,4 +1,4 @@
-"""``navette param``: read and change the parameters of nodes that run."""
+"""The verbs of ``navette param``."""
 
 import re
 from pathlib import Path
@@ -20,7 +20,12 @@ from navette.cli.param.options import (
     NodeName,
     Timeout,
 )
-from navette.cli.service_calls import ANSWER_S, chosen_node, node_names, patient
+from navette.cli.service_calls import (
+    RESPONSE_TIMEOUT_S,
+    chosen_node,
+    node_names,
+    response_timeout,
+)
 from navette.cli.session import connect, fail
 from navette.cli.stderr import note
 from navette.errors import InvalidValueError
@@ -36,7 +41,7 @@ def list_(
     node_name: AnyNode = None,
     filter_: Annotated[
         str | None,
-        Option("--filter", metavar="REGEX", help="Only names that match."),
+        Option("--filter", metavar="REGEX", help="List only matching names."),
     ] = None,
     prefixes: Annotated[
         list[str] | None,
@@ -44,23 +49,26 @@ def list_(
             "--param-prefixes",
             "--prefixes",
             metavar="PREFIX...",
-            help="Only names below these, as limits for limits.max_speed_mps.",
+            help="List only names with these prefixes, such as limits for"
+            " limits.max_speed_mps.",
         ),
     ] = None,
-    types: Annotated[bool, Option("--param-type", help="With their types.")] = False,
+    types: Annotated[
+        bool, Option("--param-type", help="Also print the types.")
+    ] = False,
     include_hidden_nodes: Hidden = False,
-    timeout_s: Timeout = ANSWER_S,
+    timeout_s: Timeout = RESPONSE_TIMEOUT_S,
     as_json: Json = False,
 ) -> None:
-    """List parameters: of a node, or of all."""
+    """List the parameters of a node or of all nodes."""
     pattern = _pattern(filter_)
-    with connect() as here, patient(timeout_s):
+    with connect() as here, response_timeout(timeout_s):
         every = node_names(here, hidden=include_hidden_nodes)
         nodes = [chosen_node(here, node_name)] if node_name else every
         listed = values.names(here, nodes, prefixes or ())
-        for name, reason in listed.silent.items():
+        for name, reason in listed.unanswered.items():
             note(f"{name}: {reason}")
-        if node_name and nodes[0] not in {**listed.found, **listed.silent}:
+        if node_name and nodes[0] not in {**listed.found, **listed.unanswered}:
             fail(f"node {nodes[0]} has no parameter services")
         found = {
             node: [name for name in names if pattern is None or pattern.match(name)]
@@ -78,7 +86,7 @@ def list_(
     else:
         for line in text.name_lines(found, kinds, held, with_nodes=node_name is None):
             show(line)
-    if node_name and listed.silent:
+    if node_name and listed.unanswered:
         raise click.exceptions.Exit(1)
 
 
@@ -89,7 +97,7 @@ def _pattern(text: str | None) -> re.Pattern[str] | None:
         return re.compile(text)
     except re.error as error:
         raise InvalidValueError(
-            f"--filter {text!r}: wanted a regular expression: {error}"
+            f"--filter {text!r} is not a regular expression: {error}"
         ) from None
 
 
@@ -97,12 +105,14 @@ def _pattern(text: str | None) -> re.Pattern[str] | None:
 def get(
     node_name: NodeName,
     name: Name,
-    hide_type: Annotated[bool, Option("--hide-type", help="Only the value.")] = False,
-    timeout_s: Timeout = ANSWER_S,
+    hide_type: Annotated[
+        bool, Option("--hide-type", help="Print only the value.")
+    ] = False,
+    timeout_s: Timeout = RESPONSE_TIMEOUT_S,
     as_json: Json = False,
 ) -> None:
-    """Print a parameter's value."""
-    with connect() as here, patient(timeout_s):
+    """Print the value of a parameter."""
+    with connect() as here, response_timeout(timeout_s):
         node = chosen_node(here, node_name)
         got = values.get(here, node, [name])[name]
     if as_json:
@@ -121,18 +131,18 @@ def set_(
         str,
         Argument(
             metavar="VALUE",
-            help="As YAML: 1.5, true, text, \"'5'\", [1, 2].",
+            help="YAML value: 1.5, true, text, \"'5'\", [1, 2].",
             complete=complete_parameter_value,
         ),
     ],
-    timeout_s: Timeout = ANSWER_S,
+    timeout_s: Timeout = RESPONSE_TIMEOUT_S,
 ) -> None:
-    """Set a parameter of a node that runs.
+    """Set a parameter of a running node.
 
-    A whole number will do where a double is wanted. A value that the node refuses
-    changes nothing: the reason is printed and the exit code is 1.
+    An integer is accepted for a double. If the node rejects the value, the reason is
+    printed and the exit code is 1.
     """
-    with connect() as here, patient(timeout_s):
+    with connect() as here, response_timeout(timeout_s):
         node = chosen_node(here, node_name)
         result = values.set_values(here, node, {name: values.parsed(value)})[0]
     if not result.successful:
@@ -145,11 +155,11 @@ def set_(
 def describe(
     node_name: NodeName,
     names: Names,
-    timeout_s: Timeout = ANSWER_S,
+    timeout_s: Timeout = RESPONSE_TIMEOUT_S,
     as_json: Json = False,
 ) -> None:
-    """Say what a parameter means, its type and its limits."""
-    with connect() as here, patient(timeout_s):
+    """Show description, type and limits of parameters."""
+    with connect() as here, response_timeout(timeout_s):
         node = chosen_node(here, node_name)
         described = values.describe(here, node, names)
     if as_json:
@@ -170,18 +180,18 @@ def dump(
             "--output-dir",
             "-o",
             metavar="FOLDER",
-            help="Write a file per node there instead of printing.",
+            help="Write one file per node to this folder instead of printing.",
         ),
     ] = None,
     include_hidden_nodes: Hidden = False,
-    timeout_s: Timeout = ANSWER_S,
+    timeout_s: Timeout = RESPONSE_TIMEOUT_S,
 ) -> None:
-    """Print a node's parameters as a parameter file; without NODE, all nodes'.
+    """Print the parameters of a node, or of all nodes, as a parameter file.
 
-    What is printed can be given to --params-file, params: in a launch file, and
-    navette param load.
+    The file works with --params-file, with params: in a project file, and with navette
+    param load.
     """
-    with connect() as here, patient(timeout_s):
+    with connect() as here, response_timeout(timeout_s):
         every = node_names(here, hidden=include_hidden_nodes)
         nodes = [chosen_node(here, node_name)] if node_name else every
         dumped = values.dump(here, nodes)
@@ -200,15 +210,15 @@ def dump(
 def load(
     node_name: NodeName,
     parameter_file: Annotated[
-        Path, Argument(metavar="FILE", help="A ROS 2 parameter file.")
+        Path, Argument(metavar="FILE", help="ROS 2 parameter file.")
     ],
     no_use_wildcard: Annotated[
-        bool, Option("--no-use-wildcard", help="Not what stands under /**.")
+        bool, Option("--no-use-wildcard", help="Ignore the values under /**.")
     ] = False,
-    timeout_s: Timeout = ANSWER_S,
+    timeout_s: Timeout = RESPONSE_TIMEOUT_S,
 ) -> None:
-    """Set what a parameter file has for a node."""
-    with connect() as here, patient(timeout_s):
+    """Set the parameters of a node from a parameter file."""
+    with connect() as here, response_timeout(timeout_s):
         node = chosen_node(here, node_name)
         wanted = values.from_file(
             parameter_file, node, use_wildcard=not no_use_wildcard
@@ -226,9 +236,11 @@ def load(
 
 
 @param.command()
-def delete(node_name: NodeName, name: Name, timeout_s: Timeout = ANSWER_S) -> None:
-    """Delete a parameter; nodes allow it for those without a fixed type."""
-    with connect() as here, patient(timeout_s):
+def delete(
+    node_name: NodeName, name: Name, timeout_s: Timeout = RESPONSE_TIMEOUT_S
+) -> None:
+    """Delete a parameter; nodes allow it only for parameters without a fixed type."""
+    with connect() as here, response_timeout(timeout_s):
         node = chosen_node(here, node_name)
         result = values.delete(here, node, name)
     if not result.successful:

@@ -1,4 +1,4 @@
-"""``navette service …``: who serves what; and calling it."""
+"""``navette service``: list, inspect, print and call services."""
 
 from navette.cli.service.verbs import service
 

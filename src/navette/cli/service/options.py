@@ -18,7 +18,7 @@ ServiceType = Annotated[
     str,
     Argument(
         metavar="TYPE",
-        help="As std_srvs/srv/SetBool.",
+        help="Service type, such as std_srvs/srv/SetBool.",
         complete=complete_service_types,
     ),
 ]
@@ -27,7 +27,7 @@ Hidden = Annotated[
     Option(
         "--include-hidden-services",
         "-a",
-        help="Also those with a part that begins with _.",
+        help="Include hidden services: a part of the name begins with _.",
     ),
 ]
-Json = Annotated[bool, Option("--json", help="One JSON value, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]

@@ -1,15 +1,14 @@
 """The verbs of ``navette service``."""
 
 from navette.cli.commands import Group
-from navette.cli.service import calling, echoing, looking
+from navette.cli.service import listing
+from navette.cli.service.call import call
+from navette.cli.service.echo import echo
 
-service = Group(
-    name="service",
-    help="List, inspect and print services, and call them.",
-)
-service.command("list")(looking.list_)
-service.command("type")(looking.type_)
-service.command()(looking.find)
-service.command()(looking.info)
-service.command(context_settings={"ignore_unknown_options": True})(calling.call)
-service.command()(echoing.echo)
+service = Group("service", help="List, inspect and print services, and call them.")
+service.command("list")(listing.list_)
+service.command("type")(listing.type_)
+service.command()(listing.find)
+service.command()(listing.info)
+service.command(context_settings={"ignore_unknown_options": True})(call)
+service.command()(echo)

@@ -1,4 +1,4 @@
-"""``navette service echo``: the calls of a service, where it tells of them."""
+"""``navette service echo``: print the requests and responses of a service."""
 
 import re
 from functools import partial
@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from navette.cli.message_yaml import yaml_of
 from navette.cli.options import Argument, Option
 from navette.cli.output import show
-from navette.cli.service.looking import types_of
+from navette.cli.service.listing import types_of
 from navette.cli.service.options import ServiceName
 from navette.cli.session import connect, service_endpoints, wait_for
 from navette.cli.stderr import note
@@ -19,13 +19,11 @@ def echo(
     service: ServiceName,
     service_type: Annotated[
         str | None,
-        Argument(metavar="[TYPE]", help="By default that of the server."),
+        Argument(metavar="[TYPE]", help="Service type. Default: that of the server."),
     ] = None,
-    csv: Annotated[
-        bool, Option("--csv", help="Values only, with commas between.")
-    ] = False,
+    csv: Annotated[bool, Option("--csv", help="Print comma-separated values.")] = False,
     full_length: Annotated[
-        bool, Option("--full-length", "-f", help="Shorten nothing.")
+        bool, Option("--full-length", "-f", help="Print full arrays and strings.")
     ] = False,
     truncate_length: Annotated[
         int,
@@ -34,20 +32,21 @@ def echo(
             "-l",
             metavar="N",
             min=0,
-            help="Shorten arrays and texts to this.",
+            help="Truncate arrays and strings to N items.",
         ),
     ] = 128,
-    no_arr: Annotated[bool, Option("--no-arr", help="No arrays.")] = False,
-    no_str: Annotated[bool, Option("--no-str", help="No texts.")] = False,
+    no_arr: Annotated[bool, Option("--no-arr", help="Do not print arrays.")] = False,
+    no_str: Annotated[bool, Option("--no-str", help="Do not print strings.")] = False,
     flow_style: Annotated[
-        bool, Option("--flow-style", help="An event on a line.")
+        bool, Option("--flow-style", help="Print each event on one line.")
     ] = False,
-    once: Annotated[bool, Option("--once", help="End after an event.")] = False,
+    once: Annotated[bool, Option("--once", help="Stop after one event.")] = False,
 ) -> None:
-    """Print requests and responses as they are sent and received.
+    """Print requests and responses of a service.
 
-    The server or the client must tell of them: configure_introspection() in its
-    program, or in ROS 2's demo the parameter service_configure_introspection.
+    Needs service introspection in the server or the client: call
+    configure_introspection() in its program, or in ROS 2's demo set the parameter
+    service_configure_introspection.
     """
     from navette.cli.message_types import interface_class
     from navette.runtime.qos import qos_profile_services_default
@@ -74,8 +73,8 @@ def echo(
         )
         if not subscription.get_publisher_count():
             note(
-                f"nobody publishes {name}{_EVENTS}: is service introspection on, at the"
-                " server or at a client?"
+                f"no publisher on {name}{_EVENTS}: enable service introspection in the"
+                " server or a client"
             )
         wait_for(here, lambda: once and shown > 0)
 
@@ -87,10 +86,10 @@ def _as_csv(event: Any, shortened: dict[str, Any]) -> str:
 
 
 def _as_yaml(event: Any, shortened: dict[str, Any], *, flow_style: bool) -> str:
-    """The event, with the kind of event in words."""
+    """Format the event, with the name of its kind instead of the number."""
     number = event.info.event_type
     text = yaml_of(event, **shortened, flow_style=flow_style)
-    # The first field of all: what is said further on stays as it is.
+    # Only the first match is the event's own field.
     word = _event_words().get(number, number)
     return (
         re.sub(rf"(event_type\S*: ){number}\b", rf"\g<1>{word}", text, count=1) + "---"

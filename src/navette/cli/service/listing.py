@@ -1,4 +1,4 @@
-"""The verbs that say which services there are: list, type, find, info."""
+"""``navette service list``, ``type``, ``find`` and ``info``."""
 
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from navette.runtime import Node
     from navette.transports import Endpoint
 
-Count = Annotated[bool, Option("--count-services", "-c", help="Only their number.")]
+Count = Annotated[bool, Option("--count-services", "-c", help="Print only the number.")]
 
 
 def list_(
     show_types: Annotated[
-        bool, Option("--show-types", "-t", help="With their types.")
+        bool, Option("--show-types", "-t", help="Also print the types.")
     ] = False,
     count: Count = False,
     include_hidden_services: Hidden = False,
     as_json: Json = False,
 ) -> None:
-    """List the services that are served."""
+    """List services."""
     with connect() as here:
         found = services(here, hidden=include_hidden_services)
         if not (found or count or as_json):
@@ -44,13 +44,13 @@ def list_(
         own = {n: types for n, types in found.items() if not is_of_every_node(n)}
         show_names(own, with_types=show_types)
         if len(own) < len(found):
-            note(f"and {len(found) - len(own)} that every node has (-a lists them)")
+            note(f"and {len(found) - len(own)} that every node has (-a shows them)")
     else:
         show_names(found, with_types=show_types)
 
 
 def show_names(found: dict[str, list[str]], *, with_types: bool) -> None:
-    """A name per line; types in brackets, or in a column for a person."""
+    """Print a name per line; types in brackets, or in a column on a terminal."""
     if not with_types:
         lines = list(found)
     elif is_terminal():
@@ -62,7 +62,7 @@ def show_names(found: dict[str, list[str]], *, with_types: bool) -> None:
 
 
 def type_(service: ServiceName) -> None:
-    """Print a service's type."""
+    """Print the type of a service."""
     with connect() as here:
         name = here.resolve_service_name(service)
         types = types_of(here, name)
@@ -76,7 +76,7 @@ def find(
     include_hidden_services: Hidden = False,
     as_json: Json = False,
 ) -> None:
-    """List the services of a type."""
+    """List services of a type."""
     from navette.cli.message_types import if_unknown
 
     parts = service_type.split("/")
@@ -89,18 +89,18 @@ def find(
     elif as_json:
         show_json(found)
     else:
-        for name in found or fail(f"no service is of type {full}{if_unknown(full)}"):
+        for name in found or fail(f"no service has type {full}{if_unknown(full)}"):
             show(name)
 
 
 def info(
     service: ServiceName,
     verbose: Annotated[
-        bool, Option("--verbose", "-v", help="Also who serves and calls it.")
+        bool, Option("--verbose", "-v", help="Also print the nodes.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Say of which type a service is, and how many serve and call it."""
+    """Show the type of a service and the number of its servers and clients."""
     from navette.transports import EndpointKind
 
     with connect() as here:
@@ -124,7 +124,7 @@ def _nodes(found: "list[Endpoint]") -> list[str]:
 
 
 def services(here: "Node", *, hidden: bool) -> dict[str, list[str]]:
-    """Names of what is served → types, sorted."""
+    """Return the types of all services by name, sorted."""
     from navette.runtime.graph import names_and_types
     from navette.transports import EndpointKind
 
@@ -133,8 +133,8 @@ def services(here: "Node", *, hidden: bool) -> dict[str, list[str]]:
 
 
 def types_of(here: "Node", name: str) -> list[str]:
-    """The types under which a service is served; ends the command if it is not."""
+    """Return the types of a service; the command fails if it has no server."""
     every = services(here, hidden=True)
     if name not in every:
-        fail(f"nobody serves {name}{did_you_mean(name, every)}")
+        fail(f"no server of {name}{did_you_mean(name, every)}")
     return every[name]

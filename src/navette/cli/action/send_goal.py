@@ -1,10 +1,10 @@
-"""``navette action send_goal``: a goal out of partial YAML, followed to its end."""
+"""``navette action send_goal``: send a goal given as YAML and print its result."""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
 import click
 
-from navette.cli.action.looking import actions, types_of
+from navette.cli.action.listing import actions, types_of
 from navette.cli.action.options import ActionName, Json
 from navette.cli.completing import complete_goal
 from navette.cli.message_yaml import yaml_of
@@ -30,30 +30,35 @@ def send_goal(
         list[str] | None,
         Argument(
             metavar="[TYPE] [YAML]",
-            help="The type (by default that of the server), and the fields of the goal"
-            " that are not to keep their defaults: '{order: 5}'.",
+            help="Action type (default: that of the server), and the goal fields that"
+            " differ from their defaults: '{order: 5}'.",
             complete=complete_goal,
         ),
     ] = None,
     feedback: Annotated[
-        bool, Option("--feedback", "-f", help="Print feedback as it comes.")
+        bool, Option("--feedback", "-f", help="Print feedback.")
     ] = False,
     timeout: Annotated[
         float | None,
-        Option("--timeout", "-t", metavar="S", help="Cancel the goal after this long."),
+        Option("--timeout", "-t", metavar="S", help="Cancel the goal after S seconds."),
     ] = None,
     wait: Annotated[
         float,
-        Option("--wait", "-w", metavar="S", help="For a server; 0: for ever."),
+        Option(
+            "--wait",
+            "-w",
+            metavar="S",
+            help="Wait S seconds for a server; 0: no limit.",
+        ),
     ] = 5.0,
     stdin: Annotated[
         bool, Option("--stdin", help="Read the YAML from standard input.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Send a goal, wait for its result and print it; Ctrl-C cancels the goal.
+    """Send a goal and print its result; Ctrl-C cancels the goal.
 
-    Exit code 0 only if the goal succeeded.
+    The exit code is 0 only if the goal succeeded.
     """
     from navette.cli.message_types import interface_class
     from navette.runtime.action import ActionClient
@@ -69,9 +74,9 @@ def send_goal(
         goal = filled(kind.Goal, values or "{}")
         client = ActionClient(here, kind, name)
         if not client.wait_for_server(wait or None):
-            fail(f"nobody serves the action {name}")
+            fail(f"no server of the action {name}")
         report = _Report(as_json=as_json)
-        report.say("Sending goal:", _yaml(goal, " "))
+        report.print("Sending goal:", _yaml(goal, " "))
         sent = client.send_goal_async(goal, report.feedback if feedback else None)
         try:
             status = _follow(here, client, sent, timeout, report)
@@ -83,12 +88,12 @@ def send_goal(
 
 
 class _Report:
-    """What is printed of a goal: as ROS 2's command does it, or a JSON value a line."""
+    """Printer of a goal's progress: like ROS 2's command, or as lines of JSON."""
 
     def __init__(self, *, as_json: bool) -> None:
         self._as_json = as_json
 
-    def say(self, title: str, text: str = "") -> None:
+    def print(self, title: str, text: str = "") -> None:
         if not self._as_json:
             show(styled(title, bold=True) + (f"\n{text}" if text else ""))
 
@@ -96,20 +101,20 @@ class _Report:
         if self._as_json:
             show_json({"feedback": _fields(message.feedback)})
         else:
-            self.say("Feedback:", _yaml(message.feedback))
+            self.print("Feedback:", _yaml(message.feedback))
 
     def result(self, status: str, message: Any) -> None:
         if self._as_json:
             show_json({"status": status, "result": _fields(message)})
         else:
-            self.say("Result:", _yaml(message))
-            self.say(f"Goal finished with status: {status}")
+            self.print("Result:", _yaml(message))
+            self.print(f"Goal finished with status: {status}")
 
     def rejected(self) -> None:
         if self._as_json:
             show_json({"status": "REJECTED", "result": None})
         else:
-            self.say("Goal was rejected.")
+            self.print("Goal was rejected.")
 
 
 def _follow(
@@ -119,7 +124,7 @@ def _follow(
     timeout_s: float | None,
     report: _Report,
 ) -> str:
-    """Wait for the goal's end; its status in a word."""
+    """Wait for the end of the goal and return the name of its status."""
     from navette.runtime.action.goal_states import STATUS_NAMES
 
     _wait_with_server(here, client, sent)
@@ -127,7 +132,7 @@ def _follow(
     if handle is None or not handle.accepted:
         report.rejected()
         return "REJECTED"
-    report.say(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+    report.print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
     done = handle.get_result_async()
     if not _wait_with_server(here, client, done, timeout_s):
         note(f"no result in {timeout_s:g} s")
@@ -147,35 +152,35 @@ def _wait_with_server(
     future: "Future[Any]",
     timeout_s: float | None = None,
 ) -> bool:
-    """Wait for an answer while there is somebody to give it."""
+    """Wait for a response as long as there is a server; return whether it arrived."""
     wait_for(here, lambda: future.done() or not client.server_is_ready(), timeout_s)
     if future.done():
         if future.exception() is not None:
             fail(str(future.exception()))
         return True
     if not client.server_is_ready():
-        fail(f"action {client.action_name}: its server has gone")
+        fail(f"action {client.action_name}: the server was closed")
     return False
 
 
 def _cancel(here: "Node", sent: "Future[ClientGoalHandle]", report: _Report) -> None:
-    """Cancel the goal, whatever has come of it."""
+    """Cancel the goal if it was accepted."""
     wait_for(here, sent.done, _CANCEL_S)
     handle = sent.result() if sent.done() else None
     if handle is None or not handle.accepted:
         return
-    report.say("Canceling goal...")
+    report.print("Canceling goal...")
     asked = handle.cancel_goal_async()
     wait_for(here, asked.done, _CANCEL_S)
     response: Any = asked.result() if asked.done() else None
     if response is None or not response.goals_canceling:
         note("the server did not cancel the goal")
     else:
-        report.say("Goal canceled.")
+        report.print("Goal canceled.")
 
 
 def _yaml(message: Any, before: str = "") -> str:
-    """All lines indented for a person; in a pipe the first, as ROS 2 prints it."""
+    """Indent all lines on a terminal; in a pipe only the first, as ROS 2 does."""
     if is_terminal():
         return yaml_of(message, indent=_INDENT)
     return " " * _INDENT + before + yaml_of(message)
@@ -187,11 +192,11 @@ def _fields(message: Any) -> Any:
     return message_to_ordereddict(message)
 
 
-def _wait_for_server(here: "Node", name: str, patience_s: float | None) -> None:
+def _wait_for_server(here: "Node", name: str, timeout_s: float | None) -> None:
     every = actions(here)
     if name in every:
         return
     hint = did_you_mean(name, every)
     note(f"waiting for an action server of {name} to become available{hint or '...'}")
-    if not wait_for(here, lambda: name in actions(here), patience_s):
-        fail(f"nobody serves the action {name}{hint}")
+    if not wait_for(here, lambda: name in actions(here), timeout_s):
+        fail(f"no server of the action {name}{hint}")

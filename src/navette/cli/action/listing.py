@@ -1,4 +1,4 @@
-"""The verbs that say which actions there are: list, type, find, info."""
+"""``navette action list``, ``type``, ``find`` and ``info``."""
 
 from typing import TYPE_CHECKING, Annotated
 
@@ -6,7 +6,7 @@ from navette.cli.action.options import ActionName, ActionType, Json
 from navette.cli.nearest import did_you_mean
 from navette.cli.options import Option
 from navette.cli.output import show, show_json
-from navette.cli.service.looking import show_names
+from navette.cli.service.listing import show_names
 from navette.cli.service_calls import note_none
 from navette.cli.session import connect, endpoints, fail
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from navette.runtime import Node
     from navette.transports import EndpointKind
 
-Count = Annotated[bool, Option("--count-actions", "-c", help="Only their number.")]
-ShowTypes = Annotated[bool, Option("--show-types", "-t", help="With their types.")]
+Count = Annotated[bool, Option("--count-actions", "-c", help="Print only the number.")]
+ShowTypes = Annotated[bool, Option("--show-types", "-t", help="Also print the types.")]
 
 _FEEDBACK = "/_action/feedback"
 
@@ -23,7 +23,7 @@ _FEEDBACK = "/_action/feedback"
 def list_(
     show_types: ShowTypes = False, count: Count = False, as_json: Json = False
 ) -> None:
-    """List the actions."""
+    """List actions."""
     with connect() as here:
         found = actions(here)
         if not (found or count or as_json):
@@ -37,7 +37,7 @@ def list_(
 
 
 def type_(action: ActionName) -> None:
-    """Print an action's type."""
+    """Print the type of an action."""
     with connect() as here:
         types = types_of(here, here.resolve_topic_name(action))
     for each in types:
@@ -45,7 +45,7 @@ def type_(action: ActionName) -> None:
 
 
 def find(action_type: ActionType, count: Count = False, as_json: Json = False) -> None:
-    """List the actions of a type."""
+    """List actions of a type."""
     from navette.cli.message_types import if_unknown
 
     parts = action_type.split("/")
@@ -57,7 +57,7 @@ def find(action_type: ActionType, count: Count = False, as_json: Json = False) -
     elif as_json:
         show_json(found)
     else:
-        for name in found or fail(f"no action is of type {full}{if_unknown(full)}"):
+        for name in found or fail(f"no action has type {full}{if_unknown(full)}"):
             show(name)
 
 
@@ -65,11 +65,11 @@ def info(
     action: ActionName,
     show_types: ShowTypes = False,
     count: Annotated[
-        bool, Option("--count", "-c", help="Only how many, not who.")
+        bool, Option("--count", "-c", help="Print only the numbers.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Say who serves an action and who is its client."""
+    """Show the servers and clients of an action."""
     from navette.transports import EndpointKind
 
     with connect() as here:
@@ -88,7 +88,7 @@ def info(
 
 
 def _users(here: "Node", name: str, kind: "EndpointKind") -> list[dict[str, str]]:
-    """Whose feedback it is: every server publishes it, every client reads it."""
+    """Find the nodes by the feedback topic: servers publish it, clients subscribe."""
     return [
         {
             "node": end.node_full_name,
@@ -99,15 +99,15 @@ def _users(here: "Node", name: str, kind: "EndpointKind") -> list[dict[str, str]
 
 
 def actions(here: "Node") -> dict[str, list[str]]:
-    """Names → types, sorted."""
+    """Return the types of all actions by name, sorted."""
     from navette.runtime.action import get_action_names_and_types
 
     return dict(get_action_names_and_types(here))
 
 
 def types_of(here: "Node", name: str) -> list[str]:
-    """The types of an action; ends the command if nobody has it."""
+    """Return the types of an action; the command fails if there is none."""
     every = actions(here)
     if name not in every:
-        fail(f"nobody serves the action {name}{did_you_mean(name, every)}")
+        fail(f"no server of the action {name}{did_you_mean(name, every)}")
     return every[name]
