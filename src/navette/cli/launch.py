@@ -1,5 +1,7 @@
 """``navette launch``: run ROS 2 launch files on Navette."""
 
+import sys
+from multiprocessing import forkserver
 from typing import Annotated
 
 import click
@@ -43,17 +45,21 @@ def launch(
     Ctrl-C ends everything that the launch started. Exit code 1: the launch or one of
     its processes failed.
     """
+    forks = processes and not show_args and sys.platform == "linux"
+    if forks:  # imports Navette while this process does
+        forkserver.set_forkserver_preload(["navette.cli.launch_preload"])
+        forkserver.ensure_running()
     from navette.ros2.launch import launch as run_launch
     from navette.ros2.launch import parse_launch_arguments, show_arguments
     from navette.ros2.launch.session import find_launch_file
     from navette.ros2.names import install
+    from navette.supervisor import ForkServer, ProcessManager
 
     install(instead_of_ros=on_navette)
     path, rest = find_launch_file(words)
     if show_args:
         show(show_arguments(path))
         return
-    arguments = parse_launch_arguments(rest)
-    raise click.exceptions.Exit(
-        run_launch(path, arguments, processes=processes, debug=debug)
-    )
+    manager = ProcessManager(ForkServer() if forks else None) if processes else None
+    code = run_launch(path, parse_launch_arguments(rest), manager=manager, debug=debug)
+    raise click.exceptions.Exit(code)

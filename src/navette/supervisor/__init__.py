@@ -13,6 +13,7 @@ from navette.supervisor.child import (
     ProcessListener,
 )
 from navette.supervisor.exit_code import describe_exit
+from navette.supervisor.fork_server import ForkServer
 from navette.supervisor.lines import LineSplitter
 from navette.supervisor.managed_process import ManagedProcess
 from navette.supervisor.process_manager import (
@@ -30,6 +31,7 @@ from navette.supervisor.terminator import GracePeriods
 
 __all__ = [
     "ChildProcess",
+    "ForkServer",
     "GracePeriods",
     "INTERRUPT",
     "KILL",

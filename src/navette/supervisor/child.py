@@ -8,6 +8,7 @@ import subprocess
 import threading
 from typing import IO, Protocol
 
+from navette.supervisor.fork_server import ForkedProcess
 from navette.supervisor.guard import Guard
 
 _POSIX = os.name == "posix"
@@ -59,7 +60,9 @@ class ChildProcess:
         guard: is notified once no process of the group is left.
     """
 
-    def __init__(self, process: "subprocess.Popen[bytes]", guard: Guard | None) -> None:
+    def __init__(
+        self, process: "subprocess.Popen[bytes] | ForkedProcess", guard: Guard | None
+    ) -> None:
         self._process = process
         self._guard = guard
         pipes = (("stdout", process.stdout), ("stderr", process.stderr))
@@ -86,11 +89,13 @@ class ChildProcess:
         if self._process.poll() is not None:
             return
         with contextlib.suppress(ProcessLookupError):  # ended meanwhile
-            if _POSIX:
-                os.killpg(self.pid, number)
+            if self._signal_group(number):
+                return
+            if _POSIX:  # a fork that does not lead its group yet
+                os.kill(self.pid, number)
             elif number == INTERRUPT:
                 os.kill(self.pid, signal.CTRL_BREAK_EVENT)  # type: ignore[attr-defined]
-            else:
+            elif isinstance(self._process, subprocess.Popen):
                 self._process.terminate()
 
     def write(self, data: bytes) -> None:

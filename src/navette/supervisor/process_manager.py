@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from navette.errors import NavetteError
 from navette.supervisor.child import ChildProcess
+from navette.supervisor.fork_server import ForkedProcess, ForkServer
 from navette.supervisor.guard import Guard, with_token
 from navette.supervisor.guard_program import GRACE_S, VARIABLE
 
@@ -44,11 +45,19 @@ class ProcessManager:
     left their group. Windows has neither groups nor the guard.
 
     Args:
+        fork_server: starts ``navette`` commands where no option prevents that.
         hold: file descriptors that the guard keeps open until it has finished.
         grace_s: how long the guard waits before it sends a stronger signal.
     """
 
-    def __init__(self, hold: Sequence[int] = (), grace_s: float = GRACE_S) -> None:
+    def __init__(
+        self,
+        fork_server: ForkServer | None = None,
+        *,
+        hold: Sequence[int] = (),
+        grace_s: float = GRACE_S,
+    ) -> None:
+        self._fork_server = fork_server
         self._hold = tuple(hold)
         self._grace_s = grace_s
         self._guard: Guard | None = None
@@ -63,7 +72,13 @@ class ProcessManager:
         env = os.environ if options.env is None else options.env
         if guard is None:
             return ChildProcess(_popen(argv, options, env), None)
-        process = _popen(argv, options, with_token(env, guard.token))
+        env = with_token(env, guard.token)
+        forks, plain = self._fork_server, StartOptions(env=options.env)
+        process: subprocess.Popen[bytes] | ForkedProcess
+        if forks is not None and options == plain and forks.accepts(argv, env):
+            process = forks.start(argv, env)
+        else:
+            process = _popen(argv, options, env)
         guard.add(process.pid)
         return ChildProcess(process, guard)
 

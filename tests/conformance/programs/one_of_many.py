@@ -5,6 +5,7 @@
 
 import os
 import sys
+import time
 
 import rclpy
 from rclpy.node import Node
@@ -64,6 +65,7 @@ def main() -> None:
         pass
     finally:
         rclpy.try_shutdown()
+        sys.stdout.write(f"{NUMBER} used {time.process_time()} s\n")
 
 
 if __name__ == "__main__":

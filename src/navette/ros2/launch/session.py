@@ -23,9 +23,11 @@ from navette.ros2.packages.launch.launch_description_sources import (
     AnyLaunchDescriptionSource,
 )
 from navette.ros2.packages.launch.logging import console, get_logger
+from navette.ros2.packages.launch.running import Runner
 from navette.ros2.packages.launch.subprocesses import SubprocessRunner
 from navette.ros2.workspace import activate, find_package
 from navette.ros2.workspace.finding import PATH_VARIABLE
+from navette.supervisor import ProcessManager
 
 _INTERRUPTED = 130
 _log = get_logger("launch")
@@ -76,6 +78,7 @@ def launch(
     arguments: Mapping[str, str],
     *,
     processes: bool = False,
+    manager: ProcessManager | None = None,
     debug: bool = False,
 ) -> int:
     """Run a launch file until everything that it started has ended.
@@ -83,7 +86,8 @@ def launch(
     Args:
         path: the file: Python, XML or YAML.
         arguments: its launch arguments.
-        processes: a process for each node, instead of all in this one.
+        processes: run each node in its own process.
+        manager: starts these processes; implies ``processes``.
         debug: log what happens inside.
 
     Returns:
@@ -100,9 +104,12 @@ def launch(
         unknown = unknown_arguments(arguments, known)
         if unknown and is_complete(description):
             raise unknown_argument_error(unknown[0], known)
+        runner: Runner = (
+            SubprocessRunner(manager) if processes or manager else InProcessRunner()
+        )
         service = LaunchService(
             argv=[f"{name}:={value}" for name, value in arguments.items()],
-            runner=SubprocessRunner() if processes else InProcessRunner(),
+            runner=runner,
         )
         if unknown:
             service.check_after_start(lambda: _check_again(service, arguments))
@@ -168,7 +175,7 @@ def _signals(service: LaunchService) -> Iterator[list[int]]:
                 sigint = number == signal.SIGINT
                 service.emit_event(Shutdown(reason=name, due_to_sigint=sigint))
             else:
-                service.hurry()
+                service.escalate()
 
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()

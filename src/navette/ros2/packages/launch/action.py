@@ -1,16 +1,12 @@
 """Actions: what a launch does."""
 
-from typing import TYPE_CHECKING
-
 from navette.ros2.packages.launch.condition import Condition
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     caller_location,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class Action(LaunchDescriptionEntity):
@@ -25,11 +21,11 @@ class Action(LaunchDescriptionEntity):
         self.condition = condition
         self.origin = caller_location()
 
-    def visit(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+    def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         if self.condition is None or self.condition.evaluate(context):
             return self.execute(context)
         return None
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         """Do the work; returns what is to be visited next."""
         raise NotImplementedError

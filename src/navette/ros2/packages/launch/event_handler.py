@@ -1,16 +1,14 @@
 """Event handlers: what a launch does when something happens."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.event import Event
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     normalize_to_list_of_entities,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class EventHandler:
@@ -38,7 +36,7 @@ class EventHandler:
         return self._matcher(event)
 
     def handle(
-        self, event: Event, context: "LaunchContext"
+        self, event: Event, context: LaunchContext
     ) -> list[LaunchDescriptionEntity]:
         """What to visit now that the event happened."""
         return list(self.entities)
@@ -71,7 +69,7 @@ class AnsweringHandler(EventHandler):
         )
 
     def handle(
-        self, event: Event, context: "LaunchContext"
+        self, event: Event, context: LaunchContext
     ) -> list[LaunchDescriptionEntity]:
         if self._answer is None:
             return super().handle(event, context)

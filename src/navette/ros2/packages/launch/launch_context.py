@@ -1,4 +1,8 @@
-"""The state of a launch: configurations, environment, event handlers, time."""
+"""State of a launch: configurations, environment, event handlers, time.
+
+The context is the lowest layer of this package. It knows substitutions, entities and
+event handlers only by the protocols below; their classes are built on the context.
+"""
 
 import os
 from collections import deque
@@ -6,31 +10,60 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Protocol
 
 from navette.ros2.packages.launch.event import Event
-from navette.ros2.packages.launch.event_handler import EventHandler
-from navette.ros2.packages.launch.launch_description_entity import (
-    LaunchDescriptionEntity,
-)
 from navette.ros2.packages.launch.running import Runner
-from navette.ros2.packages.launch.substitution import (
-    Substitution,
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
-)
 from navette.runtime.events import Call
 from navette.runtime.loop import EventLoop
 
 
+class ContextSubstitution(Protocol):
+    """A substitution."""
+
+    def perform(self, context: "LaunchContext", /) -> str: ...
+
+
+class ContextEntity(Protocol):
+    """A launch description entity."""
+
+    origin: str
+
+    def visit(self, context: "LaunchContext", /) -> "Sequence[ContextEntity] | None":
+        """Do the work; return the entities to visit next."""
+
+    def describe(self) -> str:
+        """Describe the entity in an error message."""
+
+
+class ContextHandler(Protocol):
+    """An event handler."""
+
+    handle_once: bool
+
+    def matches(self, event: Event, /) -> bool: ...
+
+    def handle(
+        self, event: Event, context: "LaunchContext", /
+    ) -> Sequence[ContextEntity] | None: ...
+
+    def describe(self) -> str: ...
+
+
 class LaunchContext:
-    """What actions and substitutions of one launch see and change.
+    """What the actions and substitutions of a launch read and change.
 
     Args:
         argv: the ``name:=value`` arguments of the command.
-        noninteractive: nobody is at the terminal.
+        noninteractive: there is no user at the terminal.
         loop: runs the launch's events and timers.
         runner: starts commands.
+
+    Attributes:
+        known_arguments: names of configurations that were read or declared.
+        notes: state that actions of one kind share, by a name of theirs.
+        busy: what keeps the launch running; without any, the launch is over.
+        failed_labels: processes that ended by themselves with an error.
     """
 
     def __init__(
@@ -47,28 +80,24 @@ class LaunchContext:
         self.runner = runner
         self.is_shutdown = False
         self.launch_configurations: dict[str, str] = {}
-        #: Names of configurations that were looked up or declared.
         self.known_arguments: set[str] = set()
-        #: What actions of one kind remember, by the kind's name.
         self.notes: dict[str, Any] = {}
         self.events: deque[Event] = deque()
-        #: What the launch waits for: while there is any, it is not over.
         self.busy: set[object] = set()
         self.failed_labels: list[str] = []
+        self._initial_environment: dict[str, str] | None = None
         self._locals: list[dict[str, Any]] = [{}]
         self._globals: dict[str, Any] = {}
         self._configuration_stack: list[dict[str, str]] = []
         self._environment_stack: list[dict[str, str]] = []
-        self._handlers: list[EventHandler] = []
-        self._count = 0
+        self._handlers: list[ContextHandler] = []
+        self._name_count = 0
         self._scratch: TemporaryDirectory[str] | None = None
         self._on_close: list[Callable[[], None]] = []
 
-    # -- values ------------------------------------------------------------------
-
     @property
     def environment(self) -> "os._Environ[str]":
-        """The environment of this process, which the launch's commands inherit."""
+        """The environment of this process, which commands inherit."""
         return os.environ
 
     @property
@@ -93,39 +122,42 @@ class LaunchContext:
 
     @property
     def launch_file(self) -> Path | None:
-        """The launch file that is being read or run."""
+        """The launch file that is read or run."""
         path = self._locals[-1].get("current_launch_file_path")
         return None if path is None else Path(path)
 
     def perform_substitution(
-        self, value: Substitution | str | Iterable[Substitution | str]
+        self, value: str | ContextSubstitution | Iterable[str | ContextSubstitution]
     ) -> str:
-        """The text of substitutions."""
-        return perform_substitutions(self, normalize_to_list_of_substitutions(value))
+        """Return the text of a substitution, or of several, joined."""
+        if isinstance(value, str):
+            return value
+        if isinstance(value, Iterable):
+            return "".join(self.perform_substitution(part) for part in value)
+        return value.perform(self)
 
     def unique_name(self, base: str) -> str:
-        """``base-1``, ``base-2``, … counted over all names of this launch."""
-        self._count += 1
-        return f"{base}-{self._count}"
+        """Return ``base-1``, ``base-2``, …, counted over all names of the launch."""
+        self._name_count += 1
+        return f"{base}-{self._name_count}"
 
     def scratch_folder(self) -> Path:
-        """A folder for files that are gone with the launch."""
+        """Return a folder that is deleted at the end of the launch."""
         if self._scratch is None:
             self._scratch = TemporaryDirectory(prefix="navette_launch_")
         return Path(self._scratch.name)
 
     def on_close(self, function: Callable[[], None]) -> None:
-        """Call ``function`` when the launch is over."""
+        """Call ``function`` at the end of the launch."""
         self._on_close.append(function)
 
     def close(self) -> None:
-        """Let go of what was made for the launch, and take the scratch folder away."""
+        """Restore the environment, call the registered functions, delete files."""
+        self.reset_environment()
         for function in self._on_close:
             function()
         if self._scratch is not None:
             self._scratch.cleanup()
-
-    # -- scopes ------------------------------------------------------------------
 
     def push_launch_configurations(self) -> None:
         self._configuration_stack.append(dict(self.launch_configurations))
@@ -139,71 +171,70 @@ class LaunchContext:
         self._environment_stack.append(dict(os.environ))
 
     def pop_environment(self) -> None:
-        self.restore_environment(self._environment_stack.pop())
+        _set_environment(self._environment_stack.pop())
+
+    def save_environment(self) -> None:
+        """Store the environment at the start of the launch."""
+        self._initial_environment = dict(os.environ)
 
     def reset_environment(self) -> None:
-        """Back to how it was when the launch started."""
-        first = self.notes.get("first environment")
-        if first is not None:
-            self.restore_environment(first)
-
-    @staticmethod
-    def restore_environment(kept: Mapping[str, str]) -> None:
-        """Make the environment be ``kept`` and nothing else."""
-        for name in set(os.environ) - set(kept):
-            del os.environ[name]
-        os.environ.update(kept)
-
-    # -- events ------------------------------------------------------------------
+        """Restore the environment of the launch's start."""
+        if self._initial_environment is not None:
+            _set_environment(self._initial_environment)
 
     def emit_event(self, event: Event) -> None:
-        """Let the handlers have it, after what is being visited now."""
+        """Queue an event; it is handled after the present entity."""
         self.events.append(event)
 
     def emit_event_sync(self, event: Event) -> None:
         self.emit_event(event)
 
     def emit_from_thread(self, event: Event) -> None:
-        """As :meth:`emit_event`, from any thread."""
+        """Queue an event from any thread."""
         self.loop.call_soon_threadsafe(lambda: self.emit_event(event), "launch")
 
     def call_after(self, seconds: float, function: Any, source: str) -> Call:
-        """Call ``function`` once ``seconds`` have passed; cancel with ``.cancel()``."""
+        """Call ``function`` after ``seconds``; cancel with ``.cancel()``."""
         at_ns = self.loop.clock.now_ns + round(seconds * 1e9)
         return self.loop.call_at(at_ns, function, source)
 
-    def visit_later(self, entities: Iterable[LaunchDescriptionEntity]) -> None:
-        """Let entities be visited after what is being visited now."""
+    def visit_later(self, entities: Iterable[ContextEntity]) -> None:
+        """Queue a visit of entities in the present scope."""
         self.emit_event(VisitEvent(list(entities), dict(self._locals[-1])))
 
     def register_event_handler(
-        self, handler: EventHandler, append: bool = False
+        self, handler: ContextHandler, append: bool = False
     ) -> None:
-        """The newest handler is asked first, unless appended."""
-        if append:
-            self._handlers.append(handler)
-        else:
-            self._handlers.insert(0, handler)
+        """Add a handler; the newest is called first, unless appended."""
+        self._handlers.insert(len(self._handlers) if append else 0, handler)
 
-    def unregister_event_handler(self, handler: EventHandler) -> None:
-        """Raises ValueError where it is not registered, as ROS 2's does."""
+    def unregister_event_handler(self, handler: ContextHandler) -> None:
+        """Remove a handler.
+
+        Raises:
+            ValueError: it is not registered, as in ROS 2.
+        """
         self._handlers.remove(handler)
 
     @property
-    def event_handlers(self) -> tuple[EventHandler, ...]:
+    def event_handlers(self) -> tuple[ContextHandler, ...]:
         return tuple(self._handlers)
 
-    def is_registered(self, handler: EventHandler) -> bool:
+    def is_registered(self, handler: ContextHandler) -> bool:
         return handler in self._handlers
 
 
 class VisitEvent(Event):
-    """Entities to be visited, with the locals they were found with."""
+    """A queued visit of entities, with the scope they were found in."""
 
-    name = "navette.navigation.stack.Visit"
+    name = "navette.launch.Visit"
 
-    def __init__(
-        self, entities: list[LaunchDescriptionEntity], scope: dict[str, Any]
-    ) -> None:
+    def __init__(self, entities: list[ContextEntity], scope: dict[str, Any]) -> None:
         self.entities = entities
         self.scope = scope
+
+
+def _set_environment(environment: Mapping[str, str]) -> None:
+    for name in set(os.environ) - set(environment):
+        del os.environ[name]
+    os.environ.update(environment)

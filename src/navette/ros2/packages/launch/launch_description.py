@@ -2,15 +2,13 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     normalize_to_list_of_entities,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class LaunchDescription(LaunchDescriptionEntity):
@@ -31,7 +29,7 @@ class LaunchDescription(LaunchDescriptionEntity):
     def add_action(self, action: LaunchDescriptionEntity) -> None:
         self.add_entity(action)
 
-    def visit(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+    def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         return list(self._entities)
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:

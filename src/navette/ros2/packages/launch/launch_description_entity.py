@@ -3,12 +3,10 @@
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
+from navette.ros2.packages.launch.launch_context import LaunchContext
 
 _OWN_FOLDER = str(Path(__file__).parent.parent)
 
@@ -21,7 +19,7 @@ class LaunchDescriptionEntity:
 
     origin: str = ""
 
-    def visit(self, context: "LaunchContext") -> "list[LaunchDescriptionEntity] | None":
+    def visit(self, context: LaunchContext) -> "list[LaunchDescriptionEntity] | None":
         """Do the work; returns what is to be visited next."""
         raise NotImplementedError
 

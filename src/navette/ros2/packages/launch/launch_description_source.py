@@ -1,9 +1,10 @@
 """Sources: where a launch description comes from."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.errors import InvalidLaunchFileError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.substitution import (
     Parts,
@@ -12,9 +13,6 @@ from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class LaunchDescriptionSource:
@@ -46,7 +44,7 @@ class LaunchDescriptionSource:
         """Read a file; formats override this."""
         raise InvalidLaunchFileError(f"{path}: no format to read it")
 
-    def get_launch_description(self, context: "LaunchContext") -> LaunchDescription:
+    def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
         """The description; its file is read the first time.
 
         Raises:

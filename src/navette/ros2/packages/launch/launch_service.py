@@ -1,6 +1,5 @@
-"""The launch service: visits entities, hands events to handlers, ends in order."""
+"""Launch service: visits entities, passes events to handlers, shuts down in order."""
 
-import os
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from typing import Any
@@ -9,11 +8,13 @@ from navette.errors import CallbackError
 from navette.ros2.packages.launch.errors import LaunchError
 from navette.ros2.packages.launch.event import Event
 from navette.ros2.packages.launch.events import Shutdown
-from navette.ros2.packages.launch.launch_context import LaunchContext, VisitEvent
-from navette.ros2.packages.launch.launch_description import LaunchDescription
-from navette.ros2.packages.launch.launch_description_entity import (
-    LaunchDescriptionEntity,
+from navette.ros2.packages.launch.launch_context import (
+    ContextEntity,
+    ContextHandler,
+    LaunchContext,
+    VisitEvent,
 )
+from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launched_process import LaunchedProcess
 from navette.ros2.packages.launch.logging import console, get_logger
 from navette.ros2.packages.launch.running import Runner
@@ -32,10 +33,10 @@ class LaunchService:
 
     Args:
         argv: ``name:=value`` arguments.
-        noninteractive: nobody is at the terminal.
-        debug: log what happens inside.
-        loop: runs events and timers (default: one on the system's clock).
-        runner: starts commands (default: one process each).
+        noninteractive: there is no user at the terminal.
+        debug: print debug messages.
+        loop: runs events and timers (default: a loop on the system clock).
+        runner: starts commands (default: a process for each).
     """
 
     def __init__(
@@ -48,8 +49,8 @@ class LaunchService:
         runner: Runner | None = None,
     ) -> None:
         self.errors: list[LaunchError] = []
-        self._ending = False
-        self._stands_still = False
+        self._shutting_down = False
+        self._is_stalled = False
         self._shutdown_when_idle = True
         self.context = LaunchContext(
             argv=argv,
@@ -57,8 +58,8 @@ class LaunchService:
             loop=loop or EventLoop(SystemClock()),
             runner=runner or SubprocessRunner(),
         )
-        self._on_started: list[Callable[[], None]] = []
-        # Whoever brings a runner has a console of its own as well.
+        self._start_checks: list[Callable[[], None]] = []
+        # A caller with its own runner prints the messages itself.
         self._console = console(debug=debug) if runner is None else nullcontext()
 
     @property
@@ -71,119 +72,107 @@ class LaunchService:
         self.context.visit_later([description])
 
     def emit_event(self, event: Event) -> None:
-        """From any thread: let the handlers have an event."""
+        """Queue an event from any thread."""
         self.context.emit_from_thread(event)
 
     def check_after_start(self, check: Callable[[], None]) -> None:
         """Call ``check`` once the descriptions have been visited; it may raise."""
-        self._on_started.append(check)
+        self._start_checks.append(check)
 
-    def shutdown(self, force_sync: bool = False, reason: str = "asked to") -> None:
-        """From any thread: end everything, then :meth:`run` returns."""
+    def shutdown(self, force_sync: bool = False, reason: str = "requested") -> None:
+        """End everything from any thread; :meth:`run` returns then."""
         self.emit_event(Shutdown(reason=reason))
 
-    def hurry(self) -> None:
-        """From any thread: end what is still running with more force."""
-        self.context.loop.call_soon_threadsafe(self._hurry, "hurry")
+    def escalate(self) -> None:
+        """Send the next, stronger signal to all processes, from any thread."""
+        self.context.loop.call_soon_threadsafe(self._escalate, "escalate")
 
-    def run(self, *, shutdown_when_idle: bool = True) -> int:
-        """Run to the end; 0, or 1 if the launch failed or a process died.
-
-        A failed launch ends what it has started.
-        """
-        with self._console:
-            return self._run(shutdown_when_idle=shutdown_when_idle)
-
-    def _run(self, *, shutdown_when_idle: bool) -> int:
-        context = self.context
-        context.notes["first environment"] = dict(os.environ)
-        self._shutdown_when_idle = shutdown_when_idle
-        try:
-            while not self._is_over():
-                try:
-                    self._work()
-                    context.loop.run(done=lambda: bool(context.events) or self._idle())
-                    self._notice_standstill()
-                except CallbackError as error:
-                    self._fail(error)
-        finally:
-            context.restore_environment(context.notes["first environment"])
-            context.close()
-            context.runner.close()
-        return FAILED if self.errors or context.failed_labels else SUCCEEDED
-
-    def _hurry(self) -> None:
+    def _escalate(self) -> None:
         for item in tuple(self.context.busy):
             if isinstance(item, LaunchedProcess):
                 item.escalate()
 
-    # -- inside ------------------------------------------------------------------
+    def run(self, *, shutdown_when_idle: bool = True) -> int:
+        """Run to the end; return 0, or 1 if the launch or a process failed.
 
-    def _idle(self) -> bool:
+        A failed launch ends what it has started.
+        """
+        self._shutdown_when_idle = shutdown_when_idle
+        with self._console:
+            return self._run()
+
+    def _run(self) -> int:
+        context = self.context
+        context.save_environment()
+        try:
+            while not self._is_over():
+                try:
+                    self._handle_events()
+                    context.loop.run(
+                        done=lambda: bool(context.events) or self._is_idle()
+                    )
+                    self._check_stall()
+                except CallbackError as error:
+                    self._fail(error)
+        finally:
+            context.close()
+            context.runner.close()
+        return FAILED if self.errors or context.failed_labels else SUCCEEDED
+
+    def _is_idle(self) -> bool:
         context = self.context
         if context.events or context.busy:
             return False
-        return self._ending or self._shutdown_when_idle
+        return self._shutting_down or self._shutdown_when_idle
 
     def _is_over(self) -> bool:
-        """Idle; before the end comes a Shutdown event, for those who wait for it."""
-        context = self.context
-        if self._stands_still and self._ending:
+        """Return whether the launch is idle and handlers got a Shutdown event."""
+        if self._is_stalled and self._shutting_down:
             return True
-        if not self._idle():
+        if not self._is_idle():
             return False
-        if self._ending:
+        if self._shutting_down:
             return True
-        context.emit_event(Shutdown(reason="everything has ended", due_to_sigint=False))
+        self.context.emit_event(Shutdown(reason="all processes and timers have ended"))
         return False
 
-    def _notice_standstill(self) -> None:
-        """On a virtual clock, a run with nothing left to happen stays like that."""
+    def _check_stall(self) -> None:
+        """Shut down if a virtual clock has no event left to advance to."""
         context = self.context
-        nothing_left = context.loop.clock.is_virtual and not context.events
-        self._stands_still = nothing_left and not self._idle()
-        if self._stands_still and not self._ending:
-            context.emit_event(Shutdown(reason="nothing is left to happen"))
+        has_no_event = context.loop.clock.is_virtual and not context.events
+        self._is_stalled = has_no_event and not self._is_idle()
+        if self._is_stalled and not self._shutting_down:
+            context.emit_event(Shutdown(reason="no further event"))
 
-    def _work(self) -> None:
-        """Handle what has happened so far."""
+    def _handle_events(self) -> None:
         context = self.context
         while context.events:
             event = context.events.popleft()
             try:
                 self._handle(event)
                 if not context.events:
-                    self._check_started()
+                    checks, self._start_checks = self._start_checks, []
+                    for check in checks:
+                        _locate_errors("command line", "launch arguments", check)
             except LaunchError as error:
                 self._fail(error)
 
-    def _check_started(self) -> None:
-        checks, self._on_started = self._on_started, []
-        for check in checks:
-            _guarded("command line", "launch arguments", check)
-
     def _handle(self, event: Event) -> None:
         context = self.context
-        if isinstance(event, Shutdown):
-            if self._ending:
-                return
-            self._ending = context.is_shutdown = True
-            context.extend_globals({"event": event})
         if isinstance(event, VisitEvent):
-            context.push_locals()
-            context.extend_locals(event.scope)
-            try:
-                for entity in event.entities:
-                    self._visit(entity)
-            finally:
-                context.pop_locals()
+            self._visit_all(event.entities, event.scope)
             return
+        if isinstance(event, Shutdown):
+            if self._shutting_down:
+                return
+            self._shutting_down = context.is_shutdown = True
+            context.extend_globals({"event": event})
         for handler in context.event_handlers:
-            # An earlier answer may have taken this one away.
+            # An earlier handler may have removed this one.
             if context.is_registered(handler) and handler.matches(event):
-                self._answer(handler, event)
+                self._call_handler(handler, event)
 
-    def _answer(self, handler: Any, event: Event) -> None:
+    def _call_handler(self, handler: ContextHandler, event: Event) -> None:
         context = self.context
         if handler.handle_once:
             context.unregister_event_handler(handler)
@@ -191,7 +180,7 @@ class LaunchService:
         context.extend_locals({"event": event})
         try:
             where = getattr(handler, "origin", "") or "event handler"
-            entities = _guarded(
+            entities = _locate_errors(
                 where, handler.describe(), lambda: handler.handle(event, context)
             )
             for entity in entities or []:
@@ -199,8 +188,19 @@ class LaunchService:
         finally:
             context.pop_locals()
 
-    def _visit(self, entity: LaunchDescriptionEntity) -> None:
-        found = _guarded(
+    def _visit_all(
+        self, entities: Sequence[ContextEntity], scope: dict[str, Any]
+    ) -> None:
+        self.context.push_locals()
+        self.context.extend_locals(scope)
+        try:
+            for entity in entities:
+                self._visit(entity)
+        finally:
+            self.context.pop_locals()
+
+    def _visit(self, entity: ContextEntity) -> None:
+        found = _locate_errors(
             entity.origin or str(self.context.launch_file or "launch"),
             entity.describe(),
             lambda: entity.visit(self.context),
@@ -220,10 +220,10 @@ class LaunchService:
         self.context.emit_event(Shutdown(reason="the launch failed"))
 
 
-def _guarded(where: str, entity: str, work: Callable[[], Any]) -> Any:
-    """Do ``work``; what it raises becomes an error that says where.
+def _locate_errors(where: str, entity: str, work: Callable[[], Any]) -> Any:
+    """Call ``work``; turn its exceptions into launch errors with a location.
 
-    Launch files are programs of their own: whatever they raise is theirs.
+    A launch file is a program and may raise any exception.
     """
     try:
         return work()

@@ -17,8 +17,8 @@ class SubprocessRunner:
 
     graph = None
 
-    def __init__(self) -> None:
-        self.manager = ProcessManager()
+    def __init__(self, manager: ProcessManager | None = None) -> None:
+        self.manager = manager or ProcessManager()
 
     def start(self, command: Command) -> ChildProcess:
         argv = command.words

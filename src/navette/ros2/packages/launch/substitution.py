@@ -2,18 +2,16 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
+from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class Substitution:
     """Something that becomes text once the launch runs."""
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         """The text, given the launch's configurations and environment."""
         raise NotImplementedError
 
@@ -40,7 +38,7 @@ class TextSubstitution(Substitution):
             )
         self.text = text
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return self.text
 
     def describe(self) -> str:
@@ -74,9 +72,7 @@ def _single(item: Any) -> Parts:
     )
 
 
-def perform_substitutions(
-    context: "LaunchContext", parts: Iterable[Substitution]
-) -> str:
+def perform_substitutions(context: LaunchContext, parts: Iterable[Substitution]) -> str:
     """The texts of all parts, joined."""
     return "".join(part.perform(context) for part in parts)
 

@@ -1,19 +1,17 @@
 """Values that may be given as text: numbers and truths worked out late."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.errors import (
     InvalidConditionExpressionError,
     InvalidLaunchValueError,
 )
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 TRUE = ("true", "1")
 FALSE = ("false", "0")
@@ -33,14 +31,14 @@ def truth(text: str) -> bool:
     return word in TRUE
 
 
-def perform_bool(context: "LaunchContext", value: Any) -> bool:
+def perform_bool(context: LaunchContext, value: Any) -> bool:
     """A bool, or text that says one."""
     if isinstance(value, bool):
         return value
     return truth(_text(context, value))
 
 
-def perform_seconds(context: "LaunchContext", value: Any, what: str) -> float:
+def perform_seconds(context: LaunchContext, value: Any, what: str) -> float:
     """A finite number of seconds, 0 or more, or text that says one."""
     number = value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -56,5 +54,5 @@ def perform_seconds(context: "LaunchContext", value: Any, what: str) -> float:
     return float(number)
 
 
-def _text(context: "LaunchContext", value: Any) -> str:
+def _text(context: LaunchContext, value: Any) -> str:
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))

@@ -4,10 +4,11 @@ import json
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.errors import ParameterError
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     Substitution,
     normalize_to_list_of_substitutions,
@@ -20,14 +21,11 @@ from navette.ros2.packages.launch_ros.parameter_descriptions import (
 )
 from navette.ros2.packages.launch_ros.scope import global_parameters, global_remaps
 
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
-
 Evaluated = list[Path | tuple[str, Any]]
 """Parameter files and (name, value) in their order: the last wins."""
 
 
-def evaluate_parameters(context: "LaunchContext", given: Iterable[Any]) -> Evaluated:
+def evaluate_parameters(context: LaunchContext, given: Iterable[Any]) -> Evaluated:
     """The scope's parameters, then those of the node itself.
 
     Raises:
@@ -50,7 +48,7 @@ def evaluate_parameters(context: "LaunchContext", given: Iterable[Any]) -> Evalu
 
 
 def evaluate_remaps(
-    context: "LaunchContext", given: Iterable[Any]
+    context: LaunchContext, given: Iterable[Any]
 ) -> list[tuple[str, str]]:
     """The scope's remappings, then those of the node itself."""
     found = global_remaps(context)
@@ -104,5 +102,5 @@ def parameter_text(name: str, value: Any) -> str:
     return repr(value)
 
 
-def _text(context: "LaunchContext", value: Any) -> str:
+def _text(context: LaunchContext, value: Any) -> str:
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))

@@ -1,20 +1,18 @@
 """Parameter files that reach no node are an error once all nodes are known."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.errors import ParameterError
 from navette.ros2.packages.launch.errors import LaunchError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.runtime.overrides import OverrideSet
 from navette.runtime.parameter_files import read_parameter_file
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 _NOTE = "parameter files"
 
 
-def check_later(context: "LaunchContext", node: Any, parameters: Any) -> None:
+def check_later(context: LaunchContext, node: Any, parameters: Any) -> None:
     """Remember who got which file; look at it once the description was visited."""
     if _NOTE not in context.notes:
         context.notes[_NOTE] = []
@@ -23,7 +21,7 @@ def check_later(context: "LaunchContext", node: Any, parameters: Any) -> None:
     entries += [(node, item) for item in parameters if isinstance(item, Path)]
 
 
-def _check(context: "LaunchContext") -> None:
+def _check(context: LaunchContext) -> None:
     entries: list[tuple[Any, Path]] = context.notes.pop(_NOTE)
     for path in dict.fromkeys(path for _, path in entries):
         nodes = [node for node, each in entries if each == path]

@@ -3,21 +3,19 @@
 import types
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args, get_origin
+from typing import Any, get_args, get_origin
 
 from navette.errors import FileFormatError, ParameterError
 from navette.ros2.packages.launch import SomeSubstitutionsType, Substitution
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.frontend import parse_substitution
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.runtime.parameter_files import parse_value
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 _SCALARS: dict[str, type] = {"int": int, "float": float, "bool": bool, "str": str}
 
@@ -37,7 +35,7 @@ class ParameterValue:
         self.value_type = value_type
         _checked_type(value_type)
 
-    def evaluate(self, context: "LaunchContext") -> Any:
+    def evaluate(self, context: LaunchContext) -> Any:
         """The value, of the type asked for.
 
         Raises:
@@ -71,7 +69,7 @@ def _has_substitutions(value: Any) -> bool:
     )
 
 
-def _item(context: "LaunchContext", value: Any) -> Any:
+def _item(context: LaunchContext, value: Any) -> Any:
     """An item of a list of values."""
     if isinstance(value, (Substitution, list, tuple)):
         text = perform_substitutions(context, normalize_to_list_of_substitutions(value))
@@ -123,7 +121,7 @@ class Parameter:
         self._name = normalize_to_list_of_substitutions(name)
         self._value = ParameterValue(value, value_type=value_type)
 
-    def evaluate(self, context: "LaunchContext") -> tuple[str, Any]:
+    def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
         """Name and value."""
         return perform_substitutions(context, self._name), self._value.evaluate(context)
 
@@ -142,7 +140,7 @@ class ParameterFile:
         self._path = normalize_to_list_of_substitutions(param_file)
         self._allow_substs = allow_substs
 
-    def evaluate(self, context: "LaunchContext") -> Path:
+    def evaluate(self, context: LaunchContext) -> Path:
         """The path of a file without substitutions.
 
         Raises:
@@ -164,7 +162,7 @@ class ParameterFile:
 
 
 def evaluate_dict(
-    context: "LaunchContext", values: dict[Any, Any], prefix: str = ""
+    context: LaunchContext, values: dict[Any, Any], prefix: str = ""
 ) -> list[tuple[str, Any]]:
     """(name, value) of a dict; nested dicts give names joined with dots."""
     found: list[tuple[str, Any]] = []

@@ -3,13 +3,11 @@
 import os
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.errors import CallbackError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.runtime import Context, Executor, Node, SystemClock
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 _NOTE = "ros node"
 _RETRY_S = 0.05
@@ -23,7 +21,7 @@ class LaunchNode:
         launch: told, on its loop, of what comes.
     """
 
-    def __init__(self, launch: "LaunchContext") -> None:
+    def __init__(self, launch: LaunchContext) -> None:
         self._launch = launch
         self._context = Context(clock=SystemClock(), graph=launch.runner.graph)
         self._context.init(args=[], initialize_logging=False)
@@ -109,7 +107,7 @@ def _raise(error: Exception) -> None:
     raise error
 
 
-def launch_node(context: "LaunchContext") -> LaunchNode:
+def launch_node(context: LaunchContext) -> LaunchNode:
     """The node of this launch; made on first use, closed with the launch."""
     node: LaunchNode | None = context.notes.get(_NOTE)
     if node is None:

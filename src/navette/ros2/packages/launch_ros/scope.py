@@ -5,12 +5,10 @@ Kept in the launch configurations, so that groups end it as they end arguments.
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.runtime.names import normalize_namespace, validate_namespace
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 _NAMESPACE = "ros_namespace"
 _PARAMETERS = "navette global parameters"
@@ -20,12 +18,12 @@ GlobalParameter = tuple[str, Any] | Path
 """(name, value), or a parameter file."""
 
 
-def pushed_namespace(context: "LaunchContext") -> str:
+def pushed_namespace(context: LaunchContext) -> str:
     """The namespace of this scope; empty if there is none."""
     return context.launch_configurations.get(_NAMESPACE, "")
 
 
-def push_namespace(context: "LaunchContext", namespace: str) -> None:
+def push_namespace(context: LaunchContext, namespace: str) -> None:
     """Go one namespace deeper; one that starts with ``/`` starts anew."""
     context.launch_configurations[_NAMESPACE] = joined_namespace(
         pushed_namespace(context), namespace
@@ -44,7 +42,7 @@ def joined_namespace(outer: str, inner: str) -> str:
     return namespace
 
 
-def global_parameters(context: "LaunchContext") -> list[GlobalParameter]:
+def global_parameters(context: LaunchContext) -> list[GlobalParameter]:
     """Parameters and parameter files set for all nodes of this scope."""
     found = json.loads(context.launch_configurations.get(_PARAMETERS, "[]"))
     return [
@@ -52,7 +50,7 @@ def global_parameters(context: "LaunchContext") -> list[GlobalParameter]:
     ]
 
 
-def add_global_parameter(context: "LaunchContext", given: GlobalParameter) -> None:
+def add_global_parameter(context: LaunchContext, given: GlobalParameter) -> None:
     """Set one more for all nodes of this scope."""
     found = [*global_parameters(context), given]
     context.launch_configurations[_PARAMETERS] = json.dumps(
@@ -60,13 +58,13 @@ def add_global_parameter(context: "LaunchContext", given: GlobalParameter) -> No
     )
 
 
-def global_remaps(context: "LaunchContext") -> list[tuple[str, str]]:
+def global_remaps(context: LaunchContext) -> list[tuple[str, str]]:
     """Remappings set for all nodes of this scope."""
     found = json.loads(context.launch_configurations.get(_REMAPS, "[]"))
     return [(source, target) for source, target in found]
 
 
-def add_global_remap(context: "LaunchContext", source: str, target: str) -> None:
+def add_global_remap(context: LaunchContext, source: str, target: str) -> None:
     """Set one more for all nodes of this scope."""
     context.launch_configurations[_REMAPS] = json.dumps(
         [*global_remaps(context), (source, target)]

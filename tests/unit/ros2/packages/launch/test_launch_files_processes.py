@@ -168,7 +168,7 @@ def test_a_stubborn_process_gets_each_signal_in_turn(launch: Any) -> None:
 def test_a_second_interrupt_is_stronger(launch: Any) -> None:
     def live(process: Any) -> None:
         process.stubborn = True
-        launch.runner.loop.call_at(2_000_000_000, launch.service.hurry)
+        launch.runner.loop.call_at(2_000_000_000, launch.service.escalate)
 
     launch.runner.behaviour = live
     launch.run(

@@ -1,10 +1,11 @@
 """Launch arguments and configurations: declare, set, unset, keep apart."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
     describe_parts,
@@ -12,9 +13,6 @@ from navette.ros2.packages.launch.substitution import (
     optional_parts,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class DeclareLaunchArgument(Action):
@@ -59,7 +57,7 @@ class DeclareLaunchArgument(Action):
         """The default as a person reads it."""
         return "" if self.default_value is None else describe_parts(self.default_value)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.known_arguments.add(self.name)
         if self.name not in context.launch_configurations:
             if self.default_value is None:
@@ -91,7 +89,7 @@ class SetLaunchConfiguration(Action):
     def describe(self) -> str:
         return f"SetLaunchConfiguration({describe_parts(self.name)})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         name = perform_substitutions(context, self.name)
         context.known_arguments.add(name)
         value = perform_substitutions(context, self.value)
@@ -105,7 +103,7 @@ class UnsetLaunchConfiguration(Action):
         super().__init__(**kwargs)
         self.name = normalize_to_list_of_substitutions(name)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         name = perform_substitutions(context, self.name)
         context.launch_configurations.pop(name, None)
 
@@ -113,14 +111,14 @@ class UnsetLaunchConfiguration(Action):
 class PushLaunchConfigurations(Action):
     """Begin a scope of configurations."""
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.push_launch_configurations()
 
 
 class PopLaunchConfigurations(Action):
     """End a scope: configurations are as they were."""
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.pop_launch_configurations()
 
 
@@ -135,7 +133,7 @@ class ResetLaunchConfigurations(Action):
         super().__init__(**kwargs)
         self.launch_configurations = dict(launch_configurations or {})
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         kept = {
             context.perform_substitution(name): context.perform_substitution(value)
             for name, value in self.launch_configurations.items()

@@ -1,9 +1,10 @@
 """Environment variables: set, append, unset, keep apart."""
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
     describe_parts,
@@ -11,9 +12,6 @@ from navette.ros2.packages.launch.substitution import (
     perform_substitutions,
 )
 from navette.ros2.packages.launch.typed import perform_bool
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class SetEnvironmentVariable(Action):
@@ -32,7 +30,7 @@ class SetEnvironmentVariable(Action):
     def describe(self) -> str:
         return f"{type(self).__name__}({describe_parts(self.name)})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         name = perform_substitutions(context, self.name)
         context.environment[name] = perform_substitutions(context, self.value)
 
@@ -52,7 +50,7 @@ class AppendEnvironmentVariable(SetEnvironmentVariable):
         self.prepend = prepend
         self.separator = normalize_to_list_of_substitutions(separator)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         name = perform_substitutions(context, self.name)
         parts = [perform_substitutions(context, self.value)]
         before = context.environment.get(name)
@@ -72,26 +70,26 @@ class UnsetEnvironmentVariable(Action):
     def describe(self) -> str:
         return f"UnsetEnvironmentVariable({describe_parts(self.name)})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.environment.pop(perform_substitutions(context, self.name), None)
 
 
 class PushEnvironment(Action):
     """Begin a scope of environment variables."""
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.push_environment()
 
 
 class PopEnvironment(Action):
     """End a scope: the environment is as it was."""
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.pop_environment()
 
 
 class ResetEnvironment(Action):
     """Back to the environment that the launch was started with."""
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.reset_environment()

@@ -1,12 +1,13 @@
 """Actions with events and their handlers; the end of the launch."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.event import Event
 from navette.ros2.packages.launch.event_handler import EventHandler
 from navette.ros2.packages.launch.events import Shutdown as ShutdownEvent
 from navette.ros2.packages.launch.events.process import ProcessExited
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
@@ -16,9 +17,6 @@ from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 _log = get_logger("launch")
 
@@ -36,7 +34,7 @@ class RegisterEventHandler(Action):
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         return list(self.event_handler.entities)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.register_event_handler(self.event_handler)
 
 
@@ -47,7 +45,7 @@ class UnregisterEventHandler(Action):
         super().__init__(**kwargs)
         self.event_handler = event_handler
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.unregister_event_handler(self.event_handler)
 
 
@@ -61,7 +59,7 @@ class EmitEvent(Action):
     def describe(self) -> str:
         return f"EmitEvent({self.event.name})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.emit_event(self.event)
 
 
@@ -74,7 +72,7 @@ class Shutdown(Action):
         super().__init__(**kwargs)
         self.reason = normalize_to_list_of_substitutions(reason)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         reason = perform_substitutions(context, self.reason)
         event = context.get_locals_as_dict().get("event")
         if isinstance(event, ProcessExited) and not context.is_shutdown:

@@ -1,12 +1,13 @@
 """Actions that make entities again and again, with other values each time."""
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import yaml
 
 from navette.errors import InvalidValueError
 from navette.ros2.packages.launch.action import Action
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     normalize_to_list_of_entities,
@@ -15,9 +16,6 @@ from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 _MOST = 10_000
 
@@ -46,7 +44,7 @@ class ForEach(Action):
     def function(self) -> Callable[..., Any]:
         return self._function
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         text = perform_substitutions(context, self._input_values)
         found: list[LaunchDescriptionEntity] = []
         for values in _value_sets(text):
@@ -78,7 +76,7 @@ class ForLoop(Action):
     def function(self) -> Callable[[int], Any]:
         return self._function
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         text = perform_substitutions(context, self._length)
         if not text.isdigit() or int(text) > _MOST:
             raise InvalidValueError(f"ForLoop: length {text!r}: wanted 0 … {_MOST}")

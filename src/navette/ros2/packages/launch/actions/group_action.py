@@ -1,7 +1,7 @@
 """Groups: several actions as one, by default in a scope of their own."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.actions.arguments import (
@@ -15,13 +15,11 @@ from navette.ros2.packages.launch.actions.environment import (
     PushEnvironment,
     ResetEnvironment,
 )
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     normalize_to_list_of_entities,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class GroupAction(Action):
@@ -70,5 +68,5 @@ class GroupAction(Action):
             before += settings
         return [*before, *self.actions, PopEnvironment(), PopLaunchConfigurations()]
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         return self.get_sub_entities()

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.actions.arguments import SetLaunchConfiguration
 from navette.ros2.packages.launch.actions.opaque_function import OpaqueFunction
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
@@ -23,9 +24,6 @@ from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 _LOCALS = ("current_launch_file_path", "current_launch_file_directory")
 MAX_DEPTH = 50
@@ -91,7 +89,7 @@ class IncludeLaunchDescription(Action):
         loaded = self.source.try_get_launch_description_without_context()
         return [] if loaded is None else [loaded]
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         description = self.source.get_launch_description(context)
         given = [
             (perform_substitutions(context, name), value)
@@ -112,7 +110,7 @@ class IncludeLaunchDescription(Action):
         ]
 
     def _check(
-        self, description: LaunchDescription, given: list[str], context: "LaunchContext"
+        self, description: LaunchDescription, given: list[str], context: LaunchContext
     ) -> None:
         """Missing arguments are an error; names that nobody declares, a warning."""
         declared = {each.name: each for each in description.get_launch_arguments()}
@@ -140,7 +138,7 @@ class IncludeLaunchDescription(Action):
             )
 
 
-def _enter(context: "LaunchContext", path: Any, depth: int) -> None:
+def _enter(context: LaunchContext, path: Any, depth: int) -> None:
     context.push_locals()
     context.extend_locals({"include depth": depth})
     if path is not None:
@@ -149,5 +147,5 @@ def _enter(context: "LaunchContext", path: Any, depth: int) -> None:
         )
 
 
-def _leave(context: "LaunchContext") -> None:
+def _leave(context: LaunchContext) -> None:
     context.pop_locals()

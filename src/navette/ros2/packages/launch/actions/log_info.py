@@ -1,10 +1,11 @@
 """A line in the launch's log."""
 
 import logging
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
@@ -12,9 +13,6 @@ from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 _log = get_logger("launch.user")
 _LEVELS = ("debug", "info", "warning", "error")
@@ -33,7 +31,7 @@ class Log(Action):
     def describe(self) -> str:
         return f"{type(self).__name__}({describe_parts(self.msg)})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         level = perform_substitutions(context, self.level).lower()
         level = "warning" if level == "warn" else level
         if level not in _LEVELS:

@@ -1,17 +1,15 @@
 """A function of the launch file's own."""
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     normalize_to_list_of_entities,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class OpaqueFunction(Action):
@@ -38,7 +36,7 @@ class OpaqueFunction(Action):
         name = getattr(self._function, "__name__", repr(self._function))
         return f"OpaqueFunction({name})"
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         return normalize_to_list_of_entities(
             self._function(context, *self._args, **self._kwargs)
         )

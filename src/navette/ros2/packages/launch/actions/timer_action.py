@@ -1,22 +1,18 @@
 """Actions that happen after a while."""
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable
+from typing import Any
 
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.event_handler import AnsweringHandler
 from navette.ros2.packages.launch.events import Shutdown
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     normalize_to_list_of_entities,
 )
 from navette.ros2.packages.launch.typed import perform_bool, perform_seconds
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from navette.ros2.packages.launch.launch_context import LaunchContext
-    from navette.runtime.events import Call
+from navette.runtime.events import Call
 
 
 class TimerAction(Action):
@@ -47,7 +43,7 @@ class TimerAction(Action):
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         return list(self.actions)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         if context.is_shutdown:
             return
         seconds = perform_seconds(context, self.period, "period")
@@ -75,7 +71,7 @@ class TimerAction(Action):
             )
 
     def schedule(
-        self, context: "LaunchContext", seconds: float, fire: "Callable[[], None]"
+        self, context: LaunchContext, seconds: float, fire: Callable[[], None]
     ) -> None:
         """Let ``fire`` be called on the launch's loop after so long."""
         self._call = context.call_after(seconds, fire, f"timer of {seconds:g} s")
@@ -102,7 +98,7 @@ class _Scoped(LaunchDescriptionEntity):
         self._configurations = configurations
         self._local = local
 
-    def visit(self, context: "LaunchContext") -> list[LaunchDescriptionEntity]:
+    def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         context.extend_locals(self._local)
         context.push_launch_configurations()
         context.launch_configurations.clear()
@@ -111,5 +107,5 @@ class _Scoped(LaunchDescriptionEntity):
 
 
 class _EndOfScope(LaunchDescriptionEntity):
-    def visit(self, context: "LaunchContext") -> None:
+    def visit(self, context: LaunchContext) -> None:
         context.pop_launch_configurations()

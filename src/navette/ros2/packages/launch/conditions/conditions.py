@@ -1,9 +1,10 @@
 """Conditions on substitutions and on launch arguments."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.condition import Condition
 from navette.ros2.packages.launch.errors import InvalidConditionExpressionError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
@@ -14,11 +15,8 @@ from navette.ros2.packages.launch.substitution import (
 )
 from navette.ros2.packages.launch.typed import truth
 
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
-
-def evaluate_condition_expression(context: "LaunchContext", expression: Parts) -> bool:
+def evaluate_condition_expression(context: LaunchContext, expression: Parts) -> bool:
     """Whether the text of the substitutions is true (``true``, ``1``) or false.
 
     Raises:
@@ -40,14 +38,14 @@ class IfCondition(Condition):
         self._expression = normalize_to_list_of_substitutions(predicate_expression)
         super().__init__(predicate=self._is_true)
 
-    def _is_true(self, context: "LaunchContext") -> bool:
+    def _is_true(self, context: LaunchContext) -> bool:
         return evaluate_condition_expression(context, self._expression)
 
 
 class UnlessCondition(IfCondition):
     """Holds where the text is false."""
 
-    def _is_true(self, context: "LaunchContext") -> bool:
+    def _is_true(self, context: LaunchContext) -> bool:
         return not super()._is_true(context)
 
 
@@ -63,7 +61,7 @@ class LaunchConfigurationEquals(Condition):
         self._expected: Any = optional_parts(expected_value)
         super().__init__(predicate=self._equals)
 
-    def _equals(self, context: "LaunchContext") -> bool:
+    def _equals(self, context: LaunchContext) -> bool:
         value = context.launch_configurations.get(self._name)
         context.known_arguments.add(self._name)
         if self._expected is None:
@@ -74,5 +72,5 @@ class LaunchConfigurationEquals(Condition):
 class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
     """Holds where an argument has another value."""
 
-    def _equals(self, context: "LaunchContext") -> bool:
+    def _equals(self, context: LaunchContext) -> bool:
         return not super()._equals(context)

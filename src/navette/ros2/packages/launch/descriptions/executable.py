@@ -4,9 +4,10 @@ import os
 import shlex
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.running import Command
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
@@ -15,9 +16,6 @@ from navette.ros2.packages.launch.substitution import (
     optional_parts,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 SomeVariables = Mapping[Any, Any]
 
@@ -63,17 +61,17 @@ class Executable:
     def describe(self) -> str:
         return " ".join(describe_parts(word) for word in self.cmd)
 
-    def words(self, context: "LaunchContext") -> list[str]:
+    def words(self, context: LaunchContext) -> list[str]:
         """The command line, without its prefix."""
         return [perform_substitutions(context, word) for word in self.cmd]
 
-    def prefix_words(self, context: "LaunchContext") -> list[str]:
+    def prefix_words(self, context: LaunchContext) -> list[str]:
         """What ``prefix``, or the argument ``launch-prefix``, puts before it."""
         if self.prefix is not None:
             return shlex.split(perform_substitutions(context, self.prefix))
         return shlex.split(context.launch_configurations.get("launch-prefix", ""))
 
-    def working_folder(self, context: "LaunchContext") -> str | None:
+    def working_folder(self, context: LaunchContext) -> str | None:
         """Where it runs; None: where the launch runs."""
         if self.cwd is None:
             return None
@@ -82,14 +80,14 @@ class Executable:
             raise InvalidLaunchValueError(f"cwd {folder!r}: no such folder")
         return folder
 
-    def environment(self, context: "LaunchContext") -> dict[str, str] | None:
+    def environment(self, context: LaunchContext) -> dict[str, str] | None:
         """Its whole environment; None: nothing differs from the launch's."""
         if self.env is None and self.additional_env is None:
             return None
         base = dict(os.environ) if self.env is None else _perform(context, self.env)
         return base | _perform(context, self.additional_env or [])
 
-    def command(self, context: "LaunchContext", *, shell: bool, tty: bool) -> Command:
+    def command(self, context: LaunchContext, *, shell: bool, tty: bool) -> Command:
         """Everything worked out, with a label that no other command has."""
         words = self.words(context)
         name = (
@@ -121,7 +119,7 @@ def _variables(given: SomeVariables | None) -> list[tuple[Any, Any]] | None:
 
 
 def _perform(
-    context: "LaunchContext", variables: list[tuple[Any, Any]]
+    context: LaunchContext, variables: list[tuple[Any, Any]]
 ) -> dict[str, str]:
     return {
         perform_substitutions(context, name): perform_substitutions(context, value)

@@ -1,7 +1,7 @@
 """Handlers for what becomes of commands."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.event import Event
@@ -12,14 +12,12 @@ from navette.ros2.packages.launch.events.process import (
     ProcessIO,
     ProcessStarted,
 )
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     caller_location,
     normalize_to_list_of_entities,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class OnActionEventBase(AnsweringHandler):
@@ -126,7 +124,7 @@ class OnProcessIO(OnActionEventBase):
         answers = (on_stdin, on_stdout, on_stderr)
 
         def answer(
-            event: ProcessIO, context: "LaunchContext"
+            event: ProcessIO, context: LaunchContext
         ) -> list[LaunchDescriptionEntity]:
             chosen = answers[event.fd]
             return normalize_to_list_of_entities(chosen(event) if chosen else None)

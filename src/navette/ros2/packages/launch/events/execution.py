@@ -1,13 +1,10 @@
 """Events about actions: done, timed, included."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
+from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.event import Event
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.action import Action
-    from navette.ros2.packages.launch.launch_description import LaunchDescription
+from navette.ros2.packages.launch.launch_description import LaunchDescription
 
 
 class ExecutionComplete(Event):
@@ -15,7 +12,7 @@ class ExecutionComplete(Event):
 
     name = "launch.events.ExecutionComplete"
 
-    def __init__(self, *, action: "Action") -> None:
+    def __init__(self, *, action: Action) -> None:
         self.action = action
 
 
@@ -24,7 +21,7 @@ class TimerEvent(Event):
 
     name = "launch.events.TimerEvent"
 
-    def __init__(self, *, timer_action: "Action") -> None:
+    def __init__(self, *, timer_action: Action) -> None:
         self.timer_action = timer_action
 
 
@@ -33,10 +30,10 @@ class IncludeLaunchDescription(Event):
 
     name = "launch.events.IncludeLaunchDescription"
 
-    def __init__(self, launch_description: "LaunchDescription") -> None:
+    def __init__(self, launch_description: LaunchDescription) -> None:
         self.launch_description = launch_description
 
 
-def matches_action(action: "Action") -> "Callable[[Action], bool]":
+def matches_action(action: Action) -> Callable[[Action], bool]:
     """A matcher for events of exactly this action."""
     return lambda candidate: candidate is action

@@ -3,12 +3,13 @@
 import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.errors import (
     SubstitutionFailure,
     UndeclaredConfigurationFailure,
 )
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import launch_config
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
@@ -18,9 +19,6 @@ from navette.ros2.packages.launch.substitution import (
     perform_substitutions,
 )
 
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
-
 
 class LaunchConfiguration(Substitution):
     """The value of a launch argument (``$(var name)``)."""
@@ -29,7 +27,7 @@ class LaunchConfiguration(Substitution):
         self.variable_name = normalize_to_list_of_substitutions(variable_name)
         self._default = None if default is None else _default_parts(default)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         name = perform_substitutions(context, self.variable_name)
         context.known_arguments.add(name)
         if name in context.launch_configurations:
@@ -69,7 +67,7 @@ class EnvironmentVariable(Substitution):
             else normalize_to_list_of_substitutions(default_value)
         )
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         name = perform_substitutions(context, self.name)
         value = context.environment.get(name)
         if value is not None:
@@ -91,7 +89,7 @@ class LocalSubstitution(Substitution):
         self.expression = expression
         self.description = description
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         known = context.get_locals_as_dict()
         name, *attributes = self.expression.split(".")
         try:
@@ -112,18 +110,18 @@ class LocalSubstitution(Substitution):
 class ThisLaunchFile(Substitution):
     """Path of the launch file (``$(filename)``)."""
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return str(_launch_file(context))
 
 
 class ThisLaunchFileDir(Substitution):
     """Folder of the launch file (``$(dirname)``)."""
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return str(_launch_file(context).parent)
 
 
-def _launch_file(context: "LaunchContext") -> Path:
+def _launch_file(context: LaunchContext) -> Path:
     path = context.launch_file
     if path is None:
         raise SubstitutionFailure(
@@ -136,7 +134,7 @@ def _launch_file(context: "LaunchContext") -> Path:
 class LaunchLogDir(Substitution):
     """The folder for logs (``$(log_dir)``)."""
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return launch_config.log_dir
 
 
@@ -146,7 +144,7 @@ class AnonName(Substitution):
     def __init__(self, name: SomeSubstitutionsType) -> None:
         self.name = normalize_to_list_of_substitutions(name)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         base = perform_substitutions(context, self.name)
         given: dict[str, str] = context.notes.setdefault("anonymous names", {})
         return given.setdefault(base, f"{base}_{os.getpid()}_{len(given)}")

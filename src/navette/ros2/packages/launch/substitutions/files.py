@@ -6,12 +6,13 @@ import shutil
 import subprocess
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.errors import (
     InvalidLaunchValueError,
     SubstitutionFailure,
 )
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
@@ -20,9 +21,6 @@ from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 _MAX_BYTES = 16 * 1024 * 1024
 _ON_STDERR = ("fail", "ignore", "warn", "capture")
@@ -36,7 +34,7 @@ class PathJoinSubstitution(Substitution):
             substitutions = [substitutions]
         self.parts = [normalize_to_list_of_substitutions(p) for p in substitutions]
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         parts = [perform_substitutions(context, part) for part in self.parts]
         return str(Path(*parts)) if parts else ""
 
@@ -56,7 +54,7 @@ class FileContent(Substitution):
     def __init__(self, path: SomeSubstitutionsType) -> None:
         self.path = normalize_to_list_of_substitutions(path)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         path = Path(perform_substitutions(context, self.path))
         try:
             if path.stat().st_size > _MAX_BYTES:
@@ -72,7 +70,7 @@ class FindExecutable(Substitution):
     def __init__(self, *, name: SomeSubstitutionsType) -> None:
         self.name = normalize_to_list_of_substitutions(name)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         name = perform_substitutions(context, self.name)
         found = shutil.which(name)
         if found is None:
@@ -102,7 +100,7 @@ class Command(Substitution):
         self.command = normalize_to_list_of_substitutions(command)
         self.on_stderr = normalize_to_list_of_substitutions(on_stderr)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         text = perform_substitutions(context, self.command)
         mode = perform_substitutions(context, self.on_stderr)
         if mode not in _ON_STDERR:

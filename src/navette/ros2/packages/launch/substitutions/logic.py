@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.errors import (
     InvalidConditionExpressionError,
     InvalidLaunchValueError,
     SubstitutionFailure,
 )
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
@@ -19,15 +20,12 @@ from navette.ros2.packages.launch.substitution import (
 )
 from navette.ros2.packages.launch.typed import truth
 
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
-
 
 def _word(value: bool) -> str:
     return "true" if value else "false"
 
 
-def _is_true(context: "LaunchContext", parts: Parts, what: str) -> bool:
+def _is_true(context: LaunchContext, parts: Parts, what: str) -> bool:
     try:
         return truth(perform_substitutions(context, parts))
     except InvalidConditionExpressionError as error:
@@ -40,7 +38,7 @@ class NotSubstitution(Substitution):
     def __init__(self, value: SomeSubstitutionsType) -> None:
         self.value = normalize_to_list_of_substitutions(value)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return _word(not _is_true(context, self.value, self.describe()))
 
     def describe(self) -> str:
@@ -57,7 +55,7 @@ class AnySubstitution(Substitution):
             raise InvalidLaunchValueError(f"{type(self).__name__}: nothing given")
         self.values = [normalize_to_list_of_substitutions(value) for value in args]
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return _word(
             self._combine(_is_true(context, v, self.describe()) for v in self.values)
         )
@@ -98,10 +96,10 @@ class EqualsSubstitution(Substitution):
         self.left = _side(left)
         self.right = _side(right)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return _word(self._same(context))
 
-    def _same(self, context: "LaunchContext") -> bool:
+    def _same(self, context: LaunchContext) -> bool:
         left = perform_substitutions(context, self.left)
         right = perform_substitutions(context, self.right)
         if left == right:
@@ -122,7 +120,7 @@ class EqualsSubstitution(Substitution):
 class NotEqualsSubstitution(EqualsSubstitution):
     """Whether two texts differ (``$(not-equals a b)``)."""
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return _word(not self._same(context))
 
 
@@ -155,7 +153,7 @@ class IfElseSubstitution(Substitution):
         self.if_value = normalize_to_list_of_substitutions(if_value)
         self.else_value = normalize_to_list_of_substitutions(else_value)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         holds = _is_true(context, self.condition, self.describe())
         return perform_substitutions(
             context, self.if_value if holds else self.else_value

@@ -1,9 +1,8 @@
 """The value of a Python expression."""
 
-from typing import TYPE_CHECKING
-
 from navette.msgs.expressions import ExpressionError, evaluate
 from navette.ros2.packages.launch.errors import SubstitutionFailure
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -11,9 +10,6 @@ from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch.launch_context import LaunchContext
 
 _MODULES = ("math",)
 _HINT = "for more than an expression, use OpaqueFunction in a Python launch file"
@@ -40,7 +36,7 @@ class PythonExpression(Substitution):
         )
         self.python_modules = normalize_to_list_of_substitutions(modules)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         for part in self.python_modules:
             module = part.perform(context)
             if module not in _MODULES:

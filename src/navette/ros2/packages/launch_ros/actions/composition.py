@@ -1,10 +1,11 @@
 """Containers, and nodes that are loaded into them."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch import Action, LaunchDescriptionEntity
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.running import PythonProgram
 from navette.ros2.packages.launch.substitution import (
     describe_parts,
@@ -14,9 +15,6 @@ from navette.ros2.packages.launch.substitution import (
 from navette.ros2.packages.launch_ros.actions.node import Node
 from navette.ros2.packages.launch_ros.descriptions import ComposableNode
 from navette.ros2.packages.launch_ros.scope import joined_namespace, pushed_namespace
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 _NOTE = "containers"
 CONTAINER = PythonProgram(module="navette.ros2.launch.container", function="main")
@@ -49,10 +47,10 @@ class ComposableNodeContainer(Node):
         )
         self._nodes = list(composable_node_descriptions or ())
 
-    def _find(self, context: "LaunchContext") -> PythonProgram:
+    def _find(self, context: LaunchContext) -> PythonProgram:
         return CONTAINER
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         if context.is_shutdown:
             return None
         super().execute(context)
@@ -95,13 +93,13 @@ class LoadComposableNodes(Action):
         nodes = ", ".join(describe_parts(node.node_plugin) for node in self._nodes)
         return f"LoadComposableNodes({nodes})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         container = self._container(context)
         for node in self._nodes:
             if node.condition is None or node.condition.evaluate(context):
                 container.write(node.load_request(context))
 
-    def _container(self, context: "LaunchContext") -> ComposableNodeContainer:
+    def _container(self, context: LaunchContext) -> ComposableNodeContainer:
         if isinstance(self._target, ComposableNodeContainer):
             if self._target.process_details is None:
                 raise InvalidLaunchValueError("the container has not been started yet")

@@ -1,10 +1,10 @@
 """Managed nodes: started like any other, and taken from state to state by events."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.msgs.lifecycle_msgs.msg import Transition, TransitionEvent
 from navette.msgs.lifecycle_msgs.srv import ChangeState as ChangeStateService
-from navette.ros2.packages.launch import LaunchDescriptionEntity
+from navette.ros2.packages.launch import Event, LaunchContext, LaunchDescriptionEntity
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.event_handler import AnsweringHandler
 from navette.ros2.packages.launch.logging import get_logger
@@ -16,9 +16,6 @@ from navette.ros2.packages.launch_ros.events.lifecycle import (
 )
 from navette.ros2.packages.launch_ros.events.lifecycle.change_state import TRANSITIONS
 from navette.ros2.packages.launch_ros.ros_node import launch_node
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import Event, LaunchContext
 
 _log = get_logger("launch")
 
@@ -43,7 +40,7 @@ class LifecycleNode(Node):
         self._launch: LaunchContext | None = None
 
     @property
-    def launch(self) -> "LaunchContext":
+    def launch(self) -> LaunchContext:
         """The launch that started it."""
         assert self._launch is not None, "it was started"
         return self._launch
@@ -52,7 +49,7 @@ class LifecycleNode(Node):
     def is_autostart(self) -> bool:
         return bool(self._autostart)
 
-    def execute(self, context: "LaunchContext") -> list[LaunchDescriptionEntity] | None:
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         if context.is_shutdown:
             return None
         self._launch = context
@@ -81,10 +78,10 @@ class LifecycleNode(Node):
             )
         ]
 
-    def _is_asked(self, event: "Event") -> bool:
+    def _is_asked(self, event: Event) -> bool:
         return isinstance(event, ChangeState) and event.lifecycle_node_matcher(self)
 
-    def _change(self, event: Any, context: "LaunchContext") -> None:
+    def _change(self, event: Any, context: LaunchContext) -> None:
         request = ChangeStateService.Request()
         request.transition.id = event.transition_id
 

@@ -1,12 +1,13 @@
 """The action that takes managed nodes through transitions, one after the other."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.msgs.lifecycle_msgs.msg import Transition
 from navette.ros2.packages.launch import Action, Event
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.event_handler import AnsweringHandler, EventHandler
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
@@ -18,9 +19,6 @@ from navette.ros2.packages.launch_ros.events.lifecycle import (
     matches_node_name,
 )
 from navette.ros2.packages.launch_ros.events.lifecycle.change_state import TRANSITIONS
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 _GOALS = {
     Transition.TRANSITION_CONFIGURE: ("configuring", "inactive"),
@@ -63,7 +61,7 @@ class LifecycleTransition(Action):
             for given in transition_ids
         ]
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         numbers = [_number(perform_substitutions(context, text)) for text in self._ids]
         for parts in self._names:
             _Way(context, perform_substitutions(context, parts), numbers).go_on()
@@ -73,7 +71,7 @@ class _Way:
     """The transitions of one node that are still to come."""
 
     def __init__(
-        self, context: "LaunchContext", name: str, transitions: list[int]
+        self, context: LaunchContext, name: str, transitions: list[int]
     ) -> None:
         self._context = context
         self._name = name

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch.actions import ExecuteProcess
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.running import Command, PythonProgram
 from navette.ros2.packages.launch.substitution import (
     describe_parts,
@@ -24,9 +25,6 @@ from navette.ros2.packages.launch_ros.parameter_checks import check_later
 from navette.ros2.packages.launch_ros.programs import find_program, program_of
 from navette.ros2.packages.launch_ros.scope import joined_namespace, pushed_namespace
 from navette.runtime.names import full_node_name, validate_node_name
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 
 class Node(ExecuteProcess):
@@ -104,7 +102,7 @@ class Node(ExecuteProcess):
 
     # -- working out ---------------------------------------------------------------
 
-    def make_command(self, context: "LaunchContext") -> Command:
+    def make_command(self, context: LaunchContext) -> Command:
         program = self._find(context)
         description = self.process_description
         executable = perform_substitutions(context, self._executable)
@@ -129,7 +127,7 @@ class Node(ExecuteProcess):
             own_process=bool(prefix or cwd or env is not None or self.shell),
         )
 
-    def _find(self, context: "LaunchContext") -> PythonProgram | Path:
+    def _find(self, context: LaunchContext) -> PythonProgram | Path:
         executable = perform_substitutions(context, self._executable)
         if self._package is not None:
             return find_program(
@@ -138,14 +136,14 @@ class Node(ExecuteProcess):
         path = Path(executable)
         return program_of(path) if path.is_file() else path
 
-    def _words(self, context: "LaunchContext") -> list[str]:
+    def _words(self, context: LaunchContext) -> list[str]:
         """The program's own arguments, then the ROS arguments."""
         words = [perform_substitutions(context, word) for word in self._arguments]
         extra = [perform_substitutions(context, word) for word in self._ros_arguments]
         extra += self.node_words(context)
         return [*words, "--ros-args", *extra] if extra else words
 
-    def node_words(self, context: "LaunchContext") -> list[str]:
+    def node_words(self, context: LaunchContext) -> list[str]:
         """Name, namespace, parameters and remappings as ROS arguments."""
         name = None
         if self._node_name is not None:

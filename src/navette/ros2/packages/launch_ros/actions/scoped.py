@@ -1,9 +1,10 @@
 """Actions that hold for the nodes behind them in the same scope."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch import Action, SomeSubstitutionsType
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     describe_parts,
     normalize_to_list_of_substitutions,
@@ -20,9 +21,6 @@ from navette.ros2.packages.launch_ros.scope import (
     push_namespace,
 )
 
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
-
 
 class PushRosNamespace(Action):
     """Nodes are in this namespace, within the one that held so far."""
@@ -34,7 +32,7 @@ class PushRosNamespace(Action):
     def describe(self) -> str:
         return f"PushRosNamespace({describe_parts(self.namespace)})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         push_namespace(context, perform_substitutions(context, self.namespace))
 
 
@@ -53,7 +51,7 @@ class SetParameter(Action):
     def describe(self) -> str:
         return f"SetParameter({describe_parts(self.name)})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         add_global_parameter(context, self._parameter.evaluate(context))
 
 
@@ -63,7 +61,7 @@ class SetUseSimTime(SetParameter):
     def __init__(self, value: Any, **kwargs: Any) -> None:
         super().__init__("use_sim_time", value, **kwargs)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         value = perform_bool(context, self.value)
         add_global_parameter(context, ("use_sim_time", value))
 
@@ -75,7 +73,7 @@ class SetParametersFromFile(Action):
         super().__init__(**kwargs)
         self._file = ParameterFile(filename)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         add_global_parameter(context, Path(self._file.evaluate(context)))
 
 
@@ -92,7 +90,7 @@ class SetRemap(Action):
     def describe(self) -> str:
         return f"SetRemap({describe_parts(self.src)}, {describe_parts(self.dst)})"
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         add_global_remap(
             context,
             perform_substitutions(context, self.src),
@@ -107,7 +105,7 @@ class SetROSLogDir(Action):
         super().__init__(**kwargs)
         self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
 
-    def execute(self, context: "LaunchContext") -> None:
+    def execute(self, context: LaunchContext) -> None:
         context.environment["ROS_LOG_DIR"] = perform_substitutions(
             context, self.log_dir
         )

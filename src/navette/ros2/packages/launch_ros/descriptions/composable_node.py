@@ -2,9 +2,10 @@
 
 import json
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch import Condition
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     describe_parts,
     normalize_to_list_of_substitutions,
@@ -18,9 +19,6 @@ from navette.ros2.packages.launch_ros.node_arguments import (
 )
 from navette.ros2.packages.launch_ros.scope import joined_namespace, pushed_namespace
 from navette.runtime.names import validate_node_name
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 
 class ComposableNode:
@@ -62,7 +60,7 @@ class ComposableNode:
             f"{describe_parts(self.node_plugin)})"
         )
 
-    def load_request(self, context: "LaunchContext") -> bytes:
+    def load_request(self, context: LaunchContext) -> bytes:
         """One line of JSON for the container."""
         name = None
         if self.node_name is not None:

@@ -1,11 +1,12 @@
 """The handler for what becomes of managed nodes."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch import Event
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.event_handler import AnsweringHandler
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import caller_location
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
@@ -15,9 +16,6 @@ from navette.ros2.packages.launch_ros.actions.lifecycle_node import LifecycleNod
 from navette.ros2.packages.launch_ros.events.lifecycle.state_transition import (
     StateTransition,
 )
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 
 class OnStateTransition(AnsweringHandler):
@@ -71,5 +69,5 @@ class OnStateTransition(AnsweringHandler):
         )
 
 
-def _text(context: "LaunchContext", value: Any) -> str:
+def _text(context: LaunchContext, value: Any) -> str:
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))

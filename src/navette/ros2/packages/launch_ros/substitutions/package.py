@@ -1,9 +1,8 @@
 """Substitutions by packages: their folders and executables."""
 
-from typing import TYPE_CHECKING
-
 from navette.ros2.packages.launch import SomeSubstitutionsType, Substitution
 from navette.ros2.packages.launch.errors import SubstitutionFailure
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     describe_parts,
     normalize_to_list_of_substitutions,
@@ -11,9 +10,6 @@ from navette.ros2.packages.launch.substitution import (
 )
 from navette.ros2.packages.launch.substitutions import PathJoinSubstitution
 from navette.ros2.workspace import find_package
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 
 class FindPackagePrefix(Substitution):
@@ -26,7 +22,7 @@ class FindPackagePrefix(Substitution):
         """The folder of a package."""
         return str(find_package(package_name).prefix)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         return self.find(perform_substitutions(context, self.package))
 
     def describe(self) -> str:
@@ -55,7 +51,7 @@ class ExecutableInPackage(Substitution):
         self.executable = normalize_to_list_of_substitutions(executable)
         self.package = normalize_to_list_of_substitutions(package)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         package = perform_substitutions(context, self.package)
         name = perform_substitutions(context, self.executable)
         path = find_package(package).executable(name).path

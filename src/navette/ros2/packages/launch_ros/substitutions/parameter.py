@@ -1,18 +1,16 @@
 """The value of a parameter that SetParameter has set."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navette.ros2.packages.launch import SomeSubstitutionsType, Substitution
 from navette.ros2.packages.launch.errors import SubstitutionFailure
+from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     optional_parts,
     perform_substitutions,
 )
 from navette.ros2.packages.launch_ros.scope import global_parameters
-
-if TYPE_CHECKING:
-    from navette.ros2.packages.launch import LaunchContext
 
 
 class Parameter(Substitution):
@@ -22,7 +20,7 @@ class Parameter(Substitution):
         self.name = normalize_to_list_of_substitutions(name)
         self.default = optional_parts(default)
 
-    def perform(self, context: "LaunchContext") -> str:
+    def perform(self, context: LaunchContext) -> str:
         name = perform_substitutions(context, self.name)
         for given in reversed(global_parameters(context)):
             if isinstance(given, tuple) and given[0] == name:
