@@ -53,6 +53,8 @@ class Pair(ABC):
 
     near: Transport
     far: Transport
+    #: Whether lost samples of every reliable topic are sent again.
+    retransmits = False
 
     @abstractmethod
     def settle(self) -> None:
@@ -90,6 +92,7 @@ class ZenohPair(Pair):
 
     def __init__(self, **settings: Any) -> None:
         chosen = Settings(router=(free_endpoint(),), **settings)
+        self.retransmits = bool(chosen.retransmit)
         self.near = self.near_zenoh = ZenohTransport(7, lambda: 5, chosen)
         self.far = self.far_zenoh = ZenohTransport(7, lambda: 6, chosen)
         self._count = itertools.count(1)
