@@ -1,13 +1,13 @@
-"""A*: the cheapest 8-connected way between two cells, exact.
+"""A*: the cheapest 8-connected path between two cells, exact.
 
 Hart, Nilsson and Raphael 1968, with an open list as in Dial 1969: a circle of
 buckets over fixed-point f. A bucket is a last-in-first-out list of cells, so the
-search dives towards the goal; cells whose g falls are opened again, and the search
+search dives towards the goal. Cells whose g decreases are opened again, and the search
 ends when the goal's own bucket is empty, which keeps the result exact.
 Diagonal moves need both orthogonal neighbours free.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from navette.navigation.planning.bucket_queue import (
     WAITING,
-    layout,
+    BucketQueue,
     new_pool,
-    new_state,
     pop,
     push,
     reserve,
@@ -27,13 +26,13 @@ from navette.navigation.planning.traversal import (
     STRAIGHT,
     Cell,
     EdgeTable,
+    SearchGrid,
     require_inside,
-    with_rim,
 )
 
-# A record per cell: stamp << 48 | g << 4 | closed << 3 | direction. The stamp falls
-# with every query, so what an earlier query left compares as "dearer than anything"
-# and nothing needs clearing.
+# A record per cell: stamp << 48 | g << 4 | closed << 3 | direction. The stamp decreases
+# with every query, so records of earlier queries compare as more expensive than any
+# and need no clearing.
 _FIRST_STAMP = 32_766
 _G_MASK = (1 << 44) - 1
 _OBLIQUE = DIAGONAL - STRAIGHT
@@ -42,7 +41,7 @@ _NEVER = 1 << 60
 
 
 class AStar:
-    """Keeps the working arrays between queries; the result depends on them never."""
+    """Search that keeps its working arrays between queries."""
 
     def __init__(self) -> None:
         self._records = np.empty(0, np.int64)
@@ -57,61 +56,40 @@ class AStar:
         *,
         table: EdgeTable | None = None,
     ) -> tuple[NDArray[np.int64], int] | None:
-        """Cells (N, 2) row, column from start to goal, and the cost in units.
+        """Return cells (N, 2) row, column from start to goal, and the cost in units.
 
         Args:
-            cost: (H, W) cell costs; ``table`` says what entering each costs.
+            cost: (H, W) cell costs.
+            start: first cell; its own cost does not count.
+            goal: last cell.
+            table: cost of entering a cell.
 
         Returns:
-            None when there is no way, or an end is closed. The start's own cost
-            does not count.
+            None if no path exists, or an end is closed.
         """
         require_inside(start, cost.shape, "start")
         require_inside(goal, cost.shape, "goal")
-        return self.search_rimmed(
-            with_rim(cost), start, goal, table=table or EdgeTable()
-        )
-
-    def search_rimmed(
-        self,
-        rimmed: NDArray[np.uint8],
-        start: Cell,
-        goal: Cell,
-        *,
-        table: EdgeTable,
-    ) -> tuple[NDArray[np.int64], int] | None:
-        """As :meth:`search` on a grid that :func:`with_rim` made."""
-        stride = rimmed.shape[1]
-        ends = rimmed[(start[0] + 1, goal[0] + 1), (start[1] + 1, goal[1] + 1)]
-        if not table.straight[ends].all():
+        table = table or EdgeTable()
+        grid = SearchGrid.of(cost, table)
+        if not (grid.is_open(start) and grid.is_open(goal)):
             return None
         if start == goal:
             return np.array([start], np.int64), 0
-        self._prepare(rimmed.size)
-        shift, buckets = layout(table.longest + DIAGONAL)
-        total, self._pool = _search(
-            rimmed.reshape(-1),
-            stride,
-            (start[0] + 1, start[1] + 1),
-            (goal[0] + 1, goal[1] + 1),
-            table.straight,
-            table.diagonal,
+        self._prepare(grid.cost.size)
+        query = _Query(
+            start[0] + 1,
+            start[1] + 1,
+            goal[0] + 1,
+            goal[1] + 1,
+            np.int64(self._stamp << 48),
             self._records,
-            self._stamp,
-            self._pool,
-            np.zeros(buckets, np.int32),
-            new_state(),
-            shift,
         )
+        queue = BucketQueue.spanning(table.longest + DIAGONAL)
+        total, self._pool = _search(grid, query, queue, self._pool)
         if total < 0:
             return None
-        cells = _trace(
-            self._records,
-            stride,
-            (start[0] + 1) * stride + start[1] + 1,
-            (goal[0] + 1) * stride + goal[1] + 1,
-        )
-        return cells, total
+        ends = grid.index_of(start), grid.index_of(goal)
+        return _trace(self._records, grid.stride, *ends), total
 
     def _prepare(self, size: int) -> None:
         self._stamp -= 1
@@ -120,32 +98,36 @@ class AStar:
             self._stamp = _FIRST_STAMP
 
 
+class _Query(NamedTuple):
+    """Ends in the rimmed grid, the query's stamp in a record, and the records."""
+
+    start_row: int
+    start_column: int
+    goal_row: int
+    goal_column: int
+    base: np.int64
+    records: NDArray[np.int64]
+
+
 @njit(cache=True)
-def _search(
-    cost: Any,
-    stride: Any,
-    start: Any,
-    goal: Any,
-    straight: Any,
-    diagonal: Any,
-    records: Any,
-    stamp: Any,
-    pool: Any,
-    heads: Any,
-    state: Any,
-    shift: Any,
-) -> Any:
-    """Search the flat rimmed grid; returns (g of the goal or -1, the pool).
+def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
+    """Search the grid; return (g of the goal or −1, the pool).
 
     An open item is row << 16 | column.
     """
-    base = np.int64(stamp) << 48
-    bucket = _octile(start[0] - goal[0], start[1] - goal[1]) >> shift
-    records[start[0] * stride + start[1]] = base
-    push(pool, heads, state, bucket, (start[0] << 16) | start[1])
+    stride, records, state, shift = (
+        grid.stride,
+        query.records,
+        queue.state,
+        queue.shift,
+    )
+    row, column = query.start_row, query.start_column
+    bucket = _octile(row - query.goal_row, column - query.goal_column) >> shift
+    records[row * stride + column] = query.base
+    push(pool, queue, bucket, (row << 16) | column)
     best = np.int64(_NEVER)
     while state[WAITING] > 0 and bucket <= best >> shift:
-        item = pop(pool, heads, state, bucket)
+        item = pop(pool, queue, bucket)
         if item < 0:
             bucket += 1
             continue
@@ -155,33 +137,26 @@ def _search(
         if record & _CLOSED:
             continue
         records[index] = record | _CLOSED
-        pool = reserve(pool, state, 8)
-        best = _expand(
-            cost, stride, row, column, goal, straight, diagonal, records,
-            base, (record >> 4) & _G_MASK, best, pool, heads, state, shift,
-        )  # fmt: skip
+        pool = reserve(pool, queue, 8)
+        g = (record >> 4) & _G_MASK
+        best = _expand(grid, query, queue, pool, row, column, g, best)
     return (best if best < _NEVER else np.int64(-1)), pool
 
 
 @njit(cache=True, forceinline=True)
 def _expand(
-    cost: Any,
-    stride: Any,
-    row: Any,
-    column: Any,
-    goal: Any,
-    straight: Any,
-    diagonal: Any,
-    records: Any,
-    base: Any,
-    g: Any,
-    best: Any,
+    grid: Any,
+    query: Any,
+    queue: Any,
     pool: Any,
-    heads: Any,
-    state: Any,
-    shift: Any,
+    row: int,
+    column: int,
+    g: int,
+    best: int,
 ) -> Any:
-    """Offer g + edge to the eight neighbours; returns the goal's best g so far."""
+    """Offer g + edge to the eight neighbours; return the goal's least g so far."""
+    cost, stride, straight, diagonal = grid
+    records, base = query.records, query.base
     steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)
     rows = (-1, 1, 0, 0, -1, -1, 1, 1)
     columns = (0, 0, -1, 1, -1, 1, -1, 1)
@@ -204,23 +179,20 @@ def _expand(
         if edge == 0 or (candidate | 15) >= records[reached]:
             continue
         row_new, column_new = row + rows[k], column + columns[k]
-        f = g + edge + _octile(row_new - goal[0], column_new - goal[1])
+        f = g + edge + _octile(row_new - query.goal_row, column_new - query.goal_column)
         if f >= best:
             continue
         records[reached] = candidate
-        if row_new == goal[0] and column_new == goal[1]:
+        if row_new == query.goal_row and column_new == query.goal_column:
             best = g + edge
         else:
-            push(pool, heads, state, f >> shift, (row_new << 16) | column_new)
+            push(pool, queue, f >> queue.shift, (row_new << 16) | column_new)
     return best
 
 
 @njit(cache=True, forceinline=True)
-def _octile(
-    rows: Any,
-    columns: Any,
-) -> Any:
-    """Cheapest way over free cells: the heuristic."""
+def _octile(rows: Any, columns: Any) -> Any:
+    """Return the least cost over free cells: the heuristic."""
     rows = rows if rows >= 0 else -rows
     columns = columns if columns >= 0 else -columns
     if rows > columns:
@@ -229,13 +201,8 @@ def _octile(
 
 
 @njit(cache=True)
-def _trace(
-    records: Any,
-    stride: Any,
-    start_index: Any,
-    goal_index: Any,
-) -> Any:
-    """Cells (N, 2) of the unrimmed grid, start first, by the stored directions."""
+def _trace(records: Any, stride: int, start_index: int, goal_index: int) -> Any:
+    """Return cells (N, 2) of the unrimmed grid, start first."""
     steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)
     count = 1
     index = goal_index

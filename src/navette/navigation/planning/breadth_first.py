@@ -1,9 +1,9 @@
-"""Breadth-first search: the way with the fewest moves (Moore 1959).
+"""Breadth-first search: the path with the fewest moves (Moore 1959).
 
-The simplest search of all, kept to learn from and to compare with. It sees free and
-closed cells only, no costs. Straight moves are tried first, so that among ways of
-equally many moves the straighter one is found. Diagonal moves need both orthogonal
-neighbours free.
+The simplest search, for teaching and comparison. It distinguishes free and closed cells
+only and ignores costs. Straight moves are tried first, so that among paths of equally
+many moves the straighter one is found. Diagonal moves need both orthogonal neighbours
+free.
 """
 
 from typing import Any
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from navette.navigation.planning.traversal import (
     Cell,
     EdgeTable,
+    SearchGrid,
     require_inside,
     steps_cost,
-    with_rim,
 )
 
 
@@ -28,21 +28,20 @@ def search(
     *,
     table: EdgeTable | None = None,
 ) -> tuple[NDArray[np.int64], int] | None:
-    """Cells (N, 2) row, column from start to goal, and what they cost in units.
+    """Return cells (N, 2) row, column from start to goal, and their cost in units.
 
-    None when there is no way, or an end is closed. Costs are counted, not minded.
+    None if no path exists, or an end is closed. The search ignores the costs.
     """
     table = table or EdgeTable()
     require_inside(start, cost.shape, "start")
     require_inside(goal, cost.shape, "goal")
-    rimmed = with_rim(cost)
-    stride = rimmed.shape[1]
-    closed = table.straight[rimmed].reshape(-1) == 0
-    here = (start[0] + 1) * stride + start[1] + 1
-    there = (goal[0] + 1) * stride + goal[1] + 1
+    grid = SearchGrid.of(cost, table)
+    stride = grid.stride
+    closed = table.straight[grid.cost] == 0
+    here, there = grid.index_of(start), grid.index_of(goal)
     if closed[here] or closed[there]:
         return None
-    # The flood runs from the goal, so that following parents leads to the goal.
+    # The flood starts at the goal, so that following parents leads to the goal.
     parent = np.full(closed.size, -1, np.int32)
     _flood(closed, stride, here, there, parent, np.empty(closed.size, np.int32))
     if parent[here] < 0:

@@ -2,13 +2,12 @@
 
 A bucket is a last-in-first-out list threaded through one pool of int64 entries,
 ``item << 32 | next``; ``heads[priority >> shift & lap]`` is its first entry, 0 none.
-All priorities waiting at a time must span less than one lap. Popped entries are
-reused. ``state`` holds (entries ever used, first reusable entry, entries waiting).
+All priorities in the queue must span less than one lap. Popped entries are reused.
 
 The functions compile into the searches that use them.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -19,33 +18,45 @@ _NEXT = 0x7FFFFFFF
 _MAX_BUCKETS = 1 << 13
 
 
-def layout(
-    span: int, *, shift: int = 10, max_buckets: int = 1 << 13
-) -> tuple[int, int]:
-    """(shift, number of buckets) for priorities that span up to ``span``.
+class BucketQueue(NamedTuple):
+    """The queue without its pool, which :func:`reserve` may replace.
 
-    2¹⁰ units are a tenth of a straight step: measured best of 2¹⁰ … 2¹⁴.
+    Attributes:
+        heads: first entry of each bucket; the number of buckets is a power of two.
+        state: entries ever used, first reusable entry, entries waiting.
+        shift: a bucket spans 2**shift units of priority.
     """
-    shift = 10
-    while (span >> shift) + 3 > _MAX_BUCKETS:
-        shift += 1
-    return shift, 1 << int((span >> shift) + 2).bit_length()
+
+    heads: NDArray[np.int32]
+    state: NDArray[np.int64]
+    shift: int
+
+    @classmethod
+    def empty(cls, buckets: int, shift: int) -> "BucketQueue":
+        """Return a queue without entries; entry 0 means "none" and is never used."""
+        return cls(np.zeros(buckets, np.int32), np.array([1, 0, 0], np.int64), shift)
+
+    @classmethod
+    def spanning(cls, span: int) -> "BucketQueue":
+        """Return an empty queue for priorities that span up to ``span``.
+
+        2¹⁰ units are a tenth of a straight step: measured best of 2¹⁰ … 2¹⁴.
+        """
+        shift = 10
+        while (span >> shift) + 3 > _MAX_BUCKETS:
+            shift += 1
+        return cls.empty(1 << int((span >> shift) + 2).bit_length(), shift)
 
 
 def new_pool() -> NDArray[np.int64]:
-    """A pool for :func:`reserve` to grow; worth keeping between searches."""
+    """Return a pool for :func:`reserve` to grow; keep it between searches."""
     return np.zeros(1 << 12, np.int64)
 
 
-def new_state() -> NDArray[np.int64]:
-    """State of an empty queue; entry 0 means "none" and is never used."""
-    return np.array([1, 0, 0], np.int64)
-
-
 @njit(cache=True, forceinline=True)
-def reserve(pool: Any, state: Any, pushes: int) -> Any:
-    """The pool, or a larger copy, with room for ``pushes`` more."""
-    if state[USED] + pushes <= pool.size:
+def reserve(pool: Any, queue: Any, pushes: int) -> Any:
+    """Return the pool, or a larger copy, with room for ``pushes`` more."""
+    if queue.state[USED] + pushes <= pool.size:
         return pool
     larger = np.empty(2 * pool.size + pushes, np.int64)
     for i in range(pool.size):  # a slice would take a second to compile
@@ -54,8 +65,9 @@ def reserve(pool: Any, state: Any, pushes: int) -> Any:
 
 
 @njit(cache=True, forceinline=True)
-def push(pool: Any, heads: Any, state: Any, bucket: int, item: int) -> None:
-    """Add ``item`` (31 bits) to the bucket; :func:`reserve` comes first."""
+def push(pool: Any, queue: Any, bucket: int, item: int) -> None:
+    """Add ``item`` (31 bits) to the bucket; call :func:`reserve` before."""
+    heads, state = queue.heads, queue.state
     slot = state[FREE]
     if slot != 0:
         state[FREE] = pool[np.uint64(slot)] & _NEXT
@@ -69,8 +81,9 @@ def push(pool: Any, heads: Any, state: Any, bucket: int, item: int) -> None:
 
 
 @njit(cache=True, forceinline=True)
-def pop(pool: Any, heads: Any, state: Any, bucket: int) -> Any:
-    """The newest item of the bucket, or −1 when it is empty."""
+def pop(pool: Any, queue: Any, bucket: int) -> Any:
+    """Remove and return the newest item of the bucket, or −1 if it is empty."""
+    heads, state = queue.heads, queue.state
     at = np.uint64(bucket & (heads.size - 1))
     slot = heads[at]
     if slot == 0:

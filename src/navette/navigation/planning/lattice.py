@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.grids import DistanceGrid, GridSpec, grid_frame, make_body
-from navette.navigation.planning.bucket_queue import new_pool, new_state
+from navette.navigation.planning.bucket_queue import BucketQueue, new_pool
 from navette.navigation.planning.dijkstra import Field
 from navette.navigation.planning.lattice_motions import MOVES, Motions
 from navette.navigation.planning.lattice_search import (
@@ -25,6 +25,7 @@ from navette.navigation.planning.lattice_search import (
     HEADING,
     MOVE,
     PARENT,
+    SHIFT,
     MoveTable,
     Scene,
     Tree,
@@ -159,8 +160,7 @@ def _new_tree(spec: GridSpec, motions: Motions, max_expansions: int) -> Tree:
         np.zeros(bins_high * bins_wide * motions.headings, np.int32),
         bin_cells,
         bins_wide,
-        np.zeros(BUCKETS, np.int32),
-        new_state(),
+        BucketQueue.empty(BUCKETS, SHIFT),
     )
 
 

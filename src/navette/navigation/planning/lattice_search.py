@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from navette.grids import Body, DistanceGrid, pose_clearance, pose_is_clear
 from navette.navigation.planning.bucket_queue import (
     WAITING,
+    BucketQueue,
     pop,
     push,
     reserve,
@@ -65,7 +66,7 @@ class Tree(NamedTuple):
         kept: (rows · columns · headings,) ROOM − g of the best pose in each bin.
         bin_cells: edge of a bin in cells.
         bins_wide: bins in a row.
-        heads, queue: buckets and state of the open list; see :mod:`.bucket_queue`.
+        queue: the open list; see :mod:`.bucket_queue`.
     """
 
     position: NDArray[np.float64]
@@ -73,8 +74,7 @@ class Tree(NamedTuple):
     kept: NDArray[np.int32]
     bin_cells: float
     bins_wide: int
-    heads: NDArray[np.int32]
-    queue: NDArray[np.int64]
+    queue: BucketQueue
 
 
 @njit(cache=True)
@@ -92,18 +92,18 @@ def grow(
     ``goal`` is x, y, tolerance, yaw or NaN, yaw tolerance, units per metre off, and
     units of a metre.
     """
-    state = tree.queue
+    queue = tree.queue
     clearance = _clearance(scene, start[0], start[1], start[2], scene.margin_m)
     escape_m = clearance - 1e-3
     bucket = _plant(scene, tree, start, clearance < scene.margin_m)
     # int64 from the start: a literal would compile the callee a second time.
     used: Any = np.int64(1)
-    push(pool, tree.heads, state, bucket, used - 1)
+    push(pool, queue, bucket, used - 1)
     expanded = 0
     best, best_node = np.int64(NOWHERE), -1
     turn = 2 * np.pi / moves.headings
-    while state[WAITING] > 0 and expanded < budget and bucket < best >> SHIFT:
-        node = pop(pool, tree.heads, state, bucket)
+    while queue.state[WAITING] > 0 and expanded < budget and bucket < best >> SHIFT:
+        node = pop(pool, queue, bucket)
         if node < 0:
             bucket += 1
             continue
@@ -118,7 +118,7 @@ def grow(
             total = tree.links[node, G] + _arrival(scene, goal, x, y, yaw)
             if total < best:
                 best, best_node = total, node
-        pool = reserve(pool, state, 8)
+        pool = reserve(pool, queue, 8)
         used, bucket = _branch(
             scene, moves, tree, node, yaw, escape_m, used, pool, bucket
         )
@@ -189,7 +189,7 @@ def _branch(
         slot = _promise(g, ahead) >> SHIFT
         first = slot if slot < first else first
         last = first + BUCKETS - 2
-        push(pool, tree.heads, tree.queue, slot if slot < last else last, used)
+        push(pool, tree.queue, slot if slot < last else last, used)
         used += 1
     return used, first
 

@@ -1,4 +1,4 @@
-"""What a step between cells costs: edge tables, and grids with a closed rim.
+"""Edge costs of grid searches, and grids with a lethal rim.
 
 Costs are fixed-point integers: one straight step over a free cell is ``STRAIGHT``
 units, a diagonal one ``DIAGONAL`` (√2 to four digits), so that sums are exact and
@@ -7,6 +7,7 @@ independent of order, and an open list can be an array of buckets.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +40,7 @@ MOVES: tuple[Cell, ...] = (
 
 @dataclass(frozen=True)
 class EdgeTable:
-    """Cost of entering a cell, by the cell's cost (0-255); 0 means closed.
+    """Cost of entering a cell by the cell's cost (0-255); 0 means closed.
 
     ``straight[c] = STRAIGHT * (1 + weight * c / 252)``, likewise ``diagonal``.
     """
@@ -65,7 +66,7 @@ class EdgeTable:
 
     @property
     def longest(self) -> int:
-        """The dearest single step, in units."""
+        """Cost of the most expensive single step, in units."""
         return int(self.diagonal.max())
 
     def _table(self, unit: int) -> NDArray[np.int32]:
@@ -75,8 +76,39 @@ class EdgeTable:
         return table
 
 
+class SearchGrid(NamedTuple):
+    """What a search kernel reads: a flat grid with a lethal rim, and its edge costs.
+
+    Attributes:
+        cost: ((H + 2) · (W + 2),) cell costs, row by row.
+        stride: W + 2.
+        straight, diagonal: (256,) cost of entering a cell, 0 if closed.
+    """
+
+    cost: NDArray[np.uint8]
+    stride: int
+    straight: NDArray[np.int32]
+    diagonal: NDArray[np.int32]
+
+    @classmethod
+    def of(cls, cost: NDArray[np.uint8], table: EdgeTable) -> "SearchGrid":
+        rimmed = with_rim(cost)
+        return cls(rimmed.reshape(-1), rimmed.shape[1], table.straight, table.diagonal)
+
+    def index_of(self, cell: Cell) -> int:
+        """Return the flat index of an unrimmed (row, column)."""
+        return (cell[0] + 1) * self.stride + cell[1] + 1
+
+    def is_open(self, cell: Cell) -> bool:
+        return bool(self.straight[self.cost[self.index_of(cell)]])
+
+
 def with_rim(cost: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Cost (H, W) → (H + 2, W + 2) with a lethal rim: searches need no bounds."""
+    """Return cost (H, W) as (H + 2, W + 2) with a lethal rim: no bounds checks needed.
+
+    Raises:
+        InvalidValueError: not 2-D uint8, or more than 32000 cells a side.
+    """
     if cost.ndim != 2 or cost.dtype != np.uint8:
         raise InvalidValueError(
             f"cost grid of shape {cost.shape}, {cost.dtype}: wanted 2-D uint8"
@@ -93,7 +125,7 @@ def with_rim(cost: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def require_inside(cell: Cell, shape: tuple[int, ...], what: str) -> None:
-    """Raise unless ``cell`` lies in a grid of ``shape``."""
+    """Raise InvalidValueError unless ``cell`` lies in a grid of ``shape``."""
     if not (0 <= cell[0] < shape[0] and 0 <= cell[1] < shape[1]):
         raise InvalidValueError(
             f"{what} cell {cell}: outside the grid of {shape[0]} x {shape[1]} cells"
@@ -103,7 +135,7 @@ def require_inside(cell: Cell, shape: tuple[int, ...], what: str) -> None:
 def steps_cost(
     cells: NDArray[np.int64], cost: NDArray[np.uint8], table: EdgeTable
 ) -> int:
-    """Units that a chain (N, 2) of neighbouring cells costs; the oracle of tests."""
+    """Return the cost in units of a chain (N, 2) of neighbouring cells."""
     entered = cost[cells[1:, 0], cells[1:, 1]]
     diagonal = np.abs(np.diff(cells, axis=0)).sum(axis=1) == 2
     each = np.where(diagonal, table.diagonal[entered], table.straight[entered])
