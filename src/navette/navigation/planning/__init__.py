@@ -1,10 +1,15 @@
-"""How to get there: searches on the grid, and paths that the body can drive."""
+"""Planning: grid searches, and paths that the footprint can drive."""
 
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.planner import Goal, Plan, Planner
-from navette.navigation.planning.reports import Phase, Report, RobotState, State
+from navette.navigation.planning.reports import (
+    NavigatorReport,
+    Phase,
+    RobotMotion,
+    State,
+)
 
 __all__ = [
     "PlannerParams",
@@ -13,8 +18,8 @@ __all__ = [
     "Plan",
     "Outcome",
     "Navigator",
-    "RobotState",
-    "Report",
+    "RobotMotion",
+    "NavigatorReport",
     "Phase",
     "State",
 ]

@@ -125,7 +125,7 @@ def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
     bucket = _octile(row - query.goal_row, column - query.goal_column) >> shift
     records[row * stride + column] = query.base
     push(pool, queue, bucket, (row << 16) | column)
-    best = np.int64(_NEVER)
+    best: Any = np.int64(_NEVER)
     while state[WAITING] > 0 and bucket <= best >> shift:
         item = pop(pool, queue, bucket)
         if item < 0:

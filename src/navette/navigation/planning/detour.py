@@ -1,9 +1,9 @@
-"""The way of a body where the way of a point will not do.
+"""Detours: paths for the footprint where the grid's route does not fit.
 
-The search with headings drives where the body fits barely: backwards out of a
-corner, along a wall, to the nearest pose that fits at a tight goal. Its paths are
-jagged, so only the tight part is taken from it: before and after, the path follows
-the grid's route wherever the body fits along that.
+The search with headings finds paths through tight places: in reverse out of a corner,
+along a wall, to the nearest pose that fits at a tight goal. Its paths are jagged, so
+they are used for the tight part only; before and after it, the path follows the grid's
+route wherever the footprint fits.
 """
 
 import math
@@ -16,22 +16,22 @@ from navette.navigation.planning import lattice, path_shape
 from navette.navigation.planning.dijkstra import Field, cost_to_go
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_within
+from navette.navigation.planning.lattice_kernels import GOOD_ENOUGH_M, GREED
 from navette.navigation.planning.lattice_motions import Motions
-from navette.navigation.planning.lattice_search import GOOD_ENOUGH_M, GREED
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import Poses, joined
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.route import GridRouter
 from navette.navigation.planning.traversal import STRAIGHT
 
-# What a metre from the exact goal is worth in metres driven.
+# Cost of a metre between the path's end and the exact goal, in metres driven.
 _GOAL_PULL = 5.0
 _TAILS_TRIED = 8
 
 
 @dataclass(frozen=True)
 class Target:
-    """The goal in the map frame; any pose within the tolerance may do."""
+    """The goal in the map frame; any pose within the tolerance is accepted."""
 
     x: float
     y: float
@@ -41,7 +41,7 @@ class Target:
 
 @dataclass(frozen=True)
 class DetourResult:
-    """Poses (N, 3), None when there are none; effort spent; budget used up."""
+    """Poses (N, 3) or None, poses expanded, and whether the budget was exhausted."""
 
     poses: Poses | None
     expansions: int
@@ -49,7 +49,7 @@ class DetourResult:
 
 
 class DetourPlanner:
-    """Plans on one grid for one body."""
+    """Detour planner on one grid for one body."""
 
     def __init__(
         self,
@@ -69,7 +69,7 @@ class DetourPlanner:
         )
 
     def plan(self, start: Pose2, target: Target, route: Poses | None) -> DetourResult:
-        """Poses that the body can drive; ``route`` is the grid's, which it cannot."""
+        """Plan poses for the body; ``route`` is the grid's, which does not fit."""
         before = self._usable_beginning(route)
         found = self._search(before, start, target)
         effort = found.expansions
@@ -83,7 +83,7 @@ class DetourPlanner:
         return DetourResult(joined(before, poses), effort, False)
 
     def cost(self, poses: Poses) -> float:
-        """See :func:`.path_shape.path_cost`."""
+        """Return the cost of a path; see :func:`.path_shape.path_cost`."""
         return path_shape.path_cost(
             poses,
             self.grid,
@@ -92,7 +92,7 @@ class DetourPlanner:
         )
 
     def _usable_beginning(self, route: Poses | None) -> Poses:
-        """The part of the grid's route up to the last place with room to turn."""
+        """Return the grid's route up to the last pose with room to turn."""
         nothing = np.empty((0, 3))
         if route is None:
             return nothing
@@ -105,7 +105,7 @@ class DetourPlanner:
         return route[: usable[-1] + 1] if len(usable) else nothing
 
     def _has_room(self, poses: Poses) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-        """Where the body can turn in place."""
+        """Return at which poses the body can turn in place."""
         distance = self.grid.distance_at(poses[:, :2])
         needed = self.body.circumscribed_m + self.grid.margin_m
         return np.asarray(distance >= needed + self.grid.spec.resolution)
@@ -135,7 +135,7 @@ class DetourPlanner:
     def _guide(self, target: Target, begin: Pose2) -> Field:
         cells, away = cells_within(self.grid, (target.x, target.y), target.tolerance_m)
         off = np.maximum(away - GOOD_ENOUGH_M, 0.0)
-        # The search multiplies the guide; what the goal asks must not grow with it.
+        # The search multiplies the guide by GREED, but not the goal's cost.
         units = off * (_GOAL_PULL / GREED * STRAIGHT / self.grid.spec.resolution)
         seeds = [
             ((int(row), int(column)), int(unit))
@@ -144,7 +144,7 @@ class DetourPlanner:
         return cost_to_go(self.grid.cost, seeds, table=self.grid.table)
 
     def _with_route_after(self, poses: Poses, target: Target) -> Poses:
-        """The cheapest of: these poses, or some of them and then the grid's route."""
+        """Return these poses, or some of them and then the grid's route if cheaper."""
         best, best_cost = poses, self.cost(poses)
         along = np.concatenate([[0.0], np.cumsum(path_shape.lengths(poses))])
         apart = max(self.body.circumscribed_m / 2, along[-1] / _TAILS_TRIED / 2)

@@ -1,4 +1,4 @@
-"""Whether the body fits along a path."""
+"""Check a path against the obstacles with the robot's footprint."""
 
 from dataclasses import dataclass
 
@@ -9,13 +9,13 @@ from navette.grids import body_clearance
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 
-# A body at rest must not count as closer than itself.
+# Tolerance, so that a body at rest is not closer than itself.
 _SLACK_M = 1e-3
 
 
 @dataclass(frozen=True)
 class FootprintCheck:
-    """Clearance (N,) in metres at each pose; ``first_bad`` None when all will do."""
+    """Clearance (N,) in metres at each pose; ``first_bad`` is None if all poses fit."""
 
     clearance_m: NDArray[np.float64]
     first_bad: int | None
@@ -30,8 +30,9 @@ def check_path(
 ) -> FootprintCheck:
     """Check every pose (N, 3) of a path against the margin.
 
-    A start that has less clearance than the margin may be left along poses with no
-    less clearance than it; from the first pose that has the margin on, it holds.
+    From a start with less clearance than the margin, the path may continue along poses
+    with no less clearance than the start; from the first pose with the margin on, the
+    margin applies.
     """
     margin = grid.margin_m if margin_m is None else margin_m
     clearance = clearances(poses, grid, body, enough_m=margin)
@@ -47,7 +48,7 @@ def check_path(
 def clearances(
     poses: Poses, grid: PlanningGrid, body: BodyShape, *, enough_m: float = np.inf
 ) -> NDArray[np.float64]:
-    """(N,) metres between body and obstacles; see :func:`body_clearance`."""
+    """Return (N,) metres between body and obstacles; see :func:`body_clearance`."""
     return body_clearance(
         grid.distance_m,
         grid.spec,

@@ -1,4 +1,4 @@
-"""Which cell to plan to when the goal's own cell will not do."""
+"""Choose a cell to plan to if the goal's own cell is not reachable."""
 
 import math
 
@@ -18,9 +18,9 @@ def nearest_reachable(
     tolerance_m: float,
     body: BodyShape,
 ) -> tuple[Cell | None, Outcome]:
-    """The reachable cell nearest to the goal, or None and the reason.
+    """Return the reachable cell nearest to the goal, or None and the reason.
 
-    What is reachable is found by a flood from the start.
+    Reachable cells are found by a flood from the start.
     """
     reached = cost_to_go(grid.cost, [(start, 0)], table=grid.table) < UNREACHED
     cells, away = cells_within(grid, goal_xy, tolerance_m)
@@ -29,7 +29,7 @@ def nearest_reachable(
     if there.any():
         best = int(np.argmin(np.where(there, away, np.inf)))
         return (int(rows[best]), int(columns[best])), Outcome.GOAL_SNAPPED
-    if _shut_in(reached, grid, start, body):
+    if _is_enclosed(reached, grid, start, body):
         return None, Outcome.START_BLOCKED
     if (grid.cost[rows, columns] == LETHAL).all():
         return None, Outcome.GOAL_BLOCKED
@@ -39,9 +39,9 @@ def nearest_reachable(
 def cells_within(
     grid: PlanningGrid, xy: tuple[float, float], radius_m: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Cells (N, 2) whose centres lie within the radius, and how far (N,), metres.
+    """Return cells (N, 2) with centres within the radius, and distances (N,), metres.
 
-    The point's own cell is always among them.
+    The point's own cell is always included.
     """
     row, column = grid.spec.cell_of(*xy)
     reach = math.ceil(radius_m / grid.spec.resolution)
@@ -56,10 +56,10 @@ def cells_within(
     return cells[near], away[near]
 
 
-def _shut_in(
+def _is_enclosed(
     reached: NDArray[np.bool_], grid: PlanningGrid, start: Cell, body: BodyShape
 ) -> bool:
-    """Whether the flood stayed within the body's own reach."""
+    """Return whether the flood stayed within the body's own radius."""
     cells = np.argwhere(reached)
     away = np.hypot(*(cells - start).T) * grid.spec.resolution
     return bool((away <= body.circumscribed_m).all())

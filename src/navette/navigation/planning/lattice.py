@@ -1,10 +1,10 @@
 """Search over position and heading: A* on a lattice of short feasible moves.
 
 State-lattice planning (Pivtoraiko and Kelly 2005) in the manner of hybrid A*
-(Dolgov et al. 2008): poses keep their exact position, and one pose is kept per bin
-of position and heading. The body is checked against the distance field at every
-sample of every move. The cost to go of the grid (obstacles and costs, but no
-heading) guides it.
+(Dolgov et al. 2008): poses keep their exact position, and one pose is kept per bin of
+position and heading. The body is checked against the distance field at every sample of
+every move. The cost to go of the grid (obstacles and costs, without headings) is the
+heuristic.
 """
 
 import itertools
@@ -19,18 +19,18 @@ from navette.geometry import Pose2
 from navette.grids import DistanceGrid, GridSpec, grid_frame, make_body
 from navette.navigation.planning.bucket_queue import BucketQueue, new_pool
 from navette.navigation.planning.dijkstra import Field
-from navette.navigation.planning.lattice_motions import MOVES, Motions
-from navette.navigation.planning.lattice_search import (
+from navette.navigation.planning.lattice_kernels import (
     BUCKETS,
     HEADING,
     MOVE,
     PARENT,
     SHIFT,
+    LatticeScene,
     MoveTable,
-    Scene,
     Tree,
     grow,
 )
+from navette.navigation.planning.lattice_motions import MOVES, Motions
 from navette.navigation.planning.traversal import STRAIGHT
 
 _DIRECTIONS = np.array([direction for direction, _ in MOVES], np.int8)
@@ -39,17 +39,17 @@ _TURNS = np.array([turn for _, turn in MOVES], np.int64)
 
 @dataclass(frozen=True)
 class LatticeWorld:
-    """What the search drives through.
+    """Map and body of a search.
 
     Attributes:
         distance_m: (H, W) float32 metres to the nearest obstacle.
-        factor: (H, W) float32, what a metre costs in each cell (1 = free).
+        factor: (H, W) float32, cost of a metre in each cell (1 = free).
         guide: (H, W) cost to go to the goal, units; see :mod:`.dijkstra`.
-        spec: where these grids lie.
+        spec: geometry of these grids.
         body: (K, 3) points and disc radii of the body, base frame.
         margin_m: clearance that the body keeps.
-        comfort_m: clearance from which more is worth nothing; above the margin.
-        outside_m: distance to obstacles that holds outside the grid.
+        comfort_m: clearance, above the margin, beyond which more has no value.
+        outside_m: distance to obstacles assumed outside the grid.
     """
 
     distance_m: NDArray[np.float32]
@@ -64,9 +64,9 @@ class LatticeWorld:
 
 @dataclass(frozen=True)
 class LatticeGoal:
-    """Any pose about (x, y) within the tolerance; nearer is better.
+    """Any pose about (x, y) within the tolerance; nearer is cheaper.
 
-    ``yaw`` None: any heading. ``pull`` is what a metre from the exact goal costs, in
+    ``yaw`` None: any heading. ``pull`` is the cost of a metre from the exact goal, in
     metres driven.
     """
 
@@ -80,10 +80,10 @@ class LatticeGoal:
 
 @dataclass(frozen=True)
 class LatticeResult:
-    """Poses (N, 3) from the start on; ``expansions`` = poses looked at.
+    """Poses (N, 3) from the start on; ``expansions`` is the number of poses expanded.
 
-    ``poses`` is empty when no way was found; ``exhausted`` then says whether the
-    search ran out of its budget (True) or of poses to try (False).
+    ``poses`` is empty if no path was found; ``exhausted`` is then True if the budget
+    ran out, and False if no poses were left to try.
     """
 
     poses: NDArray[np.float64]
@@ -99,10 +99,10 @@ def search(
     *,
     max_expansions: int = 40_000,
 ) -> LatticeResult:
-    """Drivable poses from ``start`` to the goal, found within the budget.
+    """Search for drivable poses from ``start`` to the goal within the budget.
 
-    A start with less clearance than the margin may be left along poses with no less
-    clearance than it; once the margin is reached it holds.
+    From a start with less clearance than the margin, the path may continue along poses
+    with no less clearance than the start; once the margin is reached it applies.
 
     Raises:
         InvalidValueError: the start lies outside the grid.
@@ -125,8 +125,8 @@ def search(
     return LatticeResult(_retrace(tree, node, start.yaw, motions), expanded, False)
 
 
-def _scene(world: LatticeWorld) -> Scene:
-    return Scene(
+def _scene(world: LatticeWorld) -> LatticeScene:
+    return LatticeScene(
         DistanceGrid(world.distance_m, grid_frame(world.spec), float(world.outside_m)),
         world.factor,
         np.ascontiguousarray(world.guide),
@@ -174,7 +174,7 @@ def _goal_array(goal: LatticeGoal, per_metre: float) -> NDArray[np.float64]:
 def _retrace(
     tree: Tree, last: int, start_yaw: float, motions: Motions
 ) -> NDArray[np.float64]:
-    """Every sample (N, 3) of every move from the root to ``last``."""
+    """Return every sample (N, 3) of every move from the root to ``last``."""
     chain = [last]
     while tree.links[chain[-1], PARENT] >= 0:
         chain.append(int(tree.links[chain[-1], PARENT]))

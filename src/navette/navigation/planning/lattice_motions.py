@@ -1,4 +1,4 @@
-"""The moves of the lattice search: short pieces that a differential drive can do."""
+"""Moves of the lattice search: short motions of a differential drive."""
 
 import math
 from dataclasses import dataclass
@@ -28,12 +28,12 @@ class Motions:
 
     Args:
         step_m: length of a straight piece or an arc.
-        reach_m: furthest point of the body from the base, for the sampling of turns.
+        reach_m: largest distance of a body point from the base, to sample turns.
         headings: number of headings on the circle.
-        sample_m: no body point moves further than about this between two samples.
-        turn_cost_m_per_rad: what a radian of turning in place costs, in metres driven.
-        reverse_factor: what a metre backwards costs, in metres forwards.
-        cusp_cost_m: what a change of direction costs.
+        sample_m: approximate largest motion of a body point between samples.
+        turn_cost_m_per_rad: cost of turning in place, in metres per radian.
+        reverse_factor: cost of a metre in reverse, in metres forward.
+        cusp_cost_m: cost of a change of direction, in metres.
     """
 
     step_m: float
@@ -59,7 +59,7 @@ class Motions:
 
     @cached_property
     def sample_counts(self) -> NDArray[np.int64]:
-        """Samples (8,) along each move, its end included."""
+        """Number of samples (8,) along each move, its end included."""
         return np.array([self._samples(*move) for move in MOVES], np.int64)
 
     @cached_property
@@ -82,14 +82,14 @@ class Motions:
 
     @cached_property
     def costs_m(self) -> NDArray[np.float64]:
-        """(8,) metres of free driving forwards that each move is worth."""
+        """(8,) cost of each move, in metres of free driving forward."""
         costs = []
         for direction, turn in MOVES:
             if direction == 0:
                 costs.append(self.turn_cost_m_per_rad * self.heading_step)
             else:
                 factor = 1.0 if direction > 0 else self.reverse_factor
-                # More than the straight piece, or the path weaves for nothing.
+                # More than the straight move, or the path weaves without need.
                 costs.append(self.step_m * factor * (1.1 if turn else 1.0))
         return np.array(costs)
 

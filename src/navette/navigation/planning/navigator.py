@@ -1,9 +1,9 @@
-"""Driving to a goal: when to plan, when to keep the path, when to give up.
+"""Navigation to a goal: when to plan, when to keep the path, when to give up.
 
-Two states, as documented for the course's planner: waiting for a goal, and waiting
-for the robot to reach it. The path stands as long as the body fits along what is
-left of it, and until another way is cheaper by a margin, so that the robot does not
-waver between equal ways.
+Two states, as documented for the course's planner: waiting for a goal, and waiting for
+the robot to reach it. A path stays valid while the footprint fits along the rest of it.
+It is replaced by another path only if that is cheaper by a margin, so that the robot
+does not oscillate between paths of equal cost.
 """
 
 import math
@@ -20,40 +20,45 @@ from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_progress import PathProgress
 from navette.navigation.planning.path_shape import Poses
-from navette.navigation.planning.patience import Patience
 from navette.navigation.planning.planner import Goal, Plan, Planner
-from navette.navigation.planning.reports import Phase, Report, RobotState, State
+from navette.navigation.planning.progress_checker import ProgressChecker
+from navette.navigation.planning.reports import (
+    NavigatorReport,
+    Phase,
+    RobotMotion,
+    State,
+)
 
 _STOP = np.empty((0, 3))
-# Share of the margin that a path must still have when the map moves by a cell.
-_STANDING_SHARE = 0.5
-# A new way must also be this much shorter: plans differ by centimetres anyway.
+# Share of the margin that a path must keep when the map changes by a cell.
+_VALID_SHARE = 0.5
+# A new path must also be cheaper by this: plans vary by centimetres.
 _WORTH_SWITCHING_M = 0.5
-# Metres of progress from which on a path is one that is being driven.
+# Progress after which a path counts as being driven.
 _SET_OUT_M = 0.1
-# Better ways are looked for this often, if the map became cheaper anywhere.
+# Period of looking for a cheaper path, if any cost in the map fell.
 _COMPARE_PERIOD_NS = 2_000_000_000
-# Nearer to the path's end than this, arriving is looked for with every odometry.
+# Within this distance of the path's end, every odometry is checked for arrival.
 _NEAR_END_M = 1.0
 
 
 class Navigator:
-    """Holds goal and path; :meth:`step` does what the moment asks for.
+    """State machine of one goal and its path; :meth:`step` plans and monitors.
 
-    After a call, :attr:`report` is current and :meth:`take_path` gives what is to be
-    published. Without a goal, a map or the robot's pose it plans nothing.
+    After a call, :attr:`report` is current and :meth:`take_path` returns the path to
+    publish. Without a goal, a map or the robot's pose nothing is planned.
     """
 
     def __init__(self, params: PlannerParams) -> None:
         self.params = params
         self.planner = Planner(params)
-        self.report = Report()
+        self.report = NavigatorReport()
         self._has_map = False
         self._map_changed = False
         self._goal: Goal | None = None
         self._plan: Plan | None = None
         self._progress: PathProgress | None = None
-        self._patience = Patience(params)
+        self._checker = ProgressChecker(params)
         self._cost_seen: NDArray[np.uint8] | None = None
         self._published: Poses | None = None
         self._to_publish: Poses | None = None
@@ -61,45 +66,45 @@ class Navigator:
         self._set_out = False
 
     def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
-        """Take a map (H, W); the next step looks at what it means for the path."""
+        """Replace the map (H, W); the next step checks the path against it."""
         self.planner.set_map(occupancy, spec)
         self._has_map = self._map_changed = True
 
     def set_goal(self, goal: Goal, now_ns: int) -> None:
-        """Take a new goal in place of any other; the next step plans."""
+        """Replace the goal; the next step plans."""
         self._replace_goal(goal)
         if not all(map(math.isfinite, (goal.x, goal.y, goal.yaw or 0.0))):
             self._finish(Outcome.GOAL_NOT_FINITE)
             return
         self._goal = goal
         self._set_out = False
-        self._patience.begin(now_ns)
-        self._say(Phase.PLANNING, state=State.WAITING_FOR_ROBOT)
+        self._checker.begin(now_ns)
+        self._set_status(Phase.PLANNING, state=State.WAITING_FOR_ROBOT)
 
     def refuse_goal(self, goal: Goal, why: Outcome) -> None:
-        """Count a goal that cannot be looked at (an unknown frame), and stop."""
+        """Count a goal that cannot be planned to (unknown frame), and stop."""
         self._replace_goal(goal)
         self._finish(why)
 
     def take_path(self) -> Poses | None:
-        """Poses (N, 3) to publish now, none of them = stop; None = nothing new."""
+        """Return poses (N, 3) to publish, empty = stop; None if unchanged."""
         path, self._to_publish = self._to_publish, None
         return path
 
     @property
     def has_path(self) -> bool:
-        """Whether the robot is sent along a path."""
+        """Whether a path is published and not finished."""
         return self._plan is not None
 
     def configure(self, params: PlannerParams) -> None:
-        """Take new parameters; the next step plans with them."""
+        """Replace the parameters; the next step plans with them."""
         self.params = params
         self.planner = self.planner.with_params(params)
-        self._patience.configure(params)
+        self._checker.configure(params)
         self._plan = self._progress = self._cost_seen = None
 
-    def note(self, robot: RobotState, now_ns: int) -> bool:
-        """Take the robot's state between steps; whether it has just arrived."""
+    def note(self, robot: RobotMotion, now_ns: int) -> bool:
+        """Update the robot's motion between steps; return whether it just arrived."""
         if self._goal is None or self._progress is None:
             return False
         if self._progress.distance_to_end(robot.pose) < _NEAR_END_M:
@@ -109,7 +114,7 @@ class Navigator:
         self._finish(Phase.REACHED)
         return True
 
-    def step(self, robot: RobotState | None, now_ns: int, *, stale: bool) -> None:
+    def step(self, robot: RobotMotion | None, now_ns: int, *, stale: bool) -> None:
         """Look after the goal.
 
         Args:
@@ -119,42 +124,42 @@ class Navigator:
         if self._goal is None:
             return
         if now_ns < self._stepped_ns:  # the clock was set back
-            self._patience.begin(now_ns)
+            self._checker.begin(now_ns)
             self._compared_ns = now_ns
         self._stepped_ns = now_ns
         if robot is None or stale:
             self._drop_path()
-            self._say(Phase.WAITING_FOR_ODOMETRY if robot is None
+            self._set_status(Phase.WAITING_FOR_ODOMETRY if robot is None
                       else Outcome.STALE_ODOMETRY)  # fmt: skip
         elif not self._has_map:
-            self._say(Phase.WAITING_FOR_MAP)
+            self._set_status(Phase.WAITING_FOR_MAP)
         elif self._arrived(robot, now_ns):
             self._finish(Phase.REACHED)
-        elif self._patience.goal_timed_out(now_ns):
+        elif self._checker.goal_timed_out(now_ns):
             self._finish(Outcome.TIMED_OUT)
         elif self._plan is None or self._progress is None:
             self._replan(robot.pose, self._goal)
         else:
-            self._look_after(self._plan, self._progress, robot, now_ns)
+            self._monitor(self._plan, self._progress, robot, now_ns)
 
-    def _look_after(
-        self, plan: Plan, progress: PathProgress, robot: RobotState, now_ns: int
+    def _monitor(
+        self, plan: Plan, progress: PathProgress, robot: RobotMotion, now_ns: int
     ) -> None:
-        assert self._goal is not None, "only goals have paths"
+        assert self._goal is not None, "a path implies a goal"
         progress.update(robot.pose)
-        self._patience.note(progress.covered, now_ns)
+        self._checker.note(progress.covered, now_ns)
         self._set_out |= progress.covered >= _SET_OUT_M
         changed, self._map_changed = self._map_changed, False
-        if self._patience.no_progress(now_ns):
-            if self._patience.exhausted:
+        if self._checker.no_progress(now_ns):
+            if self._checker.exhausted:
                 self._finish(Outcome.STUCK)
                 return
-            # Perhaps nobody heard of the path: it goes out again, changed or not.
+            # The path may have been lost: publish it again even if unchanged.
             self._published = None
             self._replan(robot.pose, self._goal)
         elif progress.off_path_m > self.params.deviation_m or (
-            # Until the robot has set out there is nothing to keep to.
-            changed and (not self._set_out or not self._stands(plan, progress))
+            # Before the robot has started, replanning costs nothing.
+            changed and (not self._set_out or not self._still_valid(plan, progress))
         ):
             self._replan(robot.pose, self._goal)
         elif now_ns - self._compared_ns >= _COMPARE_PERIOD_NS:
@@ -162,18 +167,18 @@ class Navigator:
             self._switch_if_better(progress, robot.pose, self._goal)
         if self._plan is not None and self._progress is not None:
             left = self._progress.distance_left_m
-            self._say(Phase.FOLLOWING, distance_left_m=left)
+            self._set_status(Phase.FOLLOWING, distance_left_m=left)
 
-    def _stands(self, plan: Plan, progress: PathProgress) -> bool:
-        """Whether the body still fits along what is left of the path."""
-        margin = _STANDING_SHARE * plan.margin_m
+    def _still_valid(self, plan: Plan, progress: PathProgress) -> bool:
+        """Return whether the body still fits along the rest of the path."""
+        margin = _VALID_SHARE * plan.margin_m
         grid = self.planner.grid()
         return check_path(progress.ahead, grid, self.planner.body, margin).fits
 
     def _switch_if_better(
         self, progress: PathProgress, here: Pose2, goal: Goal
     ) -> None:
-        """Leave a path that stands only for one that is cheaper by the margin."""
+        """Replace a valid path only by one that is cheaper by the margin."""
         if not self._some_cost_fell():
             return
         now_costs = self.planner.cost_of(progress.ahead)
@@ -181,10 +186,10 @@ class Navigator:
         worth = min(worth, now_costs - _WORTH_SWITCHING_M)
         reach = math.dist((here.x, here.y), (goal.x, goal.y))
         if reach - self.params.goal_tolerance_m >= worth:
-            return  # not even the straight line is better by the margin
+            return  # not even the straight line is cheaper by the margin
         other = self.planner.plan_on_grid(here, goal)
         if other is not None and other.cost < worth:
-            self._adopt(other)
+            self._accept(other)
 
     def _some_cost_fell(self) -> bool:
         before, after = self._cost_seen, self.planner.grid().cost
@@ -200,26 +205,26 @@ class Navigator:
         plan = self.planner.plan(here, goal)
         self._cost_seen, self._map_changed = self.planner.grid().cost, False
         if plan.outcome.has_path:
-            self._adopt(plan)
+            self._accept(plan)
             return
-        self._patience.spend()
-        # A robot that has not set out has nothing to lose: one more look is enough.
-        hopeless = first or (not self._set_out and self._patience.spent > 1)
-        if hopeless or self._patience.exhausted:
+        self._checker.spend()
+        # A robot that has not started gets one more attempt only.
+        hopeless = first or (not self._set_out and self._checker.spent > 1)
+        if hopeless or self._checker.exhausted:
             self._finish(plan.outcome)
             return
-        # The map may mend, or the robot see its way: try again while patience lasts.
+        # The map may improve: retry until the attempts are exhausted.
         self._drop_path()
-        self._say(Phase.PLANNING, plan=plan.outcome.value)
+        self._set_status(Phase.PLANNING, plan=plan.outcome.value)
 
-    def _adopt(self, plan: Plan) -> None:
+    def _accept(self, plan: Plan) -> None:
         before = None if self._progress is None else self._progress.poses
         new = before is None or not np.array_equal(plan.poses, before)
         replans = self.report.replans + int(new) if self.report.plan else 0
         self._plan, self._progress = plan, PathProgress(plan.poses)
-        self._patience.new_path()
+        self._checker.new_path()
         self._publish(plan.poses)
-        self._say(
+        self._set_status(
             Phase.FOLLOWING,
             plan=plan.outcome.value,
             margin_m=plan.margin_m,
@@ -227,10 +232,10 @@ class Navigator:
             distance_left_m=self._progress.distance_left_m,
         )
 
-    def _arrived(self, robot: RobotState, now_ns: int) -> bool:
-        """Near the goal, and at the path's end or at rest for a while."""
-        assert self._goal is not None, "asked about a goal only"
-        at_rest = self._patience.rests(robot, now_ns)
+    def _arrived(self, robot: RobotMotion, now_ns: int) -> bool:
+        """Return whether the robot is at the path's end, or at rest near the goal."""
+        assert self._goal is not None, "called with a goal only"
+        at_rest = self._checker.rests(robot, now_ns)
         goal, progress = self._goal, self._progress
         if not self._heading_reached(goal, robot.pose):
             return False
@@ -253,17 +258,17 @@ class Navigator:
     def _replace_goal(self, goal: Goal) -> None:
         if self.has_path:
             self._drop_path()
-        self.report = Report(
+        self.report = NavigatorReport(
             goal_id=self.report.goal_id + 1, goal_x=goal.x, goal_y=goal.y
         )
 
     def _finish(self, how: Outcome | Phase) -> None:
-        """End with the goal: reached or failed, the robot stops."""
+        """End the goal, reached or failed, and stop the robot."""
         self._goal = None
         if how is not Phase.REACHED:
-            self._published = None  # a failure always stops the robot, told or not
+            self._published = None  # a failure publishes an empty path in any case
         self._drop_path()
-        self._say(how, state=State.WAITING_FOR_GOAL, result=how.value)
+        self._set_status(how, state=State.WAITING_FOR_GOAL, result=how.value)
 
     def _drop_path(self) -> None:
         self._plan = self._progress = None
@@ -274,5 +279,5 @@ class Navigator:
         if before is None or not np.array_equal(poses, before):
             self._to_publish = self._published = poses
 
-    def _say(self, message: Phase | Outcome, **details: Any) -> None:
+    def _set_status(self, message: Phase | Outcome, **details: Any) -> None:
         self.report = replace(self.report, message=message.value, **details)

@@ -1,8 +1,9 @@
-"""The planner node: map, odometry and goals → path.
+"""The planner node: map, odometry and goals in, path out.
 
-Before its first goal it publishes no path and says ``waiting_for_goal``; a goal that
-comes before map or odometry waits for them and says so. On stale odometry and on any
-failure it publishes an empty path: the robot stops.
+Before its first goal the node publishes no path and the status ``waiting_for_goal``. A
+goal that arrives before map or odometry waits for them; the status names what is
+missing. On stale odometry and on any failure the node publishes an empty path, so that
+the robot stops.
 """
 
 import math
@@ -29,27 +30,27 @@ from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal
-from navette.navigation.planning.reports import Phase, Report, RobotState
+from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMotion
 from navette.runtime import Input, Output, StageNode, ns_to_stamp
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.tf import TransformException
 
-# How often the age of the odometry is looked at.
+# Period of checking the age of the odometry.
 _WATCH_PERIOD_S = 0.1
-# Failures that pass by themselves; the others end the goal.
-_PASSING = (Outcome.STALE_ODOMETRY,)
+# Temporary failures; all others end the goal.
+_TEMPORARY = (Outcome.STALE_ODOMETRY,)
 
 
 class PlannerNode(StageNode):
-    """Plans to the newest goal until the robot is there."""
+    """Plan to the newest goal until the robot has reached it."""
 
     PARAMS = PlannerParams
     INPUTS: ClassVar = (
         Input(
             topic=topics.MAP.name,
             type=topics.MAP.type,
-            role="what the robot remembers",
+            role="map of everything seen so far",
             depth=1,
             latched=True,
             callback="on_map",
@@ -57,7 +58,7 @@ class PlannerNode(StageNode):
         Input(
             topic=topics.ODOMETRY.name,
             type=topics.ODOMETRY.type,
-            role="where the robot is",
+            role="pose and velocity",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
@@ -65,13 +66,13 @@ class PlannerNode(StageNode):
         Input(
             topic=topics.GOAL_POINT.name,
             type=topics.GOAL_POINT.type,
-            role="where to go",
+            role="goal position",
             callback="on_goal_point",
         ),
         Input(
             topic=topics.GOAL_POSE.name,
             type=topics.GOAL_POSE.type,
-            role="where to go, and which way to look there",
+            role="goal position and heading",
             callback="on_goal_pose",
         ),
     )
@@ -79,7 +80,7 @@ class PlannerNode(StageNode):
         Output(
             topic=topics.PATH.name,
             type=topics.PATH.type,
-            role="what to follow; empty = stop",
+            role="path to follow; empty = stop",
         ),
         status_output(topics.PLANNER_STATUS.name),
     )
@@ -94,17 +95,17 @@ class PlannerNode(StageNode):
         self._odometry_ns: int | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._status = StatusReporter(self, topics.PLANNER_STATUS.name)
-        self._said = ""
+        self._logged = ""
         self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
         self.create_timer(_WATCH_PERIOD_S, self.on_watch)
         self._report()
 
     def on_map(self, msg: OccupancyGrid) -> None:
-        """Take the map; a path that it blocks is replaced at once."""
+        """Store the map; a path that it blocks is replaced at once."""
         if msg.header.frame_id != self.params.map_frame:
             self.get_logger().error(
                 f"map in frame {msg.header.frame_id!r}: "
-                f"wanted {self.params.map_frame!r}",
+                f"wanted map_frame, {self.params.map_frame!r}",
                 throttle_duration_sec=5.0,
             )
             return
@@ -118,7 +119,7 @@ class PlannerNode(StageNode):
         self.on_timer()
 
     def on_odometry(self, msg: Odometry) -> None:
-        """Follow the robot; see at once when it has arrived."""
+        """Update the robot's pose; detect arrival at once."""
         if not self._tracker.update(msg):
             return
         self._odometry_ns = self._now_ns
@@ -127,17 +128,17 @@ class PlannerNode(StageNode):
             self._publish_news()
 
     def on_goal_point(self, msg: PointStamped) -> None:
-        """Go there, with any heading."""
-        self._take_goal(msg.header, Goal(msg.point.x, msg.point.y))
+        """Navigate to a point, with any heading."""
+        self._set_goal(msg.header, Goal(msg.point.x, msg.point.y))
 
     def on_goal_pose(self, msg: PoseStamped) -> None:
-        """Go there and look that way."""
+        """Navigate to a pose."""
         position, q = msg.pose.position, msg.pose.orientation
         yaw = yaw_of((q.x, q.y, q.z, q.w))
-        self._take_goal(msg.header, Goal(position.x, position.y, yaw))
+        self._set_goal(msg.header, Goal(position.x, position.y, yaw))
 
     def on_timer(self) -> None:
-        """Look after the goal."""
+        """Step the navigator."""
         self._navigator.step(self._robot(), self._now_ns, stale=self._is_stale())
         self._publish_news()
 
@@ -147,7 +148,7 @@ class PlannerNode(StageNode):
             self.on_timer()
 
     def on_params_changed(self, old: PlannerParams) -> None:
-        """Plan anew with the new values."""
+        """Plan again with the new values."""
         params = self.params
         if (params.base_frame, params.map_frame) != (old.base_frame, old.map_frame):
             self._tracker, self._odometry_ns = self._new_tracker(), None
@@ -157,9 +158,9 @@ class PlannerNode(StageNode):
         self._navigator.configure(params)
 
     def on_time_jump(self) -> None:
-        """The goal is of another time: stop the robot, and wait for the next.
+        """Drop the goal, stop the robot, and wait for the next goal.
 
-        The map stays until another comes: it may be one that is told only once.
+        The map is kept until another arrives: it may be published only once.
         """
         had_path = self._navigator.has_path
         self._tracker.reset()
@@ -179,33 +180,35 @@ class PlannerNode(StageNode):
     def _new_tracker(self) -> PoseTracker:
         return PoseTracker(self, self.params.base_frame, self.params.map_frame)
 
-    def _robot(self) -> RobotState | None:
+    def _robot(self) -> RobotMotion | None:
         pose = self._tracker.latest
-        return None if pose is None else RobotState(pose, *self._tracker.velocity)
+        return None if pose is None else RobotMotion(pose, *self._tracker.velocity)
 
     def _is_stale(self) -> bool:
         if self._odometry_ns is None:
             return True
         age_ns = self._now_ns - self._odometry_ns
-        # Negative: the clock was set back, what came before is of another run.
+        # Negative: the clock was set back, and the message is of an earlier run.
         return not 0 <= age_ns <= self.params.odometry_timeout_s * 1e9
 
-    def _take_goal(self, header: Header, goal: Goal) -> None:
+    def _set_goal(self, header: Header, goal: Goal) -> None:
         map_T_frame = self._frame_on_map(header.frame_id)
         if map_T_frame is None:
             self._navigator.refuse_goal(goal, Outcome.UNKNOWN_FRAME)
-            self.get_logger().error(f"goal in unknown frame {header.frame_id!r}")
+            self.get_logger().error(
+                f"goal in unknown frame {header.frame_id!r}; wanted a frame on /tf"
+            )
         else:
             self._navigator.set_goal(_moved(goal, map_T_frame), self._now_ns)
         self._report()
         self.on_timer()
 
     def _frame_on_map(self, frame_id: str) -> Pose2 | None:
-        """map_T_frame, where the frame is known now."""
+        """Return the present map_T_frame, or None for an unknown frame."""
         params, tracker = self.params, self._tracker
         if not frame_id:
             self.get_logger().warning(
-                f"goal without a frame: taken as {params.map_frame!r}"
+                f"goal without a frame: {params.map_frame!r} is assumed"
             )
             return Pose2(0.0, 0.0, 0.0)
         if frame_id == params.map_frame:
@@ -213,7 +216,7 @@ class PlannerNode(StageNode):
         try:
             return tracker.buffer.lookup(params.map_frame, frame_id, 0).to_pose2()
         except TransformException:
-            pass  # not known from the map on: perhaps a frame of the robot
+            pass  # not connected to the map: try the frames of the robot
         try:
             base_T_frame = tracker.buffer.lookup(params.base_frame, frame_id, 0)
         except TransformException:
@@ -244,12 +247,12 @@ class PlannerNode(StageNode):
             margin_m=report.margin_m,
             replans=report.replans,
         )
-        said = f"{report.message} {report.plan}"
-        if said != self._said:
-            self._said = said
+        text = f"{report.message} {report.plan}"
+        if text != self._logged:
+            self._logged = text
             self._log(report)
 
-    def _log(self, report: Report) -> None:
+    def _log(self, report: NavigatorReport) -> None:
         logger = self.get_logger()
         goal = f"goal {report.goal_id} ({report.goal_x:.6g}, {report.goal_y:.6g})"
         if report.failed:
@@ -264,7 +267,7 @@ class PlannerNode(StageNode):
 
 
 def path_message(poses: Poses, frame_id: str, stamp_ns: int) -> Path:
-    """Poses (N, 3) x, y, yaw as a message, z 0."""
+    """Return poses (N, 3) x, y, yaw as a message with z = 0."""
     header = Header(stamp=ns_to_stamp(stamp_ns), frame_id=frame_id)
     stamped = []
     for x, y, yaw in poses.tolist():
@@ -277,15 +280,15 @@ def path_message(poses: Poses, frame_id: str, stamp_ns: int) -> Path:
 
 
 def _moved(goal: Goal, map_T_frame: Pose2) -> Goal:
-    """The goal given in a frame, on the map."""
+    """Transform a goal from its frame to the map."""
     if not (math.isfinite(goal.x) and math.isfinite(goal.y)):
         return goal
     moved = map_T_frame @ Pose2(goal.x, goal.y, goal.yaw or 0.0)
     return Goal(moved.x, moved.y, None if goal.yaw is None else moved.yaw)
 
 
-def _level(report: Report) -> bytes:
+def _level(report: NavigatorReport) -> bytes:
     if not report.failed:
         return StatusReporter.OK
-    passing = report.message in _PASSING
-    return StatusReporter.WARN if passing else StatusReporter.ERROR
+    temporary = report.message in _TEMPORARY
+    return StatusReporter.WARN if temporary else StatusReporter.ERROR

@@ -1,14 +1,14 @@
-"""What became of a request to plan or of a drive to a goal: named results."""
+"""Named results of planning and of driving to a goal."""
 
 from enum import StrEnum
 
 
 class Outcome(StrEnum):
-    """Results on the wire; ``ok`` and ``goal_snapped`` come with a path."""
+    """Published results; ``ok`` and ``goal_snapped`` come with a path."""
 
     OK = "ok"
     GOAL_SNAPPED = "goal_snapped"
-    """The goal itself cannot be reached; the path ends near it, within tolerance."""
+    """The goal is not reachable; the path ends near it, within the tolerance."""
 
     START_BLOCKED = "start_blocked"
     START_OUTSIDE_MAP = "start_outside_map"
@@ -17,10 +17,10 @@ class Outcome(StrEnum):
     GOAL_NOT_FINITE = "goal_not_finite"
     UNKNOWN_FRAME = "unknown_frame"
     NO_PATH = "no_path"
-    """Cells connect start and goal nowhere, or the body fits through nowhere."""
+    """No cells connect start and goal, or the footprint does not fit along any path."""
 
     SEARCH_LIMIT = "search_limit"
-    """The search with headings ran out of its budget."""
+    """The search with headings exhausted its budget."""
 
     TIMED_OUT = "timed_out"
     STUCK = "stuck"

@@ -10,7 +10,7 @@ METHODS = ("a_star", "dijkstra", "breadth_first")
 
 @dataclass(frozen=True, kw_only=True)
 class PlannerParams(Params):
-    """How the planner sees the map, what it avoids, and when it plans again."""
+    """Costs, clearances, tolerances and timeouts of the planner."""
 
     map_frame: str = param("map", "frame of the map and of the path")
     base_frame: str = param("base_link", "frame that is driven: the axle's midpoint")
@@ -22,22 +22,22 @@ class PlannerParams(Params):
         unit="m",
     )
     clearance_margin_m: float = param(
-        0.15, "distance kept between body and obstacles", unit="m", at_least=0.0
+        0.15, "clearance between body and obstacles", unit="m", at_least=0.0
     )
     tight_margin_m: float = param(
-        0.05, "distance kept where there is no way with the margin", unit="m",
+        0.05, "clearance where no path has clearance_margin_m", unit="m",
         at_least=0.0,
     )  # fmt: skip
     comfort_m: float = param(
         0.3,
-        "distance, beyond the margin and the circle that a turn in place sweeps, "
-        "that is kept where there is room",
+        "additional clearance, beyond the margin and the circle of a turn in place, "
+        "where there is room",
         unit="m",
         at_least=0.0,
     )
     clearance_weight: float = param(
         3.0,
-        "a metre at the edge of the inflation costs this many more than a free one",
+        "additional cost of a metre at the least clearance, relative to a free one",
         at_least=0.0,
         at_most=50.0,
     )
@@ -46,25 +46,25 @@ class PlannerParams(Params):
     )
     map_cost_weight: float = param(
         0.0,
-        "what the map's own cost of 99 adds to a metre; the clearance to obstacles "
-        "is counted without it",
+        "additional cost of a metre at map cost 99; the cost of low clearance does not "
+        "depend on it",
         at_least=0.0,
         at_most=50.0,
     )
     allow_unknown: bool = param(True, "whether paths may cross unknown cells")
     unknown_cost: float = param(
         0.25,
-        "what a metre through unknown cells costs more than a free one",
+        "additional cost of a metre through unknown cells, relative to a free one",
         at_least=0.0,
         at_most=50.0,
     )
 
     goal_tolerance_m: float = param(
-        0.5, "how near counts as reached, and how far a goal may be moved", unit="m",
+        0.5, "distance that counts as reached; a goal may be moved by it", unit="m",
         above=0.0,
     )  # fmt: skip
     path_end_tolerance_m: float = param(
-        0.1, "distance to the path's end at which the robot need not stand still",
+        0.1, "distance to the path's end that counts as reached without stopping",
         unit="m", above=0.0,
     )  # fmt: skip
     goal_yaw_tolerance_rad: float = param(
@@ -72,14 +72,17 @@ class PlannerParams(Params):
         above=0.0, at_most=3.2,
     )  # fmt: skip
     deviation_m: float = param(
-        0.8, "distance from the path at which it is planned anew", unit="m", above=0.0
+        0.8,
+        "distance from the path at which the planner plans again",
+        unit="m",
+        above=0.0,
     )
     path_spacing_m: float = param(
         0.1, "largest distance between poses of the path", unit="m", above=0.0
     )
     turn_threshold_rad: float = param(
         0.8,
-        "heading error from which the path begins with a turn in place",
+        "heading error above which the path begins with a turn in place",
         unit="rad",
         above=0.0,
         at_most=3.2,
@@ -89,35 +92,37 @@ class PlannerParams(Params):
         at_least=0.0,
     )  # fmt: skip
     reverse_factor: float = param(
-        1.5, "what a metre backwards is worth in metres forwards", at_least=1.0
+        1.5, "cost of a metre in reverse, in metres forward", at_least=1.0
     )
     max_expansions: int = param(
-        40_000, "poses that the search with headings may look at", at_least=100
+        40_000,
+        "largest number of poses that the search with headings expands",
+        at_least=100,
     )
 
     plan_period_s: float = param(
-        0.5, "how often goal, progress and path are checked", unit="s", above=0.0
+        0.5, "period of checking goal, progress and path", unit="s", above=0.0
     )
     odometry_timeout_s: float = param(
-        0.5, "age from which odometry is stale and the robot stops", unit="s", above=0.0
+        0.5, "age at which odometry is stale and the robot stops", unit="s", above=0.0
     )
     progress_timeout_s: float = param(
         6.0, "time without progress along the path before planning again", unit="s",
         above=0.0,
     )  # fmt: skip
     progress_distance_m: float = param(
-        0.2, "progress along the path that counts", unit="m", above=0.0
+        0.2, "least progress along the path that counts", unit="m", above=0.0
     )
     max_stuck_replans: int = param(
-        4, "replans without progress before the goal is given up", at_least=0
+        4, "replans without progress before the goal fails (stuck)", at_least=0
     )
     goal_timeout_s: float = param(
-        0.0, "time for one goal before it is given up; 0 = no limit", unit="s",
+        0.0, "time for one goal before it fails (timed_out); 0: no limit", unit="s",
         at_least=0.0,
     )  # fmt: skip
     switch_gain: float = param(
         0.15,
-        "share by which a new way must be cheaper before a good path is left",
+        "share by which a new path must be cheaper to replace a valid one",
         at_least=0.0,
         below=1.0,
     )

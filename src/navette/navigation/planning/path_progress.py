@@ -1,4 +1,4 @@
-"""How far along its path the robot is, measured along the path."""
+"""Progress of the robot, measured along its path."""
 
 import math
 
@@ -8,18 +8,18 @@ from navette.geometry import Pose2
 from navette.navigation.planning.path_shape import Poses, lengths, turns
 
 # A radian turned in place counts as this many metres of progress, and a radian of
-# wrong heading as this many metres off when the nearest pose is sought.
+# heading error as this many metres of distance when searching the nearest pose.
 _METRES_PER_RADIAN = 0.5
-# The robot is sought no further ahead than this, or a path that comes back to where
-# it was would be skipped over.
+# Search window ahead of the last pose, so that the search does not skip a loop of a
+# path that crosses itself.
 _AHEAD_M = 2.0
 
 
 class PathProgress:
-    """Follows the robot along one path; never goes back.
+    """Track the robot along one path; progress never decreases.
 
-    As the crow flies a robot that drives around an obstacle makes no progress, or
-    loses it; along the path it does.
+    In a straight line to the goal, a robot that drives around an obstacle makes no
+    progress; along the path it does.
     """
 
     def __init__(self, poses: Poses) -> None:
@@ -31,7 +31,7 @@ class PathProgress:
         self.off_path_m = 0.0
 
     def update(self, robot: Pose2) -> None:
-        """Move on to the pose that the robot is at."""
+        """Advance to the pose nearest to the robot."""
         stop = int(
             np.searchsorted(
                 self._measure, self._measure[self.index] + _AHEAD_M, "right"
@@ -40,14 +40,14 @@ class PathProgress:
         window = self.poses[self.index : stop]
         away = np.hypot(window[:, 0] - robot.x, window[:, 1] - robot.y)
         error = np.remainder(window[:, 2] - robot.yaw + np.pi, 2 * np.pi) - np.pi
-        # Of equally near poses the first: a turn in place is not skipped.
+        # The first of equally near poses, so that a turn in place is not skipped.
         best = int(np.argmin(away + _METRES_PER_RADIAN * np.abs(error)))
         self.index += best
         self.off_path_m = float(away[best])
 
     @property
     def covered(self) -> float:
-        """Metres, with turns in place converted, that lie behind the robot."""
+        """Metres driven along the path, with turns in place converted to metres."""
         return float(self._measure[self.index])
 
     @property
@@ -57,7 +57,7 @@ class PathProgress:
 
     @property
     def ahead(self) -> Poses:
-        """The path from the robot's pose on it to the end."""
+        """The path from the robot's pose to the end."""
         return self.poses[self.index :]
 
     @property
@@ -67,5 +67,5 @@ class PathProgress:
         return Pose2(x, y, yaw)
 
     def distance_to_end(self, robot: Pose2) -> float:
-        """Metres from the robot to the end as the crow flies."""
+        """Return the straight-line distance (m) from the robot to the end."""
         return math.dist((robot.x, robot.y), (self.end.x, self.end.y))

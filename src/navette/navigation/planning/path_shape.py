@@ -1,8 +1,8 @@
-"""The shape of a path: points to poses with headings, and what a path costs.
+"""The shape of a path: headings, smoothing, turns in place, cost.
 
-A path is an array (N, 3) of x, y, yaw in metres and radians in the map frame. A pose
-whose heading opposes the travel towards it is driven backwards; poses at one place
-with different headings are a turn in place.
+A path is an array (N, 3) of x, y, yaw in metres and radians in the map frame. A heading
+opposite to the direction of travel means reverse. Poses at one position with different
+headings mean a turn in place.
 """
 
 import math
@@ -24,7 +24,7 @@ _SAME_PLACE = 1e-6
 
 
 def resample(points: Points, spacing: float) -> Points:
-    """The polyline (N, 2) as points evenly spread, at most ``spacing`` apart."""
+    """Return evenly spaced points on a polyline (N, 2), at most ``spacing`` apart."""
     steps = np.hypot(*np.diff(points, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     count = max(1, math.ceil(along[-1] / spacing - 1e-9))
@@ -37,9 +37,9 @@ def resample(points: Points, spacing: float) -> Points:
 def smooth(points: Points, grid: PlanningGrid, keep_m: float) -> Points:
     """Round the corners of evenly spaced points (N, 2); the ends stay.
 
-    Each point is drawn to the middle of its neighbours, again and again (the heat
+    Each point moves towards the midpoint of its neighbours, repeatedly (the heat
     equation), unless that would bring it closer than ``keep_m`` to an obstacle and
-    closer than it was.
+    closer than before.
     """
     rounded = points.copy()
     distances = DistanceGrid(grid.distance_m, grid_frame(grid.spec), np.inf)
@@ -48,7 +48,7 @@ def smooth(points: Points, grid: PlanningGrid, keep_m: float) -> Points:
 
 
 def headed(points: Points) -> Poses:
-    """Points (N, 2) → poses (N, 3), each looking towards the next one."""
+    """Return points (N, 2) as poses (N, 3), each facing the next one."""
     steps = np.diff(points, axis=0)
     yaw = np.arctan2(steps[:, 1], steps[:, 0])
     return np.column_stack([points, np.append(yaw, yaw[-1])])
@@ -57,7 +57,7 @@ def headed(points: Points) -> Poses:
 def turn_in_place(
     x: float, y: float, yaw: float, to_yaw: float, *, long_way: bool = False
 ) -> Poses:
-    """Poses (N, 3) from one heading to another, both included."""
+    """Return poses (N, 3) from one heading to another, both included."""
     turn = math.remainder(to_yaw - yaw, math.tau)
     if long_way:
         turn -= math.copysign(math.tau, turn)
@@ -68,7 +68,7 @@ def turn_in_place(
 
 
 def joined(*pieces: Poses) -> Poses:
-    """Pieces one after the other, without repeating a pose at the seams."""
+    """Concatenate pieces without repeating a pose at the joints."""
     whole = np.concatenate([piece for piece in pieces if len(piece)])
     same = np.all(np.abs(np.diff(whole, axis=0)) < _SAME_PLACE, axis=1)
     kept: Poses = whole[np.concatenate([[True], ~same])]
@@ -76,22 +76,22 @@ def joined(*pieces: Poses) -> Poses:
 
 
 def lengths(poses: Poses) -> NDArray[np.float64]:
-    """(N − 1,) metres between successive poses."""
+    """Return (N − 1,) metres between successive poses."""
     steps = np.diff(poses[:, :2], axis=0)
     return np.hypot(steps[:, 0], steps[:, 1])
 
 
 def turns(poses: Poses) -> NDArray[np.float64]:
-    """(N − 1,) |change of heading| of the turns in place, 0 elsewhere."""
+    """Return (N − 1,) |change of heading| of turns in place, 0 elsewhere."""
     change = np.diff(poses[:, 2])
     change = np.abs(np.remainder(change + np.pi, 2 * np.pi) - np.pi)
     return np.where(lengths(poses) < _SAME_PLACE, change, 0.0)
 
 
 def directions(poses: Poses) -> NDArray[np.int8]:
-    """(N − 1,) 1 forwards, −1 backwards, 0 turning in place."""
+    """Return (N − 1,) 1 forward, −1 reverse, 0 turning in place."""
     steps = np.diff(poses[:, :2], axis=0)
-    # The heading half-way: on an arc the chord points there.
+    # The heading at half of an arc is the direction of its chord.
     yaw = poses[:-1, 2] + 0.5 * (
         np.remainder(np.diff(poses[:, 2]) + np.pi, 2 * np.pi) - np.pi
     )
@@ -108,7 +108,7 @@ def path_cost(
     turn_cost_m_per_rad: float,
     reverse_factor: float,
 ) -> float:
-    """What driving the path is worth, in metres of free driving forwards."""
+    """Return the cost of the path, in metres of free driving forward."""
     if len(poses) < 2:
         return 0.0
     cells = np.floor(grid.to_cells(poses[1:, :2])).astype(np.int64)

@@ -1,4 +1,4 @@
-"""From map, pose and goal to a path that the body can drive."""
+"""Plan a path that the footprint can drive, from map, pose and goal."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -23,18 +23,18 @@ from navette.navigation.planning.planning_grid import (
 )
 from navette.navigation.planning.route import GridRouter
 
-# Share of the goal tolerance by which a route may simply be cut short.
+# Share of the goal tolerance by which a route may be shortened.
 _CUT_SHARE = 0.5
-# From this many times the straight line (and some) on, a way counts as long, and one
-# with the tight margin is taken if it costs less than this share.
+# A path longer than _LONG_WAY times the straight line plus _LONG_WAY_M is replaced by
+# one with the tight margin that costs less than _SQUEEZE_SHARE of it.
 _LONG_WAY, _LONG_WAY_M, _SQUEEZE_SHARE = 1.5, 4.0, 0.6
-# Margins of clearance at the path's end: robots stop a little short or long.
+# Clearance at the path's end in margins: a robot stops slightly early or late.
 _ROOMY_END = 2.0
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Where to go, in the map frame; ``yaw`` None = any heading will do."""
+    """Goal in the map frame; ``yaw`` None = any heading."""
 
     x: float
     y: float
@@ -43,14 +43,14 @@ class Goal:
 
 @dataclass(frozen=True)
 class Plan:
-    """What planning came to.
+    """Result of planning.
 
     Attributes:
         outcome: named result.
         poses: (N, 3) x, y, yaw in the map frame; empty without a path.
-        cost: metres of free driving forwards that the path is worth.
+        cost: cost of the path in metres of free driving forward.
         margin_m: clearance that the path keeps.
-        expansions: poses that the search with headings looked at; 0 = not needed.
+        expansions: poses expanded by the search with headings; 0 = not used.
     """
 
     outcome: Outcome
@@ -61,7 +61,7 @@ class Plan:
 
 
 class Planner:
-    """Plans on the newest map; keeps nothing else between plans but work arrays."""
+    """Planner on the newest map; stateless between plans."""
 
     def __init__(self, params: PlannerParams) -> None:
         self.params = params
@@ -72,21 +72,21 @@ class Planner:
         self._grids: dict[float, PlanningGrid] = {}
 
     def with_params(self, params: PlannerParams) -> "Planner":
-        """Another planner on the same map."""
+        """Return a planner with other parameters on the same map."""
         other = Planner(params)
         if self._map is not None:
             other.set_map(*self._map)
         return other
 
     def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
-        """Take a map (H, W): −1 unknown, 0 free … 100 occupied."""
+        """Replace the map (H, W): −1 unknown, 0 free … 100 occupied."""
         if self._map is None or self._map[1].resolution != spec.resolution:
             self._body = BodyShape.of(self.footprint, spec.resolution)
         self._map = occupancy, spec
         self._grids.clear()
 
     def warm_up(self) -> None:
-        """Compile or load every kernel, so that the first goal need not wait."""
+        """Compile or load every kernel before the first goal."""
         reach = self.footprint.circumscribed_radius
         spec = GridSpec(reach / 4, 40, 40)
         other = Planner(self.params)
@@ -100,12 +100,12 @@ class Planner:
 
     @property
     def body(self) -> BodyShape:
-        """The body, sampled as finely as the map."""
+        """The body, sampled at the map's resolution."""
         assert self._body is not None, "set_map comes first"
         return self._body
 
     def grid(self, margin_m: float | None = None) -> PlanningGrid:
-        """The map prepared for a margin (the parameter's by default)."""
+        """Return the map prepared for a margin (default: clearance_margin_m)."""
         assert self._map is not None, "set_map comes first"
         margin = self.params.clearance_margin_m if margin_m is None else margin_m
         if margin not in self._grids:
@@ -114,10 +114,10 @@ class Planner:
         return self._grids[margin]
 
     def plan(self, start: Pose2, goal: Goal) -> Plan:
-        """A path from ``start`` to ``goal``, or the reason why there is none.
+        """Plan from ``start`` to ``goal``; without a path the outcome names the reason.
 
-        Where the body does not fit with its margin, or only a long way round, the
-        tight margin is tried.
+        If the body does not fit with its margin, or only on a long detour, the tight
+        margin is tried.
         """
         refused = self._refusal(start, goal)
         if refused is not None:
@@ -134,9 +134,9 @@ class Planner:
         return squeezed if squeezed.outcome.has_path and worth else plan
 
     def plan_on_grid(self, start: Pose2, goal: Goal) -> Plan | None:
-        """A path that the grid's search alone finds, with the full margin, or None.
+        """Plan with the grid search alone and the full margin; None without a path.
 
-        Cheap: what to ask when there is a path and only a better one is of interest.
+        This is cheap, to look for a better path while one is being driven.
         """
         if self._refusal(start, goal) is not None:
             return None
@@ -149,7 +149,7 @@ class Planner:
         return None if poses is None else self._planned(goal, poses, margin, 0)
 
     def cost_of(self, poses: Poses) -> float:
-        """What driving these poses is worth on the newest map; see path_cost."""
+        """Return the cost of these poses on the newest map; see path_cost."""
         return path_cost(
             poses,
             self.grid(),
@@ -188,13 +188,16 @@ class Planner:
         return self._planned(goal, poses, margin_m, detour.expansions)
 
     def _ends_cramped(self, grid: PlanningGrid, route: Poses) -> bool:
-        """Whether a robot that stops a little long would be too close."""
+        """Return whether a robot that stops slightly late would be too close."""
         last = clearances(route[-1:], grid, self.body)
         return bool(last[0] < _ROOMY_END * grid.margin_m)
 
     @property
     def _reach_m(self) -> float:
-        """How far from the goal a path may end: the robot stops short of its end."""
+        """Largest distance from the goal at which a path may end.
+
+        Less than the tolerance, because the robot may stop before the path's end.
+        """
         params = self.params
         return max(
             params.goal_tolerance_m - params.path_end_tolerance_m,
@@ -202,7 +205,7 @@ class Planner:
         )
 
     def _opened(self, margin_m: float, start: Pose2) -> PlanningGrid:
-        """The grid without the robot's own shadow, open around the start."""
+        """Return the grid with the body's cells free and the start open."""
         assert self._map is not None, "set_map comes first"
         params = replace(self.params, clearance_margin_m=margin_m)
         grid = self.grid(margin_m)
@@ -214,7 +217,7 @@ class Planner:
     def _end_nearby(
         self, grid: PlanningGrid, start: Pose2, goal: Goal
     ) -> tuple[tuple[float, float] | None, Outcome]:
-        """Where the path may end instead of at the goal, or None and the reason."""
+        """Return an end of the path near the goal, or None and the reason."""
         cell = grid.cell_of(start.x, start.y)
         assert cell is not None, "the start lies in the map"
         near, outcome = nearest_reachable(
@@ -225,7 +228,7 @@ class Planner:
     def _cut_to_fit(
         self, grid: PlanningGrid, start: Pose2, goal: Goal, route: Poses
     ) -> Poses | None:
-        """The route, less a little at its end, if the body fits along it."""
+        """Return the route, shortened slightly if needed, if the body fits along it."""
         sweep = turn_in_place(start.x, start.y, start.yaw, float(route[0, 2]))
         check = check_path(np.concatenate([sweep, route]), grid, self.body)
         if check.first_bad is None:
@@ -239,7 +242,7 @@ class Planner:
         return self._cut_for_comfort(grid, goal, kept)
 
     def _cut_for_comfort(self, grid: PlanningGrid, goal: Goal, route: Poses) -> Poses:
-        """The route up to where its end has some room, if that is near enough."""
+        """Shorten the route to an end with more clearance, if that is near enough."""
         away = np.hypot(route[:, 0] - goal.x, route[:, 1] - goal.y)
         near = away <= _CUT_SHARE * self.params.goal_tolerance_m
         first = len(route) - int(np.argmin(near[::-1])) if not near.all() else 1

@@ -1,7 +1,7 @@
-"""The map as the planner sees it: distance to obstacles, and a cost per cell.
+"""The planner's grid: distance to obstacles, and a cost per cell.
 
-The occupancy grid's own inflation is not trusted (the robot that made it may have
-been another): obstacles are its lethal cells, distances are measured again.
+The inflation of the occupancy grid is ignored, because it may be that of another robot:
+obstacles are the lethal cells, and distances are computed from them.
 """
 
 import math
@@ -16,10 +16,10 @@ from navette.grids import GridSpec, body_points, distance_field
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import DEAREST, LETHAL, Cell, EdgeTable
 
-# Share of the full clearance cost that sets in at once where the body could no
-# longer turn in place: a step keeps paths out of there, a slope alone would not.
+# Share of the full clearance cost that applies at once where the body can no longer
+# turn in place: a step keeps paths out of there, a slope alone would not.
 _STEP = 0.2
-# Steps of distance in which costs are tabulated.
+# Distance step of the cost table.
 _LEVEL_M = 0.004
 
 
@@ -52,7 +52,7 @@ class PlanningGrid:
     """A map prepared for one body.
 
     Attributes:
-        spec: where the grid lies in the map frame.
+        spec: geometry of the grid in the map frame.
         obstacles: (H, W) uint8, 1 = lethal.
         distance_m: (H, W) float32, metres to the nearest lethal cell, clipped.
         cost: (H, W) uint8 for ``table``; 255 where the base cannot be.
@@ -68,23 +68,23 @@ class PlanningGrid:
 
     @property
     def outside_m(self) -> float:
-        """Distance that holds beyond the map's rim: nothing is known there."""
+        """Distance to obstacles assumed outside the map."""
         return float(self.distance_m.max())
 
     def factor(self) -> NDArray[np.float32]:
-        """(H, W) what a metre in each cell costs; closed cells as the dearest."""
+        """Return (H, W) the cost of a metre in each cell; closed: the highest."""
         cost = np.minimum(self.cost, DEAREST).astype(np.float32)
         return 1 + np.float32(self.table.weight / DEAREST) * cost
 
     def factor_at(
         self, rows: NDArray[np.int64], columns: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        """(N,) what a metre costs in these cells; closed cells as the dearest."""
+        """Return (N,) the cost of a metre in these cells; closed: the highest."""
         cost = np.minimum(self.cost[rows, columns], DEAREST).astype(np.float64)
         return 1 + self.table.weight / DEAREST * cost
 
     def cell_of(self, x: float, y: float) -> Cell | None:
-        """The cell that holds a point of the map frame; None outside."""
+        """Return the cell of a point in the map frame; None outside."""
         cell = self.spec.cell_of(x, y)
         return cell if self.spec.contains(*cell) else None
 
@@ -102,11 +102,11 @@ class PlanningGrid:
         return distance
 
     def to_cells(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points (N, 2) x, y in metres → u, v in cells from the grid's corner."""
+        """Convert points (N, 2) x, y in metres to u, v in cells from the corner."""
         return self.spec.origin.inverse().apply(points) / self.spec.resolution
 
     def to_metres(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points (N, 2) u, v in cells → x, y in metres in the map frame."""
+        """Convert points (N, 2) u, v in cells to x, y in metres in the map frame."""
         return self.spec.origin.apply(points * self.spec.resolution)
 
 
@@ -137,10 +137,10 @@ def without_obstacles_in(
     body: BodyShape,
     params: PlannerParams,
 ) -> PlanningGrid:
-    """The grid less the lethal cells inside the body at ``start``.
+    """Remove the lethal cells inside the body at ``start``.
 
-    The robot stands there, so what the map shows there is not there: a scan that was
-    placed wrong, or the robot's own shadow.
+    The robot occupies that space, so such cells are errors: a scan with a wrong pose,
+    or the robot's own body.
     """
     inside = _cells_inside(grid.spec, start, body)
     rows, columns = inside[:, 0], inside[:, 1]
@@ -152,10 +152,10 @@ def without_obstacles_in(
 
 
 def open_at(grid: PlanningGrid, start: Cell, body: BodyShape) -> PlanningGrid:
-    """The grid with a way out of the inflation around ``start``.
+    """Open a path out of the inflation around ``start``.
 
-    Cells near the start open, at the dearest price, if they are no closer to an
-    obstacle than the start is.
+    Cells near the start become passable at the highest cost if they are no closer to an
+    obstacle than the start.
     """
     if grid.cost[start] != LETHAL:
         return grid
@@ -204,7 +204,7 @@ def _prepared(
 def _clearance_table(
     levels: int, closed_m: float, free_m: float, full: float
 ) -> NDArray[np.uint8]:
-    """Cost by distance in small steps: closed, then falling, then free."""
+    """Return the cost by distance step: closed, then decreasing, then free."""
     distance = (np.arange(levels) + 0.5) * _LEVEL_M
     slope = (free_m - distance) / (free_m - closed_m)
     falling = full * (_STEP + (1 - _STEP) * slope)

@@ -1,4 +1,4 @@
-"""What goes in and out of the navigator: plain records."""
+"""Inputs and outputs of the navigator."""
 
 import math
 from dataclasses import dataclass
@@ -9,14 +9,14 @@ from navette.navigation.planning.outcome import Outcome
 
 
 class State(StrEnum):
-    """What the planner waits for."""
+    """State of the planner."""
 
     WAITING_FOR_GOAL = "waiting_for_goal"
     WAITING_FOR_ROBOT = "waiting_for_robot_to_reach_goal"
 
 
 class Phase(StrEnum):
-    """What it is doing, in one word; a failure's own name stands in its place."""
+    """Activity of the planner; a failure is reported by its own name instead."""
 
     WAITING_FOR_GOAL = "waiting_for_goal"
     WAITING_FOR_MAP = "waiting_for_map"
@@ -27,28 +27,28 @@ class Phase(StrEnum):
 
 
 @dataclass(frozen=True)
-class RobotState:
-    """Where the robot is in the map frame, and how fast (m/s, rad/s)."""
+class RobotMotion:
+    """Pose in the map frame and velocity (m/s, rad/s)."""
 
     pose: Pose2
     speed_mps: float
     turn_rate_radps: float
 
     @property
-    def stands(self) -> bool:
+    def is_stationary(self) -> bool:
         return abs(self.speed_mps) < 0.02 and abs(self.turn_rate_radps) < 0.05
 
 
 @dataclass(frozen=True)
-class Report:
-    """What the navigator says of itself.
+class NavigatorReport:
+    """Status of the navigator.
 
     Attributes:
         message: phase, or the named failure.
         goal_id: number of goals received so far.
-        result: how the goal ended; empty while under way.
+        result: how the goal ended; empty until then.
         plan: outcome of the newest plan; empty before the first.
-        replans: plans made for this goal after its first.
+        replans: number of plans for this goal after the first.
     """
 
     message: str = Phase.WAITING_FOR_GOAL

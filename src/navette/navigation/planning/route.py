@@ -1,4 +1,4 @@
-"""A route on the grid: search, pull, round, head. The body is not looked at."""
+"""A route on the grid: search, straighten, smooth, add headings; for a point robot."""
 
 import math
 from collections.abc import Callable
@@ -22,14 +22,14 @@ from navette.navigation.planning.path_shape import (
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.string_pulling import centers, pull
 
-# From this angle on the two ways round are nearly as long.
+# Above this angle both directions of a turn are of similar length.
 _ABOUT_FACE = 2.4
 
 _Search = Callable[..., tuple[NDArray[np.int64], int] | None]
 
 
 class GridRouter:
-    """Finds the way of a point through a grid and makes it a path with headings."""
+    """Plan the path of a point through a grid and add headings."""
 
     def __init__(self, params: PlannerParams) -> None:
         self.params = params
@@ -48,17 +48,17 @@ class GridRouter:
         goal_xy: tuple[float, float],
         goal_yaw: float | None = None,
     ) -> Poses | None:
-        """Poses (N, 3) from the start pose to the goal; None when there is no way.
+        """Return poses (N, 3) from the start pose to the goal; None without a path.
 
-        Start and goal lie in the grid. Begins with a turn in place where the robot
-        looks elsewhere by more than the threshold, ends with one to ``goal_yaw``.
+        Start and goal lie in the grid. The path begins with a turn in place if the
+        heading error exceeds the threshold, and ends with one to ``goal_yaw``.
         """
         cells = self._cells(grid, (start.x, start.y), goal_xy)
         if cells is None:
             return None
         ends = np.array([(start.x, start.y), goal_xy])
         line = centers(cells)
-        # The ends are where they are, not where their cells' centres are.
+        # The ends keep their exact positions instead of their cells' centres.
         line = np.concatenate([grid.to_cells(ends[:1]), line[1:-1],
                                grid.to_cells(ends[1:])])  # fmt: skip
         line = grid.to_metres(pull(grid.cost, line, table=grid.table))
@@ -104,7 +104,7 @@ class GridRouter:
     def _turn(
         self, grid: PlanningGrid, body: BodyShape, at: Pose2, to_yaw: float
     ) -> Poses:
-        """A turn in place: the short way, or the long one if that has the room."""
+        """Return a turn in place: the shorter, or the longer if it has more room."""
         short = turn_in_place(at.x, at.y, at.yaw, to_yaw)
         if abs(angle_difference(to_yaw, at.yaw)) < _ABOUT_FACE:
             return short
@@ -117,6 +117,6 @@ class GridRouter:
         return long if round_room > room + grid.spec.resolution / 2 else short
 
     def turns_first(self, start: Pose2, poses: Poses) -> bool:
-        """Whether the robot must turn in place before it follows the poses."""
+        """Return whether the robot must turn in place before it follows the poses."""
         error = angle_difference(float(poses[0, 2]), start.yaw)
         return abs(error) > self.params.turn_threshold_rad

@@ -1,11 +1,10 @@
-"""String pulling: a chain of cells becomes a short line of any angle.
+"""String pulling: straighten a chain of cells to a short line of any angle.
 
-Greedy line-of-sight smoothing as in Thorpe 1984 and in Theta* (Nash et al. 2007),
-run along the chain, back, and along again, with the line cut into points about a
-cell apart in between: the corners then lie where a taut string would turn. A
-straight piece replaces a stretch only if it passes no closed cell, squeezes through
-no corner, and costs no more than the stretch did; its cost is integrated through
-the very cells that it crosses.
+Greedy line-of-sight smoothing as in Thorpe 1984 and in Theta* (Nash et al. 2007), run
+along the chain, backwards, and forwards again, with the line resampled to points about
+a cell apart in between. The corners then lie where a taut string would turn. A straight
+segment replaces a stretch only if it passes no closed cell, cuts no corner of one, and
+costs no more than the stretch; its cost is integrated over the cells that it crosses.
 """
 
 import math
@@ -28,10 +27,10 @@ def pull(
     table: EdgeTable | None = None,
     passes: int = 3,
 ) -> Points:
-    """Points (M, 2) of a straighter line with the same ends.
+    """Return points (M, 2) of a straighter line with the same ends.
 
     Args:
-        cost: (H, W) cell costs; ``table`` says which are closed and what they cost.
+        cost: (H, W) cell costs; ``table`` maps them to edge costs.
         points: (N, 2) u, v of a passable line, in cells from the grid's outer
             corner: the centre of cell (row, column) is (column + 0.5, row + 0.5).
     """
@@ -39,7 +38,7 @@ def pull(
     factor = table.straight / STRAIGHT
     cost, line = _checked(cost, points)
     for _ in range(passes):
-        # Backwards each time: the first pass leaves its slack at the far side.
+        # Reversed each time: a forward pass leaves slack at the far side.
         fine = _cut(line)
         kept = np.empty(len(fine), np.int64)
         count = _pull_once(cost, fine, factor, np.empty(len(fine)), kept)
@@ -50,9 +49,9 @@ def pull(
 def line_cost(
     cost: NDArray[np.uint8], points: Points, *, table: EdgeTable | None = None
 ) -> float:
-    """Cost of a polyline (N, 2) of u, v in cells; a free cell's width costs 1.
+    """Return the cost of a polyline (N, 2) u, v in cells; a free cell's width costs 1.
 
-    Infinite when it meets a closed cell.
+    Infinite if it meets a closed cell.
     """
     table = table or EdgeTable()
     cost, line = _checked(cost, points)
@@ -60,14 +59,14 @@ def line_cost(
 
 
 def centers(cells: NDArray[np.int64]) -> Points:
-    """Cells (N, 2) row, column → their centres (N, 2) u, v."""
+    """Return the centres (N, 2) u, v of cells (N, 2) row, column."""
     return np.ascontiguousarray(cells[:, ::-1] + 0.5, np.float64)
 
 
 def _checked(
     cost: NDArray[np.uint8], points: Points
 ) -> tuple[NDArray[np.uint8], Points]:
-    """Both as the kernels take them: a line between points inside stays inside."""
+    """Return both as the kernels require them: a line of inner points stays inside."""
     line = np.ascontiguousarray(points, np.float64)
     height, width = cost.shape
     inside = (line >= 0).all() and (line < (width, height)).all()
@@ -90,7 +89,7 @@ def _line_cost(cost: Any, line: Any, factor: Any) -> float:
 
 
 def _cut(line: Points) -> Points:
-    """The same line with points at most a cell and a half apart."""
+    """Return the same line with points at most a cell and a half apart."""
     steps = np.diff(line, axis=0)
     lengths = np.hypot(steps[:, 0], steps[:, 1])
     counts = np.maximum(1, np.ceil(lengths - 0.5)).astype(np.int64)
@@ -103,7 +102,7 @@ def _cut(line: Points) -> Points:
 
 @njit(cache=True)
 def _pull_once(cost: Any, fine: Any, factor: Any, paid: Any, kept: Any) -> int:
-    """Number of points in ``kept``: as few of the points as will do.
+    """Fill ``kept`` with as few of the points as possible; return their number.
 
     ``paid`` (N,) becomes the cost from the first point to each.
     """
@@ -122,7 +121,7 @@ def _pull_once(cost: Any, fine: Any, factor: Any, paid: Any, kept: Any) -> int:
 
 @njit(cache=True)
 def _furthest(cost: Any, fine: Any, paid: Any, anchor: int, factor: Any) -> int:
-    """Furthest point that a straight piece may reach: doubling, then halving."""
+    """Return the furthest point of a straight segment by doubling, then bisection."""
     last = fine.shape[0] - 1
     good, step = anchor + 1, 1
     bad = last + 1
@@ -161,7 +160,7 @@ def _shorter(
 def _segment_cost(
     cost: Any, u0: float, v0: float, u1: float, v1: float, factor: Any
 ) -> Any:
-    """∫ factor along a segment, cell by cell (Amanatides and Woo 1987); inf = closed.
+    """Integrate the factor along a segment (Amanatides and Woo 1987); inf = closed.
 
     A segment through a corner needs both cells beside the corner free.
     """

@@ -13,7 +13,7 @@ from navette.navigation.planning import (
     Outcome,
     Phase,
     PlannerParams,
-    RobotState,
+    RobotMotion,
     State,
 )
 from navette.navigation.planning.path_progress import PathProgress
@@ -51,7 +51,7 @@ class Drive:
             away = np.hypot(*(self.path[:, :2] - self.pose[:2]).T)
             at = min(int(np.argmin(away)) + 5, len(self.path) - 1)
             self.pose = Pose2(*self.path[at].tolist())
-        robot = RobotState(self.pose, 1.0 if moves else 0.0, 0.0)
+        robot = RobotMotion(self.pose, 1.0 if moves else 0.0, 0.0)
         self.navigator.step(robot, self.now_ns, stale=stale)
         path = self.navigator.take_path()
         if path is not None:
@@ -117,7 +117,7 @@ def test_goals_wait_for_map_and_odometry_and_say_so() -> None:
     navigator.set_goal(Goal(3, 3), 0)
     navigator.step(None, 1, stale=True)
     assert navigator.report.message == Phase.WAITING_FOR_ODOMETRY
-    robot = RobotState(Pose2(1, 1, 0), 0, 0)
+    robot = RobotMotion(Pose2(1, 1, 0), 0, 0)
     navigator.step(robot, 2, stale=False)
     assert navigator.report.message == Phase.WAITING_FOR_MAP
     navigator.set_map(*empty_map(5, 5))

@@ -1,29 +1,29 @@
-"""How long to wait for progress, and when to give up."""
+"""Timeouts of one goal: progress, attempts, rest at the goal."""
 
 from navette.navigation.planning.params import PlannerParams
-from navette.navigation.planning.reports import RobotState
+from navette.navigation.planning.reports import RobotMotion
 
-# At rest for this long near the goal counts as arrived; a pause between two pieces
-# of a path is shorter.
+# Rest near the goal that counts as arrived; a pause between two pieces of a path is
+# shorter.
 _REST_NS = 1_000_000_000
 
 
-class Patience:
-    """Clocks of one goal, in nanoseconds of the node's clock."""
+class ProgressChecker:
+    """Checks progress towards one goal; times are those of the node's clock."""
 
     def __init__(self, params: PlannerParams) -> None:
         self.configure(params)
         self.begin(0)
 
     def configure(self, params: PlannerParams) -> None:
-        """Take new limits; the clocks run on."""
+        """Replace the limits; the timers continue."""
         self._timeout_ns = round(params.progress_timeout_s * 1e9)
         self._goal_timeout_ns = round(params.goal_timeout_s * 1e9)
         self._step_m = params.progress_distance_m
         self._attempts = params.max_stuck_replans
 
     def begin(self, now_ns: int) -> None:
-        """A new goal."""
+        """Start the timers of a new goal."""
         self._since_ns = self._goal_since_ns = now_ns
         self._resting_since_ns: int | None = None
         self._mark_m = 0.0
@@ -31,16 +31,16 @@ class Patience:
         self.spent = 0
 
     def new_path(self) -> None:
-        """Progress is counted from the new path's start; the clock runs on."""
+        """Count progress from the start of a new path; the timers continue."""
         self._mark_m = 0.0
 
     def note(self, covered_m: float, now_ns: int) -> None:
-        """Take how much of the path lies behind the robot."""
+        """Update the distance covered along the path (m)."""
         if covered_m >= self._mark_m + self._step_m:
             self._mark_m, self._since_ns, self.spent = covered_m, now_ns, 0
 
     def no_progress(self, now_ns: int) -> bool:
-        """Whether the time for a bit of progress is over; starts it anew if so."""
+        """Return whether the progress timeout expired; if so, count it and restart."""
         if now_ns - self._since_ns < self._timeout_ns:
             return False
         self._since_ns = now_ns
@@ -48,22 +48,22 @@ class Patience:
         return True
 
     def spend(self) -> None:
-        """Count a plan that failed."""
+        """Count a failed plan."""
         self.spent += 1
 
     @property
     def exhausted(self) -> bool:
-        """Whether all attempts without progress are used up."""
+        """Whether all attempts without progress are used."""
         return self.spent > self._attempts
 
     def goal_timed_out(self, now_ns: int) -> bool:
-        """Whether the goal has taken too long."""
+        """Return whether the goal timeout expired."""
         limit = self._goal_timeout_ns
         return 0 < limit <= now_ns - self._goal_since_ns
 
-    def rests(self, robot: RobotState, now_ns: int) -> bool:
-        """Whether the robot has stood still for a while."""
-        if not robot.stands:
+    def rests(self, robot: RobotMotion, now_ns: int) -> bool:
+        """Return whether the robot has been stationary for a second."""
+        if not robot.is_stationary:
             self._resting_since_ns = None
         elif self._resting_since_ns is None:
             self._resting_since_ns = now_ns

@@ -1,4 +1,7 @@
-"""The compiled part of the lattice search."""
+"""Compiled kernels of the lattice search.
+
+Costs are in units; see :mod:`.traversal`. Array columns are named by the constants.
+"""
 
 import math
 from typing import Any, NamedTuple
@@ -22,20 +25,20 @@ BUCKETS = 1 << 13
 # Values kept per bin are ROOM − g, so that memory never written (0) is the worst.
 ROOM = 1 << 30
 NOWHERE = 1 << 60
-# The guide knows no headings and asks too little; weighted A* (Pohl 1970) gives up
-# optimality, within this factor, for not looking at every way to turn on the spot.
+# The heuristic ignores headings and underestimates; weighted A* (Pohl 1970) gives up
+# optimality, within this factor, to avoid expanding every turn in place.
 GREED = 1.5
-# Ends this near the goal are equal: nobody shunts about for a few centimetres.
+# Ends this near the goal cost the same: manoeuvring for centimetres is useless.
 GOOD_ENOUGH_M = 0.1
-# A pose at the margin costs this many times a comfortable one more.
+# Additional cost factor of a pose at the margin, relative to a comfortable one.
 DISCOMFORT = 2.0
 
 # Columns of Tree.links.
 HEADING, G, PARENT, MOVE, ESCAPING = 0, 1, 2, 3, 4
 
 
-class Scene(NamedTuple):
-    """What is driven through; see :class:`.lattice.LatticeWorld`."""
+class LatticeScene(NamedTuple):
+    """Map and body for the kernels; see :class:`.lattice.LatticeWorld`."""
 
     grid: DistanceGrid
     factor: NDArray[np.float32]
@@ -87,7 +90,7 @@ def grow(
     pool: Any,
     budget: int,
 ) -> tuple[int, int]:
-    """Grow the tree from ``start``; (node at the goal or −1, nodes expanded).
+    """Grow the tree from ``start``; return (node at the goal or −1, nodes expanded).
 
     ``goal`` is x, y, tolerance, yaw or NaN, yaw tolerance, units per metre off, and
     units of a metre.
@@ -127,7 +130,7 @@ def grow(
 
 @njit(cache=True)
 def _plant(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
-    """Make the root; returns its bucket."""
+    """Create the root; return its bucket."""
     tree.position[0, 0], tree.position[0, 1] = start[0], start[1]
     tree.links[0, HEADING], tree.links[0, G] = 0, 0
     tree.links[0, PARENT], tree.links[0, MOVE] = -1, -1
@@ -135,7 +138,7 @@ def _plant(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     u, v = _to_cells(scene.grid.frame, start[0], start[1])
     ahead = scene.guide[int(v), int(u)]
     nothing: Any = np.int64(0)  # a literal would compile the callee a second time
-    return _promise(nothing, ahead) >> SHIFT
+    return _estimate(nothing, ahead) >> SHIFT
 
 
 @njit(cache=True)
@@ -150,10 +153,10 @@ def _branch(
     pool: Any,
     bucket: int,
 ) -> tuple[int, int]:
-    """Try every move from ``node``; (nodes in the tree, first bucket in use).
+    """Try every move from ``node``; return (nodes in the tree, first bucket in use).
 
-    The guide is greedy, so a move may promise less than the pose it starts from: the
-    first bucket goes down then.
+    The weighted heuristic is inconsistent: f may decrease along a move, and the first
+    bucket with it.
     """
     first = bucket
     x, y = tree.position[node, 0], tree.position[node, 1]
@@ -186,7 +189,7 @@ def _branch(
         tree.links[used, HEADING], tree.links[used, G] = heading, g
         tree.links[used, PARENT], tree.links[used, MOVE] = node, m
         tree.links[used, ESCAPING] = escaping and clearance < scene.margin_m
-        slot = _promise(g, ahead) >> SHIFT
+        slot = _estimate(g, ahead) >> SHIFT
         first = slot if slot < first else first
         last = first + BUCKETS - 2
         push(pool, tree.queue, slot if slot < last else last, used)
@@ -195,8 +198,8 @@ def _branch(
 
 
 @njit(cache=True)
-def _promise(g: int, ahead: int) -> int:
-    """f: what a path through here will cost, as far as is known."""
+def _estimate(g: int, ahead: int) -> int:
+    """Return f, the estimated cost of a path through this pose."""
     return g + (int(GREED * ahead) if ahead < UNREACHED else 0)
 
 
@@ -212,7 +215,7 @@ def _step_cost(moves: Any, before: int, m: int, factor: float) -> int:
 def _fits(
     scene: Any, moves: Any, m: int, x: float, y: float, yaw: float, needed_m: float
 ) -> bool:
-    """Whether the body has its clearance at every sample of move ``m``."""
+    """Return whether the body keeps its clearance at every sample of move ``m``."""
     cos, sin = math.cos(yaw), math.sin(yaw)
     for k in range(moves.counts[m]):
         dx, dy = moves.offsets[m, k, 0], moves.offsets[m, k, 1]
@@ -235,10 +238,10 @@ def _clearance(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> f
 
 @njit(cache=True)
 def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
-    """(cost to go, price of a metre) at a point; the price is −1 outside.
+    """Return (cost to go, cost factor) at a point; the factor is −1 outside.
 
-    The cost to go is interpolated between cell centres: in whole cells it would
-    jump by several moves' worth, and the search after it.
+    The cost to go is interpolated between cell centres: per cell it would jump by the
+    cost of several moves.
     """
     u, v = _to_cells(scene.grid.frame, x, y)
     height, width = scene.guide.shape
@@ -275,9 +278,10 @@ def _bin(tree: Any, frame: Any, x: float, y: float, heading: int, headings: int)
 
 @njit(cache=True)
 def _arrival(scene: Any, goal: Any, x: float, y: float, yaw: float) -> int:
-    """What arriving here adds in units; NOWHERE where it is not the goal.
+    """Return the cost in units of ending here; NOWHERE outside the goal.
 
-    So much for each metre off, and for a cramped end as much as a metre driven.
+    It grows with the distance to the goal and with lack of clearance, up to the cost of
+    a metre driven.
     """
     off = math.hypot(x - goal[0], y - goal[1])
     if off > goal[2]:
