@@ -6,12 +6,8 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from navette.errors import InvalidValueError, NavetteError
 from navette.msgs.rcl_interfaces.msg import (
-    ListParametersResult,
     Log,
-    ParameterDescriptor,
     ParameterEvent,
-    ParameterValue,
-    SetParametersResult,
 )
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.callback_groups import CallbackGroup
@@ -33,13 +29,10 @@ from navette.runtime.node_parameters import NodeParameters
 from navette.runtime.node_services import NodeServices
 from navette.runtime.node_topics import NodeTopics
 from navette.runtime.overrides import Override, ParameterOverrides
-from navette.runtime.parameter import Parameter, ParameterType
+from navette.runtime.parameter import Parameter
 from navette.runtime.parameter_service import ParameterService
 from navette.runtime.parameter_store import (
     Changes,
-    OnCallback,
-    PostCallback,
-    PreCallback,
 )
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (
@@ -71,11 +64,13 @@ HIDDEN_NODE_PREFIX = "_"
 MsgT = TypeVar("MsgT")
 
 
-class Node(GraphQueries):
+class Node(GraphQueries, NodeParameters):
     """Owns publishers, subscriptions, services, timers and parameters under one name.
 
     Arguments as in rclpy; ``parameter_overrides`` take precedence over values from
-    files and the command line.
+    files and the command line. Two base classes, which work without each other, provide
+    the graph queries and the parameters; :class:`NodeTopics` and :class:`NodeServices`
+    create the endpoints, and :class:`NodeEntities` registers what the node owns.
     """
 
     if not TYPE_CHECKING:  # type checkers would accept any attribute name
@@ -109,15 +104,16 @@ class Node(GraphQueries):
         local = _local_arguments(cli_args)
         remaps = self._context.arguments.remaps if use_global_arguments else []
         remapper = _node_remapper(node_name, namespace or "", [*local.remaps, *remaps])
-        super().__init__(self._context.graph, self._context.loop, remapper)
+        GraphQueries.__init__(self, self._context.graph, self._context.loop, remapper)
         self._node_entities = entities = NodeEntities(self._context, remapper)
         self._executor: Any = None
         self._clock = ROSClock(context=self._context)
         logger_name = entities.full_name.strip("/").replace("/", ".")
         self._logger = Logger(logger_name, self._context.log)
-        self._node_parameters = NodeParameters(
+        NodeParameters.__init__(
+            self,
             entities.full_name,
-            _parameter_overrides(
+            _collected_overrides(
                 entities.full_name,
                 self._context.overrides if use_global_arguments else None,
                 local,
@@ -126,7 +122,7 @@ class Node(GraphQueries):
             self._publish_changes,
             allow_undeclared=allow_undeclared_parameters,
         )
-        self._node_topics = NodeTopics(entities, self._node_parameters, self._logger)
+        self._node_topics = NodeTopics(entities, self, self._logger)
         self._node_services = NodeServices(entities, self._node_topics)
         self._rosout_sink: RosoutSink | None = None
         self._info = NodeInfo(
@@ -140,7 +136,7 @@ class Node(GraphQueries):
                 ParameterEvent, "/parameter_events", qos_profile_parameter_events
             )
             if automatically_declare_parameters_from_overrides:
-                for name, override in self._node_parameters.overrides.items():
+                for name, override in self._overrides.items():
                     self.declare_parameter(name, override.value)
             self._start_services(start_parameter_services, enable_logger_service)
         except NavetteError:
@@ -164,13 +160,13 @@ class Node(GraphQueries):
         self._context.log.sinks.append(self._rosout_sink)
 
     def _start_services(self, parameter_services: bool, logger_service: bool) -> None:
-        parameters, services = self._node_parameters, self._node_services
+        services = self._node_services
         self._time_source = TimeSource(
-            self._context, self._clock, parameters, self._node_topics
+            self._context, self._clock, self, self._node_topics
         )
         if parameter_services:
-            self._parameter_service = ParameterService(parameters, services)
-        self._type_description_service = TypeDescriptionService(parameters, services)
+            self._parameter_service = ParameterService(self, services)
+        self._type_description_service = TypeDescriptionService(self, services)
         if logger_service:
             self._logging_service = LoggingService(self._context.log, services)
 
@@ -498,127 +494,6 @@ class Node(GraphQueries):
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         return self._node_entities.destroy(guard)
 
-    # Parameters.
-
-    def declare_parameter(
-        self,
-        name: str,
-        value: Any = None,
-        descriptor: ParameterDescriptor | None = None,
-        ignore_override: bool = False,
-    ) -> Parameter[Any]:
-        """Declare a parameter with a default value or a ``Parameter.Type``.
-
-        Values from files, launch and command line take precedence over the default.
-
-        Raises:
-            ParameterError: declared before, or the value is rejected.
-        """
-        return self._node_parameters.declare_parameter(
-            name, value, descriptor, ignore_override
-        )
-
-    def declare_parameters(
-        self,
-        namespace: str,
-        parameters: Sequence[tuple[Any, ...]],
-        ignore_override: bool = False,
-    ) -> list[Parameter[Any]]:
-        """Declare (name[, value or type[, descriptor]]) as ``namespace.name``."""
-        return self._node_parameters.declare_parameters(
-            namespace, parameters, ignore_override
-        )
-
-    def undeclare_parameter(self, name: str) -> None:
-        self._node_parameters.undeclare_parameter(name)
-
-    def has_parameter(self, name: str) -> bool:
-        return self._node_parameters.has_parameter(name)
-
-    def get_parameter(self, name: str) -> Parameter[Any]:
-        """Return the parameter.
-
-        Raises:
-            ParameterNotDeclaredException: not declared, and the node requires it.
-            ParameterUninitializedException: declared with a type and without a value.
-        """
-        return self._node_parameters.get_parameter(name)
-
-    def get_parameters(self, names: list[str]) -> list[Parameter[Any]]:
-        return self._node_parameters.get_parameters(names)
-
-    def get_parameter_or(
-        self, name: str, alternative_value: Parameter[Any] | None = None
-    ) -> Parameter[Any]:
-        """Return the parameter, or the alternative if it has no value."""
-        return self._node_parameters.get_parameter_or(name, alternative_value)
-
-    def get_parameter_type(self, name: str) -> ParameterType:
-        return self._node_parameters.get_parameter_type(name)
-
-    def get_parameter_types(self, names: list[str]) -> list[ParameterType]:
-        return self._node_parameters.get_parameter_types(names)
-
-    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
-        """Return the parameters below ``prefix.``, keyed by the rest of the name."""
-        return self._node_parameters.get_parameters_by_prefix(prefix)
-
-    def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
-        """List names at most ``depth`` levels below any prefix; 0 means all levels."""
-        return self._node_parameters.list_parameters(prefixes, depth)
-
-    def known_parameters(self) -> list[str] | None:
-        """Return the declared names; None if undeclared parameters are allowed."""
-        return self._node_parameters.known_parameters()
-
-    def set_parameters(
-        self, parameter_list: list[Parameter[Any]]
-    ) -> list[SetParametersResult]:
-        """Set the parameters one by one; the results contain the rejections."""
-        return self._node_parameters.set_parameters(parameter_list)
-
-    def set_parameters_atomically(
-        self, parameter_list: list[Parameter[Any]]
-    ) -> SetParametersResult:
-        """Set all of the parameters or none."""
-        return self._node_parameters.set_parameters_atomically(parameter_list)
-
-    def add_pre_set_parameters_callback(self, callback: PreCallback) -> None:
-        """Add a callback that may change the list before it is checked."""
-        self._node_parameters.store.pre_callbacks.insert(0, callback)
-
-    def add_on_set_parameters_callback(self, callback: OnCallback) -> None:
-        """Add a callback that may reject the values."""
-        self._node_parameters.store.on_callbacks.insert(0, callback)
-
-    def add_post_set_parameters_callback(self, callback: PostCallback) -> None:
-        """Add a callback that runs after the values were set."""
-        self._node_parameters.store.post_callbacks.insert(0, callback)
-
-    def remove_pre_set_parameters_callback(self, callback: PreCallback) -> None:
-        self._node_parameters.store.pre_callbacks.remove(callback)
-
-    def remove_on_set_parameters_callback(self, callback: OnCallback) -> None:
-        self._node_parameters.store.on_callbacks.remove(callback)
-
-    def remove_post_set_parameters_callback(self, callback: PostCallback) -> None:
-        self._node_parameters.store.post_callbacks.remove(callback)
-
-    def describe_parameter(self, name: str) -> ParameterDescriptor:
-        return self._node_parameters.describe_parameter(name)
-
-    def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
-        return self._node_parameters.describe_parameters(names)
-
-    def set_descriptor(
-        self,
-        name: str,
-        descriptor: ParameterDescriptor,
-        alternative_value: ParameterValue | None = None,
-    ) -> ParameterValue:
-        """Replace the descriptor; set the alternative if the value does not fit it."""
-        return self._node_parameters.set_descriptor(name, descriptor, alternative_value)
-
 
 def _valid_context(context: Context | None) -> Context:
     if context is None:
@@ -648,7 +523,7 @@ def _node_remapper(name: str, namespace: str, rules: list[RemapRule]) -> NodeRem
     return remapper
 
 
-def _parameter_overrides(
+def _collected_overrides(
     node_name: str,
     shared: ParameterOverrides | None,
     local: RosArguments,

@@ -25,11 +25,17 @@ from navette.runtime.parameter import (
     parameter_value_to_python,
     validate_parameter_name,
 )
-from navette.runtime.parameter_store import Changes, ParameterStore
+from navette.runtime.parameter_store import (
+    Changes,
+    OnCallback,
+    ParameterStore,
+    PostCallback,
+    PreCallback,
+)
 
 
 class NodeParameters:
-    """Parameters of a node; the methods are those of :class:`Node`.
+    """Base class of :class:`Node`: the parameters of a node.
 
     Args:
         node_name: full name, for error messages.
@@ -46,9 +52,9 @@ class NodeParameters:
         *,
         allow_undeclared: bool,
     ) -> None:
-        self._node_name = node_name
-        self.overrides = overrides
-        self.store = ParameterStore(on_change, allow_undeclared=allow_undeclared)
+        self._full_name = node_name
+        self._overrides = overrides
+        self._store = ParameterStore(on_change, allow_undeclared=allow_undeclared)
 
     def declare_parameter(
         self,
@@ -57,6 +63,13 @@ class NodeParameters:
         descriptor: ParameterDescriptor | None = None,
         ignore_override: bool = False,
     ) -> Parameter[Any]:
+        """Declare a parameter with a default value or a ``Parameter.Type``.
+
+        Values from files, launch and command line take precedence over the default.
+
+        Raises:
+            ParameterError: declared before, or the value is rejected.
+        """
         entry = (name, value) if descriptor is None else (name, value, descriptor)
         if value is None and descriptor is None:
             entry = (name,)  # type: ignore[assignment]
@@ -68,6 +81,7 @@ class NodeParameters:
         parameters: Sequence[tuple[Any, ...]],
         ignore_override: bool = False,
     ) -> list[Parameter[Any]]:
+        """Declare (name[, value or type[, descriptor]]) as ``namespace.name``."""
         declared = []
         for entry in parameters:
             if not 1 <= len(entry) <= 3:
@@ -102,39 +116,45 @@ class NodeParameters:
                 else None
             )
         origin = ""
-        if not ignore_override and name in self.overrides:
-            value, origin, _ = self.overrides[name]
+        if not ignore_override and name in self._overrides:
+            value, origin, _ = self._overrides[name]
         if kind is None:
             parameter: Parameter[Any] = Parameter(name, value=value)
         elif value is None:
             parameter = Parameter(name, ParameterType.NOT_SET)
         else:
             parameter = Parameter(name, kind, self._typed(name, value, kind, origin))
-        self.store.declare(parameter, descriptor, origin)
-        return self.store.values[name]
+        self._store.declare(parameter, descriptor, origin)
+        return self._store.values[name]
 
     def _typed(self, name: str, value: Any, kind: ParameterType, origin: str) -> Any:
         try:
             return coerced(name, value, kind)
         except ParameterError as error:
             where = f" (from {origin})" if origin else ""
-            raise ParameterError(f"node {self._node_name}: {error}{where}") from None
+            raise ParameterError(f"node {self._full_name}: {error}{where}") from None
 
     def undeclare_parameter(self, name: str) -> None:
         self._declared(name)
-        if self.store.descriptors[name].read_only:
+        if self._store.descriptors[name].read_only:
             raise ParameterImmutableException(name)
-        self.store.remove(name)
+        self._store.remove(name)
 
     def has_parameter(self, name: str) -> bool:
-        return name in self.store.values
+        return name in self._store.values
 
     def get_parameter(self, name: str) -> Parameter[Any]:
+        """Return the parameter.
+
+        Raises:
+            ParameterNotDeclaredException: not declared, and the node requires it.
+            ParameterUninitializedException: declared with a type and without a value.
+        """
         parameter = self._known(name)
         if (
             parameter.type_ is ParameterType.NOT_SET
-            and name in self.store.descriptors
-            and not self.store.descriptors[name].dynamic_typing
+            and name in self._store.descriptors
+            and not self._store.descriptors[name].dynamic_typing
         ):
             raise ParameterUninitializedException(name)
         return parameter
@@ -145,7 +165,8 @@ class NodeParameters:
     def get_parameter_or(
         self, name: str, alternative_value: Parameter[Any] | None = None
     ) -> Parameter[Any]:
-        parameter = self.store.values.get(name)
+        """Return the parameter, or the alternative if it has no value."""
+        parameter = self._store.values.get(name)
         if parameter is not None and parameter.type_ is not ParameterType.NOT_SET:
             return parameter
         return alternative_value or Parameter(name, ParameterType.NOT_SET)
@@ -157,19 +178,21 @@ class NodeParameters:
         return [self.get_parameter_type(name) for name in names]
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter[Any]]:
+        """Return the parameters below ``prefix.``, keyed by the rest of the name."""
         start = prefix + PARAMETER_SEPARATOR_STRING if prefix else ""
         return {
             name[len(start) :]: parameter
-            for name, parameter in self.store.values.items()
+            for name, parameter in self._store.values.items()
             if name.startswith(start)
         }
 
     def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
+        """List names at most ``depth`` levels below any prefix; 0 means all levels."""
         if depth < 0:
             raise ValueError(f"depth must be >= 0, got {depth}")
         result = ListParametersResult()
         names = [
-            name for name in self.store.values if _is_listed(name, prefixes, depth)
+            name for name in self._store.values if _is_listed(name, prefixes, depth)
         ]
         result.names = names
         found = (n.rpartition(PARAMETER_SEPARATOR_STRING)[0] for n in names)
@@ -177,26 +200,50 @@ class NodeParameters:
         return result
 
     def known_parameters(self) -> list[str] | None:
-        return None if self.store.allow_undeclared else list(self.store.values)
+        """Return the declared names; None if undeclared parameters are allowed."""
+        return None if self._store.allow_undeclared else list(self._store.values)
 
     def set_parameters(
         self, parameter_list: list[Parameter[Any]]
     ) -> list[SetParametersResult]:
+        """Set the parameters one by one; the results contain the rejections."""
         self._check_declared(parameter_list)
-        return [self.store.set([parameter]) for parameter in parameter_list]
+        return [self._store.set([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(
         self, parameter_list: list[Parameter[Any]]
     ) -> SetParametersResult:
+        """Set all of the parameters or none."""
         self._check_declared(parameter_list)
-        return self.store.set(parameter_list)
+        return self._store.set(parameter_list)
+
+    def add_pre_set_parameters_callback(self, callback: PreCallback) -> None:
+        """Add a callback that may change the list before it is checked."""
+        self._store.pre_callbacks.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: OnCallback) -> None:
+        """Add a callback that may reject the values."""
+        self._store.on_callbacks.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: PostCallback) -> None:
+        """Add a callback that runs after the values were set."""
+        self._store.post_callbacks.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: PreCallback) -> None:
+        self._store.pre_callbacks.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: OnCallback) -> None:
+        self._store.on_callbacks.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: PostCallback) -> None:
+        self._store.post_callbacks.remove(callback)
 
     def describe_parameter(self, name: str) -> ParameterDescriptor:
-        if name not in self.store.descriptors:
-            if self.store.allow_undeclared:
+        if name not in self._store.descriptors:
+            if self._store.allow_undeclared:
                 return ParameterDescriptor(name=name)
             self._known(name)
-        return self.store.descriptors[name]
+        return self._store.descriptors[name]
 
     def describe_parameters(self, names: list[str]) -> list[ParameterDescriptor]:
         return [self.describe_parameter(name) for name in names]
@@ -207,34 +254,41 @@ class NodeParameters:
         descriptor: ParameterDescriptor,
         alternative_value: ParameterValue | None = None,
     ) -> ParameterValue:
+        """Replace the descriptor; set the alternative if the value does not fit it."""
         self._declared(name)
-        if self.store.descriptors[name].read_only:
+        if self._store.descriptors[name].read_only:
             raise ParameterImmutableException(name)
-        old = self.store.values[name], self.store.descriptors[name]
+        old = (
+            self._store.values[name],
+            self._store.descriptors[name],
+        )
         parameter = old[0]
         if alternative_value is not None:
             value = parameter_value_to_python(alternative_value)
             parameter = Parameter(name, value=value)
-        self.store.remove(name)
+        self._store.remove(name)
         descriptor = copy.copy(descriptor)
         descriptor.type = int(parameter.type_)
         try:
-            self.store.declare(parameter, descriptor, "set_descriptor")
+            self._store.declare(parameter, descriptor, "set_descriptor")
         except ParameterError:
-            self.store.values[name], self.store.descriptors[name] = old
+            (
+                self._store.values[name],
+                self._store.descriptors[name],
+            ) = old
             raise
-        return self.store.values[name].get_parameter_value()
+        return self._store.values[name].get_parameter_value()
 
     def _known(self, name: str) -> Parameter[Any]:
-        if self.store.allow_undeclared and name not in self.store.values:
+        if self._store.allow_undeclared and name not in self._store.values:
             return Parameter(name, ParameterType.NOT_SET)
         return self._declared(name)
 
     def _declared(self, name: str) -> Parameter[Any]:
-        parameter = self.store.values.get(name)
+        parameter = self._store.values.get(name)
         if parameter is None:
             raise ParameterNotDeclaredException(
-                name, self._node_name, list(self.store.values)
+                name, self._full_name, list(self._store.values)
             )
         return parameter
 

@@ -38,8 +38,8 @@ class TimeSource:
         self._subscription: Subscription[ClockMsg] | None = None
         if not parameters.has_parameter(USE_SIM_TIME_NAME):
             parameters.declare_parameter(USE_SIM_TIME_NAME, False)
-        parameters.store.on_callbacks.insert(0, self._check)
-        parameters.store.post_callbacks.insert(0, self._apply)
+        parameters.add_on_set_parameters_callback(self._check)
+        parameters.add_post_set_parameters_callback(self._apply)
         self._follow(parameters.get_parameter(USE_SIM_TIME_NAME).value)
 
     @property

@@ -175,7 +175,7 @@ class StageNode(Node):
         return receive
 
     def _check_unknown_overrides(self) -> None:
-        for name, override in self._node_parameters.overrides.items():
+        for name, override in self._overrides.items():
             if not self.has_parameter(name) and not override.is_for_all:
                 known = ", ".join(sorted(self.known_parameters() or []))
                 raise ParameterError(
