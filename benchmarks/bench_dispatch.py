@@ -1,4 +1,4 @@
-"""From publish to callback in one process, beside Zenoh; timers and tf lookups.
+"""From publish to callback in one process, compared with Zenoh; timers and tf lookups.
 
 Navette's way has the queue, the deterministic executor, QoS and a copy of the
 message. Zenoh's session calls back from within ``put`` and carries bytes that nobody
@@ -152,7 +152,7 @@ def add_messages(bench: Benchmark) -> None:
         bench.case(
             f"{name}: publish → 1 callback",
             contenders,
-            "every message arrived",
+            "all messages were received",
             target_ms=target_ms,
             per_run=COUNT,
         )

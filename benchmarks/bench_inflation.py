@@ -1,4 +1,4 @@
-"""Inflation of a map by 20 cells: Navette, OpenCV and SciPy, same result.
+"""Inflation of a map by 20 cells, compared with OpenCV and SciPy.
 
 Peers compute the exact distance to the nearest lethal cell and look the cost up;
 OpenCV's precise transform is the one that matches.
@@ -59,7 +59,7 @@ def main() -> None:
                 "opencv": lambda cost=cost: with_opencv(cost),
                 "scipy": lambda cost=cost: with_scipy(cost),
             },
-            "all three give the same cells",
+            "all three results are equal",
             target_ms=target_ms,
         )
     bench.main()

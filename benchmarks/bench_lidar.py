@@ -127,7 +127,7 @@ def main() -> None:
         same = seen_alike(ours, sensor.with_mujoco(), 1e-4)
         assert same == 1.0, same
         contenders = {"navette": sensor.with_navette, "mj_multiRay": sensor.with_mujoco}
-        note = "all beams as mj_multiRay's"
+        note = "all beams equal mj_multiRay's"
         if irsim is not None and name == "100 posts":
             peer = sensor.with_irsim()
             same = seen_alike(ours, peer(), 0.01)

@@ -1,6 +1,6 @@
-"""Messages: deep copy, to CDR and back, beside rosbags and mcap-ros2-support.
+"""Messages: deep copy, to CDR and back, compared with rosbags and mcap-ros2-support.
 
-All make the same bytes (rosbags' and Navette's are compared, and mcap-ros2-support's
+All make bytes are equal (rosbags' and Navette's are compared, and mcap-ros2-support's
 fields after reading).
 """
 
@@ -88,7 +88,7 @@ def main() -> None:
                 "navette": lambda m=message: copy_message(m),
                 "copy.deepcopy": lambda m=message: copy.deepcopy(m),
             },
-            "the copies are equal",
+            "copies are equal",
         )
         writers: dict[str, Any] = {"navette": lambda m=message: serialize(m)}
         cls = type(message)
@@ -100,8 +100,8 @@ def main() -> None:
             if module is not None:
                 made = make(message)
                 writers[peer], readers[peer] = made.write, made.read
-        bench.case(f"{name}: to CDR", writers, "the same bytes")
-        bench.case(f"{name}: from CDR", readers, "the same fields")
+        bench.case(f"{name}: to CDR", writers, "bytes are equal")
+        bench.case(f"{name}: from CDR", readers, "fields are equal")
     bench.main()
 
 

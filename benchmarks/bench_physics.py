@@ -1,4 +1,4 @@
-"""Physics steps of 2 ms: a differential drive among 100 static posts.
+"""A physics step of 2 ms: a differential drive among 100 static posts.
 
 Navette drives its TurtleBot (two wheels and a caster) at 0.2 m/s with contacts
 watched and clearance measured; beside it MuJoCo's bare ``mj_step`` on the same model
@@ -128,7 +128,7 @@ def main() -> None:
     bench.case(
         "a step of 2 ms",
         contenders,
-        "all drive as far as commanded; the target is 90 000 steps a second",
+        "all drive the commanded distance; the target is 90 000 steps a second",
         target_ms=TARGET_MS,
         per_run=STEPS,
     )

@@ -1,4 +1,4 @@
-"""The planner's searches beside pyastar2d and scikit-image.
+"""Grid search compared with pyastar2d and scikit-image.
 
 Each run answers the next of a dozen queries across the map; the median is per query.
 Navette's costs are checked against SciPy's Dijkstra on the same graph (diagonal moves
@@ -147,7 +147,7 @@ def add_searches(
     bench.case(
         name,
         contenders,
-        "costs equal SciPy's Dijkstra",
+        "path costs equal SciPy's Dijkstra",
         target_ms=target_ms,
         least_rounds=len(queries),
     )

@@ -1,4 +1,4 @@
-"""What recording costs: a drive with and without ``--record``; writing a bag alone.
+"""Cost of recording: a drive with and without ``--record``; writing a bag alone.
 
 Written are 2000 messages as a run has them (a scan of 720 beams among odometry),
 from message objects to a closed MCAP file, beside mcap-ros2-support and rosbags.
@@ -122,7 +122,8 @@ def main() -> None:
         bench.case(
             f"{SECONDS:g} s of the seven goals",
             {"navette": lambda: drive(None), "with --record": lambda: drive(bag)},
-            "making the nodes is in it; recording wakes sensors that nobody else reads",
+            "includes creation of the nodes; recording activates sensors "
+            "without other subscribers",
             budget_s=4.0,
         )
         writers = Writers(folder / "written")
@@ -138,7 +139,7 @@ def main() -> None:
         bench.case(
             "a message into a bag",
             contenders,
-            "every file holds every message; rosbags does not compress",
+            "every file contains every message; rosbags does not compress",
             per_run=COUNT,
         )
         bench.main()

@@ -1,4 +1,4 @@
-"""The whole stack, headless, in the reference world: real-time factor and outcome.
+"""The whole stack, headless, in the reference world: real-time factor and results.
 
     python benchmarks/bench_stack.py [WORLD] [--only TEXT] [--json]
 

@@ -1,4 +1,4 @@
-"""Verbs that look into a running program: from the start of the process to its end.
+"""Commands that inspect a running program, from process start to end.
 
 A program runs in a process of its own; each verb is a new process that joins the
 network, looks, prints and leaves, with nothing prepared. The target is half a second.
