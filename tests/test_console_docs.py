@@ -1,8 +1,8 @@
-"""Pages whose commands are run as they are printed, and say what is printed.
+"""The console commands of these pages run and print what the page shows.
 
-A block ``python NAME`` or ``yaml NAME`` is a file of that name; in a block ``console``
-a line that begins with ``$`` is run, the others are what it says on both outputs, but
-for the width of spaces; ``…`` alone stands for any number of lines.
+A block ``python NAME`` or ``yaml NAME`` is a file of that name. In a ``console`` block,
+lines with ``$`` are commands; the other lines are the expected output on stdout and
+stderr. Runs of spaces count as one; a line ``…`` matches any number of lines.
 """
 
 import json
@@ -21,7 +21,7 @@ PAGES = ["tutorials/3-distance.md", "howto/localise.md", "howto/play.md"]
 
 
 def commands(block: str) -> list[tuple[str, list[str]]]:
-    """Each command with the lines that it is to say."""
+    """Return each command with its expected output lines."""
     found: list[tuple[str, list[str]]] = []
     for line in block.splitlines():
         if line.startswith("$ "):
@@ -31,22 +31,28 @@ def commands(block: str) -> list[tuple[str, list[str]]]:
     return found
 
 
-def matches(expected: list[str], said: list[str]) -> bool:
+def matches(expected: list[str], printed: list[str]) -> bool:
     if not expected:
-        return not said
+        return not printed
     if expected[0] == "…":
-        return any(matches(expected[1:], said[at:]) for at in range(len(said) + 1))
-    return bool(said) and expected[0] == said[0] and matches(expected[1:], said[1:])
+        return any(
+            matches(expected[1:], printed[at:]) for at in range(len(printed) + 1)
+        )
+    return (
+        bool(printed)
+        and expected[0] == printed[0]
+        and matches(expected[1:], printed[1:])
+    )
 
 
-# Runs the commands one after the other, in one process: most of their time is imports.
+# Runs all commands in one process, because most of their time is imports.
 RUNNER = """
 import json, os, runpy, shlex, sys, traceback
 from navette.cli import main
 
 for number, command in enumerate(json.loads(sys.argv[1])):
     program, *sys.argv = shlex.split(command)
-    with open(f"said-{number}", "wb") as file:
+    with open(f"output-{number}", "wb") as file:
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
     try:
@@ -65,12 +71,12 @@ for number, command in enumerate(json.loads(sys.argv[1])):
 
 
 def run(all_commands: list[str], folder: Path) -> list[list[str]]:
-    """What each command says on both outputs, line by line."""
+    """Return the output lines of each command."""
     words = [sys.executable, "-X", "utf8", "-c", RUNNER, json.dumps(all_commands)]
     env = {**os.environ, "NAVETTE_TRANSPORT": "inprocess"}
     subprocess.run(words, cwd=folder, env=env, timeout=120, check=True)
     texts = [
-        (folder / f"said-{number}").read_text(encoding="utf-8")
+        (folder / f"output-{number}").read_text(encoding="utf-8")
         for number in range(len(all_commands))
     ]
     return [[" ".join(line.split()) for line in text.splitlines()] for text in texts]
@@ -78,16 +84,16 @@ def run(all_commands: list[str], folder: Path) -> list[list[str]]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
-def test_the_commands_of_a_page_say_what_it_says(page: str, tmp_path: Path) -> None:
+def test_commands_print_what_the_page_shows(page: str, tmp_path: Path) -> None:
     for recording in (ROOT / "examples" / "data").glob("*.mcap"):
         shutil.copy(recording, tmp_path)
-    wanted: list[tuple[str, list[str]]] = []
+    expected_outputs: list[tuple[str, list[str]]] = []
     text = (ROOT / "docs" / page).read_text(encoding="utf-8")
     for kind, name, block in BLOCK.findall(text):
         if name:
             (tmp_path / name).write_text(block, encoding="utf-8")
         elif kind == "console":
-            wanted += commands(block)
-    outputs = run([command for command, _ in wanted], tmp_path)
-    for (command, expected), said in zip(wanted, outputs, strict=True):
-        assert matches(expected, said), "\n".join([f"$ {command}", *said])
+            expected_outputs += commands(block)
+    outputs = run([command for command, _ in expected_outputs], tmp_path)
+    for (command, expected), printed in zip(expected_outputs, outputs, strict=True):
+        assert matches(expected, printed), "\n".join([f"$ {command}", *printed])

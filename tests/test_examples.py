@@ -1,4 +1,4 @@
-"""Examples and how-to pages run, and print what they say."""
+"""Examples and how-to pages run and print what they promise."""
 
 import ast
 import contextlib
@@ -23,7 +23,7 @@ BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.stem)
-def test_an_example_prints_what_it_says(example: Path) -> None:
+def test_example_output_matches_its_docstring(example: Path) -> None:
     head = ast.get_docstring(ast.parse(example.read_text(encoding="utf-8")))
     assert head is not None
     promised = textwrap.dedent(head.partition("Prints::\n\n")[2])
@@ -38,7 +38,7 @@ def test_an_example_prints_what_it_says(example: Path) -> None:
     assert done.stdout == promised + "\n"
 
 
-def test_there_are_examples() -> None:
+def test_examples_are_short() -> None:
     assert len(EXAMPLES) >= 22
     assert all(
         len(example.read_text(encoding="utf-8").splitlines()) <= 110
@@ -53,7 +53,7 @@ def blocks(page: str, language: str) -> list[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", ["parameters.md", "own-robot.md"])
-def test_a_how_to_page_prints_what_it_says(
+def test_how_to_output_matches_the_page(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -67,7 +67,7 @@ def test_a_how_to_page_prints_what_it_says(
 
 
 @pytest.mark.slow
-def test_the_how_to_robot_drives(tmp_path: Path) -> None:
+def test_robot_of_the_how_to_drives(tmp_path: Path) -> None:
     (model,), (parameters,) = (
         blocks("own-robot.md", "xml"),
         blocks("own-robot.md", "yaml"),
