@@ -15,7 +15,6 @@ from navette.grids import (
     compare,
     cost_table,
     distance_field,
-    distance_squared,
     inflate,
     merge,
     placed,
@@ -34,38 +33,37 @@ poses = st.builds(
 
 
 def brute_force(occupied: np.ndarray, radius: int) -> np.ndarray:
-    """Squared distance to every obstacle, the least of them, clipped."""
-    limit = (radius + 1) ** 2
+    """Least squared distance to an obstacle, clipped to the square of the radius."""
     rows, columns = np.indices(occupied.shape)
-    least = np.full(occupied.shape, limit)
+    least = np.full(occupied.shape, radius**2)
     for row, column in np.argwhere(occupied):
         least = np.minimum(least, (rows - row) ** 2 + (columns - column) ** 2)
     return least
 
 
-@given(occupancy, st.integers(0, 40))
-def test_squared_distance_is_the_least_over_all_obstacles(occupied, radius) -> None:
-    np.testing.assert_array_equal(
-        distance_squared(occupied, radius), brute_force(occupied, radius)
-    )
+@given(occupancy, st.floats(0.01, 3.0), st.integers(0, 40))
+def test_distance_is_the_least_over_all_obstacles(occupied, resolution, radius) -> None:
+    field = distance_field(occupied, resolution, radius * resolution)
+    exact = resolution * np.sqrt(brute_force(occupied, radius))
+    np.testing.assert_allclose(field, exact, rtol=1e-5)
 
 
 @given(occupancy, st.integers(0, 20))
-def test_squared_distance_turns_with_the_grid(occupied, radius) -> None:
-    found = distance_squared(occupied, radius)
-    np.testing.assert_array_equal(distance_squared(occupied.T, radius), found.T)
-    flipped = distance_squared(np.ascontiguousarray(occupied[::-1, ::-1]), radius)
-    np.testing.assert_array_equal(flipped, found[::-1, ::-1])
+def test_distance_is_invariant_under_transposition_and_flips(occupied, radius) -> None:
+    found = distance_field(occupied, 1.0, radius)
+    np.testing.assert_array_equal(distance_field(occupied.T, 1.0, radius), found.T)
+    flipped = np.ascontiguousarray(occupied[::-1, ::-1])
+    np.testing.assert_array_equal(
+        distance_field(flipped, 1.0, radius), found[::-1, ::-1]
+    )
 
 
 @given(occupancy, st.floats(0.01, 3.0), st.floats(0.02, 1.0))
-def test_field_is_the_root_of_the_squares_and_1_lipschitz(
+def test_distance_is_1_lipschitz_and_clipped(
     occupied, max_distance, resolution
 ) -> None:
     field = distance_field(occupied, resolution, max_distance)
-    radius = math.ceil(max_distance / resolution)
-    exact = resolution * np.sqrt(distance_squared(occupied, radius))
-    np.testing.assert_allclose(field, np.minimum(exact, max_distance), rtol=1e-5)
+    assert field.max() <= max_distance * (1 + 1e-6)
     for axis in (0, 1):
         assert (np.abs(np.diff(field, axis=axis)) <= resolution * (1 + 1e-5)).all()
 

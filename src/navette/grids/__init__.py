@@ -12,7 +12,7 @@ from navette.grids.clearance import (
     pose_is_clear,
 )
 from navette.grids.compare import Changes, compare
-from navette.grids.distance import distance_field, distance_squared
+from navette.grids.distance import distance_field
 from navette.grids.evidence import accumulate
 from navette.grids.inflation import cost_table, inflate
 from navette.grids.merge import merge
@@ -26,7 +26,6 @@ __all__ = [
     "UNKNOWN",
     "FREE",
     "LETHAL",
-    "distance_squared",
     "distance_field",
     "DistanceGrid",
     "Body",

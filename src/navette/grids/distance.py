@@ -20,34 +20,10 @@ from navette.grids.checks import at_least, kernel_array
 BLOCK = 64
 # Largest radius whose sums of squares, up to 2 · (radius + 1)², fit 16 bits.
 RADIUS_16_BIT = 179
-# Largest radius whose square fits the int32 of the result.
+# Largest radius whose square fits int32.
 MAX_RADIUS = 46_339
 
 Occupied = NDArray[np.uint8]
-
-
-def distance_squared(occupied: Occupied, radius_cells: int) -> NDArray[np.int32]:
-    """Squared distance to the nearest obstacle, in cells².
-
-    Args:
-        occupied: (H, W), non-zero = obstacle.
-        radius_cells: search radius; the running time grows with it.
-
-    Returns:
-        (H, W) int32, between cell centres; exact up to ``radius_cells``,
-        ``(radius_cells + 1)²`` beyond.
-
-    Raises:
-        InvalidValueError: a radius below 0 or over 46339, or a wrong array.
-    """
-    occupied = kernel_array("occupied", occupied, np.uint8)
-    scratch = make_scratch(occupied.shape, radius_cells)
-    squared = np.empty(occupied.shape, np.int32)
-    _squared_kernel(occupied, scratch, squared)
-    if scratch.radius < radius_cells:
-        nothing = (scratch.radius + 1) ** 2
-        squared[squared == nothing] = (radius_cells + 1) ** 2
-    return squared
 
 
 def distance_field(
@@ -203,17 +179,6 @@ def row_squares(scratch: Scratch, r: int) -> NDArray[Any]:
         window = padded[start : stop + 2 * radius]
         _block_minimum(window, radius, limit, row[start:stop])
     return row
-
-
-@njit(cache=True)
-def _squared_kernel(
-    occupied: Occupied, scratch: Scratch, squared: NDArray[np.int32]
-) -> None:
-    column_distances(occupied, scratch)
-    for r in range(squared.shape[0]):
-        row, out = row_squares(scratch, r), squared[r]
-        for c in range(row.size):
-            out[c] = row[c]
 
 
 @njit(cache=True)

@@ -84,7 +84,7 @@ def get_message_spec(name: str) -> MessageSpec:
     return spec
 
 
-def add_spec(spec: Spec) -> None:
+def _add_spec(spec: Spec) -> None:
     """Register a definition under its own name and those of its parts."""
     for part in _parts_of(spec):
         _specs[part.name] = part
@@ -137,7 +137,7 @@ def add_specs(specs: Sequence[Spec], sources: Sequence[Path | str]) -> None:
             )
     added = [spec for spec in specs if spec.name not in _specs]
     for spec in added:
-        add_spec(spec)
+        _add_spec(spec)
     try:
         for spec, source in zip(specs, sources, strict=True):
             _check_references(spec, source)
@@ -196,7 +196,7 @@ def _load(name: str) -> None:
     stem = rest if kind == "msg" else rest.partition("_")[0]
     path = folder / kind / f"{stem}.{kind}"
     if INTERFACE_NAME.fullmatch(stem) and path.is_file():
-        add_spec(_parse_file(package, path))
+        _add_spec(_parse_file(package, path))
     if name not in _specs:
         known = [f"{package}/{kind}/{each}" for each in interface_names(package, kind)]
         raise UnknownNameError.of("interface", name, known)
