@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from navette.bags.bag import BagTopic
 from navette.bags.params import RecorderParams
@@ -27,6 +27,7 @@ from navette.errors import FileFormatError, UnknownNameError
 from navette.msgs import definition_text, get_interface, type_hash
 from navette.msgs.std_srvs.srv import SetBool, Trigger
 from navette.params import Params
+from navette.runtime import Endpoint
 from navette.runtime.context import Context
 from navette.runtime.parameter import Parameter
 from navette.runtime.qos import (
@@ -40,9 +41,6 @@ from navette.runtime.ros_clock import Clock
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.time import ClockType
 from navette.runtime.timer import Timer
-
-if TYPE_CHECKING:
-    from navette.transports import Endpoint
 
 # Compatible with every publisher, receives latched messages, drops nothing.
 _QOS = QoSProfile(
@@ -313,7 +311,7 @@ def _open(path: Path, params: RecorderParams) -> Recording:
     return SingleFile(path, compression=params.compression)
 
 
-def _offer(endpoint: "Endpoint") -> OfferedQos:
+def _offer(endpoint: Endpoint) -> OfferedQos:
     qos = endpoint.qos
     return OfferedQos(
         history=qos.history.short_key,

@@ -84,7 +84,7 @@ from navette.runtime.time import (
     stamp_to_ns,
 )
 from navette.runtime.timer import Timer
-from navette.transports import NodeInfo
+from navette.transports import Endpoint, NodeInfo
 
 if TYPE_CHECKING:
     from navette.runtime.action import (
@@ -122,6 +122,7 @@ __all__ = [
     "deserialize_message",
     "serialize_message",
     "Client",
+    "Endpoint",
     "Graph",
     "MessageInfo",
     "Node",
