@@ -177,7 +177,7 @@ def test_services_that_list_states_and_transitions(graph: GraphHarness) -> None:
 
 def test_publishers_publish_only_while_active(graph: GraphHarness) -> None:
     node = Talker(graph)
-    heard = graph.collect("/chatter", String)
+    received = graph.collect("/chatter", String)
     publisher = node.create_lifecycle_publisher(String, "chatter", 10)
     publisher.publish(String(data="too early"))
     node.trigger_configure()
@@ -187,7 +187,7 @@ def test_publishers_publish_only_while_active(graph: GraphHarness) -> None:
     node.trigger_deactivate()
     publisher.publish(String(data="too late"))
     graph.run_for(0.1)
-    assert [message.data for message in heard.messages] == ["now"]
+    assert [message.data for message in received.messages] == ["now"]
     assert node.destroy_lifecycle_publisher(publisher)
     assert not node.destroy_lifecycle_publisher(publisher)
 

@@ -86,17 +86,17 @@ def test_get(client: AsyncParameterClient, ask: Ask) -> None:
         ParameterValue(type=2, integer_value=3),
         ParameterValue(type=3, double_value=2.0),
     ]
-    assert ask(client.get_parameters(["count", "nobody"])).values == []
+    assert ask(client.get_parameters(["count", "missing"])).values == []
     assert ask(client.get_parameters(["unset"])).values == []
 
 
 def test_types_and_descriptions(client: AsyncParameterClient, ask: Ask) -> None:
     types = ask(client.get_parameter_types(["count", "speed"])).types
     assert list(types) == [T.INTEGER, T.DOUBLE]
-    assert len(ask(client.get_parameter_types(["nobody"])).types) == 0
+    assert len(ask(client.get_parameter_types(["missing"])).types) == 0
     described = ask(client.describe_parameters(["limit"])).descriptors
     assert (described[0].name, described[0].read_only) == ("limit", True)
-    assert ask(client.describe_parameters(["nobody"])).descriptors == []
+    assert ask(client.describe_parameters(["missing"])).descriptors == []
 
 
 def test_list(client: AsyncParameterClient, ask: Ask) -> None:
@@ -111,7 +111,7 @@ def test_set(client: AsyncParameterClient, ask: Ask, node: Node) -> None:
             [
                 Parameter("count", T.INTEGER, 4),
                 Parameter("limit", T.INTEGER, 2).to_parameter_msg(),
-                Parameter("nobody", T.INTEGER, 2),
+                Parameter("missing", T.INTEGER, 2),
                 ParameterMsg(name="count", value=ParameterValue(type=77)),
             ]
         )

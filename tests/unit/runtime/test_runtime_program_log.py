@@ -36,7 +36,7 @@ def test_messages_after_init_go_to_the_context(
 ) -> None:
     logger = program_log.get_logger("tool")
     navette.init(args=["--ros-args", "--disable-stdout-logs"], clock=VirtualClock())
-    logger.info("nobody sees this")
+    logger.info("suppressed")
     assert capsys.readouterr().err == ""
     records = []
     get_default_context().log.sinks.append(records.append)

@@ -72,7 +72,7 @@ class Echo(StageNode):
 
     def on_text(self, message: String) -> None:
         if message.data == "raise":
-            raise ValueError("told to")
+            raise ValueError("requested")
         self.publish("out", String(data=message.data * self.params.times))
 
     def on_map(self, message: String) -> None:

@@ -1,7 +1,7 @@
 """Packages of a workspace: search without a build step, and creation."""
 
 from navette.ros2.workspace.create import create_package
-from navette.ros2.workspace.executables import Executable
+from navette.ros2.workspace.executables import PackageExecutable
 from navette.ros2.workspace.finding import (
     PackageNotFoundError,
     activate,
@@ -13,7 +13,7 @@ from navette.ros2.workspace.manifest import Manifest, read_manifest
 from navette.ros2.workspace.package import Origin, Package
 
 __all__ = [
-    "Executable",
+    "PackageExecutable",
     "Manifest",
     "Origin",
     "Package",

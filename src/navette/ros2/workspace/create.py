@@ -16,6 +16,7 @@ TEMPLATES = Path(__file__).parent / "templates"
 _SUFFIX = ".template"  # so that tools do not process templates as source files
 _NAME = re.compile(r"[a-z](?:_?[a-z0-9]+)+")
 _NODE_NAME = re.compile(r"[a-zA-Z][a-zA-Z0-9_]*")
+_DEPENDENCY_NAME = re.compile(r"[a-zA-Z0-9][\w-]+", re.ASCII)
 _MESSAGES = "_msgs"
 #: Dependencies that the templates contain.
 _PYTHON_NEEDS = ("launch", "launch_ros", "rclpy", "std_msgs", "ament_index_python")
@@ -44,9 +45,9 @@ def create_package(
         InvalidNameError: ROS 2 does not allow a name.
         FileFormatError: the folder exists already.
     """
-    _check(name, _NAME, "package", "lower case letters, digits and single underscores")
+    _check(name, _NAME, "package", "a-z, then a-z, 0-9 and single underscores")
     for each in dependencies:
-        _check(each, re.compile(r"[a-zA-Z0-9][\w-]+", re.ASCII), "package", "letters")
+        _check(each, _DEPENDENCY_NAME, "package", "a-z, A-Z, 0-9, hyphens, underscores")
     if name.endswith(_MESSAGES):
         if node is not None:
             raise InvalidNameError(
@@ -55,7 +56,7 @@ def create_package(
         needs = [each for each in dependencies if each not in _MESSAGES_NEEDS]
         return [_make("messages", folder / name, _values(name, name, needs))]
     node = node or name
-    _check(node, _NODE_NAME, "node", "letters, digits and underscores")
+    _check(node, _NODE_NAME, "node", "a-z or A-Z, then also 0-9 and underscores")
     needs = [each for each in dependencies if each not in _PYTHON_NEEDS]
     if not messages:
         return [_make("python", folder / name, _values(name, node, needs))]
@@ -71,8 +72,7 @@ def create_package(
 def _check(name: str, pattern: re.Pattern[str], kind: str, allowed: str) -> None:
     if not pattern.fullmatch(name):
         raise InvalidNameError(
-            f"{name!r} is not a valid {kind} name: allowed are {allowed}, starting "
-            "with a letter"
+            f"{name!r} is not a valid {kind} name; allowed: {allowed}"
         )
 
 

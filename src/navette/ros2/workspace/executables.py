@@ -41,7 +41,7 @@ _CMAKE_PROGRAMS = re.compile(
 
 
 @dataclass(frozen=True, slots=True)
-class Executable:
+class PackageExecutable:
     """A program: a function (``module`` and ``attribute``) or a file (``path``)."""
 
     package: str
@@ -51,7 +51,9 @@ class Executable:
     path: Path | None = None
 
     @staticmethod
-    def named(name: str, package: str, among: Iterable["Executable"]) -> "Executable":
+    def named(
+        name: str, package: str, among: Iterable["PackageExecutable"]
+    ) -> "PackageExecutable":
         """Return the executable of that name.
 
         Raises:
@@ -63,17 +65,17 @@ class Executable:
         return known[name]
 
 
-def built_in_executables(package: str) -> tuple[Executable, ...]:
+def built_in_executables(package: str) -> tuple[PackageExecutable, ...]:
     """Return Navette's programs: the stages and the component container."""
     if package != BUILT_IN:
         return ()
     return tuple(
-        Executable(package, name, module, attribute)
+        PackageExecutable(package, name, module, attribute)
         for name, (module, attribute) in sorted(_PROGRAMS.items())
     )
 
 
-def source_executables(package: str, folder: Path) -> tuple[Executable, ...]:
+def source_executables(package: str, folder: Path) -> tuple[PackageExecutable, ...]:
     """Return the entry points of a source package and the programs CMake installs."""
     texts = [
         *_from_setup_py(folder / "setup.py"),
@@ -85,18 +87,18 @@ def source_executables(package: str, folder: Path) -> tuple[Executable, ...]:
         match = _ENTRY_POINT.fullmatch(text)
         if match:
             name, module, attribute = match.groups()
-            found[name] = Executable(package, name, module, attribute)
+            found[name] = PackageExecutable(package, name, module, attribute)
     for path in _from_cmake(folder / "CMakeLists.txt"):
-        found[path.name] = Executable(package, path.name, path=path)
+        found[path.name] = PackageExecutable(package, path.name, path=path)
     return tuple(found[name] for name in sorted(found))
 
 
-def installed_executables(package: str, folder: Path) -> tuple[Executable, ...]:
+def installed_executables(package: str, folder: Path) -> tuple[PackageExecutable, ...]:
     """Return the executable files of ``lib/<package>`` below a prefix."""
     if not folder.is_dir():
         return ()
     return tuple(
-        Executable(package, path.name, path=path)
+        PackageExecutable(package, path.name, path=path)
         for path in sorted(folder.iterdir())
         if path.is_file() and os.access(path, os.X_OK)
     )

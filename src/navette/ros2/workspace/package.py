@@ -5,7 +5,7 @@ from enum import Enum
 from pathlib import Path
 
 from navette.ros2.workspace.executables import (
-    Executable,
+    PackageExecutable,
     built_in_executables,
     installed_executables,
     source_executables,
@@ -75,7 +75,7 @@ class Package:
         """
         return read_manifest(self.folder / FILE_NAME)
 
-    def executables(self) -> tuple[Executable, ...]:
+    def executables(self) -> tuple[PackageExecutable, ...]:
         """Return the programs for ``navette run PACKAGE EXECUTABLE``, sorted by name.
 
         Raises:
@@ -87,10 +87,10 @@ class Package:
             return installed_executables(self.name, self.prefix / "lib" / self.name)
         return built_in_executables(self.name)
 
-    def executable(self, name: str) -> Executable:
+    def executable(self, name: str) -> PackageExecutable:
         """Return one program by name.
 
         Raises:
             UnknownNameError: there is none of that name; lists the existing ones.
         """
-        return Executable.named(name, self.name, self.executables())
+        return PackageExecutable.named(name, self.name, self.executables())

@@ -19,8 +19,8 @@ from navette.runtime.lifecycle.state_machine import (
     TRANSITIONS,
     LifecycleState,
     LifecycleStateMachine,
-    LifecycleTransition,
     TransitionCallbackReturn,
+    TransitionDefinition,
 )
 from navette.runtime.node import Node
 from navette.runtime.publisher import Publisher
@@ -160,7 +160,7 @@ class LifecycleNodeMixin(ManagedEntity):
             self._enter(self._state_machine.by_label(recovery.to_label()))
         return result
 
-    def _enter(self, transition: LifecycleTransition) -> None:
+    def _enter(self, transition: TransitionDefinition) -> None:
         self._state_machine.state = transition.goal
         if self._transition_events is not None:
             described = _description(transition)
@@ -277,7 +277,7 @@ def _state(state: LifecycleState) -> StateMsg:
     return StateMsg(id=state.state_id, label=state.label)
 
 
-def _description(transition: LifecycleTransition) -> TransitionDescription:
+def _description(transition: TransitionDefinition) -> TransitionDescription:
     return TransitionDescription(
         transition=Transition(id=transition.id, label=transition.label),
         start_state=_state(transition.start),

@@ -30,7 +30,7 @@ class LifecycleState(NamedTuple):
     state_id: int
 
 
-class LifecycleTransition(NamedTuple):
+class TransitionDefinition(NamedTuple):
     """A transition between two states."""
 
     id: int
@@ -78,13 +78,13 @@ _OUTCOMES = (
     (50, "shuttingdown", ("finalized", "finalized", "errorprocessing")),
     (60, "errorprocessing", ("unconfigured", "finalized", "finalized")),
 )
-TRANSITIONS: tuple[LifecycleTransition, ...] = (
+TRANSITIONS: tuple[TransitionDefinition, ...] = (
     *(
-        LifecycleTransition(number, label, STATES[start], STATES[goal])
+        TransitionDefinition(number, label, STATES[start], STATES[goal])
         for number, label, start, goal in _REQUESTS
     ),
     *(
-        LifecycleTransition(base + i, outcome.to_label(), STATES[start], STATES[goal])
+        TransitionDefinition(base + i, outcome.to_label(), STATES[start], STATES[goal])
         for base, start, goals in _OUTCOMES
         for i, (outcome, goal) in enumerate(
             zip(TransitionCallbackReturn, goals, strict=True)
@@ -100,10 +100,10 @@ class LifecycleStateMachine:
         self.state = STATES["unconfigured"]
 
     @property
-    def available_transitions(self) -> list[LifecycleTransition]:
+    def available_transitions(self) -> list[TransitionDefinition]:
         return [each for each in TRANSITIONS if each.start == self.state]
 
-    def by_label(self, label: str) -> LifecycleTransition:
+    def by_label(self, label: str) -> TransitionDefinition:
         """Return the transition with that label from the current state.
 
         Raises:
@@ -114,7 +114,7 @@ class LifecycleStateMachine:
                 return each
         raise RCLError(self._error_text(repr(label)))
 
-    def by_id(self, transition_id: int) -> LifecycleTransition:
+    def by_id(self, transition_id: int) -> TransitionDefinition:
         """Return the transition with that id; raise as :meth:`by_label`."""
         for each in self.available_transitions:
             if each.id == transition_id:

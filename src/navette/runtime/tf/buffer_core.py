@@ -139,7 +139,7 @@ class BufferCore:
         """Return the samples by child frame."""
         return self._frames
 
-    def knows(self, frame: str) -> bool:
+    def contains(self, frame: str) -> bool:
         return frame in self._frames or frame in self._parents
 
     def clear(self) -> None:
@@ -203,7 +203,7 @@ class BufferCore:
 
     def _check_known(self, *frames: str) -> None:
         for frame in frames:
-            if not self.knows(frame):
+            if not self.contains(frame):
                 raise LookupException(
                     f"frame {frame!r} does not exist; "
                     f"known: {', '.join(self.frames()) or 'none'}"

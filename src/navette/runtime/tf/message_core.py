@@ -117,7 +117,7 @@ class MessageCore:
         )
 
     def _frameExists(self, frame_id: str) -> bool:  # noqa: N802 - tf2's name
-        return self.core.knows(frame_name(frame_id))
+        return self.core.contains(frame_name(frame_id))
 
     def _getFrameStrings(self) -> list[str]:  # noqa: N802 - tf2's name
         return self.core.frames()

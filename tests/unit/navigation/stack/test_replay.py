@@ -235,7 +235,7 @@ def test_programs_that_are_not_there_are_named(
 
 @pytest.mark.parametrize("target", ["summer", ":Summer", "a.py:", "a.py:b-c"])
 def test_other_forms_are_refused(target: str) -> None:
-    with pytest.raises(InvalidValueError, match="wanted MODULE:Class"):
+    with pytest.raises(InvalidValueError, match="expected MODULE:Class"):
         load_node_class(target)
 
 

@@ -71,7 +71,7 @@ def test_nans_are_skipped_in_the_read_fields_only() -> None:
     cloud = point_cloud2.create_cloud_xyz32(HEADER, XYZ)
     assert len(point_cloud2.read_points(cloud, skip_nans=True)) == 3
     assert len(point_cloud2.read_points(cloud, ["x", "z"], skip_nans=True)) == 4
-    cloud.is_dense = True  # its sender says that there are none
+    cloud.is_dense = True  # the publisher states that there are none
     assert len(point_cloud2.read_points(cloud, skip_nans=True)) == 4
 
 

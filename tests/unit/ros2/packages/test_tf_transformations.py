@@ -22,9 +22,9 @@ ANGLE = st.floats(-3.1, 3.1)
 
 
 def reference(angles: tuple[float, float, float], axes: str) -> Rotation:
-    """Return SciPy's rotation; its names of rotating axes are capital letters."""
-    letters = axes[1:].upper() if axes[0] == "r" else axes[1:]
-    return Rotation.from_euler(letters, angles)
+    """Return SciPy's rotation; its names of rotating axes are capital sequence."""
+    sequence = axes[1:].upper() if axes[0] == "r" else axes[1:]
+    return Rotation.from_euler(sequence, angles)
 
 
 def test_there_are_24() -> None:

@@ -99,5 +99,5 @@ def _parsed(axes: str) -> tuple[bool, tuple[int, int, int]]:
             f"axes {axes!r}: expected s or r and three of x, y, z without equal "
             "neighbours, as in 'sxyz'"
         )
-    first, second, third = ("xyz".index(letter) for letter in match.groups()[1:])
+    first, second, third = ("xyz".index(axis) for axis in match.groups()[1:])
     return match[1] == "r", (first, second, third)
