@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING, Any
 
 from navette.msgs.definition_text import definition_text, interface_text
-from navette.msgs.registration import load_definition_text
 from navette.msgs.registry import (
     add_interface_path,
     interface_names,
@@ -16,7 +15,6 @@ from navette.msgs.type_hash import type_description, type_hash
 if TYPE_CHECKING:
     from navette.msgs.api import (
         Message,
-        copier_of,
         copy_message,
         deserialize,
         fields,
@@ -36,7 +34,6 @@ __all__ = [
     "serialize",
     "deserialize",
     "copy_message",
-    "copier_of",
     "to_dict",
     "from_dict",
     "fields",
@@ -46,7 +43,6 @@ __all__ = [
     "type_hash",
     "type_description",
     "load_interfaces",
-    "load_definition_text",
     "register_definition",
     "ros1_definition",
     "add_interface_path",

@@ -7,7 +7,7 @@ from navette.msgs.base import Message, fields, validate
 from navette.msgs.cdr import deserialize, serialize
 from navette.msgs.classes import get_interface, register_definition, type_name
 from navette.msgs.convert import from_dict, to_dict
-from navette.msgs.copying import copier_of, copy_message
+from navette.msgs.copying import copy_message
 
 __all__ = [
     "Message",
@@ -17,7 +17,6 @@ __all__ = [
     "serialize",
     "deserialize",
     "copy_message",
-    "copier_of",
     "to_dict",
     "from_dict",
     "fields",

@@ -28,7 +28,7 @@ def copy_message(msg: M) -> M:
     Raises:
         MessageError: a list that was changed in place contains an invalid element.
     """
-    copier = _copiers.get(msg.__class__) or copier_of(msg.__class__)
+    copier = _copiers.get(msg.__class__) or _copier_of(msg.__class__)
     try:
         copied: M = copier(msg)
     except (AttributeError, TypeError, struct.error):
@@ -37,7 +37,7 @@ def copy_message(msg: M) -> M:
     return copied
 
 
-def copier_of(cls: type[M]) -> Callable[[M], M]:
+def _copier_of(cls: type[M]) -> Callable[[M], M]:
     """Return the function that copies messages of a class."""
     found = _copiers.get(cls)
     if found is None:
@@ -92,7 +92,7 @@ class _Emitter:
                 value = self.message(nested, inner, get_message_class(nested.name))
             elif field.type.is_message:
                 element = get_message_class(field.type.base)
-                self.scope[f"E{number}_{field.name}"] = copier_of(element)
+                self.scope[f"E{number}_{field.name}"] = _copier_of(element)
                 value = f"[E{number}_{field.name}(e) for e in {value}]"
             elif not field.type.is_scalar:
                 is_numpy = field.type.is_numeric and field.type.container == "array"

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from navette.errors import DecodeError, MessageError
-from navette.msgs import deserialize, get_interface, load_definition_text, serialize
+from navette.msgs import deserialize, get_interface, register_definition, serialize
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.example_interfaces.msg import WString
 from navette.msgs.example_interfaces.srv import AddTwoInts
@@ -44,7 +44,7 @@ def test_alignment_starts_after_the_header() -> None:
 
 
 def test_an_empty_sequence_of_doubles_has_no_padding() -> None:
-    load_definition_text("cdr_cases/msg/Doubles", "float64[] a\nuint8 b\n")
+    register_definition("cdr_cases/msg/Doubles", "float64[] a\nuint8 b\n")
     doubles = get_interface("cdr_cases/msg/Doubles")
     assert serialize(doubles(b=7)) == LITTLE + b"\0\0\0\0\x07"
     filled = LITTLE + struct.pack("<I4xdB", 1, 0.5, 7)
@@ -53,7 +53,7 @@ def test_an_empty_sequence_of_doubles_has_no_padding() -> None:
 
 
 def test_elements_of_a_list_are_not_aligned_as_structures() -> None:
-    load_definition_text(
+    register_definition(
         "cdr_cases/msg/Points",
         "cdr_cases/P[] p\n" + "=" * 80 + "\nMSG: cdr_cases/P\nuint8 a\nfloat64 b\n",
     )
@@ -66,7 +66,7 @@ def test_elements_of_a_list_are_not_aligned_as_structures() -> None:
 
 
 def test_a_message_that_starts_with_a_list() -> None:
-    load_definition_text(
+    register_definition(
         "cdr_cases/msg/Pair", "geometry_msgs/Point[2] p\nstring[2] names\n"
     )
     pair = get_interface("cdr_cases/msg/Pair")
@@ -136,7 +136,7 @@ def test_a_string_of_length_zero_is_empty() -> None:
 
 
 def test_bounds_are_checked_on_reading() -> None:
-    load_definition_text("cdr_cases/msg/Bounded", "string<=2 s\nint8[<=2] a\n")
+    register_definition("cdr_cases/msg/Bounded", "string<=2 s\nint8[<=2] a\n")
     bounded = get_interface("cdr_cases/msg/Bounded")
     good = LITTLE + b"\x03\0\0\0ab\0\0" + struct.pack("<Ibb", 2, 1, 2)
     assert deserialize(good, bounded) == bounded(s="ab", a=[1, 2])
@@ -156,7 +156,7 @@ def test_bool_arrays_are_checked() -> None:
 
 def test_octets_of_fixed_and_bounded_size() -> None:
     text = "bool[3] flags\nbyte[2] raw [1, 2]\nbool[<=2] few\nint64[<=2] numbers\n"
-    load_definition_text("codec_cases/msg/Octets", text)
+    register_definition("codec_cases/msg/Octets", text)
     octets = get_interface("codec_cases/msg/Octets")
     assert octets().raw == [b"\x01", b"\x02"]
     message = octets(flags=[True, False, True], few=[True], numbers=[-1])

@@ -12,9 +12,9 @@ from navette.msgs import (
     deserialize,
     get_interface,
     interface_names,
-    load_definition_text,
     load_interfaces,
     packages,
+    register_definition,
     serialize,
     type_hash,
 )
@@ -122,16 +122,16 @@ def test_packages_are_found_on_the_path(
 def test_types_from_their_text() -> None:
     text = "registry_bag/Inner[] inner\nstd_msgs/Header header\n"
     text += "=" * 80 + "\nMSG: registry_bag/Inner\nfloat32 x\n"
-    load_definition_text("registry_bag/msg/Outer", text)
+    register_definition("registry_bag/msg/Outer", text)
     outer = get_interface("registry_bag/msg/Outer")
     inner = get_interface("registry_bag/msg/Inner")
     assert outer(inner=[inner(x=1)]).inner[0].x == 1.0
     # definition_text can be loaded again; a registered type is kept.
-    load_definition_text("registry_bag/Outer", definition_text("registry_bag/Outer"))
+    register_definition("registry_bag/Outer", definition_text("registry_bag/Outer"))
     for name in ("nav_msgs/msg/Odometry", "shape_msgs/msg/SolidPrimitive"):
-        load_definition_text(name, definition_text(name))
+        register_definition(name, definition_text(name))
     # An older release lacked a constant.
-    load_definition_text("std_msgs/msg/Bool", "uint8 NEW=1\nbool data\n")
+    register_definition("std_msgs/msg/Bool", "uint8 NEW=1\nbool data\n")
     assert not hasattr(get_interface("std_msgs/msg/Bool"), "NEW")
 
 
@@ -149,6 +149,6 @@ def test_types_from_their_text() -> None:
 )
 def test_broken_texts(text: str, reason: str) -> None:
     with pytest.raises(FileFormatError, match=reason):
-        load_definition_text("registry_text/msg/Foo", text)
+        register_definition("registry_text/msg/Foo", text)
     with pytest.raises(UnknownNameError):
         get_interface("registry_text/msg/Foo")

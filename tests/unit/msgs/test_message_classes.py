@@ -13,7 +13,7 @@ from navette.msgs import (
     deserialize,
     fields,
     get_interface,
-    load_definition_text,
+    register_definition,
     serialize,
     type_name,
 )
@@ -126,7 +126,7 @@ def test_a_message_without_fields() -> None:
 
 
 def test_fields_named_like_python_keywords() -> None:
-    load_definition_text("class_cases/msg/Move", "int32 from 3\nint32 to\n")
+    register_definition("class_cases/msg/Move", "int32 from 3\nint32 to\n")
     move = get_interface("class_cases/msg/Move")
     message = move(**{"from": 1, "to": 2})
     assert getattr(message, "from") == 1

@@ -2,7 +2,7 @@
 
 import pytest
 
-from navette.msgs import load_definition_text, type_description, type_hash
+from navette.msgs import register_definition, type_description, type_hash
 from navette.msgs.parser import parse_action
 from navette.msgs.registry import add_specs
 
@@ -96,7 +96,7 @@ def test_form_of_a_hash() -> None:
 
 
 def test_type_ids_of_arrays_and_bounds() -> None:
-    load_definition_text(
+    register_definition(
         "hash_cases/msg/All",
         "string a\nstring<=5 b\nwstring<=5[3] c\nchar[<=4] d\nbyte[] e\n"
         "std_msgs/Empty[2] f\n",

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from navette.cli.peer_definitions import definition_of
-from navette.msgs import definition_text, load_definition_text, type_hash
+from navette.msgs import definition_text, register_definition, type_hash
 from navette.msgs.type_description_interfaces.msg import FieldType
 from navette.msgs.type_description_interfaces.srv import GetTypeDescription
 from navette.runtime import Node, Parameter
@@ -76,7 +76,7 @@ def test_the_response_contains_the_whole_definition(ask: Ask, name: str) -> None
 
 
 def test_types_registered_at_run_time(ask: Ask) -> None:
-    load_definition_text("described_cases/msg/Odd", "int8 x\n")
+    register_definition("described_cases/msg/Odd", "int8 x\n")
     answer = ask("described_cases/msg/Odd", include_type_sources=False)
     assert answer.successful
     assert answer.type_sources == []
