@@ -14,6 +14,7 @@ from navette.grids.clearance import (
 from navette.grids.compare import Changes, compare
 from navette.grids.distance import distance_field
 from navette.grids.evidence import accumulate
+from navette.grids.footprint_cells import cells_in_footprint
 from navette.grids.inflation import cost_table, inflate
 from navette.grids.merge import merge
 from navette.grids.messages import grid_from_message, grid_to_message
@@ -42,6 +43,7 @@ __all__ = [
     "merge",
     "accumulate",
     "placed",
+    "cells_in_footprint",
     "Changes",
     "compare",
     "grid_to_message",

@@ -1,6 +1,6 @@
-"""What is dangerous around the robot: laser scan in, costmap out."""
+"""Costmap: laser scan in, grid of costs around the sensor out."""
 
 from navette.navigation.costmap.params import CostmapParams
-from navette.navigation.costmap.scan_costmap import Scan, ScanCostmap
+from navette.navigation.costmap.scan_costmap import PlanarScan, ScanCostmap
 
-__all__ = ["CostmapParams", "Scan", "ScanCostmap"]
+__all__ = ["CostmapParams", "PlanarScan", "ScanCostmap"]

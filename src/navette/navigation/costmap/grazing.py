@@ -1,11 +1,11 @@
-"""How far before its hit a beam that grazes a surface should stop freeing cells.
+"""Margin before the hit of a grazing beam in which cells are not marked free.
 
-A beam along a wall crosses cells that the wall is in before it hits. Freeing them
-would erase what a better placed scan saw: walls get holes where they are looked at
-sideways. The distance from the beam to the surface, s metres before the hit, is
-s · sin(incidence). It should exceed ``clearance`` in the last cell freed, as it does
-where a beam meets the surface squarely and is freed up to the hit: so the margin is
-clearance / sin(incidence) − clearance, nothing for a square hit.
+A beam along a wall crosses cells of the wall before its hit. Marking them free would
+erase what a scan from a better position measured, and walls would get holes. The
+distance from the beam to the surface, s metres before the hit, is s · sin(incidence).
+It should exceed ``clearance`` in the last free cell, as for a perpendicular beam that
+frees all cells up to the hit: so the margin is clearance / sin(incidence) − clearance,
+which is 0 for a perpendicular hit.
 """
 
 from typing import Any
@@ -26,11 +26,11 @@ def grazing_margins(
     clearance: float,
     most: float,
 ) -> NDArray[np.float32]:
-    """Margin before each hit in which cells are not freed.
+    """Return the margin before each hit in which cells are not marked free.
 
-    The surface runs from a hit to its neighbours' hits; of the two the one that the
-    beam meets more squarely counts. A hit without neighbours has no margin: it is a
-    thing too small for two beams, not a surface.
+    The surface runs from a hit to its neighbours' hits; of both, the one more
+    perpendicular to the beam counts. A hit without neighbours has no margin: the object
+    is too small for two beams.
 
     Args:
         ranges: (N,) float32, m.
@@ -83,7 +83,7 @@ def _margins_kernel(
 def _sine(
     ranges: Any, directions: Any, i: int, j: int, range_min: float, range_max: float
 ) -> float:
-    """Sine of the angle between beam ``i`` and the line of hits i–j; -1 = no line."""
+    """Return the sine of the angle between beam i and the line i–j; -1 = no line."""
     if j >= ranges.size:
         return -1.0
     if not (range_min < ranges[i] < range_max and range_min < ranges[j] < range_max):

@@ -1,8 +1,8 @@
-"""The costmap node: scan → costmap.
+"""The costmap node: scan in, costmap out.
 
-Before the first scan it publishes nothing; one costmap for each scan, in the scan's
-frame, with its stamp. A scan that makes no sense is logged and gives no costmap, so
-what depends on costmaps sees them go stale.
+Before the first scan the node publishes nothing, then one costmap for each scan, in the
+scan's frame and with its stamp. An invalid scan is logged and produces no costmap, so
+that the costmap becomes stale downstream.
 """
 
 from typing import Any, ClassVar
@@ -14,19 +14,19 @@ from navette.errors import InvalidValueError
 from navette.grids import grid_to_message
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.costmap.params import CostmapParams
-from navette.navigation.costmap.scan_costmap import Scan, ScanCostmap
+from navette.navigation.costmap.scan_costmap import PlanarScan, ScanCostmap
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 
 
 class CostmapNode(StageNode):
-    """Turns each scan into a costmap around the sensor."""
+    """Convert each scan to a costmap around the sensor."""
 
     PARAMS = CostmapParams
     INPUTS: ClassVar = (
         Input(
             topic=topics.LIDAR.name,
             type=topics.LIDAR.type,
-            role="what the laser scanner sees",
+            role="laser scan",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_scan",
@@ -36,7 +36,7 @@ class CostmapNode(StageNode):
         Output(
             topic=topics.COSTMAP.name,
             type=topics.COSTMAP.type,
-            role="what is dangerous around the robot",
+            role="costs around the sensor",
             rate_hz=10.0,
         ),
     )
@@ -51,7 +51,7 @@ class CostmapNode(StageNode):
     def on_scan(self, msg: LaserScan) -> None:
         """Publish the scan's costmap."""
         try:
-            scan = Scan(
+            scan = PlanarScan(
                 np.asarray(msg.ranges),
                 msg.angle_min,
                 msg.angle_increment,
@@ -68,5 +68,5 @@ class CostmapNode(StageNode):
         self.publish(topics.COSTMAP.name, message)
 
     def on_params_changed(self, old: CostmapParams) -> None:
-        """The next scan is made into a costmap with the new values."""
+        """Use the new values from the next scan on."""
         self._costmap = ScanCostmap(self.params)

@@ -8,22 +8,25 @@ from navette.params import Params, param
 
 @dataclass(frozen=True, kw_only=True)
 class CostmapParams(Params):
-    """How a scan becomes a costmap."""
+    """Geometry and inflation of the costmap."""
 
     resolution_m: float = param(0.1, "edge of a cell", unit="m", above=0.0, at_most=1.0)
     size_m: float = param(
         30.0,
-        "edge of the square grid around the sensor; what lies outside is not seen",
+        "edge of the square grid around the sensor; hits outside are ignored",
         unit="m",
         above=0.0,
         at_most=200.0,
     )
     inflation_radius_m: float = param(
-        1.0, "distance from an obstacle at which cost ends", unit="m", at_least=0.0
+        1.0,
+        "distance from an obstacle at which the cost reaches 0",
+        unit="m",
+        at_least=0.0,
     )
     inflation_method: str = param(
         "linear",
-        "how cost falls with distance d: max_cost (1 - d / inflation_radius_m), "
+        "decrease of cost with distance d: max_cost (1 - d / inflation_radius_m), "
         "or max_cost exp(-inflation_decay_per_m d)",
         choices=("linear", "exponential"),
     )
@@ -32,14 +35,14 @@ class CostmapParams(Params):
     )
     max_cost: int = param(
         100,
-        "cost towards an obstacle; hits themselves are 100",
+        "cost next to an obstacle; cells with a hit have 100",
         at_least=0,
         at_most=100,
     )
     grazing_margin_m: float = param(
         0.5,
-        "at most this far before a hit a beam stops freeing cells, when it grazes "
-        "the surface and would free cells that the surface is in",
+        "largest margin before a hit in which a grazing beam frees no cells, because "
+        "the surface may lie in them",
         unit="m",
         at_least=0.0,
         at_most=5.0,

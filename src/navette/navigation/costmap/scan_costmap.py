@@ -1,4 +1,4 @@
-"""From one laser scan to a costmap around the sensor."""
+"""Costmap around the sensor from one laser scan."""
 
 import math
 from dataclasses import dataclass
@@ -21,19 +21,19 @@ from navette.navigation.costmap.params import CostmapParams
 
 
 @dataclass(frozen=True, eq=False)
-class Scan:
-    """One turn of a planar scanner (as sensor_msgs/LaserScan)."""
+class PlanarScan:
+    """One revolution of a planar scanner (as sensor_msgs/LaserScan)."""
 
     ranges: NDArray[np.float32]
-    """(N,) metres; what is no measurement: see :func:`navette.grids.trace_beams`"""
+    """(N,) metres; for invalid values see :func:`navette.grids.trace_beams`"""
     angle_min: float
     """of the first beam, rad from the sensor's x axis, counter-clockwise"""
     angle_increment: float
     """between beams, rad"""
     range_min: float
-    """m; readings up to it are no information"""
+    """m; readings up to it are ignored"""
     range_max: float
-    """m; readings from it on mean: nothing up to there"""
+    """m; readings from it on mean that the beam is free up to it"""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.angle_min) and math.isfinite(self.angle_increment)):
@@ -49,10 +49,10 @@ class Scan:
 
 
 class ScanCostmap:
-    """Makes costmaps: trace the beams, mark the hits, inflate.
+    """Build costmaps: trace the beams, mark the hits, inflate.
 
-    The grid is a square about the sensor, in the sensor's frame, with an odd number
-    of cells: the sensor sits in the middle of the middle cell.
+    The grid is a square about the sensor, in the sensor's frame, with an odd number of
+    cells: the sensor is at the centre of the middle cell.
     """
 
     def __init__(self, params: CostmapParams) -> None:
@@ -72,16 +72,16 @@ class ScanCostmap:
         self._beams: tuple[float, float, int] | None = None
         self._directions = np.empty((0, 2))
 
-    def build(self, scan: Scan) -> NDArray[np.int8]:
-        """The costmap (H, W) of one scan: -1 unknown, 0 free … 100 hit.
+    def build(self, scan: PlanarScan) -> NDArray[np.int8]:
+        """Return the costmap (H, W) of one scan: -1 unknown, 0 free … 100 hit.
 
-        A cell gets its inflated cost only where the scan saw it. An unknown cell
-        beside an obstacle stays unknown: a map keeps what it knows there (the far
-        side of a box, a post in the shadow of another), and would lose it to a cost.
+        Only cells that the scan measured get an inflated cost. An unknown cell beside
+        an obstacle stays unknown, so that the map keeps its value there (the far side
+        of a box, a post in the shadow of another).
         """
         directions = self._directions_of(scan)
         cost = np.full(self.spec.shape, UNKNOWN, np.int8)
-        # No beam leaves the grid later than along its diagonal.
+        # The diagonal is the longest beam within the grid.
         reach = min(scan.range_max, 1.5 * self.spec.width * self.spec.resolution)
         if scan.range_min < reach:
             trace_beams(
@@ -97,11 +97,11 @@ class ScanCostmap:
         return inflate(cost, self._table, raise_unknown=False)
 
     def warm_up(self) -> None:
-        """Load or compile the kernels now, not at the first scan."""
-        self.build(Scan(np.ones(2, np.float32), 0.0, 0.1, 0.1, 2.0))
+        """Load or compile the kernels before the first scan."""
+        self.build(PlanarScan(np.ones(2, np.float32), 0.0, 0.1, 0.1, 2.0))
 
     def _margins(
-        self, scan: Scan, directions: NDArray[np.float64]
+        self, scan: PlanarScan, directions: NDArray[np.float64]
     ) -> NDArray[np.float32]:
         return grazing_margins(
             scan.ranges,
@@ -112,8 +112,8 @@ class ScanCostmap:
             most=self.params.grazing_margin_m,
         )
 
-    def _directions_of(self, scan: Scan) -> NDArray[np.float64]:
-        """The beams' unit vectors; a scanner repeats them, so they are kept."""
+    def _directions_of(self, scan: PlanarScan) -> NDArray[np.float64]:
+        """Return the beams' unit vectors, cached because a scanner repeats them."""
         beams = (scan.angle_min, scan.angle_increment, len(scan.ranges))
         if beams != self._beams:
             self._directions, self._beams = beam_directions(*beams), beams

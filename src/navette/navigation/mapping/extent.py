@@ -1,4 +1,4 @@
-"""How far a map reaches, and how it grows."""
+"""Extent of the map and its growth."""
 
 import math
 from dataclasses import dataclass
@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from navette.geometry import Pose2
 from navette.grids import UNKNOWN, GridSpec
+from navette.navigation.mapping.params import MapMemoryParams
 
 
 @dataclass(frozen=True)
 class Growth:
-    """A larger extent and the cells added on each side."""
+    """An enlarged extent and the cells added on each side."""
 
     spec: GridSpec
     rows: tuple[int, int]
@@ -22,7 +23,7 @@ class Growth:
 def known_corners(
     cells: NDArray[np.int8], spec: GridSpec
 ) -> NDArray[np.float64] | None:
-    """Corners (4, 2), m, of the box around all known cells; None = all unknown."""
+    """Return corners (4, 2), m, of the box around the known cells, if any."""
     known = cells != UNKNOWN
     rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
     if rows.size == 0:
@@ -33,22 +34,21 @@ def known_corners(
 
 
 def grow_to_hold(
-    spec: GridSpec, points: NDArray[np.float64], *, chunk: float, max_size: float
+    spec: GridSpec, points: NDArray[np.float64], params: MapMemoryParams
 ) -> Growth | None:
-    """The map's extent enlarged until it holds ``points``, or None if it does.
+    """Enlarge the map's extent until it holds ``points``; None if it already does.
 
-    Grows on the sides that need it, by whole chunks, while an edge stays within
-    ``max_size_m``; what would not fit stays outside.
+    Grows on the required sides by multiples of ``growth_m`` while an edge stays within
+    ``max_size_m``; points beyond that stay outside.
 
     Args:
-        spec: the extent now.
+        spec: the present extent.
         points: (N, 2) in the map frame, m.
-        chunk: m.
-        max_size: m.
+        params: growth and limit.
     """
     local = spec.origin.inverse().apply(points) / spec.resolution
-    step = max(1, round(chunk / spec.resolution))
-    most = math.floor(max_size / spec.resolution + 1e-9)
+    step = max(1, round(params.growth_m / spec.resolution))
+    most = math.floor(params.max_size_m / spec.resolution + 1e-9)
     columns = _sides(local[:, 0], spec.width, step, most)
     rows = _sides(local[:, 1], spec.height, step, most)
     if columns == (0, 0) and rows == (0, 0):
@@ -64,10 +64,10 @@ def grow_to_hold(
 
 
 def _sides(at: NDArray[np.float64], size: int, step: int, most: int) -> tuple[int, int]:
-    """Cells to add before and after an axis of ``size`` cells."""
-    # A point on the border (to rounding) does not ask for more.
+    """Return the cells to add before and after an axis of ``size`` cells."""
+    # A point on the border, up to rounding, needs no growth.
     room = most - size
-    # More chunks than the room holds never stay; a far point may ask for billions.
+    # Limit the chunks first: a far point may require billions.
     chunks = max(0, math.ceil(room / step))
     before = step * min(chunks, max(0, math.ceil(-(at.min() + 1e-6) / step)))
     after = step * min(chunks, max(0, math.ceil((at.max() - size - 1e-6) / step)))

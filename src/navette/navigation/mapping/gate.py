@@ -1,4 +1,4 @@
-"""When a costmap is worth fusing."""
+"""Decide which costmaps are fused into the map."""
 
 from navette.geometry import angle_difference
 from navette.navigation.mapping.memory import MapMemory, PlacedCostmap
@@ -6,16 +6,16 @@ from navette.navigation.mapping.params import MapMemoryParams
 
 
 class FusionGate:
-    """Decides which costmaps join the map.
+    """Decide which costmaps are fused into the map.
 
-    - The first one with anything known in it: at once.
-    - On the timer: when the robot moved or turned far enough since the last.
-    - On arrival: when it contradicts the map near the robot (something moved, or came
-      into view), so that a robot that waits, or one that is fast, is not left with an
-      old map until the next timer; not more often than ``change_period_s``.
+    - The first one with known cells: at once.
+    - On the timer: if the robot moved or turned far enough since the last.
+    - On arrival: if it contradicts the map near the robot (an object moved or came into
+      view), so that a waiting or fast robot does not use an old map until the next
+      timer; at most once per ``change_period_s``.
 
-    Never while the robot spins, falls or tilts: its scan is smeared, or of another
-    height than the robot drives at.
+    Never while the robot spins, falls or tilts: the scan is distorted, or at a height
+    other than the one the robot drives at.
     """
 
     def __init__(self, params: MapMemoryParams) -> None:
@@ -23,14 +23,14 @@ class FusionGate:
         self.reset()
 
     def reset(self) -> None:
-        """Forget what was fused."""
+        """Clear the state: no costmap was fused."""
         self._last: PlacedCostmap | None = None
         self._last_ns = 0
 
     def on_arrival(
         self, costmap: PlacedCostmap, memory: MapMemory, now_ns: int
     ) -> bool:
-        """Whether to fuse a costmap that has just arrived."""
+        """Return whether to fuse a costmap on arrival."""
         if self._is_unsteady(costmap):
             return False
         if self._last is None:
@@ -43,7 +43,7 @@ class FusionGate:
         return max(changes) >= self.params.change_cells
 
     def on_timer(self, newest: PlacedCostmap) -> bool:
-        """Whether to fuse the newest costmap on the timer."""
+        """Return whether to fuse the newest costmap on the timer."""
         last = self._last
         if self._is_unsteady(newest) or last is newest:
             return False
@@ -57,7 +57,7 @@ class FusionGate:
         )
 
     def fused(self, costmap: PlacedCostmap, now_ns: int) -> None:
-        """Remember that ``costmap`` joined the map."""
+        """Record that ``costmap`` was fused."""
         self._last, self._last_ns = costmap, now_ns
 
     def _is_unsteady(self, costmap: PlacedCostmap) -> bool:

@@ -1,4 +1,4 @@
-"""The map: what the costmaps seen so far add up to."""
+"""The map: all costmaps so far, fused."""
 
 import math
 from dataclasses import dataclass, replace
@@ -15,16 +15,16 @@ from navette.grids import (
     Changes,
     GridSpec,
     accumulate,
+    cells_in_footprint,
     compare,
     merge,
 )
 from navette.navigation.mapping.extent import grow_to_hold, known_corners
 from navette.navigation.mapping.params import MapMemoryParams
-from navette.navigation.mapping.under_body import cells_under
 
 
-class Motion(NamedTuple):
-    """How the robot moved when a costmap was seen."""
+class BodyMotion(NamedTuple):
+    """Motion of the robot at the stamp of a costmap."""
 
     yaw_rate: float = 0.0
     """rad/s"""
@@ -34,30 +34,30 @@ class Motion(NamedTuple):
     """angle between the body's z axis and the map's, rad"""
 
 
-STEADY = Motion()
+STEADY = BodyMotion()
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedCostmap:
-    """A costmap with the pose that the robot had when it was seen."""
+    """A costmap with the robot's pose at its stamp."""
 
     cells: NDArray[np.int8]
     """(h, w) -1 unknown, 0 free … 100 lethal"""
     spec: GridSpec
-    """where it lies in the map frame"""
+    """its geometry in the map frame"""
     sensor: tuple[float, float]
     """(x, y) of the sensor in the map frame, m"""
     map_T_base: Pose2
     """at ``stamp_ns``"""
     stamp_ns: int
-    motion: Motion = STEADY
+    motion: BodyMotion = STEADY
 
 
 class MapMemory:
-    """Fuses placed costmaps into a map that grows as needed.
+    """Fuse placed costmaps into a map that grows as needed.
 
-    ``overwrite`` and ``max`` keep occupancy; ``log_odds`` keeps a field of evidence
-    (NaN = never seen) and gives occupancy on request.
+    ``overwrite`` and ``max`` store occupancy; ``log_odds`` stores evidence (NaN =
+    unknown) and computes the occupancy from it.
     """
 
     def __init__(self, params: MapMemoryParams) -> None:
@@ -65,9 +65,9 @@ class MapMemory:
         self.reset()
 
     def configure(self, params: MapMemoryParams) -> None:
-        """Use other values from now on; :meth:`MapMemoryParams.shape` must not change.
+        """Replace the parameters; :meth:`MapMemoryParams.shape` must not change.
 
-        A map that has outgrown a smaller ``max_size_m`` keeps its size.
+        A map that is larger than a smaller ``max_size_m`` keeps its size.
         """
         self.params = params
         self._footprint = (
@@ -75,7 +75,7 @@ class MapMemory:
         )
 
     def reset(self) -> None:
-        """Forget everything: all cells unknown, the extent as at the start."""
+        """Clear the map: all cells unknown, initial extent."""
         params = self.params
         edge = max(1, round(params.size_m / params.resolution_m))
         corner = edge * params.resolution_m / 2
@@ -87,7 +87,7 @@ class MapMemory:
             self._log_odds = np.full(self.spec.shape, np.nan, np.float32)
 
     def fuse(self, costmap: PlacedCostmap) -> bool:
-        """Lay a costmap into the map; False = it holds no known cell, nothing done."""
+        """Fuse a costmap; return False, without effect, if it has no known cell."""
         corners = known_corners(costmap.cells, costmap.spec)
         if corners is None:
             return False
@@ -111,11 +111,11 @@ class MapMemory:
         return True
 
     def occupancy(self) -> NDArray[np.int8]:
-        """(H, W) -1 unknown, 0 free … 100 lethal, as :attr:`spec` lies; a copy."""
+        """Return a copy (H, W) of the map: -1 unknown, 0 free … 100 lethal."""
         return self._cells.copy()
 
     def changes(self, costmap: PlacedCostmap) -> Changes:
-        """Obstacle cells near the robot in which a costmap contradicts the map."""
+        """Count obstacle cells near the robot that contradict the map."""
         return compare(
             self._cells,
             self.spec,
@@ -126,7 +126,7 @@ class MapMemory:
         )
 
     def warm_up(self) -> None:
-        """Load or compile the kernels now, not at the first costmap."""
+        """Load or compile the kernels before the first costmap."""
         trial = MapMemory(replace(self.params, size_m=self.params.resolution_m))
         cells = np.full((1, 1), LETHAL, np.int8)
         spec = GridSpec(self.params.resolution_m, 1, 1, trial.spec.origin)
@@ -136,12 +136,7 @@ class MapMemory:
         trial.changes(costmap)
 
     def _grow(self, corners: NDArray[np.float64]) -> None:
-        growth = grow_to_hold(
-            self.spec,
-            corners,
-            chunk=self.params.growth_m,
-            max_size=self.params.max_size_m,
-        )
+        growth = grow_to_hold(self.spec, corners, self.params)
         if growth is None:
             return
         pad = (growth.rows, growth.columns)
@@ -164,7 +159,7 @@ class MapMemory:
         )
 
     def _occupancy_of(self, log_odds: NDArray[np.float32]) -> NDArray[np.int8]:
-        """100 from the threshold on, 0 up to one miss's belief, percent between."""
+        """Return 100 from the threshold on, 0 up to one miss's belief, else percent."""
         known = ~np.isnan(log_odds)
         belief = 1.0 / (1.0 + np.exp(-log_odds[known]))
         percent = np.minimum(np.rint(100 * belief), LETHAL - 1)
@@ -175,8 +170,15 @@ class MapMemory:
         return cells
 
     def _free_under(self, footprint: Footprint, map_T_base: Pose2) -> None:
-        """The robot stands there: no obstacle does, and nothing is unknown."""
-        rows, columns = cells_under(footprint, map_T_base, self.spec)
+        """Mark the cells under the robot free: the body occupies them."""
+        # Wholly under the body: a wall that the body nearly touches keeps its cells.
+        inside = cells_in_footprint(
+            footprint,
+            map_T_base,
+            self.spec,
+            depth_m=self.spec.resolution * math.sqrt(0.5),
+        )
+        rows, columns = inside[:, 0], inside[:, 1]
         if self._log_odds is not None:
             miss = np.float32(_log_odds(self.params.miss_probability))
             there = self._log_odds[rows, columns]

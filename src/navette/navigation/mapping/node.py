@@ -1,8 +1,8 @@
-"""The map memory node: costmaps and odometry → map.
+"""The map memory node: costmaps and odometry in, map out.
 
-An all-unknown map is published at the start, latched; then one after each costmap
-that joins it. Costmaps are placed with the pose interpolated at their stamp; without
-odometry or transforms they are dropped and the map stays as it is.
+The node publishes an unknown map at the start, latched, then one after each fused
+costmap. Costmaps are placed with the pose interpolated at their stamp; without odometry
+or transforms they are dropped and the map does not change.
 """
 
 import math
@@ -14,26 +14,31 @@ from navette.grids import grid_from_message, grid_to_message, placed
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.navigation.mapping.gate import FusionGate
-from navette.navigation.mapping.memory import STEADY, MapMemory, Motion, PlacedCostmap
+from navette.navigation.mapping.memory import (
+    STEADY,
+    BodyMotion,
+    MapMemory,
+    PlacedCostmap,
+)
 from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.placement import PlacementQueue, Ready
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker
 
-# A stamp this much older than the last one fused is of a new run: a simulation that
-# was reset, a bag that starts over.
+# A stamp this much older than the last fused one belongs to a new run: the simulation
+# was reset, or a bag starts again.
 NEW_RUN_NS = 1_000_000_000
 
 
 class MapMemoryNode(StageNode):
-    """Keeps the map."""
+    """Fuse costmaps into a map and publish it."""
 
     PARAMS = MapMemoryParams
     INPUTS: ClassVar = (
         Input(
             topic=topics.COSTMAP.name,
             type=topics.COSTMAP.type,
-            role="what is dangerous around the robot",
+            role="costs around the sensor",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_costmap",
@@ -41,7 +46,7 @@ class MapMemoryNode(StageNode):
         Input(
             topic=topics.ODOMETRY.name,
             type=topics.ODOMETRY.type,
-            role="where the robot is",
+            role="pose and velocity",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
@@ -51,7 +56,7 @@ class MapMemoryNode(StageNode):
         Output(
             topic=topics.MAP.name,
             type=topics.MAP.type,
-            role="what the robot remembers",
+            role="map of everything seen so far",
             depth=1,
             latched=True,
         ),
@@ -67,21 +72,21 @@ class MapMemoryNode(StageNode):
         self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
 
     def on_odometry(self, msg: Odometry) -> None:
-        """Follow the robot; place the costmaps that waited for this."""
+        """Update the robot's pose; place the costmaps that waited for it."""
         self._tracker.update(msg)
         twist = msg.twist.twist
-        self._motion = Motion(
+        self._motion = BodyMotion(
             twist.angular.z, twist.linear.z, _tilt_of(msg.pose.pose.orientation)
         )
         if self._waiting:
             self._place_waiting()
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
-        """Place the costmap as soon as its pose is known."""
+        """Place the costmap as soon as its pose is available."""
         stamp_ns = stamp_to_ns(msg.header.stamp)
         if stamp_ns < self._last_stamp_ns - NEW_RUN_NS:
             self.get_logger().info(
-                "time went back: the map starts anew", throttle_duration_sec=5.0
+                "time went back: the map is reset", throttle_duration_sec=5.0
             )
             self._restart()
         self._waiting.add(msg, stamp_ns, self._now_ns())
@@ -93,7 +98,7 @@ class MapMemoryNode(StageNode):
             self._fuse(self._newest)
 
     def on_params_changed(self, old: MapMemoryParams) -> None:
-        """Values that shape the map start it anew; the others apply from now on."""
+        """Reset the map if its shape changed; other values apply at once."""
         if self.params.update_period_s != old.update_period_s:
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
@@ -106,7 +111,7 @@ class MapMemoryNode(StageNode):
             self._gate.params = self.params
 
     def on_time_jump(self) -> None:
-        """The clock was set back: the map starts anew."""
+        """Reset the map."""
         self._tracker.reset()
         self._restart()
 
@@ -130,29 +135,26 @@ class MapMemoryNode(StageNode):
         self._publish_map(self._now_ns())
 
     def _place_waiting(self) -> None:
-        tracker = self._tracker
-        ready, dropped = self._waiting.take(
-            tracker.pose_at, tracker.stamp_ns, self._now_ns()
-        )
+        ready, dropped = self._waiting.take(self._tracker, self._now_ns())
         for lost in dropped:
-            self._complain(f"{lost.reason} (stamp {lost.stamp_ns / 1e9:.3f} s)")
+            self._warn(f"{lost.reason} (stamp {lost.stamp_ns / 1e9:.3f} s)")
         for each in ready:
             costmap = self._placed(each)
             if costmap is not None:
-                self._take(costmap)
+                self._on_placed(costmap)
 
     def _placed(self, ready: Ready[OccupancyGrid]) -> PlacedCostmap | None:
         frame_id = ready.item.header.frame_id
         base_T_sensor = self._tracker.transform_to_base(frame_id)
         if base_T_sensor is None:
-            self._complain(f"no transform from its frame {frame_id!r} to the base")
+            self._warn(f"no transform from its frame {frame_id!r} to the base")
             return None
         map_T_sensor = ready.map_T_base @ base_T_sensor
         try:
             cells, spec = grid_from_message(ready.item)
             there = placed(spec, map_T_sensor)
         except InvalidValueError as error:
-            self._complain(str(error))
+            self._warn(str(error))
             return None
         return PlacedCostmap(
             cells,
@@ -163,7 +165,7 @@ class MapMemoryNode(StageNode):
             self._motion,
         )
 
-    def _take(self, costmap: PlacedCostmap) -> None:
+    def _on_placed(self, costmap: PlacedCostmap) -> None:
         self._newest = costmap
         if self._gate.on_arrival(costmap, self._memory, self._now_ns()):
             self._fuse(costmap)
@@ -180,7 +182,7 @@ class MapMemoryNode(StageNode):
         message = grid_to_message(memory.occupancy(), memory.spec, frame_id, stamp_ns)
         self.publish(topics.MAP.name, message)
 
-    def _complain(self, reason: str) -> None:
+    def _warn(self, reason: str) -> None:
         self.get_logger().warning(
             f"costmap not used: {reason}", throttle_duration_sec=5.0
         )
@@ -190,6 +192,6 @@ class MapMemoryNode(StageNode):
 
 
 def _tilt_of(q: Quaternion) -> float:
-    """Angle between the turned z axis and z, rad."""
+    """Return the angle between the body's z axis and the vertical, rad."""
     upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y)
     return math.acos(min(1.0, max(-1.0, upright)))

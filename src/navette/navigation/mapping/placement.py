@@ -1,23 +1,33 @@
-"""Costmaps that wait for the pose at their stamp.
+"""Queue of costmaps that wait for the pose at their stamp.
 
-A scan and the odometry around it arrive in either order. A costmap placed with
-whatever pose is at hand leaves phantom obstacles, so it waits until the pose at its
-own stamp can be told, and is dropped if that does not happen.
+A scan and the odometry around it arrive in either order. A costmap placed with another
+pose leaves phantom obstacles, so it waits until the pose at its stamp is available, and
+is dropped otherwise.
 """
 
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from navette.geometry import Pose2
 
 Item = TypeVar("Item")
 
 
+class PoseHistory(Protocol):
+    """Poses by stamp, as :class:`~navette.runtime.stage.odometry.PoseTracker`."""
+
+    @property
+    def stamp_ns(self) -> int | None:
+        """Stamp of the newest pose; None before the first."""
+
+    def pose_at(self, stamp_ns: int) -> Pose2 | None:
+        """Return map_T_base interpolated at a stamp; None outside the history."""
+
+
 @dataclass(frozen=True)
 class Ready(Generic[Item]):
-    """An item whose pose is known: ``map_T_base`` at its stamp."""
+    """An item with ``map_T_base`` at its stamp."""
 
     item: Item
     stamp_ns: int
@@ -26,14 +36,14 @@ class Ready(Generic[Item]):
 
 @dataclass(frozen=True)
 class Dropped:
-    """An item that was given up, and why."""
+    """A dropped item and the reason."""
 
     stamp_ns: int
     reason: str
 
 
 class PlacementQueue(Generic[Item]):
-    """First in, first out; at most ``capacity`` wait, for at most ``wait_ns``."""
+    """FIFO of at most ``capacity`` items, each waiting for at most ``wait_ns``."""
 
     def __init__(self, wait_ns: int, capacity: int = 8) -> None:
         self.wait_ns = wait_ns
@@ -42,36 +52,30 @@ class PlacementQueue(Generic[Item]):
     def __len__(self) -> int:
         return len(self._waiting)
 
-    def clear(self) -> None:
-        """Forget what waits."""
-        self._waiting.clear()
-
     def add(self, item: Item, stamp_ns: int, now_ns: int) -> None:
-        """Let an item wait; of too many the oldest is forgotten."""
+        """Append an item; a full queue drops its oldest."""
         self._waiting.append((stamp_ns, now_ns, item))
 
     def take(
         self,
-        pose_at: Callable[[int], Pose2 | None],
-        newest_pose_ns: int | None,
+        poses: PoseHistory,
         now_ns: int,
     ) -> tuple[list[Ready[Item]], list[Dropped]]:
-        """Items that can be placed now, and those given up; the rest waits on.
+        """Return the items that can be placed now, and the dropped ones.
 
         Args:
-            pose_at: map_T_base at a stamp, or None where it is not known.
-            newest_pose_ns: stamp of the newest pose, None before the first.
+            poses: provides map_T_base at a stamp, or None if not available.
             now_ns: the node's time.
         """
         ready: list[Ready[Item]] = []
         dropped: list[Dropped] = []
         still: list[tuple[int, int, Item]] = []
         for stamp_ns, arrived_ns, item in self._waiting:
-            pose = pose_at(stamp_ns)
+            pose = poses.pose_at(stamp_ns)
             if pose is not None:
                 ready.append(Ready(item, stamp_ns, pose))
-            elif newest_pose_ns is not None and stamp_ns <= newest_pose_ns:
-                dropped.append(Dropped(stamp_ns, "its pose is no longer known"))
+            elif poses.stamp_ns is not None and stamp_ns <= poses.stamp_ns:
+                dropped.append(Dropped(stamp_ns, "its pose is no longer stored"))
             elif now_ns - arrived_ns >= self.wait_ns:
                 dropped.append(Dropped(stamp_ns, "no pose arrived for it"))
             else:

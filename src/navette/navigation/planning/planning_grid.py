@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
-from navette.grids import GridSpec, body_points, distance_field
+from navette.grids import GridSpec, body_points, cells_in_footprint, distance_field
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import DEAREST, LETHAL, Cell, EdgeTable
 
@@ -142,7 +142,7 @@ def without_obstacles_in(
     The robot occupies that space, so such cells are errors: a scan with a wrong pose,
     or the robot's own body.
     """
-    inside = _cells_inside(grid.spec, start, body)
+    inside = cells_in_footprint(body.footprint, start, grid.spec)
     rows, columns = inside[:, 0], inside[:, 1]
     if not grid.obstacles[rows, columns].any():
         return grid
@@ -212,27 +212,3 @@ def _clearance_table(
     table = np.clip(np.rint(table), 0, DEAREST).astype(np.uint8)
     table[distance < closed_m] = LETHAL
     return table
-
-
-def _cells_inside(spec: GridSpec, start: Pose2, body: BodyShape) -> NDArray[np.int64]:
-    """Cells (N, 2) whose centres lie inside the body at ``start``."""
-    row, column = spec.cell_of(start.x, start.y)
-    reach = math.ceil(body.circumscribed_m / spec.resolution) + 1
-    rows = np.arange(max(0, row - reach), min(spec.height, row + reach + 1))
-    columns = np.arange(max(0, column - reach), min(spec.width, column + reach + 1))
-    cells = np.stack(np.meshgrid(rows, columns, indexing="ij"), -1).reshape(-1, 2)
-    points = start.inverse().apply(spec.centers_of(cells))
-    return cells[_inside(body.footprint, points)]
-
-
-def _inside(footprint: Footprint, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which points (N, 2) lie in the outline: an odd number of edges to the right."""
-    x, y = points[:, 0], points[:, 1]
-    corners = np.array(footprint.vertices)
-    inside = np.zeros(len(points), np.bool_)
-    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if ay == by:
-            continue
-        crosses = (ay > y) != (by > y)
-        inside ^= crosses & (ax + (y - ay) * (bx - ax) / (by - ay) > x)
-    return inside

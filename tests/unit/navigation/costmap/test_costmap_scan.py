@@ -4,13 +4,15 @@ import numpy as np
 import pytest
 
 from navette.errors import InvalidValueError
-from navette.navigation.costmap import CostmapParams, Scan, ScanCostmap
+from navette.navigation.costmap import CostmapParams, PlanarScan, ScanCostmap
 
 PARAMS = CostmapParams(size_m=10.0, inflation_radius_m=0.5)
 
 
-def scan(ranges, *, angle_min=0.0, increment=0.01, range_max=8.0) -> Scan:
-    return Scan(np.asarray(ranges, np.float32), angle_min, increment, 0.1, range_max)
+def scan(ranges, *, angle_min=0.0, increment=0.01, range_max=8.0) -> PlanarScan:
+    return PlanarScan(
+        np.asarray(ranges, np.float32), angle_min, increment, 0.1, range_max
+    )
 
 
 def arc(distance: float) -> np.ndarray:
@@ -134,4 +136,4 @@ def test_same_scan_same_costmap_also_with_other_scans_between() -> None:
 )
 def test_bad_scans_are_named(values, text) -> None:
     with pytest.raises(InvalidValueError, match=text):
-        Scan(np.ones(3, np.float32), *values)
+        PlanarScan(np.ones(3, np.float32), *values)

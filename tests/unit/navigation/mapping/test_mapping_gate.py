@@ -4,10 +4,10 @@ import pytest
 from navette.geometry import Pose2
 from navette.grids import GridSpec, placed
 from navette.navigation.mapping import (
+    BodyMotion,
     FusionGate,
     MapMemory,
     MapMemoryParams,
-    Motion,
     PlacedCostmap,
 )
 
@@ -20,7 +20,9 @@ def costmap(x=0.0, yaw=0.0, *, obstacle=False, **motion) -> PlacedCostmap:
     if obstacle:
         cells[15:25, 35] = 100
     pose = Pose2(x, 0.0, yaw)
-    return PlacedCostmap(cells, placed(SPEC, pose), (x, 0.0), pose, 0, Motion(**motion))
+    return PlacedCostmap(
+        cells, placed(SPEC, pose), (x, 0.0), pose, 0, BodyMotion(**motion)
+    )
 
 
 def gate_and_memory(**values) -> tuple[FusionGate, MapMemory]:
