@@ -1,8 +1,8 @@
 """From publish to callback in one process, compared with Zenoh; timers and tf lookups.
 
-Navette's way has the queue, the deterministic executor, QoS and a copy of the
-message. Zenoh's session calls back from within ``put`` and carries bytes that nobody
-makes or reads (loopback only: no listening, no scouting).
+Navette's path includes the queue, the deterministic executor, QoS and a copy of the
+message. Zenoh's session calls back from within ``put`` and carries constant bytes
+(loopback only: no listening, no scouting).
 """
 
 from collections.abc import Callable
@@ -23,7 +23,7 @@ BURST = 100
 
 
 class Graph:
-    """A node of its own context, and what runs it."""
+    """A node with its own context and executor."""
 
     def __init__(self) -> None:
         self.context = Context(clock=VirtualClock())
@@ -36,7 +36,7 @@ class Graph:
     def sender(
         self, message: Any, topic: str, *, shared: bool = False
     ) -> Callable[[], None]:
-        """Publishes ``COUNT`` messages in bursts and runs their callbacks."""
+        """Publish ``COUNT`` messages in bursts and run their callbacks."""
 
         def count(_: Any) -> None:
             self.received += 1
@@ -55,7 +55,7 @@ class Graph:
         return run
 
     def timer(self) -> Callable[[], None]:
-        """Runs a 1 kHz timer for ``COUNT`` periods."""
+        """Run a 1 kHz timer for ``COUNT`` periods."""
         fired = 0
 
         def fire() -> None:
@@ -75,7 +75,7 @@ class Graph:
 def zenoh_sender(
     payload: bytes, name: str, *, reads: type | None
 ) -> Callable[[], None]:
-    """The same with a Zenoh session; ``reads`` makes and reads the message too."""
+    """The same with a Zenoh session; ``reads`` also encodes and decodes the message."""
     config = zenoh.Config()
     config.insert_json5("mode", '"peer"')
     config.insert_json5("listen/endpoints", "[]")

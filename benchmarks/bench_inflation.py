@@ -30,7 +30,7 @@ def some_map(size: int, seed: int = 0) -> np.ndarray:
 
 
 def raised(cost: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """The cost by distance (cells), only ever raising a cell."""
+    """Return the cost by distance (cells), which only raises a cell."""
     d2 = np.minimum(np.rint(distance * distance), TABLE.size - 1).astype(np.intp)
     return np.maximum(cost, TABLE[d2])
 

@@ -47,7 +47,7 @@ def scene_of_posts() -> Scene:
 
 
 class Sensor:
-    """A lidar of so many beams on the robot of a scene, without noise."""
+    """A noise-free lidar with this number of beams on the robot of a scene."""
 
     def __init__(self, scene: Scene, beams: int) -> None:
         params = SimParams(lidar_noise_m=0.0)
@@ -74,7 +74,7 @@ class Sensor:
         return np.where(distance <= RANGE_MAX_M, distance, np.inf).astype(np.float32)
 
     def with_irsim(self) -> Callable[[], np.ndarray]:
-        """A planar copy of the posts, seen from the same place."""
+        """A planar copy of the posts, from the same position."""
         (x, y, _), _ = self.lidar.mount.world(self.data)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "world.yaml"
@@ -109,7 +109,7 @@ obstacle:
 
 
 def seen_alike(a: np.ndarray, b: np.ndarray, within_m: float) -> float:
-    """Share of beams in which both see the same distance, or nothing."""
+    """Return the share of beams with the same range, or no hit, in both."""
     a, b = np.minimum(a, RANGE_MAX_M), np.minimum(b, RANGE_MAX_M)
     return float((np.abs(a - b) <= within_m).mean())
 

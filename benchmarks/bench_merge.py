@@ -1,5 +1,5 @@
-"""A rotated 400 x 400 costmap merged into a 2000 x 2000 map, beside OpenCV (on the
-region that the costmap covers, and on the whole map) and SciPy."""
+"""A rotated 400 x 400 costmap merged into a 2000 x 2000 map, compared with OpenCV (on
+the covered region and on the whole map) and SciPy."""
 
 import math
 
@@ -24,7 +24,7 @@ def some_costmap(lethal: float) -> np.ndarray:
 
 
 class Merge:
-    """One costmap at one pose, and the ways to lay it over the map."""
+    """One costmap at one pose, and the contenders that merge it into the map."""
 
     def __init__(self, pose: Pose2, lethal: float) -> None:
         self.source = some_costmap(lethal)
@@ -80,7 +80,7 @@ def blank() -> np.ndarray:
 
 
 def agreement(case: Merge) -> dict[str, float]:
-    """Share of the covered cells in which each peer gives what Navette gives."""
+    """Return the share of covered cells in which each peer agrees with Navette."""
     ours = blank()
     case.with_navette(ours)
     covered = blank()
@@ -100,8 +100,8 @@ def main() -> None:
         ("400² into 2000², rotated", Pose2(3.217, 4.231, 0.6), 0.22),
         ("400² into 2000², straight", Pose2(3.217, 4.231, 0.0), None),
     ):
-        # Lethal cells are pushed (none lost), which peers do not do: the comparison of
-        # the cells is without them, the time with as many as a scan has.
+        # Navette pushes lethal cells (none is lost), unlike the peers: cells are
+        # compared without lethal ones, times are measured with as many as in a scan.
         same = agreement(Merge(pose, lethal=0.0))
         assert min(same.values()) > 0.995, same
         case, target = Merge(pose, lethal=0.003), blank()

@@ -1,6 +1,6 @@
 """Messages: deep copy, to CDR and back, compared with rosbags and mcap-ros2-support.
 
-All make bytes are equal (rosbags' and Navette's are compared, and mcap-ros2-support's
+All produce the same bytes (rosbags' and Navette's are compared, and mcap-ros2-support's
 fields after reading).
 """
 
@@ -41,7 +41,7 @@ def some_messages() -> dict[str, Message]:
 
 
 class RosbagsPeer:
-    """rosbags' own classes and its CDR code."""
+    """rosbags' own classes and its CDR codec."""
 
     def __init__(self, message: Message) -> None:
         self.store = rosbags.get_typestore(rosbags.Stores.ROS2_JAZZY)
@@ -58,7 +58,7 @@ class RosbagsPeer:
 
 
 class McapPeer:
-    """mcap-ros2-support: functions made from the definition, plain namespaces."""
+    """mcap-ros2-support: generated functions, plain namespaces."""
 
     def __init__(self, message: Message) -> None:
         name = type(message)._type_name_

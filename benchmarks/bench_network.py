@@ -122,7 +122,7 @@ PEERS = {
 
 
 def echo(peer: str, size: int) -> None:
-    """The second process: sends back what comes until its input ends."""
+    """The second process: echoes messages until its input ends."""
     _, send, listen, close = PEERS[peer]("echo", size, "/back", "/there")
     listen(send)
     print("ready", flush=True)
@@ -181,7 +181,7 @@ class Loop:
             self._send(self.message)
             if self._came.wait(0.1):
                 break
-        # What was sent meanwhile comes back as well.
+        # Messages sent meanwhile are echoed, too.
         while True:
             self._came.clear()
             if not self._came.wait(0.3):

@@ -60,7 +60,7 @@ def navette_steps() -> tuple[Callable[[], object], Callable[[], object]]:
 
 
 def drive(simulator: Simulator, seconds: float) -> None:
-    """Straight ahead, with a command every 100 ms as a controller gives it."""
+    """Drive straight ahead with a command every 100 ms, as from a controller."""
     for _ in range(round(seconds / 0.1)):
         simulator.command(SPEED_MPS, 0.0)
         simulator.step(round(0.1 / TIMESTEP_S))
@@ -94,7 +94,7 @@ def pybullet_steps() -> Callable[[], object]:
 
 
 def pybullet_robot() -> int:
-    """Two wheels, a body and a sliding ball, as the TurtleBot has them."""
+    """Two wheels, a body and a sliding ball, as on the TurtleBot."""
     p = pybullet
     wheel = p.createCollisionShape(p.GEOM_CYLINDER, radius=WHEEL_RADIUS_M, height=0.018)
     ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.008)

@@ -51,14 +51,14 @@ def obstacle_map(size: int, seed: int = 1) -> np.ndarray:
 
 
 def cost_field(obstacles: np.ndarray) -> np.ndarray:
-    """Costs that fall with the distance to the obstacles."""
+    """Costs that decrease with the distance to obstacles."""
     distance = distance_transform_edt(obstacles == 0)
     falling = np.clip(252 * np.exp(-distance / 10), 0, 252)
     return np.where(obstacles > 0, LETHAL, falling).astype(np.uint8)
 
 
 def far_queries(cost: np.ndarray, count: int = 12, seed: int = 2) -> list[Query]:
-    """Free cells that lie far apart and are connected."""
+    """Return distant, connected free cells."""
     rng = np.random.default_rng(seed)
     free = np.argwhere(cost < LETHAL)
     search = AStar().search
@@ -73,13 +73,13 @@ def far_queries(cost: np.ndarray, count: int = 12, seed: int = 2) -> list[Query]
 def each_in_turn(
     queries: list[Query], run: Callable[[Cell, Cell], object]
 ) -> Callable[[], object]:
-    """A contender that answers one query a call."""
+    """A contender that answers one query per call."""
     turn = itertools.cycle(queries)
     return lambda: run(*next(turn))
 
 
 def graph_of(cost: np.ndarray, table: EdgeTable) -> coo_matrix:
-    """The grid as a graph for SciPy: an edge per legal move."""
+    """Return the grid as a SciPy graph: one edge per legal move."""
     index = np.arange(cost.size).reshape(cost.shape)
     free = table.straight[cost] > 0
     rows, columns, weights = [], [], []
@@ -99,7 +99,7 @@ def graph_of(cost: np.ndarray, table: EdgeTable) -> coo_matrix:
 
 
 def _shifted(dr: int, dc: int, shape: tuple[int, ...]) -> tuple[slice, slice]:
-    """The part of a grid that has a neighbour at (−dr, −dc)."""
+    """Return the part of a grid with a neighbour at (−dr, −dc)."""
     return (
         slice(max(0, dr), shape[0] + min(0, dr)),
         slice(max(0, dc), shape[1] + min(0, dc)),
@@ -111,7 +111,7 @@ def _mixed(a: tuple[slice, slice], b: tuple[slice, slice]) -> tuple[slice, slice
 
 
 def check_exact(cost: np.ndarray, table: EdgeTable, query: Query) -> None:
-    """Ours equals SciPy's Dijkstra, and the cells add up to it."""
+    """Check the cost against SciPy's Dijkstra and against the sum over the cells."""
     start, goal = (int(np.ravel_multi_index(c, cost.shape)) for c in query)
     expected = scipy_dijkstra(graph_of(cost, table), indices=start)[goal]
     for search in (AStar().search, dijkstra.search):
@@ -165,7 +165,7 @@ def add_string_pulling(bench: Benchmark, cost: np.ndarray) -> None:
 
 
 def add_whole_plans(bench: Benchmark) -> None:
-    """The long body of the course's robot in an arena: map, route, tight corner."""
+    """The course robot in an arena: map, route, tight corner."""
     outline = (1.5, 0.7, -0.5, 0.7, -0.5, -0.7, 1.5, -0.7)
     spec = GridSpec(0.1, 300, 300, Pose2(-15.0, -15.0, 0.0))
     occupancy = np.zeros(spec.shape, np.int8)
@@ -212,7 +212,7 @@ def _check_map(path: Path) -> tuple[int, int]:
         assert found is not None, line
         diagonal = np.abs(np.diff(found[0], axis=0)).sum(axis=1) == 2
         length = (~diagonal).sum() + math.sqrt(2) * diagonal.sum()
-        # Some files give six significant digits, some two decimals.
+        # Some files have six significant digits, some two decimals.
         digits = len(text.partition(".")[2])
         tolerance = max(0.51 * 10.0**-digits, float(text) * 5e-6)
         good, count = good + (abs(length - float(text)) <= tolerance), count + 1

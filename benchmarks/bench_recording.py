@@ -28,7 +28,7 @@ SECONDS = 30.0
 
 
 class Writers:
-    """Each writes the same messages to a file of its own."""
+    """Each contender writes the same messages to its own file."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -48,7 +48,7 @@ class Writers:
         writer.close()
 
     def with_mcap_ros2(self) -> Callable[[], None]:
-        # It takes no arrays of NumPy: its own objects, with lists.
+        # It does not accept NumPy arrays: use its own objects, with lists.
         messages = {topic: McapPeer(m).message for topic, m in self.kinds.items()}
         names = {topic: type(m)._type_name_ for topic, m in self.kinds.items()}
 
@@ -93,7 +93,7 @@ class Writers:
         return run
 
     def check(self) -> None:
-        """Every file holds every message."""
+        """Check that every file contains every message."""
         files = sorted(self.folder.rglob("*.mcap"))
         for path in files:
             with path.open("rb") as file:
@@ -103,7 +103,7 @@ class Writers:
 
 
 def drive(record: Path | None) -> None:
-    """The first half minute of the seven goals, as fast as it goes."""
+    """Run the first 30 s of the seven goals, as fast as possible."""
     simulation = Simulation(
         RunOptions(
             world="course", goals=SEVEN_GOALS.goals, headless=True,

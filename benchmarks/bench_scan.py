@@ -14,14 +14,14 @@ RANGE_MAX = 20.0
 
 
 def some_scan(size_m: float) -> np.ndarray:
-    """A room with clutter: readings of 30 to 95 % of half the grid."""
+    """A cluttered room: ranges of 30 to 95 % of half the grid."""
     rng = np.random.default_rng(0)
     walls = 0.65 + 0.25 * np.sin(np.arange(BEAMS) / 40)
     return (size_m / 2 * walls * rng.uniform(0.95, 1.05, BEAMS)).astype(np.float32)
 
 
 class Scene:
-    """A grid around the sensor and a scan that stays inside."""
+    """A grid around the sensor and a scan within it."""
 
     def __init__(self, size_m: float, resolution: float) -> None:
         cells = round(size_m / resolution) + 1
@@ -77,7 +77,7 @@ class Scene:
 
 
 def bresenham(start: tuple[int, int], end: tuple[int, int]):
-    """Cells of a line, both ends included."""
+    """Return the cells of a line, both ends included."""
     deltas = [abs(b - a) for a, b in zip(start, end, strict=True)]
     steps = [1 if b > a else -1 for a, b in zip(start, end, strict=True)]
     major = 0 if deltas[0] > deltas[1] else 1
@@ -103,7 +103,7 @@ def main() -> None:
         ours = scene.with_navette()
         np.testing.assert_array_equal(ours, scene.in_python())
         others = {"opencv": scene.with_opencv(), "skimage": scene.with_skimage()}
-        # They break ties between two cells in another way.
+        # The peers break ties between two cells differently.
         same = {who: (ours == cells).mean() for who, cells in others.items()}
         assert min(same.values()) > 0.97, same
         agreement = ", ".join(f"{who} {100 * s:.1f} %" for who, s in same.items())

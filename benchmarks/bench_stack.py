@@ -24,7 +24,7 @@ Row = dict[str, object]
 
 
 def measure(world: str, drive: Drive) -> Row:
-    """One drive, as a row."""
+    """Run one drive; return its row."""
     simulation = Simulation(
         RunOptions(
             world=world,
@@ -59,7 +59,7 @@ def measure(world: str, drive: Drive) -> Row:
 
 
 def figures(rows: list[Row]) -> list[Figure]:
-    """What the drives come to; the longest drive stands for the real-time factor."""
+    """Summarise the drives; the real-time factor is that of the longest."""
     factors = [float(str(row["real_time_factor"])) for row in rows]
     passed = sum(bool(row["passed"]) for row in rows)
     found = [

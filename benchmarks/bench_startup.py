@@ -1,4 +1,4 @@
-"""Start-up, each time in a new process: imports, the command line, the demo.
+"""Start-up in a new process: imports, the command line, the demo.
 
 The demo is timed until the robot moves (real-time clock, live view on): with the
 kernels in Numba's cache, and with an empty cache as on the very first run.
@@ -19,7 +19,7 @@ NAVETTE = (sys.executable, "-c", RUN_CLI)
 
 
 def process(*command: str, cache: str | None = None) -> str:
-    """Run a command to its end; what it printed."""
+    """Run a command to its end; return its output."""
     environment = dict(os.environ)
     if cache is not None:
         environment["NUMBA_CACHE_DIR"] = cache
@@ -38,7 +38,7 @@ def cli(*arguments: str) -> Run:
 
 
 def seconds_to_motion(cache: str | None = None) -> float:
-    """Wall time from starting the process until the robot moves."""
+    """Return the wall time from process start until the robot moves."""
     start = time.perf_counter()
     process(sys.executable, str(HERE / "first_motion.py"), cache=cache)
     return time.perf_counter() - start

@@ -52,14 +52,14 @@ VERBS = (
     ("lifecycle", "nodes"),
 )
 TARGET_MS = 500
-"""What a person takes for at once."""
+"""Perceived as immediate."""
 IMAGE_TARGET_MS = 1000
 """For 6 MB as text."""
 
 
 @contextmanager
 def program(environment: dict[str, str]) -> Iterator[None]:
-    """What the verbs look into."""
+    """The program that the verbs inspect."""
     running = subprocess.Popen(
         [sys.executable, "-c", PROGRAM],
         env=environment,

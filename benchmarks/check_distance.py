@@ -2,10 +2,10 @@
 
     python benchmarks/check_distance.py FOLDER
 
-FOLDER holds ``NN_poses.txt`` (3 × 4 row by row, camera axes) and ``NN_times.txt``. Says
-what odom_integrator counts by position and by velocity, played once, twice, at another
-rate, and set forward and back; exits 1 where a figure is off by more than 0.1 % (1 % by
-velocity).
+FOLDER holds ``NN_poses.txt`` (3 × 4 row by row, camera axes) and ``NN_times.txt``.
+Prints the distance of odom_integrator by position and by velocity, played once, twice,
+at another rate, and after seeks; exits with 1 if a value is off by more than 0.1 % (1 %
+by velocity).
 """
 
 import sys
@@ -20,7 +20,7 @@ FORMATS = ("drive.bag", "drive.mcap", "drive.db3")
 
 
 def read_kitti(folder: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Times (N,) s; east, north, up (N, 3), m, of a car that starts eastward."""
+    """Return times (N,) s and east, north, up (N, 3) m; the car starts eastward."""
     (poses,) = sorted(folder.glob("*_poses.txt"))
     camera = np.loadtxt(poses)[:, [3, 7, 11]]  # right, down, ahead
     times = np.loadtxt(poses.with_name(poses.name.replace("poses", "times")))
@@ -39,7 +39,7 @@ def main(folder: Path) -> int:
         first, last = np.searchsorted(times, [begin_s, end_s])
         return float(way[min(last, len(way) - 1)] - way[first])
 
-    # What is played twice counts twice, what is left out does not.
+    # A part played twice counts twice, a skipped part does not.
     back = total + between(70.0, 100.0)
     ahead = total - between(100.0, 200.0)
     cases = [

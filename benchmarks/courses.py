@@ -1,4 +1,4 @@
-"""The drives that are measured: the reference world's ten hard runs and its course."""
+"""The measured drives: ten hard runs and the course of the reference world."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Drive:
-    """A start (None: where the world puts the robot), goals and a time limit."""
+    """A start (None: the pose in the world), goals and a time limit."""
 
     name: str
     start: Pose2 | None

@@ -1,4 +1,4 @@
-"""Drives as bags of gnss_driver/msg/Gps, and what the odom_integrator makes of them."""
+"""Drives as bags of gnss_driver/msg/Gps, and their distance by odom_integrator."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,16 +23,16 @@ _TOPIC = BagTopic(TOPIC, _KIND, definition_text(_KIND), type_hash(_KIND))
 
 
 def length(positions: np.ndarray) -> float:
-    """Metres along positions (N, 3)."""
+    """Return the path length of positions (N, 3) in metres."""
     return float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
 
 
 def write_drive(path: Path, times_s: np.ndarray, positions: np.ndarray) -> None:
-    """A bag of the format that the name says; velocities are central differences.
+    """Write a bag in the format of its suffix; velocities are central differences.
 
     Args:
         times_s: (N,) since the start.
-        positions: (N, 3) east, north, up of the start, m.
+        positions: (N, 3) east, north, up relative to the start, m.
     """
     velocities = np.gradient(positions, times_s, axis=0)
     writer = open_writer(path)
@@ -59,7 +59,7 @@ def played_distance(
     passes: int = 1,
     seeks: Sequence[tuple[float, float]] = (),
 ) -> float:
-    """What /odom_integrator/distance is after a bag was played beside the node.
+    """Return /odom_integrator/distance after playing a bag beside the node.
 
     Args:
         passes: how often the bag is played, by looping.

@@ -1,4 +1,4 @@
-"""Starts what ``navette demo`` starts and ends as soon as the robot moves.
+"""Start what ``navette demo`` starts, and exit as soon as the robot moves.
 
 Run in its own process by bench_startup.py; prints the seconds from the start of the
 interpreter's work to the first motion, and what they went into.

@@ -1,15 +1,15 @@
 """Side-by-side timing: runs of all contenders interleaved, medians, ratios.
 
-A benchmark names its cases and contenders; the first contender is Navette's and
-the others are compared with it::
+A benchmark lists its cases and contenders; the first contender is Navette, and the
+others are compared with it::
 
     bench = Benchmark("inflation", __doc__)
     bench.case("400², 20 cells", {"navette": ours, "opencv": theirs}, target_ms=0.6)
     bench.main()
 
-Interleaving (some milliseconds of each in turn) lets a busy machine slow all
-contenders alike, so the ratios hold even where the times do not. What is no time of
-a run, as a drive's real-time factor, is a :class:`Figure`.
+Interleaving (some milliseconds of each in turn) means that load on the machine slows
+all contenders alike, so that ratios are reliable even if times are not. Results other
+than times, such as a real-time factor, are a :class:`Figure`.
 """
 
 import argparse
@@ -23,8 +23,8 @@ from typing import Any
 
 Run = Callable[[], object]
 
-# A contender's turn lasts so long (at least one run): only its first run then finds
-# the caches filled with what the others left there.
+# Length of a contender's turn (at least one run): only the first run of a turn finds
+# the CPU caches filled by the other contenders.
 _TURN_S = 2e-3
 
 
@@ -57,7 +57,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Figure:
-    """Something measured that is not compared with a peer."""
+    """A measured value without a peer."""
 
     name: str
     value: float
@@ -99,13 +99,13 @@ class Benchmark:
         budget_s: float | None = None,
         least_rounds: int = 5,
     ) -> None:
-        """Add a case; check correctness before (an assert), say so in ``note``."""
+        """Add a case; check correctness before (an assert) and state it in ``note``."""
         self._cases[name] = Case(
             name, dict(contenders), note, target_ms, per_run, budget_s, least_rounds
         )
 
     def figure(self, measure: Callable[[], Figure]) -> None:
-        """Add something that measures itself, after the cases."""
+        """Add a figure, measured after the cases."""
         self._figures.append(measure)
 
     def run(self) -> None:
@@ -136,7 +136,7 @@ class Benchmark:
         print(json.dumps(self.as_dict()) if arguments.json else self.table())
 
     def table(self) -> str:
-        """The results as text: median of each contender and its ratio."""
+        """Return the results as text: median of each contender and its ratio."""
         lines = [self.name]
         for name, timings in self.results.items():
             case = self._cases[name]
@@ -159,7 +159,7 @@ class Benchmark:
         return "\n".join(lines)
 
     def as_dict(self) -> dict[str, object]:
-        """The results as plain values, for a JSON file."""
+        """Return the results as plain values for JSON."""
         return {
             "name": self.name,
             "about": " ".join((self.description or "").split("\n\n")[0].split()),
@@ -193,7 +193,7 @@ class Benchmark:
 
 
 def shown(ms: float) -> str:
-    """A time in the unit that suits it."""
+    """Format a time in a suitable unit."""
     for factor, unit, limit in ((1e-3, "s", 1e3), (1.0, "ms", 0.1), (1e3, "µs", 0.0)):
         if ms >= limit:
             return f"{ms * factor:.3g} {unit}"
@@ -225,7 +225,7 @@ def measure(
 
 
 def optional(module: str) -> Any:
-    """A peer's module, or None where it is not installed (no wheel, say)."""
+    """Return a peer's module, or None if it is not installed."""
     try:
         return import_module(module)
     except ModuleNotFoundError:
@@ -233,7 +233,7 @@ def optional(module: str) -> Any:
 
 
 def _turn(run: Run) -> list[float]:
-    """Times (ms) of the runs of one turn."""
+    """Return the times (ms) of the runs of one turn."""
     times = [_timed(run)]
     while sum(times) < _TURN_S * 1e3:
         times.append(_timed(run))

@@ -1,4 +1,4 @@
-"""Runs every benchmark, each in its own process, one after the other.
+"""Run every benchmark in its own process, one after the other.
 
     pip install '.[bench]'
     python benchmarks/run_all.py [--only TEXT] [--page]
@@ -35,7 +35,7 @@ LIBRARIES = (
 
 
 def machine() -> dict[str, Any]:
-    """What matters of the machine, in general words."""
+    """Return the relevant properties of the machine."""
     return {
         "cores": os.cpu_count(),
         "architecture": platform.machine(),
@@ -53,10 +53,10 @@ def _version(name: str) -> str:
 
 
 def run(name: str) -> dict[str, Any]:
-    """One benchmark in a process of its own."""
+    """Run one benchmark in its own process."""
     command = [sys.executable, str(HERE / f"bench_{name}.py"), "--json"]
     done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
-    # Some peers greet on stdout: the object is what comes last or before that.
+    # Some peers print to stdout: search for the JSON object from the end.
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     found: dict[str, Any] = json.loads(lines[-1])
     return found

@@ -1,4 +1,4 @@
-"""Some minutes of load between two processes: does memory stay flat?
+"""Some minutes of load between two processes, to check that memory stays flat.
 
 One process publishes images (1 MB at 20 Hz, reliable, read by the other), 500 small
 messages a second and a latched map once a second, makes and destroys a publisher and a
@@ -46,7 +46,7 @@ SAMPLE_S = 5.0
 
 
 class Talker(Node):
-    """All the load there is."""
+    """Generates the load."""
 
     def __init__(self, context: Context) -> None:
         super().__init__("talker", context=context)

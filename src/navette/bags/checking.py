@@ -109,7 +109,7 @@ def check_bag(
 
 
 def _ignore(count: int) -> None:
-    """Nobody watches."""
+    """Ignore the progress."""
 
 
 def _check(
@@ -140,11 +140,12 @@ def _count(reader: BagReader, findings: _Findings) -> Counter[BagTopic]:
 def _check_counts(
     reader: BagReader, counted: Counter[BagTopic], findings: _Findings
 ) -> None:
-    for topic, said in reader.counts().items():
-        if said != counted[topic]:
+    for topic, stated in reader.counts().items():
+        if stated != counted[topic]:
             findings.error(
                 "counts",
-                f"{topic.name}: {counted[topic]} messages, the statistics state {said}",
+                f"{topic.name}: {counted[topic]} messages, "
+                f"the statistics state {stated}",
             )
 
 
@@ -193,9 +194,9 @@ def _check_chunk(
     if indexed is None:
         return
     there = Counter((entry.channel, entry.stamp_ns) for entry in entries)
-    said = Counter((c, stamp) for c, stamps in indexed.items() for stamp in stamps)
-    if there != said:
-        missing, wrong = (there - said).total(), (said - there).total()
+    stated = Counter((c, stamp) for c, stamps in indexed.items() for stamp in stamps)
+    if there != stated:
+        missing, wrong = (there - stated).total(), (stated - there).total()
         findings.error(
             "index",
             f"{where}: its index lacks {missing} messages, {wrong} entries are wrong",

@@ -146,7 +146,7 @@ def parse_chunk_index(number: int, content: bytes) -> Chunk:
     """A chunk as the summary names it.
 
     Raises:
-        DecodeError: the content is no chunk index.
+        DecodeError: the content is not a chunk index.
     """
     try:
         first, last, start, length, size = _CHUNK_INDEX.unpack_from(content)
@@ -164,7 +164,7 @@ def parse_message_index(content: bytes) -> tuple[int, list[int]]:
     """Channel and stamps of its messages in one chunk.
 
     Raises:
-        DecodeError: the content is no message index.
+        DecodeError: the content is not a message index.
     """
     try:
         channel, size = struct.unpack_from("<HI", content)

@@ -221,7 +221,7 @@ class Snapshots:
         self._size = 0
 
     def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
-        """Store a message; drop those that are too old."""
+        """Store a message; drop outdated ones."""
         self._kept.append(_Kept(recorded, stamp_ns, payload))
         self._size += len(payload)
         oldest_ns = stamp_ns - self._duration_ns

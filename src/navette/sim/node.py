@@ -268,8 +268,8 @@ class SimNode(StageNode):
             self.get_logger().warning(
                 f"contact: {episode.part} touched {episode.obstacle}"
             )
-            told = messages.contact_message(episode, number + 1)
-            self.publish(topics.CONTACTS.name, told)
+            contact = messages.contact_message(episode, number + 1)
+            self.publish(topics.CONTACTS.name, contact)
         self._contacts_told = len(episodes)
 
     def _publish_clock(self, stamp_ns: int) -> None:
@@ -292,9 +292,9 @@ class SimNode(StageNode):
         if self.params.odometry == "true":
             return self.simulator.pose(), self.simulator.motion(), None
         wheels = self.simulator.wheel_odometry()
-        told = wheels.motion()
-        motion = Motion((told.speed, 0.0, 0.0), (0.0, 0.0, told.yaw_rate))
-        covariances = PlanarCovariances(wheels.pose_covariance, told.covariance)
+        reported = wheels.motion()
+        motion = Motion((reported.speed, 0.0, 0.0), (0.0, 0.0, reported.yaw_rate))
+        covariances = PlanarCovariances(wheels.pose_covariance, reported.covariance)
         return Transform3.from_pose2(wheels.pose), motion, covariances
 
     def _believed_pose(self) -> Transform3:

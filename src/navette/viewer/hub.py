@@ -89,7 +89,7 @@ class Hub:
         try:
             request = frames.decode(frame)
         except DecodeError as error:
-            session.complain(str(error))
+            session.send_status(str(error))
             return
         _HANDLERS[type(request)](self, session, request)
 
@@ -201,10 +201,12 @@ class Hub:
             if session.wants_nodes:
                 session.outbox.put_data(_NODES, frame, depth=1)
 
-    def complain(self, client: int, message: str, level: Level = Level.ERROR) -> None:
+    def send_status(
+        self, client: int, message: str, level: Level = Level.ERROR
+    ) -> None:
         session = self._sessions.get(client)
         if session is not None:
-            session.complain(message, level)
+            session.send_status(message, level)
 
     # -- client requests -------------------------------------------------------
 
@@ -212,11 +214,11 @@ class Hub:
         for subscription_id, channel_id in request.subscriptions:
             channel = self._channels.get(channel_id)
             if channel is None:
-                session.complain(f"subscribe: unknown channel id {channel_id}")
+                session.send_status(f"subscribe: unknown channel id {channel_id}")
             elif subscription_id in session.channel_by_subscription:
-                session.complain(f"subscribe: id {subscription_id} is in use")
+                session.send_status(f"subscribe: id {subscription_id} is in use")
             elif channel_id in session.subscription_by_channel:
-                session.complain(
+                session.send_status(
                     f"subscribe: channel {channel_id} ({channel.topic}) is subscribed"
                 )
             else:
@@ -229,7 +231,7 @@ class Hub:
             if subscription_id in session.channel_by_subscription:
                 self._unsubscribe(session, subscription_id)
             else:
-                session.complain(
+                session.send_status(
                     f"unsubscribe: unknown subscription id {subscription_id}",
                     Level.WARNING,
                 )
@@ -278,7 +280,7 @@ class Hub:
         for channel in request.channels:
             problem = _refusal(session, channel)
             if problem:
-                session.complain(f"advertise: {problem}")
+                session.send_status(f"advertise: {problem}")
                 continue
             session.client_channels[channel.id] = channel
             session.pending += 1
@@ -287,7 +289,7 @@ class Hub:
     def _unadvertise(self, session: Session, request: frames.Unadvertise) -> None:
         for channel_id in request.channel_ids:
             if session.client_channels.pop(channel_id, None) is None:
-                session.complain(
+                session.send_status(
                     f"unadvertise: unknown channel id {channel_id}", Level.WARNING
                 )
                 continue
@@ -296,7 +298,9 @@ class Hub:
 
     def _publish(self, session: Session, request: frames.Publish) -> None:
         if request.channel_id not in session.client_channels:
-            session.complain(f"publish: channel {request.channel_id} is not advertised")
+            session.send_status(
+                f"publish: channel {request.channel_id} is not advertised"
+            )
             return
         session.pending += 1
         self._program.publish_from_client(session.id, request.channel_id, request.data)
@@ -371,7 +375,9 @@ class Hub:
 
     def _can_play(self, session: Session) -> bool:
         if not self._plays:
-            session.complain("playback control: the server does not play a recording")
+            session.send_status(
+                "playback control: the server does not play a recording"
+            )
             return False
         session.pending += 1
         return True

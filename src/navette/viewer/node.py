@@ -276,7 +276,7 @@ class ViewerNode(StageNode):
         try:
             request(*args)
         except NavetteError as error:
-            self._server.call(self._hub.complain, client, str(error))
+            self._server.call(self._hub.send_status, client, str(error))
         finally:
             self._server.call(self._hub.done, client)
 

@@ -74,7 +74,7 @@ class ParameterRequests:
             try:
                 split_name(name)
             except ParameterError as error:
-                self._call(self._hub.complain, client, str(error))
+                self._call(self._hub.send_status, client, str(error))
         self._remote.fetch(send)
 
     def set(
@@ -100,7 +100,7 @@ class ParameterRequests:
                 # The page finds the parameter by the first words.
                 is_whole = reason.startswith("parameter ") and name in reason
                 text = reason if is_whole else f"parameter {name!r:.120}: {reason}"
-                self._call(self._hub.complain, client, text)
+                self._call(self._hub.send_status, client, text)
             if not left:
                 end()
 

@@ -156,7 +156,7 @@ class ViewerServer:
         await self._end(server)
 
     async def _end(self, server: Server) -> None:
-        """Close all connections; abort those that do not complete the handshake."""
+        """Close all connections; abort clients that do not complete the handshake."""
         server.close()
         ended = asyncio.create_task(server.wait_closed())
         await asyncio.wait([ended], timeout=_CLOSE_S)

@@ -86,7 +86,7 @@ class Session:
     def send(self, frame: str | bytes) -> None:
         self.outbox.put_control(frame)
 
-    def complain(self, message: str, level: Level = Level.ERROR) -> None:
+    def send_status(self, message: str, level: Level = Level.ERROR) -> None:
         self.send(replies.status(level, message))
 
     @property

@@ -46,5 +46,5 @@ def topic_of(
     return BagTopic(name, kind, text, qos=qos)
 
 
-def said(topic: BagTopic, stamp_s: float, message: object) -> BagMessage:
+def recorded(topic: BagTopic, stamp_s: float, message: object) -> BagMessage:
     return BagMessage(topic, round(stamp_s * S), serialize(message))

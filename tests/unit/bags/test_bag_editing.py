@@ -114,7 +114,7 @@ def test_files_are_not_replaced_without_overwrite(tmp_path: Path) -> None:
     with pytest.raises(FileFormatError, match="exists already"):
         open_writer(bag)
     for name in ("b.mcap", "b.bag", "b.db3"):
-        (tmp_path / name).write_text("a letter", "utf-8")
+        (tmp_path / name).write_text("some text", "utf-8")
         with pytest.raises(FileFormatError, match="exists, is not a bag"):
             open_writer(tmp_path / name, overwrite=True)
     with pytest.raises(FileFormatError, match="folder does not exist"):

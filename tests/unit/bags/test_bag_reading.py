@@ -34,7 +34,7 @@ from navette.msgs.std_msgs.msg import String
 FORMATS = ("mcap", "bag", "db3")
 
 
-def told(messages: list[BagMessage]) -> list[tuple[str, str, int, bytes]]:
+def fields_of(messages: list[BagMessage]) -> list[tuple[str, str, int, bytes]]:
     return [(m.topic.name, m.topic.type_name, m.stamp_ns, m.data) for m in messages]
 
 
@@ -42,7 +42,7 @@ def told(messages: list[BagMessage]) -> list[tuple[str, str, int, bytes]]:
 def test_written_messages_are_read(tmp_path: Path, suffix: str) -> None:
     path = write_sample(tmp_path / f"a.{suffix}", 101)
     with open_bag(path) as reader:
-        assert told(list(reader.messages())) == told(sample(101))
+        assert fields_of(list(reader.messages())) == fields_of(sample(101))
         assert (reader.start_ns, reader.end_ns) == (START_NS, START_NS + 100 * STEP_NS)
         counts = {topic.name: count for topic, count in reader.counts().items()}
         assert counts == {"/chatter": 51, "/point": 50}
@@ -60,10 +60,12 @@ def test_time_ranges_and_topics(tmp_path: Path, suffix: str) -> None:
     with open_bag(write_sample(tmp_path / f"a.{suffix}", 50)) as reader:
         first, last = START_NS + 10 * STEP_NS, START_NS + 20 * STEP_NS
         part = list(reader.messages(start_ns=first, end_ns=last))
-        assert told(part) == told(sample(50)[10:21])
+        assert fields_of(part) == fields_of(sample(50)[10:21])
         points = list(reader.messages(["/point"], start_ns=first + 1))
-        assert told(points) == told([m for m in sample(50)[11:] if m.topic == POINT])
-        assert list(reader.messages(["/nobody"])) == []
+        assert fields_of(points) == fields_of(
+            [m for m in sample(50)[11:] if m.topic == POINT]
+        )
+        assert list(reader.messages(["/absent"])) == []
         assert list(reader.messages(start_ns=last, end_ns=first)) == []
         # Two readings of one open file do not disturb each other.
         one, other = reader.messages(), reader.messages(start_ns=last)

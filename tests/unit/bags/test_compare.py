@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from memory_source import MemorySource, S, said, topic_of
+from memory_source import MemorySource, S, recorded, topic_of
 
 from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.compare import Comparison, Tolerances, TopicComparison, compare
@@ -25,8 +25,8 @@ def pair(
 ) -> TopicComparison:
     """One message each, at the same time."""
     (found,) = against(
-        [said(topic, 1.0, a)],
-        [said(topic, 1.0, b)],
+        [recorded(topic, 1.0, a)],
+        [recorded(topic, 1.0, b)],
         *rules,
         tolerance_s=time_tolerance_s,
     ).topics
@@ -45,7 +45,7 @@ def against(
 
 
 def numbers(*stamps: float, value: float = 0.0) -> list[BagMessage]:
-    return [said(NUMBER, s, Float64(data=value)) for s in stamps]
+    return [recorded(NUMBER, s, Float64(data=value)) for s in stamps]
 
 
 def test_equal_recordings_are_the_same() -> None:
@@ -183,21 +183,21 @@ def test_stamps_may_differ_within_the_tolerance() -> None:
 
 
 def test_messages_of_one_stamp_are_matched_in_order() -> None:
-    a = [said(NUMBER, 1.0, Float64(data=float(i))) for i in range(3)]
+    a = [recorded(NUMBER, 1.0, Float64(data=float(i))) for i in range(3)]
     assert against(a, list(a)).same
     (found,) = against(a, a[::-1]).topics
     assert (found.compared, found.differing) == (3, 2)
 
 
 def test_a_missing_topic_is_a_difference_and_a_new_one_is_listed() -> None:
-    found = against(numbers(1, 2), [said(TEXT, 1.0, String())])
+    found = against(numbers(1, 2), [recorded(TEXT, 1.0, String())])
     assert found.topics[0].missing == 2
     assert found.unexpected == ("/text",)
     assert not found.same
 
 
 def test_another_type_is_named() -> None:
-    other = said(topic_of("/number", String), 1.0, String())
+    other = recorded(topic_of("/number", String), 1.0, String())
     (found,) = against(numbers(1), [other]).topics
     assert found.problem == "type std_msgs/msg/Float64 became std_msgs/msg/String"
     assert not found.same
@@ -212,7 +212,7 @@ def test_other_fields_of_the_same_type_are_named() -> None:
 
 def test_invalid_bytes_are_reported() -> None:
     broken = BagMessage(TEXT, S, b"\x00\x01\x00\x00\xff")
-    (found,) = against([said(TEXT, 1.0, String(data="a"))], [broken]).topics
+    (found,) = against([recorded(TEXT, 1.0, String(data="a"))], [broken]).topics
     assert found.problem.startswith("at 1.000 s: ")
 
 

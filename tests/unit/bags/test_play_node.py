@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from memory_source import LATCHED, MemorySource, S, said, topic_of
+from memory_source import LATCHED, MemorySource, S, recorded, topic_of
 
 from navette.bags import OfferedQos
 from navette.bags.bag import BagMessage, BagTopic
@@ -24,8 +24,8 @@ MAP = topic_of("/map", String, LATCHED)
 def source() -> MemorySource:
     return MemorySource(
         [
-            said(MAP, 100.0, String(data="map")),
-            *(said(CHATTER, 100 + i / 2, String(data=f"{i}")) for i in range(5)),
+            recorded(MAP, 100.0, String(data="map")),
+            *(recorded(CHATTER, 100 + i / 2, String(data=f"{i}")) for i in range(5)),
         ]
     )
 
@@ -113,7 +113,7 @@ def test_the_clock_is_published_at_its_rate_and_first_at_jumps() -> None:
 
 def test_a_published_clock_replaces_a_recorded_one() -> None:
     clock = topic_of("/clock", Clock)
-    of = MemorySource([said(clock, 1.0, Clock()), said(CHATTER, 1.0, String())])
+    of = MemorySource([recorded(clock, 1.0, Clock()), recorded(CHATTER, 1.0, String())])
     with GraphHarness() as graph:
         assert play(graph, of, clock_rate_hz=1.0).player.names == ("/chatter",)
     with GraphHarness() as graph:
@@ -122,15 +122,15 @@ def test_a_published_clock_replaces_a_recorded_one() -> None:
 
 def test_a_subscriber_acts_before_the_next_message() -> None:
     """A queue of depth 1 loses no message, although many have the same stamp."""
-    of = MemorySource([said(CHATTER, 1.0, String(data=f"{i}")) for i in range(50)])
+    of = MemorySource([recorded(CHATTER, 1.0, String(data=f"{i}")) for i in range(50)])
     with GraphHarness() as graph:
-        heard: list[str] = []
+        received: list[str] = []
         graph.node.create_subscription(
-            String, "/chatter", lambda m: heard.append(m.data), 1
+            String, "/chatter", lambda m: received.append(m.data), 1
         )
         play(graph, of).start()
         graph.run_for(0.1)
-        assert heard == [f"{i}" for i in range(50)]
+        assert received == [f"{i}" for i in range(50)]
 
 
 SENSOR = OfferedQos(reliability="best_effort", depth=5)
@@ -161,7 +161,7 @@ def test_publishers_have_the_recorded_qos(
 ) -> None:
     topic = topic_of("/t", String, *offers)
     with GraphHarness() as graph:
-        play(graph, MemorySource([said(topic, 1.0, String())]))
+        play(graph, MemorySource([recorded(topic, 1.0, String())]))
         (endpoint,) = graph.context.graph.endpoints("/t")
         assert endpoint.qos.reliability.name == reliability
         assert endpoint.qos.durability.name == durability
@@ -181,8 +181,8 @@ def test_a_type_that_is_not_installed_is_played() -> None:
 def test_topics_that_cannot_be_played_are_logged_and_others_played(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    unknown = BagTopic("/u", "nobody_msgs/msg/Knows")
-    of = MemorySource([BagMessage(unknown, S, b""), said(CHATTER, 1.0, String())])
+    unknown = BagTopic("/u", "absent_msgs/msg/Absent")
+    of = MemorySource([BagMessage(unknown, S, b""), recorded(CHATTER, 1.0, String())])
     with GraphHarness() as graph:
         probe = graph.collect("/chatter", String)
         play(graph, of).start()

@@ -5,7 +5,7 @@ import threading
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from memory_source import LATCHED, MemorySource, S, said, topic_of
+from memory_source import LATCHED, MemorySource, S, recorded, topic_of
 
 from navette.bags.bag import BagMessage
 from navette.bags.play import (
@@ -27,7 +27,7 @@ NOW = 5_000 * S  # when the player is started
 
 
 def source(stamps: tuple[float, ...] = (10.0, 10.5, 11.0, 12.0)) -> MemorySource:
-    return MemorySource([said(CHATTER, s, String(data=f"{s}")) for s in stamps])
+    return MemorySource([recorded(CHATTER, s, String(data=f"{s}")) for s in stamps])
 
 
 def text(message: BagMessage | None) -> str | None:
@@ -43,12 +43,12 @@ def started(of: MemorySource, **options: object) -> Player:
 
 def run(player: Player, until_s: float) -> list[tuple[float, str]]:
     """Return (seconds since the start, message) of all messages played until then."""
-    heard = []
+    received = []
     while (due_ns := player.due_ns()) is not None and due_ns <= NOW + until_s * S:
         message = player.take(due_ns)
         if message is not None:
-            heard.append(((due_ns - NOW) / S, text(message) or ""))
-    return heard
+            received.append(((due_ns - NOW) / S, text(message) or ""))
+    return received
 
 
 def test_messages_are_due_at_their_times() -> None:
@@ -129,10 +129,10 @@ def test_a_step_over_the_end_of_a_loop_returns_the_first() -> None:
 
 def test_a_loop_restarts_without_drift() -> None:
     player = started(source(), loop=True, rate=2.0)
-    heard = run(player, 3.0)
-    assert heard[:4] == [(0.0, "10.0"), (0.25, "10.5"), (0.5, "11.0"), (1.0, "12.0")]
-    assert heard[4:8] == [(t + 1.0, m) for t, m in heard[:4]]
-    assert heard[8:12] == [(t + 2.0, m) for t, m in heard[:4]]
+    received = run(player, 3.0)
+    assert received[:4] == [(0.0, "10.0"), (0.25, "10.5"), (0.5, "11.0"), (1.0, "12.0")]
+    assert received[4:8] == [(t + 1.0, m) for t, m in received[:4]]
+    assert received[8:12] == [(t + 2.0, m) for t, m in received[:4]]
 
 
 def test_a_loop_of_a_single_stamp_advances_time() -> None:
@@ -176,7 +176,10 @@ def test_a_start_in_the_middle_waits_for_the_first_message() -> None:
 
 def test_topics_are_selected() -> None:
     both = MemorySource(
-        [said(t, 1.0 + i, String(data=t.name)) for i, t in enumerate((CHATTER, OTHER))]
+        [
+            recorded(t, 1.0 + i, String(data=t.name))
+            for i, t in enumerate((CHATTER, OTHER))
+        ]
     )
     for options, wanted in (
         ({"topics": ("/chatter",)}, ("/chatter",)),
@@ -228,8 +231,8 @@ def test_playback_does_not_catch_up_after_a_pause_of_the_process() -> None:
 
 
 def with_map() -> MemorySource:
-    maps = [said(MAP, s, String(data=f"map {s}")) for s in (1.0, 2.0, 50.0)]
-    rest = [said(CHATTER, s / 10, String(data="x")) for s in range(10, 1000)]
+    maps = [recorded(MAP, s, String(data=f"map {s}")) for s in (1.0, 2.0, 50.0)]
+    rest = [recorded(CHATTER, s / 10, String(data="x")) for s in range(10, 1000)]
     return MemorySource([*maps, *rest])
 
 
@@ -269,8 +272,8 @@ def test_only_played_latched_topics_are_searched() -> None:
 def test_all_static_transforms_are_published_without_recorded_qos() -> None:
     static = topic_of("/tf_static", TFMessage)
     of = MemorySource(
-        [said(static, s, TFMessage()) for s in (0.0, 0.1, 0.2, 300.0)]
-        + [said(CHATTER, 0.0, String()), said(CHATTER, 500.0, String())]
+        [recorded(static, s, TFMessage()) for s in (0.0, 0.1, 0.2, 300.0)]
+        + [recorded(CHATTER, 0.0, String()), recorded(CHATTER, 500.0, String())]
     )
     player = Player(of, PlayOptions(start_offset_s=400.0))
     player.start(NOW)
@@ -304,7 +307,7 @@ def test_a_position_is_reached_when_it_is_due(
 
 
 def many(count: int) -> list[BagMessage]:
-    return [said(CHATTER, i / 1000, String(data=f"{i}")) for i in range(count)]
+    return [recorded(CHATTER, i / 1000, String(data=f"{i}")) for i in range(count)]
 
 
 @pytest.mark.parametrize("make", [DirectFeed, PrefetchingFeed])
@@ -313,10 +316,10 @@ def test_feeds_return_every_message_once(
 ) -> None:
     messages = many(5000)
     feed = make(iter(messages))
-    heard = []
+    received = []
     while feed.peek() is not None:
-        heard.append(feed.pop())
-    assert heard == messages
+        received.append(feed.pop())
+    assert received == messages
     assert feed.pop() is None
     feed.close()
 

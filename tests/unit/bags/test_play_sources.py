@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from memory_source import MemorySource, S, said, topic_of
+from memory_source import MemorySource, S, recorded, topic_of
 
 from navette.bags import BagWriter, Damage, open_bag
 from navette.bags.bag import BagMessage
@@ -24,7 +24,7 @@ A, B = topic_of("/a", String), topic_of("/b", String)
 
 
 def numbers(topic: object, *stamps: float) -> list[BagMessage]:
-    return [said(topic, s, String(data=f"{s}")) for s in stamps]  # type: ignore[arg-type]
+    return [recorded(topic, s, String(data=f"{s}")) for s in stamps]  # type: ignore[arg-type]
 
 
 def test_several_recordings_play_as_one() -> None:
@@ -58,11 +58,11 @@ def test_a_damaged_part_is_skipped_and_reported_once(tmp_path: Path) -> None:
     middle = len(data) // 4
     data[middle : middle + 8] = bytes(8 * [0x5A])
     path.write_bytes(data)
-    told: list[Damage] = []
+    reported: list[Damage] = []
     with open_bag(path) as bag:
         with pytest.raises(FileFormatError):
             list(bag.messages())
-        player = Player(TolerantSource(bag, told.append), PlayOptions(loop=True))
+        player = Player(TolerantSource(bag, reported.append), PlayOptions(loop=True))
         player.start(0)
         counts = []
         for _ in range(2):
@@ -73,7 +73,7 @@ def test_a_damaged_part_is_skipped_and_reported_once(tmp_path: Path) -> None:
                 count += player.take(due_ns) is not None
             counts.append(count)
     assert counts == [90, 90]
-    assert len(told) == 1
+    assert len(reported) == 1
 
 
 OPERATIONS = st.lists(
@@ -95,7 +95,7 @@ def test_no_message_is_lost_repeated_or_early_under_any_control(
     stamps = [sum(gaps[:i]) for i in range(len(gaps) + 1)]
     messages = [BagMessage(A, s, bytes([i])) for i, s in enumerate(stamps)]
     player = Player(MemorySource(messages), PlayOptions())
-    now_ns, heard = 0, []
+    now_ns, received = 0, []
     player.start(now_ns)
     for name, value in operations:
         if name == "wait":
@@ -105,16 +105,16 @@ def test_no_message_is_lost_repeated_or_early_under_any_control(
                 message = player.take(now_ns)
                 if message is not None:
                     assert message.stamp_ns <= player.position_ns(now_ns)
-                    heard.append(message)
+                    received.append(message)
             now_ns = until_ns
         elif name == "step":
             message = player.step(now_ns)
-            heard += [] if message is None else [message]
+            received += [] if message is None else [message]
         elif name == "rate":
             player.set_rate(now_ns, value)
         else:
             getattr(player, name)(now_ns)
         assert 0 <= player.position_ns(now_ns) <= stamps[-1]
-    assert heard == messages[: len(heard)]
+    assert received == messages[: len(received)]
     if player.state is PlayState.ENDED:
-        assert heard == messages
+        assert received == messages

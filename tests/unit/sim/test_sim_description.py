@@ -26,8 +26,8 @@ def test_robot_description(tmp_path: Path, name: str) -> None:
         *(link.name for link in load_robot(name).model.links),
     }
     for link in model.links[1:]:
-        told = link.model_T_link.translation
-        assert told == pytest.approx(
+        reported = link.model_T_link.translation
+        assert reported == pytest.approx(
             simulator.link_in_base(link.name).translation, abs=2e-3
         )
 

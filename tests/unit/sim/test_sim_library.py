@@ -63,14 +63,14 @@ def test_parameter_files_fit_the_robot(name: str) -> None:
     nodes = yaml.safe_load(robot.params_file.read_text())
     values = nodes["sim"]["ros__parameters"]
     SimParams.from_dict(values)
-    told = Footprint.from_flat(
+    reported = Footprint.from_flat(
         tuple(nodes["control"]["ros__parameters"]["footprint_m"])
     )
     shape = Footprint(footprint_of(robot.model))
-    assert told.circumscribed_radius == pytest.approx(
+    assert reported.circumscribed_radius == pytest.approx(
         shape.circumscribed_radius, abs=0.02
     )
-    assert told.inscribed_radius == pytest.approx(shape.inscribed_radius, abs=0.02)
+    assert reported.inscribed_radius == pytest.approx(shape.inscribed_radius, abs=0.02)
 
 
 def test_a_copy_of_a_built_in_robot_is_identified() -> None:

@@ -25,7 +25,7 @@ class Run:
     sim: SimNode
     ears: Node
     executor: Executor
-    heard: dict[str, list[Any]] = field(default_factory=lambda: defaultdict(list))
+    received: dict[str, list[Any]] = field(default_factory=lambda: defaultdict(list))
 
     def listen(self, *topics: str) -> None:
         for topic in topics:
@@ -33,7 +33,7 @@ class Run:
             self.ears.create_subscription(
                 publisher.msg_type,
                 topic,
-                self.heard[topic].append,
+                self.received[topic].append,
                 publisher.qos_profile,
             )
 
@@ -71,7 +71,7 @@ def test_rates_and_stamps() -> None:
     run = _run(odometry_rate_hz=50.0, tf_rate_hz=50.0)
     run.listen("/lidar", "/odom/filtered", "/clock", "/tf", "/imu", "/ground_truth")
     run.spin(1.0)
-    counts = {topic: len(messages) for topic, messages in run.heard.items()}
+    counts = {topic: len(messages) for topic, messages in run.received.items()}
     assert counts == {
         "/lidar": 10,
         "/odom/filtered": 50,
@@ -80,9 +80,9 @@ def test_rates_and_stamps() -> None:
         "/imu": 100,
         "/ground_truth": 50,
     }
-    stamp = run.heard["/lidar"][0].header.stamp
+    stamp = run.received["/lidar"][0].header.stamp
     assert (stamp.sec, stamp.nanosec) == (0, 100_000_000)
-    last = run.heard["/clock"][-1].clock
+    last = run.received["/clock"][-1].clock
     assert (last.sec, last.nanosec) == (1, 0)
 
 
@@ -90,22 +90,22 @@ def test_the_course_profile_has_the_public_frames() -> None:
     run = _run()
     run.listen("/odom/filtered", "/ground_truth", "/lidar", "/tf", "/tf_static")
     run.spin(0.2)
-    odometry = run.heard["/odom/filtered"][-1]
+    odometry = run.received["/odom/filtered"][-1]
     assert odometry.header.frame_id == "sim_world"
     assert odometry.child_frame_id == "robot/chassis/lidar"
     assert odometry.pose.pose.position.x == pytest.approx(-6.0 + 1.3, abs=0.01)
-    truth = run.heard["/ground_truth"][-1]
+    truth = run.received["/ground_truth"][-1]
     assert truth.child_frame_id == "robot"
     assert truth.pose.pose.position.x == pytest.approx(-6.0, abs=0.01)
-    assert run.heard["/lidar"][-1].header.frame_id == "robot/chassis/lidar"
-    moving = {t.child_frame_id for m in run.heard["/tf"] for t in m.transforms}
+    assert run.received["/lidar"][-1].header.frame_id == "robot/chassis/lidar"
+    moving = {t.child_frame_id for m in run.received["/tf"] for t in m.transforms}
     assert moving == {
         "robot",
         "robot/left_wheel",
         "robot/right_wheel",
         "robot/caster",
     }
-    (static,) = run.heard["/tf_static"]
+    (static,) = run.received["/tf_static"]
     parents = {t.child_frame_id: t.header.frame_id for t in static.transforms}
     assert parents["robot/chassis"] == "robot"
     assert parents["robot/chassis/lidar"] == "robot/chassis"
@@ -120,7 +120,7 @@ def test_odometry_of_the_lidar_frame_gives_the_base_pose() -> None:
     tracker = PoseTracker(run.ears, "robot", "sim_world")
     run.drive(0.4, 0.5)
     run.spin(3.0)
-    last = run.heard["/odom/filtered"][-1]
+    last = run.received["/odom/filtered"][-1]
     assert last.twist.twist.linear.y == pytest.approx(0.5 * 1.3, abs=0.02)
     assert tracker.update(last)
     truth = run.sim.simulator.pose().to_pose2()
@@ -132,20 +132,20 @@ def test_other_robots_have_map_odom_and_base_link() -> None:
     run = _run(load_world("arena"), robot="turtlebot3_burger")
     run.listen("/odom/filtered", "/tf_static", "/lidar")
     run.spin(0.3)
-    odometry = run.heard["/odom/filtered"][-1]
+    odometry = run.received["/odom/filtered"][-1]
     assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_link")
-    (static,) = run.heard["/tf_static"]
+    (static,) = run.received["/tf_static"]
     parents = {t.child_frame_id: t.header.frame_id for t in static.transforms}
     assert parents["odom"] == "map"
     assert parents["chassis"] == "base_link"
-    assert run.heard["/lidar"][-1].header.frame_id == "chassis/lidar"
+    assert run.received["/lidar"][-1].header.frame_id == "chassis/lidar"
 
 
 def test_camera_has_its_camera_info() -> None:
     run = _run()
     run.listen("/camera", "/camera_info")
     run.spin(0.11)
-    image, info = run.heard["/camera"][0], run.heard["/camera_info"][0]
+    image, info = run.received["/camera"][0], run.received["/camera_info"][0]
     assert (image.width, image.height, image.encoding) == (320, 240, "rgb8")
     assert len(image.data) == 320 * 240 * 3
     assert info.header == image.header
@@ -172,9 +172,9 @@ def test_descriptions_reach_late_subscribers() -> None:
     run.spin(1.0)
     run.listen("/robot_description", "/world_description", "/tf_static")
     run.spin(0.1)
-    assert '<link name="robot/chassis">' in run.heard["/robot_description"][0].data
-    assert '<link name="sim_world">' in run.heard["/world_description"][0].data
-    assert run.heard["/tf_static"]
+    assert '<link name="robot/chassis">' in run.received["/robot_description"][0].data
+    assert '<link name="sim_world">' in run.received["/world_description"][0].data
+    assert run.received["/tf_static"]
 
 
 def test_a_robot_without_a_lidar_is_logged(
@@ -216,9 +216,9 @@ def test_contacts_are_reported() -> None:
     run.listen("/contacts")
     run.drive(0.8, 0.0)
     run.spin(4.0)
-    (told,) = run.heard["/contacts"]
-    assert "robot/chassis touched box" in told.message
-    assert {pair.key for pair in told.values} >= {"part", "obstacle", "time_s"}
+    (reported,) = run.received["/contacts"]
+    assert "robot/chassis touched box" in reported.message
+    assert {pair.key for pair in reported.values} >= {"part", "obstacle", "time_s"}
     assert run.sim.simulator.contacts.count == 1
 
 
@@ -246,7 +246,10 @@ def test_wheel_odometry_drifts() -> None:
     run.listen("/odom/filtered", "/ground_truth")
     run.drive(0.5, 0.4)
     run.spin(6.0)
-    odometry, truth = run.heard["/odom/filtered"][-1], run.heard["/ground_truth"][-1]
+    odometry, truth = (
+        run.received["/odom/filtered"][-1],
+        run.received["/ground_truth"][-1],
+    )
     a, b = odometry.pose.pose.position, truth.pose.pose.position
     assert 0.01 < math.hypot(a.x - b.x, a.y - b.y) < 1.5
     assert odometry.twist.twist.linear.x == pytest.approx(0.5, abs=0.2)
@@ -261,7 +264,7 @@ def test_the_same_run_twice_gives_the_same_messages() -> None:
         run.listen("/lidar", "/odom/filtered", "/imu")
         run.drive(0.5, 0.2)
         run.spin(1.0)
-        return [run.heard[t] for t in ("/lidar", "/odom/filtered", "/imu")]
+        return [run.received[t] for t in ("/lidar", "/odom/filtered", "/imu")]
 
     assert record() == record()
 
@@ -276,5 +279,5 @@ def test_reset_restores_the_start() -> None:
     )
     run.listen("/odom/filtered")
     run.spin(0.1)
-    stamp = run.heard["/odom/filtered"][-1].header.stamp
+    stamp = run.received["/odom/filtered"][-1].header.stamp
     assert stamp.sec == 2  # the clock continues

@@ -85,9 +85,9 @@ def test_a_filter_with_known_yaw_rate_estimates_speed_without_bias() -> None:
     for seed in range(drives):
         wheels = odometry(noise)
         drive(wheels, 0.02, 0.02, 1, seed)
-        told = wheels.motion()
-        gain = told.covariance[0, 2] / told.covariance[2, 2]
-        off.append(told.speed - gain * told.yaw_rate - 0.02 / dt)
+        reported = wheels.motion()
+        gain = reported.covariance[0, 2] / reported.covariance[2, 2]
+        off.append(reported.speed - gain * reported.yaw_rate - 0.02 / dt)
     assert abs(np.mean(off)) < noise**2 / (2 * dt) / 2
 
 
@@ -102,8 +102,8 @@ def test_covariances_do_not_depend_on_the_update_rate() -> None:
 
 def test_a_stationary_wheel_has_a_variance() -> None:
     wheels = odometry(0.05)
-    told = wheels.motion()
-    assert (told.speed, told.yaw_rate) == (0.0, 0.0)
+    reported = wheels.motion()
+    assert (reported.speed, reported.yaw_rate) == (0.0, 0.0)
     drive(wheels, 0.0, 0.0, 3, seed=1)
     least = np.eye(3) * LEAST_STDDEV**2
     np.testing.assert_allclose(wheels.motion().covariance, least)

@@ -128,7 +128,7 @@ def test_a_late_client_receives_the_last_path(
     program: Program, far: Far, client: Client
 ) -> None:
     client.subscribe("/path", 1)
-    # Again until it is heard: who publishes must know of the subscription first.
+    # Published until received: the publisher must discover the subscription first.
     path = Path(header=Header(frame_id="map"))
     timer = far.node.create_timer(0.3, lambda: far.path.publish(path))
     client.message(1)
@@ -146,8 +146,8 @@ def test_a_blocked_node_is_silent_and_an_ended_node_is_gone(
     wait_for_speed(client, 1.0)
     far.freeze()
     set_speed(client, 1.5)
-    said = client.wait_for_op("status")["message"]
-    assert said == "parameter '/far.speed_mps': node /far: no response in 2 s"
+    reason = client.wait_for_op("status")["message"]
+    assert reason == "parameter '/far.speed_mps': node /far: no response in 2 s"
     wait_for_state(client, "silent")
     far.thaw.set()
     wait_for_state(client, "alive")

@@ -14,14 +14,14 @@ from navette.viewer.session import Topic, Watch
 
 PATH = Topic("/path", "nav_msgs/msg/Path", "float64[] x")
 SCAN = Topic("/lidar", "sensor_msgs/msg/LaserScan", "float32[] ranges")
-SAID = Graph({"/path": ("/planner",)}, {})
+PUBLISHED = Graph({"/path": ("/planner",)}, {})
 
 
 @pytest.fixture
 def bench(tmp_path: Path) -> Bench:
     bench = Bench(tmp_path)
     bench.hub.set_topics([PATH, SCAN])
-    bench.hub.set_graph(SAID)
+    bench.hub.set_graph(PUBLISHED)
     return bench
 
 
@@ -65,7 +65,7 @@ def test_the_message_of_a_publisher_that_left_is_dropped(bench: Bench) -> None:
     assert bench.program.take() == [("unwatch", "/path", None)]
     assert latecomer(bench) == []
     bench.program.take()
-    bench.hub.set_graph(SAID)  # watched already
+    bench.hub.set_graph(PUBLISHED)  # watched already
     assert bench.program.take() == []
     say(bench, 2)
     assert latecomer(bench) == [message_data(7, 2, b"way")]
@@ -92,7 +92,7 @@ def test_a_stream_is_unsubscribed_without_a_client(bench: Bench) -> None:
     for number in range(20):
         say(bench, number * 100_000_000)
     assert bench.program.take() == [("unwatch", "/path", None)]
-    bench.hub.set_graph(Graph({**SAID.published, "/new": ("/b",)}, {}))
+    bench.hub.set_graph(Graph({**PUBLISHED.published, "/new": ("/b",)}, {}))
     assert bench.program.take() == []
     assert latecomer(bench) == []  # the next one comes soon
 

@@ -55,7 +55,7 @@ def test_a_frozen_node_is_silent_within_two_seconds_and_comes_back(
     monitored.freeze("/a")
     assert monitored.states(1.0)["/a"] is ALIVE
     assert monitored.states(1.0)["/a"] is SILENT
-    # Its connection times out: that it is listed no more tells nothing new.
+    # Its connection times out: leaving the graph is not a new state.
     monitored.others = {}
     assert monitored.states(10.0)["/a"] is SILENT
     monitored.others = {"/a": True}

@@ -178,7 +178,7 @@ def test_goals_are_received_as_cdr(client: Client, talker: Talker) -> None:
         ),
         ("cdr", "geometry_msgs/msg/PointStamped", "/goal_point", b"\0\1\0\0", ""),
         ("cdr", "geometry_msgs/msg/Nothing", "/goal_point", b"", "Nothing"),
-        ("cdr", "std_msgs/msg/String", "/goal_point", b"", "carries"),
+        ("cdr", "std_msgs/msg/String", "/goal_point", b"", "has the type"),
         ("cdr", "std_msgs/msg/String", "no good", b"", "no good"),
         ("protobuf", "std_msgs/msg/String", "/x", b"", "known: cdr, json"),
     ],
@@ -207,7 +207,7 @@ def test_parameters_of_all_nodes_are_listed(client: Client) -> None:
     assert values["/talker.speed_mps"] == 1.0
     assert values["/talker.names"] == ["a", "b"]
     assert values["/viewer.port"] == 0
-    assert client.get_parameters("talker.depth", "/nobody.x") == {"/talker.depth": 3}
+    assert client.get_parameters("talker.depth", "/absent.x") == {"/talker.depth": 3}
 
 
 def test_parameters_are_set_and_reported_to_subscribers(
@@ -371,7 +371,7 @@ def test_closing_does_not_wait_for_answers_that_never_come(
         for _ in range(2):
             client.wait_for(lambda f: isinstance(f, tuple) and f[0] == 2)
         program.close()
-        # Held back behind the requests that nobody answered.
+        # Queued behind the unanswered requests.
         client.read_to_the_end()
         assert client.statuses == []
 
@@ -499,6 +499,6 @@ def test_parameters_of_other_processes_come_from_events() -> None:
 
     with Program(teller) as program, Client(program.address) as client:
         client.send(op="subscribeParameterUpdates", parameterNames=["/elsewhere.gain"])
-        told = client.wait_for_op("parameterValues")["parameters"]
-        assert [(p["name"], p["value"]) for p in told] == [("/elsewhere.gain", 1.5)]
+        reported = client.wait_for_op("parameterValues")["parameters"]
+        assert [(p["name"], p["value"]) for p in reported] == [("/elsewhere.gain", 1.5)]
         assert client.get_parameters("/elsewhere.gain") == {"/elsewhere.gain": 1.5}

@@ -37,7 +37,7 @@ class Bench(World):
         sent(self.session.outbox)
 
     def beat(self, *, blocked: bool = False) -> list[Any]:
-        """A beat of the socket thread; what the client is told."""
+        """Run one period of the socket thread; return the reports to the client."""
         self.monitor.on_period()
         while self.events and not blocked:
             self.events.pop(0)()
@@ -57,9 +57,9 @@ def test_no_node_is_probed_without_a_client(bench: Bench) -> None:
 
 def test_a_client_receives_reports_until_it_unsubscribes(bench: Bench) -> None:
     bench.hub.receive(bench.session, '{"op": "subscribeNodes"}')
-    (told,) = bench.beat()
-    assert (told["op"], told["blocked"]) == ("nodes", 0.0)
-    assert [(n["name"], n["state"]) for n in told["nodes"]] == [
+    (reported,) = bench.beat()
+    assert (reported["op"], reported["blocked"]) == ("nodes", 0.0)
+    assert [(n["name"], n["state"]) for n in reported["nodes"]] == [
         ("/far", "alive"),
         ("/viewer", "alive"),
     ]
@@ -67,7 +67,7 @@ def test_a_client_receives_reports_until_it_unsubscribes(bench: Bench) -> None:
     bench.hub.receive(bench.session, '{"op": "unsubscribeNodes"}')
     assert bench.beat() == []
     bench.clock.now_s += 2.0
-    bench.beat()  # gives up what nobody answered
+    bench.beat()  # unanswered calls time out
     bench.beat()
     assert bench.clients == []
 
@@ -75,10 +75,10 @@ def test_a_client_receives_reports_until_it_unsubscribes(bench: Bench) -> None:
 def test_the_socket_thread_reports_a_blocked_program(bench: Bench) -> None:
     bench.hub.receive(bench.session, '{"op": "subscribeNodes"}')
     bench.beat()
-    said = [bench.beat(blocked=True) for _ in range(7)]
-    assert said[:5] == [[]] * 5
-    (told,) = said[6]
-    assert told["blocked"] == 3.0
+    reasons = [bench.beat(blocked=True) for _ in range(7)]
+    assert reasons[:5] == [[]] * 5
+    (reported,) = reasons[6]
+    assert reported["blocked"] == 3.0
     assert len(bench.events) == 1  # they do not pile up
-    (told,) = bench.beat()
-    assert told["blocked"] == 0.0
+    (reported,) = bench.beat()
+    assert reported["blocked"] == 0.0

@@ -30,8 +30,8 @@ def test_each_stream_keeps_its_newest() -> None:
 
 def test_large_frames_are_bounded_by_bytes_but_one_always_stays() -> None:
     outbox = Outbox(stream_bytes=10)
-    for letter in (b"a", b"b", b"c"):
-        outbox.put_data("image", letter * 6)
+    for character in (b"a", b"b", b"c"):
+        outbox.put_data("image", character * 6)
     outbox.put_data("map", b"m" * 100)
     assert drain(outbox) == [b"cccccc", b"m" * 100]
 

@@ -92,7 +92,7 @@ def test_topics_are_shown_once_per_type_latched_if_any_publisher_is() -> None:
         TopicEnd("/map", STRING, "/memory", publishes=True, latched=True),
         TopicEnd("/map", STRING, "/other", publishes=True),
         TopicEnd("/scan", STRING, "/costmap", publishes=False, latched=True),
-        TopicEnd("/odd", "nobody_msgs/msg/Knows", "/odd", publishes=True),
+        TopicEnd("/odd", "absent_msgs/msg/Absent", "/odd", publishes=True),
     ]
     known = {STRING: "string data"}
     assert topics_of(ends, lambda _, type_name: known.get(type_name)) == [

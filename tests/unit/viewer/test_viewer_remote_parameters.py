@@ -64,9 +64,9 @@ class Far(World):
         return SimpleNamespace(results=[result])
 
     def set(self, name: str, value: Any, kind: str | None = None) -> list[str]:
-        said: list[str] = []
-        self.remote.set(WireParameter(name, value, kind), said.append)
-        return said
+        reasons: list[str] = []
+        self.remote.set(WireParameter(name, value, kind), reasons.append)
+        return reasons
 
 
 @pytest.fixture
@@ -130,10 +130,10 @@ def test_a_refusal_has_the_reason_of_the_node(far: Far) -> None:
     assert far.set("/far.speed", 9.0) == ["too fast"]
     assert far.remote.values["/far.speed"].value == 1.0
     del far.answers["/far/set_parameters"]
-    said = far.set("/far.speed", 1.5)
+    reasons = far.set("/far.speed", 1.5)
     far.clock.now_s += 2.1
     far.service_calls.expire()
-    assert said == ["node /far: no response in 2 s"]
+    assert reasons == ["node /far: no response in 2 s"]
     assert "not a number" in far.set("/far.speed", "fast", "float64")[0]
 
 
@@ -159,9 +159,9 @@ def test_a_restarted_node_of_the_same_name_is_read_again(far: Far) -> None:
 
 def test_a_request_to_a_node_that_leaves_fails(far: Far) -> None:
     del far.answers["/far/list_parameters"]
-    said = far.set("/far.speed", 1.5)
+    reasons = far.set("/far.speed", 1.5)
     far.remote.set_nodes({})
-    assert said == ["node /far left the graph"]
+    assert reasons == ["node /far left the graph"]
 
 
 def test_parameter_events_of_unknown_nodes_are_kept(far: Far) -> None:

@@ -18,7 +18,10 @@ def world() -> World:
 def ask(world: World, service: str = "/a/get_parameters") -> list[tuple[Any, str]]:
     got: list[tuple[Any, str]] = []
     world.service_calls.call(
-        service, GET, {"names": ["x"]}, lambda *said: got.append((said[0], said[1]))
+        service,
+        GET,
+        {"names": ["x"]},
+        lambda *reasons: got.append((reasons[0], reasons[1])),
     )
     return got
 

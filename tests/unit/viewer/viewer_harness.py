@@ -66,7 +66,7 @@ class Program:
         return results[0]
 
     def stop(self) -> None:
-        """No more callbacks; the viewer's own thread goes on."""
+        """Stop callbacks; the viewer's own thread keeps running."""
         self.executor.stop()
         self._thread.join()
 

@@ -65,7 +65,7 @@ const parameters = {
     return line;
   },
 
-  /** Over the range that the node tells, or from nothing to twice the value. */
+  /** Slider range: declared by the node, or from 0 to twice the value. */
   slider(name, { low, high, step, read_only }, input) {
     const { value } = this.values.get(name), whole = this.isWhole(name);
     const most = value === 0 ? 1 : 2 * Math.abs(value), has = Number.isFinite(low) && Number.isFinite(high);
