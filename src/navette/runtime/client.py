@@ -4,8 +4,6 @@ import threading
 from collections import deque
 from typing import Any
 
-from navette.errors import MessageError
-from navette.msgs import type_name
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context
@@ -21,7 +19,7 @@ from navette.runtime.future import Future, ResponseFuture
 from navette.runtime.qos import QoSProfile
 from navette.runtime.service_endpoint import ServiceEndpoint
 from navette.runtime.service_introspection import ServiceEvents
-from navette.runtime.time import seconds_to_ns
+from navette.runtime.type_support import check_type
 from navette.transports import ClientPort, Endpoint, Reply, RequestId, Transport
 
 
@@ -93,12 +91,7 @@ class Client(ServiceEndpoint):
         """
         if self._destroyed:
             raise InvalidHandle(f"client of {self.srv_name} was destroyed")
-        expected = self.srv_type.Request
-        if not isinstance(request, expected):
-            raise MessageError(
-                f"service {self.srv_name}: expected {type_name(expected)}, got "
-                f"{type(request).__name__}"
-            )
+        check_type(request, self.srv_type.Request, f"service {self.srv_name}")
         future: Future[Any] = ResponseFuture()
         with self._lock:
             self._sequence = sequence = self._sequence + 1
@@ -126,7 +119,7 @@ class Client(ServiceEndpoint):
         """
         future = self.call_async(request)
         self._loop.run(
-            until_ns=self._deadline_ns(timeout_sec), done=future.done, calling=True
+            until_ns=self._loop.deadline_ns(timeout_sec), done=future.done, calling=True
         )
         if future.cancelled():  # the client was destroyed, usually by a shutdown
             raise ROSInterruptException
@@ -161,7 +154,7 @@ class Client(ServiceEndpoint):
         """Run events until the service has a server; False after the timeout."""
         if not self.service_is_ready():
             self._loop.run(
-                until_ns=self._deadline_ns(timeout_sec), done=self.service_is_ready
+                until_ns=self._loop.deadline_ns(timeout_sec), done=self.service_is_ready
             )
         return self.service_is_ready()
 
@@ -200,8 +193,3 @@ class Client(ServiceEndpoint):
         for future in list(self._pending.values()):
             future.cancel()
         self._owner.forget(self)
-
-    def _deadline_ns(self, timeout_sec: float | None) -> int | None:
-        if timeout_sec is None or timeout_sec < 0:
-            return None
-        return self._loop.clock.now_ns + seconds_to_ns(float(timeout_sec))

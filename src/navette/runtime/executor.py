@@ -125,19 +125,21 @@ class Executor:
         """
         if not self._context.ok():
             raise ExternalShutdownException("the context was shut down")
-        self._run(timeout_s=timeout_sec, limit=1)
+        self._run(until_ns=self.loop.deadline_ns(timeout_sec), limit=1)
 
     def spin_until_future_complete(
         self, future: Future[Any], timeout_sec: float | None = None
     ) -> None:
         """Run until ``future`` is done or the timeout expires."""
-        self._run(timeout_s=timeout_sec, done=future.done)
+        self._run(until_ns=self.loop.deadline_ns(timeout_sec), done=future.done)
 
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | None = None
     ) -> None:
         """Run one event, unless ``future`` is done first."""
-        self._run(timeout_s=timeout_sec, done=future.done, limit=1)
+        self._run(
+            until_ns=self.loop.deadline_ns(timeout_sec), done=future.done, limit=1
+        )
 
     def can_execute(self, entity: Entity) -> bool:
         """Return whether the entity's group lets its callback start now."""
@@ -161,10 +163,9 @@ class Executor:
             ShutdownException: the executor was shut down.
             ExternalShutdownException: the context was shut down.
         """
-        until_ns = None
-        if timeout_sec is not None and timeout_sec >= 0:
-            until_ns = self.now_ns + round(timeout_sec * 1e9)
-        entity = self.loop.take(until_ns, lambda: self._stopping or condition())
+        entity = self.loop.take(
+            self.loop.deadline_ns(timeout_sec), lambda: self._stopping or condition()
+        )
         if entity is not None:
             owner = entity.origin()[0]
             named = (n for n in self._nodes if n.get_fully_qualified_name() == owner)
@@ -239,12 +240,9 @@ class Executor:
         self,
         *,
         until_ns: int | None = None,
-        timeout_s: float | None = None,
         done: Callable[[], bool] | None = None,
         limit: int | None = None,
     ) -> None:
-        if timeout_s is not None and timeout_s >= 0:
-            until_ns = self.now_ns + round(timeout_s * 1e9)
         if self._depth == 0:  # a nested spin must not clear the outer spin's stop
             self._stopping = False
         self._depth += 1

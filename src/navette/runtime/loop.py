@@ -16,6 +16,7 @@ from navette.runtime.callback_groups import CallbackGroup, ReentrantCallbackGrou
 from navette.runtime.clock import ContextClock, Wakeup
 from navette.runtime.events import Call, Entity
 from navette.runtime.future import Task
+from navette.runtime.time import seconds_to_ns
 
 # How long a thread that may not drive the loop waits before it checks again.
 _TURN_S = 0.005
@@ -44,11 +45,7 @@ class EventLoop:
         self._lock = threading.Lock()
         self._turn = threading.Condition()
         self._others = 0  # threads that wait while another thread drives
-        self._pending_execute = (
-            0  # threads that are to run an event before the next is taken
-        )
-
-    # -- adding events ---------------------------------------------------------
+        self._pending_execute = 0  # threads in execute() that wait for their turn
 
     def call_soon(
         self, function: Callable[[], Any], source: str = "call", node: str = ""
@@ -94,6 +91,12 @@ class EventLoop:
             self._wakeup.set()
         return token
 
+    def deadline_ns(self, timeout_sec: float | None) -> int | None:
+        """Return the end of a timeout in ns; None (no limit) if None or negative."""
+        if timeout_sec is None or timeout_sec < 0:
+            return None
+        return self.clock.now_ns + seconds_to_ns(float(timeout_sec))
+
     def wake(self) -> None:
         """Make the driving thread check its conditions."""
         self._attention = True
@@ -136,8 +139,6 @@ class EventLoop:
         task.on_error = fail
         self.call_soon(task, source, node)
         return task
-
-    # -- running ---------------------------------------------------------------
 
     def close(self) -> None:
         """End every run; later runs return immediately."""

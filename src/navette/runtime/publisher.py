@@ -3,8 +3,8 @@
 import logging
 from typing import Any, Generic, TypeVar, cast
 
-from navette.errors import DecodeError, MessageError
-from navette.msgs import deserialize, type_name
+from navette.errors import DecodeError
+from navette.msgs import deserialize
 from navette.runtime.destroyable import Destroyable, EntityOwner
 from navette.runtime.exceptions import InvalidHandle
 from navette.runtime.loop import EventLoop
@@ -12,6 +12,7 @@ from navette.runtime.qos import QoSProfile
 from navette.runtime.qos_events import EventHandler
 from navette.runtime.qos_watch import EndpointWatch
 from navette.runtime.time import Duration
+from navette.runtime.type_support import check_type
 from navette.transports import Encoded, Endpoint, PublisherPort
 
 MsgT = TypeVar("MsgT")
@@ -122,11 +123,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         _log.warning("topic %s: message not delivered: %s", self.endpoint.topic, error)
 
     def _converted(self, msg: Any) -> Any:
-        if isinstance(msg, self.msg_type):
-            return msg
         if isinstance(msg, bytes):
             return deserialize(msg, cast(Any, self.msg_type))
-        raise MessageError(
-            f"topic {self.endpoint.topic}: expected "
-            f"{type_name(self.msg_type)}, got {type(msg).__name__}"
-        )
+        check_type(msg, self.msg_type, f"topic {self.endpoint.topic}")
+        return msg

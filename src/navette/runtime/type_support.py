@@ -48,6 +48,18 @@ def interface_name(cls: Any, kind: str) -> str:
     return name
 
 
+def check_type(message: Any, expected: Any, sender: str) -> None:
+    """Raise MessageError unless ``message`` is an instance of ``expected``.
+
+    Args:
+        sender: topic, service or action, for the error message.
+    """
+    if not isinstance(message, expected):
+        raise MessageError(
+            f"{sender}: expected {type_name(expected)}, got {type(message).__name__}"
+        )
+
+
 def _kind(cls: type) -> str:
     # The name does not help: an action's services are named pkg/action/Name_SendGoal.
     if hasattr(cls, "_spec_"):

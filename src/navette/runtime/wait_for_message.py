@@ -5,7 +5,6 @@ from typing import Any, TypeVar
 from navette.runtime.callback_groups import ReentrantCallbackGroup
 from navette.runtime.node import Node
 from navette.runtime.qos import QoSProfile
-from navette.runtime.time import seconds_to_ns
 
 MsgT = TypeVar("MsgT")
 
@@ -39,11 +38,8 @@ def wait_for_message(
         return bool(received)
 
     loop = node.context.loop
-    until_ns = None
-    if time_to_wait >= 0:
-        until_ns = loop.clock.now_ns + seconds_to_ns(float(time_to_wait))
     try:
-        loop.run(until_ns=until_ns, done=done)
+        loop.run(until_ns=loop.deadline_ns(time_to_wait), done=done)
     finally:
         node.destroy_subscription(subscription)
     return (True, received[0]) if received else (False, None)

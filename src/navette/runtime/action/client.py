@@ -5,8 +5,6 @@ from collections.abc import Callable
 from typing import Any
 from weakref import WeakValueDictionary
 
-from navette.errors import MessageError
-from navette.msgs import type_name
 from navette.msgs.action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from navette.msgs.action_msgs.srv import CancelGoal
 from navette.msgs.builtin_interfaces.msg import Time as TimeMsg
@@ -23,7 +21,7 @@ from navette.runtime.qos import (
     qos_profile_services_default,
 )
 from navette.runtime.time import seconds_to_ns
-from navette.runtime.type_support import interface_name
+from navette.runtime.type_support import check_type, interface_name
 from navette.runtime.waitable import Waitable
 
 
@@ -168,12 +166,7 @@ class ActionClient(Waitable[Any]):
         Raises:
             MessageError: ``goal`` is of another type (also a TypeError).
         """
-        expected = self._action_type.Goal
-        if not isinstance(goal, expected):
-            raise MessageError(
-                f"action {self.action_name}: expected {type_name(expected)}, got "
-                f"{type(goal).__name__}"
-            )
+        check_type(goal, self._action_type.Goal, f"action {self.action_name}")
         goal_id = self._new_id() if goal_uuid is None else goal_uuid
         key = bytes(goal_id.uuid)
         if feedback_callback is not None:

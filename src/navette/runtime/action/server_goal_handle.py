@@ -3,12 +3,11 @@
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from navette.errors import MessageError
-from navette.msgs import type_name
 from navette.msgs.action_msgs.msg import GoalInfo, GoalStatus
 from navette.msgs.unique_identifier_msgs.msg import UUID
 from navette.runtime.action.goal_states import GoalEvent, is_active, next_status
 from navette.runtime.future import Future
+from navette.runtime.type_support import check_type
 
 
 class GoalOwner(Protocol):
@@ -92,11 +91,7 @@ class ServerGoalHandle:
             MessageError: ``feedback`` is of another type (also a TypeError).
         """
         expected = self._action_server.action_type.Feedback
-        if not isinstance(feedback, expected):
-            raise MessageError(
-                f"action {self._action_server.action_name}: expected "
-                f"{type_name(expected)}, got {type(feedback).__name__}"
-            )
+        check_type(feedback, expected, f"action {self._action_server.action_name}")
         if not self._destroyed:
             self._action_server.publish_feedback(self.goal_id, feedback)
 
