@@ -146,6 +146,17 @@ def test_a_closed_session_removes_its_nodes_and_endpoints(pair: ZenohPair) -> No
     assert notes.events[-1] == ("unmatched", "talker", "ear")
 
 
+def test_a_burst_on_one_machine_is_delivered(pair: ZenohPair) -> None:
+    items, _ = subscribe(pair.near_zenoh, qos=EndpointQos(depth=5000))
+    publisher = advertise(pair.far_zenoh, qos=EndpointQos(depth=5000))
+    pair.settle()
+    message = String(data="x" * 500)
+    for number in range(1, 5001):
+        publisher.send(message, 0, number)
+    until(lambda: len(items) == 5000, "all samples")
+    assert [item[3] for item in items] == list(range(1, 5001))
+
+
 def test_gids_are_equal_at_both_ends(pair: ZenohPair) -> None:
     made = endpoint(EndpointKind.PUBLISHER)
     gid = pair.far.gid_for(made)

@@ -27,6 +27,14 @@ _OVERHEAD_BYTES = 1024 * 1024
 # Zenoh's own number (4) is enough.
 _KEEP_ALIVES_BETWEEN_MACHINES = 20
 
+_DROP = "transport/link/tx/queue/congestion_control/drop"
+# Time in µs that a publisher waits for a full queue before it drops a sample, or the
+# fragments of a long one. On one machine the other process drains the queue within
+# milliseconds, so that a burst is not lost; if that process is stopped, a publisher
+# waits once. Between machines Zenoh's own 1 ms and 50 ms apply, because a slow link
+# would delay every sample (decision 0012).
+_LOCAL_WAIT = {"wait_before_drop": 50_000, "max_wait_before_drop_fragments": 200_000}
+
 # As in rmw_zenoh's default configurations, except for the retries: the router is in
 # one of the processes, and another process takes over at once.
 _COMMON: dict[str, Any] = {
@@ -115,7 +123,9 @@ def router_endpoints(settings: Settings) -> list[str]:
 
 def _base(settings: Settings, path: Path | None) -> zenoh.Config:
     config = _read(path)
-    if path is None and not settings.is_local:
+    if path is None and settings.is_local:
+        config.insert_json5(_DROP, json.dumps(_LOCAL_WAIT))
+    elif path is None:
         number = str(_KEEP_ALIVES_BETWEEN_MACHINES)
         config.insert_json5("transport/link/tx/keep_alive", number)
     if settings.security is not None:
