@@ -39,7 +39,7 @@ class Footprint:
             raise InvalidValueError(
                 f"footprint {corners}: corners must be within {_FARTHEST_M:g} m"
             )
-        if not self.contains(0.0, 0.0):
+        if not self.contains(np.zeros((1, 2)))[0]:
             raise InvalidValueError(
                 f"footprint {corners}: the base origin (0, 0) must lie inside"
             )
@@ -67,13 +67,27 @@ class Footprint:
         """Radius of the smallest circle about the origin around the outline, m."""
         return max(math.hypot(x, y) for x, y in self.vertices)
 
-    def contains(self, x: float, y: float) -> bool:
-        """Whether the point lies inside the outline (ray casting along +x)."""
-        inside = False
-        for (ax, ay), (bx, by) in self._edges():
-            if (ay > y) != (by > y) and ax + (y - ay) * (bx - ax) / (by - ay) > x:
-                inside = not inside
-        return inside
+    def contains(
+        self, points: NDArray[np.float64], *, depth_m: float = 0.0
+    ) -> NDArray[np.bool_]:
+        """Return which points (N, 2) lie inside, at least ``depth_m`` from the outline.
+
+        Ray casting along +x: an odd number of crossed edges means inside.
+        """
+        inside = np.zeros(len(points), np.bool_)
+        nearest = np.full(len(points), np.inf)
+        corners = np.array(self.vertices)
+        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            edge, to_point = b - a, points - a
+            length2 = edge @ edge
+            t = np.clip(to_point @ edge / length2, 0, 1) if length2 else np.zeros(1)
+            gap = to_point - t[:, None] * edge
+            nearest = np.minimum(nearest, np.hypot(gap[:, 0], gap[:, 1]))
+            spans = (a[1] > points[:, 1]) != (b[1] > points[:, 1])
+            # An edge that spans the point's y has edge[1] != 0.
+            slope = edge[0] / edge[1] if edge[1] else 0.0
+            inside ^= spans & (a[0] + to_point[:, 1] * slope > points[:, 0])
+        return np.asarray(inside & (nearest >= depth_m))
 
     def samples(self, spacing_m: float) -> NDArray[np.float64]:
         """Points (N, 2) on the outline, at most ``spacing_m`` apart."""

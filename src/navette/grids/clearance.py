@@ -67,7 +67,7 @@ def body_points(footprint: Footprint, spacing_m: float) -> NDArray[np.float64]:
     xs = np.arange(low[0] + step / 2, high[0], step)
     ys = np.arange(low[1] + step / 2, high[1], step)
     inner = np.array([(0.0, 0.0), *((x, y) for x in xs for y in ys)])
-    inner = inner[[footprint.contains(x, y) for x, y in inner]]
+    inner = inner[footprint.contains(inner)]
     gaps = inner[:, None, :] - outline[None, :, :]
     # Outline samples are up to half a spacing away from the outline's nearest point.
     radii = np.hypot(gaps[..., 0], gaps[..., 1]).min(axis=1) - spacing_m / 2

@@ -27,30 +27,10 @@ def cells_in_footprint(
     ]
     cells = np.stack([rows, columns], axis=-1).reshape(-1, 2)
     centers = pose.inverse().apply(spec.centers_of(cells))
-    return cells[_is_inside(footprint, centers, depth_m)]
+    return cells[footprint.contains(centers, depth_m=depth_m)]
 
 
 def _span(middle: int, reach: int, size: int) -> slice:
     """Return the indices of an axis up to ``reach`` away from ``middle``."""
     first = min(max(middle - reach, 0), size)
     return slice(first, max(first, min(middle + reach + 1, size)))
-
-
-def _is_inside(
-    footprint: Footprint, points: NDArray[np.float64], depth_m: float
-) -> NDArray[np.bool_]:
-    """Return which points (N, 2) lie inside: an odd number of edges to one side."""
-    inside = np.zeros(len(points), np.bool_)
-    nearest = np.full(len(points), np.inf)
-    corners = np.array(footprint.vertices)
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        edge, to_point = b - a, points - a
-        length2 = edge @ edge
-        t = np.clip(to_point @ edge / length2, 0, 1) if length2 else np.zeros(1)
-        gap = to_point - t[:, None] * edge
-        nearest = np.minimum(nearest, np.hypot(gap[:, 0], gap[:, 1]))
-        spans = (a[1] > points[:, 1]) != (b[1] > points[:, 1])
-        # An edge that spans the point's y has edge[1] != 0.
-        slope = edge[0] / edge[1] if edge[1] else 0.0
-        inside ^= spans & (a[0] + to_point[:, 1] * slope > points[:, 0])
-    return np.asarray(inside & (nearest >= depth_m))

@@ -15,9 +15,10 @@ def test_radii_of_a_box_about_an_axle_at_its_rear() -> None:
 
 
 def test_contains_points_inside_the_outline_only() -> None:
-    assert BOX.contains(1.4, -0.6)
-    assert not BOX.contains(1.6, 0.0)
-    assert not BOX.contains(0.0, 0.8)
+    points = np.array([(1.4, -0.6), (1.6, 0.0), (0.0, 0.8)])
+    assert BOX.contains(points).tolist() == [True, False, False]
+    assert not BOX.contains(points, depth_m=0.15).any()
+    assert BOX.contains(points, depth_m=0.05).tolist() == [True, False, False]
 
 
 def test_samples_lie_on_the_outline_at_most_the_spacing_apart() -> None:
