@@ -1,4 +1,4 @@
-"""Runs launch files: ``navette launch``."""
+"""Run launch files: ``navette launch``."""
 
 from navette.ros2.launch.arguments import parse_launch_arguments
 from navette.ros2.launch.session import launch, show_arguments

@@ -1,4 +1,4 @@
-"""Launch arguments as typed: read, checked against the file, listed."""
+"""Launch arguments of the command line: parse, check, list."""
 
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
@@ -16,34 +16,34 @@ from navette.ros2.packages.launch.launch_description import walk
 
 
 def parse_launch_arguments(words: Iterable[str]) -> dict[str, str]:
-    """``name:=value`` words → a dict.
+    """Parse ``name:=value`` words.
 
     Raises:
-        InvalidValueError: another form, or a name given twice.
+        InvalidValueError: a malformed word, or a duplicate name.
     """
     found: dict[str, str] = {}
     for word in words:
         name, separator, value = word.partition(":=")
         if not separator or not name:
-            raise InvalidValueError(f"launch argument {word!r}: wanted name:=value")
+            raise InvalidValueError(f"launch argument {word!r}: expected name:=value")
         if name in found:
             raise InvalidValueError(f"launch argument {name!r} is given twice")
         found[name] = value
     return found
 
 
-# What ROS 2's actions look up without anybody declaring it.
+# ROS 2's actions read these without a declaration.
 ALWAYS_KNOWN = ("launch-prefix", "sigterm_timeout", "sigkill_timeout", "log_level")
 
 
 def unknown_arguments(given: Iterable[str], known: Iterable[str]) -> list[str]:
-    """The given names that nobody knows."""
+    """Return the given names that are not declared."""
     names = {*known, *ALWAYS_KNOWN}
     return [name for name in given if name not in names]
 
 
 def unknown_argument_error(name: str, known: Sequence[str]) -> InvalidValueError:
-    """Says what there is, and what was probably meant."""
+    """Create the error for an undeclared argument, with the closest name."""
     close = get_close_matches(name, known, n=1)
     meant = f"; did you mean {close[0]!r}?" if close else ""
     listed = ", ".join(known) or "none"
@@ -53,7 +53,7 @@ def unknown_argument_error(name: str, known: Sequence[str]) -> InvalidValueError
 
 
 def is_complete(description: LaunchDescription) -> bool:
-    """Whether every declaration can be known before the launch runs."""
+    """Return whether all declarations are found without running the launch."""
     return not any(_may_declare(entity) for entity in walk(description))
 
 
@@ -64,7 +64,7 @@ def _may_declare(entity: LaunchDescriptionEntity) -> bool:
 
 
 def describe_arguments(declared: Sequence[Any]) -> str:
-    """As ``ros2 launch --show-args`` prints them."""
+    """Format declared arguments as ``ros2 launch --show-args`` does."""
     lines = ["Arguments (pass arguments as '<name>:=<value>'):", ""]
     if not declared:
         lines += ["  No arguments.", ""]

@@ -1,4 +1,4 @@
-"""Nodes that are loaded into a running program: by its launch file or by services.
+"""Components: nodes loaded into a running program by a launch file or a service.
 
 The services are those of ROS 2's containers: ``~/_container/load_node``,
 ``unload_node`` and ``list_nodes``.
@@ -23,14 +23,14 @@ _PACKAGE = "composition_interfaces/srv"
 
 
 class ComponentLoadError(NavetteError):
-    """A node could not be made; says which and why."""
+    """A component cannot be loaded."""
 
 
 class ComponentManager:
-    """Loads node classes, runs the nodes on one executor, and takes them down.
+    """Loads node classes, runs the nodes on one executor, and unloads them.
 
     Args:
-        node: serves the requests; belongs to the executor.
+        node: serves the requests; a node of the executor.
     """
 
     def __init__(self, node: Node, executor: Executor) -> None:
@@ -47,15 +47,15 @@ class ComponentManager:
     def load(
         self, package: str, plugin: str, arguments: RosArguments, origin: str
     ) -> int:
-        """Make a node of the plugin's class; gives its id.
+        """Create a node of the plugin's class and return its id.
 
         Args:
-            arguments: the node's own, in place of the container's.
-            origin: who gave them, for errors.
+            arguments: the node's own; replace the container's.
+            origin: source of the arguments, for error messages.
 
         Raises:
-            UnknownNameError: there is no such class.
-            NavetteError: what the class or its parameters raise.
+            UnknownNameError: unknown class.
+            NavetteError: exceptions of the class or its parameters.
         """
         context = self._executor.context
         node_class = find_component(package, plugin)
@@ -76,10 +76,10 @@ class ComponentManager:
         return number
 
     def unload(self, number: int) -> None:
-        """Take a node down.
+        """Destroy a node.
 
         Raises:
-            UnknownNameError: no node has that id; lists those that are there.
+            UnknownNameError: unknown id; lists the known ones.
         """
         if number not in self._nodes:
             known = [str(each) for each in self._nodes]
@@ -87,10 +87,8 @@ class ComponentManager:
         self._nodes.pop(number).destroy_node()
 
     def nodes(self) -> dict[int, Node]:
-        """Those that are loaded, by id."""
+        """Return the loaded nodes by id."""
         return dict(self._nodes)
-
-    # -- services --------------------------------------------------------------
 
     def _on_load(self, request: Any, response: Any) -> Any:
         try:
@@ -113,7 +111,7 @@ class ComponentManager:
             return self.load(package, plugin, arguments, "load_node")
         except NavetteError:
             raise
-        except Exception as error:  # whatever a stranger's constructor raises: told
+        except Exception as error:  # a user's constructor may raise anything
             raise ComponentLoadError(
                 f"{plugin} of {package}: {type(error).__name__}: {error}"
             ) from error
@@ -154,7 +152,7 @@ def _arguments_from(request: Any) -> RosArguments:
 def _arguments_of(
     context: Context, arguments: RosArguments, origin: str
 ) -> Iterator[None]:
-    """Let the nodes made meanwhile have these arguments instead of the container's."""
+    """Give nodes created in the block these arguments, not the container's."""
     before = context.arguments, context.overrides
     context.arguments = arguments
     context.overrides = ParameterOverrides()
@@ -166,18 +164,18 @@ def _arguments_of(
 
 
 def arguments_of_words(words: Sequence[str]) -> RosArguments:
-    """From ROS arguments without the leading ``--ros-args``."""
+    """Parse ROS arguments without the leading ``--ros-args``."""
     return parse_ros_arguments(["--ros-args", *words])
 
 
 def find_component(package: str, plugin: str) -> Any:
-    """The node class that a plugin's name means.
+    """Return the node class of a plugin name.
 
-    A name registered in the entry points ``rclpy_components``; ``package::Class`` of
-    the package's own module; ``module:Class`` or ``module.Class``.
+    Accepted: a name registered in the entry points ``rclpy_components``,
+    ``package::Class``, ``module:Class``, ``module.Class``, or a class of the package.
 
     Raises:
-        UnknownNameError: there is no such class; says what was looked for.
+        UnknownNameError: unknown class; lists the module's node classes.
     """
     for point in entry_points(group=GROUP, name=plugin):
         return point.load()
@@ -187,7 +185,7 @@ def find_component(package: str, plugin: str) -> Any:
     except ModuleNotFoundError as error:
         raise UnknownNameError(
             f"component {plugin!r} of package {package!r}: no Python module "
-            f"{error.name!r}; wanted package::Class or module:Class"
+            f"{error.name!r}; expected package::Class or module:Class"
         ) from error
     if not inspect.isclass(found):
         classes = [

@@ -1,7 +1,7 @@
-"""The container of composable nodes: loads node classes, runs them on one loop.
+"""Container of composable nodes: loads node classes, runs them on one executor.
 
-A program like any other. It serves ROS 2's composition services, and reads what its
-launch file wants loaded from its standard input, a line of JSON each:
+The program serves ROS 2's composition services and reads the requests of its launch
+file from its standard input, one line of JSON each:
 ``{"package": …, "plugin": …, "arguments": [ROS arguments]}``.
 """
 
@@ -20,24 +20,26 @@ from navette.runtime.context import get_default_context
 
 
 def main() -> None:
-    """Load what is asked for, until the end."""
+    """Load the requested components until the shutdown."""
     runtime.init()
     context = get_default_context()
     executor = Executor(context=context)
     node = Node("component_container")
     executor.add_node(node)
     manager = ComponentManager(node, executor)
-    threading.Thread(target=_listen, args=(executor, manager), daemon=True).start()
+    threading.Thread(
+        target=_read_requests, args=(executor, manager), daemon=True
+    ).start()
     try:
         executor.spin()
     except KeyboardInterrupt:
-        pass  # the way to end it
+        pass  # ends the container
     finally:
         runtime.try_shutdown()
 
 
-def _listen(executor: Executor, manager: ComponentManager) -> None:
-    """Hand each request to the loop, which may load it between two callbacks."""
+def _read_requests(executor: Executor, manager: ComponentManager) -> None:
+    """Queue each request on the executor's loop."""
     for line in _lines():
         executor.call_soon_threadsafe(partial(_load, manager, json.loads(line)))
 

@@ -13,7 +13,7 @@ from navette.ros2.names.blocking_calls import cooperative_blocking_calls
 from navette.ros2.names.process import RunningProgram, program_threads
 from navette.ros2.names.program import Program, entry_point, script
 from navette.ros2.packages.launch.logging import get_logger
-from navette.ros2.packages.launch.running import Command, PythonProgram
+from navette.ros2.packages.launch.running import LaunchCommand, PythonProgram
 from navette.ros2.packages.launch.subprocesses import SubprocessRunner
 from navette.runtime.context import new_graph
 from navette.runtime.graph import Graph
@@ -42,7 +42,7 @@ class InProcessRunner:
         self._stack.enter_context(cooperative_blocking_calls())
         self._stack.enter_context(program_streams())
 
-    def start(self, command: Command) -> ProcessHandle:
+    def start(self, command: LaunchCommand) -> ProcessHandle:
         if command.program is None:
             return self._processes.start(command)
         if command.own_process:

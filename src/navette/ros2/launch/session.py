@@ -1,4 +1,4 @@
-"""One ``navette launch``: from the file to its end."""
+"""Run of a launch file, from the command line to the exit code."""
 
 import os
 import queue
@@ -34,11 +34,11 @@ _log = get_logger("launch")
 
 
 def find_launch_file(words: list[str]) -> tuple[Path, list[str]]:
-    """``FILE …`` or ``PACKAGE FILE …`` → the file, and the rest of the words.
+    """Resolve ``FILE …`` or ``PACKAGE FILE …``; return the file and the other words.
 
     Raises:
-        FileFormatError: there is no such file.
-        UnknownNameError: no such package.
+        FileFormatError: the file does not exist.
+        UnknownNameError: unknown package.
     """
     path = Path(words[0])
     if path.is_file():
@@ -49,13 +49,13 @@ def find_launch_file(words: list[str]) -> tuple[Path, list[str]]:
     found = [p for p in sorted(share.rglob(words[1])) if p.is_file()]
     if not found:
         raise FileFormatError(
-            share, f"no launch file {words[1]!r} in it{_listed(share)}"
+            share, f"contains no launch file {words[1]!r}{_listed(share)}"
         )
     return found[0], words[2:]
 
 
 def _listed(folder: Path) -> str:
-    """The launch files there are, for an error."""
+    """List the launch files of a folder, for an error message."""
     places = (folder, folder / "launch")
     names = {
         str(path.relative_to(folder))
@@ -67,7 +67,7 @@ def _listed(folder: Path) -> str:
 
 
 def show_arguments(path: Path) -> str:
-    """What arguments a launch file takes, with those of the files it includes."""
+    """Describe the arguments of a launch file and of the files that it includes."""
     with _workspace_of(path):
         activate()
         return describe_arguments(_load(_source(path)).get_launch_arguments())
@@ -88,13 +88,13 @@ def launch(
         arguments: its launch arguments.
         processes: run each node in its own process.
         manager: starts these processes; implies ``processes``.
-        debug: log what happens inside.
+        debug: print debug messages.
 
     Returns:
-        0; 1 if the launch failed or a process died by itself; 130 after Ctrl-C.
+        0; 1 if the launch or a process failed; 130 after Ctrl-C.
 
     Raises:
-        NavetteError: the file or an argument is wrong.
+        NavetteError: an invalid file or argument.
     """
     with _workspace_of(path), console(debug=debug):
         activate()
@@ -113,7 +113,7 @@ def launch(
         )
         if unknown:
             service.check_after_start(lambda: _check_again(service, arguments))
-        # Set, not included: what the file does not declare is there as well.
+        # Set directly, so that the file can also read undeclared arguments.
         service.context.launch_configurations.update(arguments)
         service.include_launch_description(
             LaunchDescription([IncludeLaunchDescription(source)])
@@ -134,7 +134,7 @@ def _load(source: AnyLaunchDescriptionSource) -> LaunchDescription:
 
 
 def _check_again(service: LaunchService, arguments: Mapping[str, str]) -> None:
-    """Where functions may declare arguments, it is known only now who did."""
+    """Check the arguments after functions of the file had a chance to declare them."""
     known = sorted(service.context.known_arguments)
     for name in unknown_arguments(arguments, known):
         raise unknown_argument_error(name, known)
@@ -142,7 +142,7 @@ def _check_again(service: LaunchService, arguments: Mapping[str, str]) -> None:
 
 @contextmanager
 def _workspace_of(path: Path) -> Iterator[None]:
-    """Let packages beside the launch file's own be found, wherever one stands."""
+    """Add the folder of the launch file's package to the search path of packages."""
     before = os.environ.get(PATH_VARIABLE)
     package = next((p for p in path.parents if (p / "package.xml").is_file()), None)
     if package is not None:
@@ -159,9 +159,9 @@ def _workspace_of(path: Path) -> Iterator[None]:
 
 @contextmanager
 def _signals(service: LaunchService) -> Iterator[list[int]]:
-    """SIGINT and SIGTERM end the launch; once more, with more force.
+    """Shut the launch down on SIGINT and SIGTERM; escalate on further signals.
 
-    The handler only queues: it may interrupt whoever holds the loop's locks.
+    The handler only queues: it may interrupt a holder of the loop's locks.
     """
     received: list[int] = []
     waiting: queue.SimpleQueue[int | None] = queue.SimpleQueue()
@@ -171,7 +171,7 @@ def _signals(service: LaunchService) -> Iterator[list[int]]:
             received.append(number)
             name = signal.Signals(number).name
             if len(received) == 1:
-                _log.warning("%s: ending everything", name)
+                _log.warning("%s: shutting down", name)
                 sigint = number == signal.SIGINT
                 service.emit_event(Shutdown(reason=name, due_to_sigint=sigint))
             else:

@@ -1,7 +1,6 @@
 """Standard output and error of programs that share this process.
 
-Each program's prints go to whoever listens to that program; what is printed outside
-of programs goes where it always went.
+The output of a program goes to its listener; all other output is unchanged.
 """
 
 import io
@@ -12,17 +11,17 @@ from contextvars import ContextVar
 from typing import TextIO
 
 Write = Callable[[str, bytes], None]
-"""Takes ``stdout`` or ``stderr`` and what was written."""
+"""Receives ``stdout`` or ``stderr``, and the data written to it."""
 
 program_output: ContextVar[Write | None] = ContextVar("program_output", default=None)
 
 
 class ProgramStream(io.TextIOBase):
-    """A text stream that gives each program its own output.
+    """Text stream that passes the output of each program to its listener.
 
     Args:
         name: ``stdout`` or ``stderr``.
-        outside: for whatever is no program's.
+        outside: receives all other output.
     """
 
     def __init__(self, name: str, outside: TextIO) -> None:
@@ -56,7 +55,7 @@ class ProgramStream(io.TextIOBase):
 
 @contextmanager
 def program_streams() -> Iterator[None]:
-    """Let ``print`` of a program reach that program's listener."""
+    """Pass the output of programs to their listeners while the block runs."""
     before = sys.stdout, sys.stderr
     sys.stdout = ProgramStream("stdout", before[0])
     sys.stderr = ProgramStream("stderr", before[1])

@@ -345,4 +345,4 @@ def test_an_interrupt_ends_everything(workspace: Path, options: list[str]) -> No
     rest, errors = launched.communicate()
     alarm.cancel()
     assert launched.returncode == 130, seen + rest + errors
-    assert "SIGINT: ending everything" in errors
+    assert "SIGINT: shutting down" in errors

@@ -1,4 +1,4 @@
-"""What each tag of an XML or YAML launch file stands for."""
+"""Tags of XML and YAML launch files."""
 
 from navette.ros2.launch.tags import core, ros
 

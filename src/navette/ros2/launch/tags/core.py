@@ -1,4 +1,4 @@
-"""Tags of launch itself."""
+"""Tags of ``launch``."""
 
 from typing import Any
 
@@ -32,10 +32,10 @@ from navette.ros2.packages.launch.launch_description_entity import (
 
 
 def condition_of(element: Element) -> dict[str, Any]:
-    """``condition=`` from the attributes ``if`` and ``unless``."""
+    """Return ``condition=`` for the attributes ``if`` and ``unless``."""
     holds, fails = element.parts("if"), element.parts("unless")
     if holds is not None and fails is not None:
-        raise element.error("'if' and 'unless' exclude each other")
+        raise element.error("attributes 'if' and 'unless' are mutually exclusive")
     if holds is not None:
         return {"condition": IfCondition(holds)}
     return {} if fails is None else {"condition": UnlessCondition(fails)}
@@ -166,7 +166,7 @@ def executable(element: Element) -> LaunchDescriptionEntity:
 
 
 def split_words(element: Element, text: str) -> list[Any]:
-    """A command line → its words, without cutting ``$(…)`` or quotes apart."""
+    """Split a command line into words, except within ``$(…)`` and quotes."""
     words: list[str] = [""]
     depth, quote = 0, ""
     for position, character in enumerate(text):
@@ -186,14 +186,14 @@ def split_words(element: Element, text: str) -> list[Any]:
 
 
 def _unquoted(word: str) -> str:
-    """``'a b'`` → ``a b``; quotes inside ``$(…)`` belong to the substitution."""
+    """Remove the quotes around a word, not those within ``$(…)``."""
     if len(word) > 1 and word[0] == word[-1] and word[0] in "'\"":
         return word[1:-1]
     return word
 
 
 def execution_options(element: Element) -> dict[str, Any]:
-    """What ``executable`` and ``node`` have in common."""
+    """Return the options shared by ``executable`` and ``node``."""
     options: dict[str, Any] = dict(condition_of(element))
     for tag, keyword in (
         ("cwd", "cwd"),
@@ -231,9 +231,9 @@ def _add_numbers(element: Element, options: dict[str, Any]) -> None:
             try:
                 options[tag] = kind(text)
             except ValueError:
-                raise element.error(f"{tag} {text!r}: wanted a number") from None
+                raise element.error(f"{tag} {text!r}: expected a number") from None
     ending = element.text("on_exit")
     if ending is not None:
         if ending != "shutdown":
-            raise element.error(f"on_exit {ending!r}: wanted shutdown")
+            raise element.error(f"on_exit {ending!r}: expected shutdown")
         options["on_exit"] = Shutdown(reason=f"<{element.tag}> ended")

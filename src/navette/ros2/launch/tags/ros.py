@@ -1,4 +1,4 @@
-"""Tags of launch_ros."""
+"""Tags of ``launch_ros``."""
 
 from typing import Any
 
@@ -156,7 +156,7 @@ def set_ros_log_dir(element: Element) -> LaunchDescriptionEntity:
 
 
 def _namespace(element: Element) -> Any:
-    """``namespace``, which may be written ``ns`` as well."""
+    """Return the attribute ``namespace``, or its short form ``ns``."""
     short = element.parts("ns")
     return element.parts("namespace") if short is None else short
 
@@ -195,7 +195,7 @@ def _parameters(element: Element) -> list[Any]:
 
 
 def _parameter(element: Element) -> dict[Any, Any]:
-    """``{name: value}``; parameters inside give a dict of dicts."""
+    """Return ``{name: value}``; nested parameters give nested dicts."""
     name = tuple(element.need_parts("name"))
     inner = element.elements("param")
     value: Any = {}
@@ -209,23 +209,23 @@ def _parameter(element: Element) -> dict[Any, Any]:
 
 
 def _value(element: Element) -> Any:
-    """Attribute ``value`` as parameter: typed by YAML, by ``type``, or as a list."""
+    """Return the attribute ``value``, typed by YAML, by ``type``, or as a list."""
     raw = element.value("value")
     separator = element.text("value-sep")
     kind = element.text("type")
     if kind is not None and kind not in _TYPES:
-        raise element.error(f"type {kind!r}; wanted one of {', '.join(_TYPES)}")
+        raise element.error(f"type {kind!r}; expected one of {', '.join(_TYPES)}")
     value_type = None if kind is None else _TYPES[kind]
     if raw is None:
         raise element.error("attribute 'value' is missing")
-    if not isinstance(raw, str):  # YAML gave it a type already
+    if not isinstance(raw, str):  # typed by YAML
         return ParameterValue(raw, value_type=value_type)
     if separator is not None:
         items: list[Any] = [element.parse(part) for part in raw.split(separator)]
         return ParameterValue(items, value_type=value_type)
     is_yaml = element.path.suffix in (".yaml", ".yml")
     if value_type is None and is_yaml and "$(" not in raw:
-        return ParameterValue(raw, value_type=str)  # text, as YAML says
+        return ParameterValue(raw, value_type=str)  # a string in YAML
     return ParameterValue(element.parse(raw), value_type=value_type)
 
 

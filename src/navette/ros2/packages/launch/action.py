@@ -1,4 +1,4 @@
-"""Actions: what a launch does."""
+"""Base class of actions."""
 
 from navette.ros2.packages.launch.condition import Condition
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
@@ -10,12 +10,12 @@ from navette.ros2.packages.launch.launch_description_entity import (
 
 
 class Action(LaunchDescriptionEntity):
-    """Executed when the launch reaches it, if its condition holds."""
+    """Entity that is executed when it is visited and its condition holds."""
 
     def __init__(self, *, condition: Condition | None = None) -> None:
         if condition is not None and not isinstance(condition, Condition):
             raise InvalidLaunchValueError(
-                f"{type(self).__name__}: condition {condition!r}: wanted a condition "
+                f"{type(self).__name__}: condition {condition!r}: expected a condition "
                 "such as IfCondition(…)"
             )
         self.condition = condition
@@ -27,5 +27,5 @@ class Action(LaunchDescriptionEntity):
         return None
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        """Do the work; returns what is to be visited next."""
+        """Do the work; return the entities to visit next."""
         raise NotImplementedError

@@ -6,11 +6,11 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class Condition:
-    """Asks ``predicate`` when the action is reached."""
+    """Condition that a function evaluates."""
 
     def __init__(self, *, predicate: Callable[[LaunchContext], bool]) -> None:
         self._predicate = predicate
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Whether the action is executed; asked once an action."""
+        """Return whether to execute the action; called once per execution."""
         return self._predicate(context)

@@ -1,14 +1,14 @@
-"""What goes wrong in a launch, and in which file, line and entity."""
+"""Exceptions of launches."""
 
 from navette.errors import InvalidValueError, NavetteError
 
 
 class LaunchError(NavetteError, RuntimeError):
-    """A launch cannot go on; the text names file, line and launch entity."""
+    """A launch failed; the text names file, line and launch entity."""
 
     @classmethod
     def at(cls, where: str, entity: str, error: BaseException) -> "LaunchError":
-        """The error to raise for what ``entity``, written at ``where``, ran into."""
+        """Create the error for an exception of ``entity``, defined at ``where``."""
         kind = "" if isinstance(error, NavetteError) else f"{type(error).__name__}: "
         return cls(f"{where}: {entity}: {kind}{error}")
 
@@ -18,13 +18,13 @@ class SubstitutionFailure(NavetteError, RuntimeError):  # noqa: N818 - ROS 2's n
 
 
 class UndeclaredConfigurationFailure(SubstitutionFailure):
-    """A launch configuration that nothing has set; ``name`` is its name."""
+    """The launch configuration ``name`` is not set."""
 
     def __init__(self, name: str, known: list[str]) -> None:
         super().__init__(
-            f"launch configuration {name!r} does not exist; there are: "
-            f"{', '.join(known) or 'none'}. "
-            f"Declare it with DeclareLaunchArgument({name!r}) before its use"
+            f"launch configuration {name!r} does not exist (known: "
+            f"{', '.join(known) or 'none'}); declare it with "
+            f"DeclareLaunchArgument({name!r}) before its use"
         )
         self.name = name
 
@@ -34,8 +34,8 @@ class InvalidConditionExpressionError(InvalidValueError):
 
 
 class InvalidLaunchFileError(NavetteError, RuntimeError):
-    """A file cannot be read as a launch file."""
+    """A file is not a valid launch file."""
 
 
 class InvalidLaunchValueError(InvalidValueError, TypeError):
-    """An argument of an action or substitution is of the wrong type."""
+    """An argument of an action or substitution has the wrong type or value."""

@@ -1,7 +1,7 @@
-"""Events: what happened, or what is to happen, in a launch."""
+"""Base class of events."""
 
 
 class Event:
-    """Base of all events."""
+    """Something that happened, or is to happen, in a launch."""
 
     name = "launch.Event"

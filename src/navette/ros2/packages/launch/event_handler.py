@@ -1,4 +1,4 @@
-"""Event handlers: what a launch does when something happens."""
+"""Event handlers: what a launch does when an event happens."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,12 +12,12 @@ from navette.ros2.packages.launch.launch_description_entity import (
 
 
 class EventHandler:
-    """Answers the events that ``matcher`` picks with entities to visit.
+    """Visits entities when a matching event happens.
 
     Args:
-        matcher: whether an event is meant.
-        entities: what to visit then; or override :meth:`handle`.
-        handle_once: leave after the first event that matched.
+        matcher: whether to handle an event.
+        entities: what to visit; or override :meth:`handle`.
+        handle_once: unregister after the first matching event.
     """
 
     def __init__(
@@ -32,45 +32,46 @@ class EventHandler:
         self.handle_once = handle_once
 
     def matches(self, event: Event) -> bool:
-        """Whether :meth:`handle` is to be called with this event."""
+        """Return whether to call :meth:`handle` with this event."""
         return self._matcher(event)
 
     def handle(
         self, event: Event, context: LaunchContext
     ) -> list[LaunchDescriptionEntity]:
-        """What to visit now that the event happened."""
+        """Return the entities to visit."""
         return list(self.entities)
 
     def describe(self) -> str:
-        """How it reads in an error."""
+        """Describe the handler in an error message."""
         return type(self).__name__
 
 
-class AnsweringHandler(EventHandler):
-    """Answers with entities, or with what a function makes of the event.
+class CallbackHandler(EventHandler):
+    """Visits entities, or what a function returns for the event.
 
     Args:
-        matcher: whether an event is meant.
-        answer: entities, or ``answer(event, context)`` that returns entities or None.
+        matcher: whether to handle an event.
+        callback: entities, or ``callback(event, context)`` that returns entities or
+            None.
     """
 
     def __init__(
         self,
         *,
         matcher: Callable[[Event], bool],
-        answer: Any,
+        callback: Any,
         handle_once: bool = False,
     ) -> None:
-        self._answer = answer if callable(answer) else None
+        self._callback = callback if callable(callback) else None
         super().__init__(
             matcher=matcher,
-            entities=None if callable(answer) else answer,
+            entities=None if callable(callback) else callback,
             handle_once=handle_once,
         )
 
     def handle(
         self, event: Event, context: LaunchContext
     ) -> list[LaunchDescriptionEntity]:
-        if self._answer is None:
+        if self._callback is None:
             return super().handle(event, context)
-        return normalize_to_list_of_entities(self._answer(event, context))
+        return normalize_to_list_of_entities(self._callback(event, context))

@@ -1,4 +1,4 @@
-"""Launch descriptions: the entities of one launch file."""
+"""Launch description: the entities of one launch file."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -12,7 +12,7 @@ from navette.ros2.packages.launch.launch_description_entity import (
 
 
 class LaunchDescription(LaunchDescriptionEntity):
-    """Visited in order when the launch runs."""
+    """Entities that are visited in order when the launch runs."""
 
     def __init__(
         self, initial_entities: Iterable[LaunchDescriptionEntity] | None = None
@@ -36,9 +36,9 @@ class LaunchDescription(LaunchDescriptionEntity):
         return list(self._entities)
 
     def get_launch_arguments(self) -> list[Any]:
-        """The argument declarations found without running anything.
+        """Return the argument declarations found without running, first ones first.
 
-        Of several with one name, the first.
+        Only the first declaration of a name counts.
         """
         found: dict[str, Any] = {}
         for entity in walk(self):
@@ -51,9 +51,9 @@ class LaunchDescription(LaunchDescriptionEntity):
 def walk(
     root: LaunchDescriptionEntity, files: tuple[Path, ...] = ()
 ) -> Iterable[LaunchDescriptionEntity]:
-    """``root`` and everything that it is known to lead to, in order.
+    """Yield ``root`` and everything that it is known to lead to, in order.
 
-    A file that includes itself (which a condition may end) is not entered again.
+    A file that includes itself (under a condition) is entered once.
     """
     yield root
     inside = root.describe_sub_entities()

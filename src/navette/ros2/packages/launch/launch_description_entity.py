@@ -1,4 +1,4 @@
-"""Entities: everything that a launch description can hold."""
+"""Base class of everything that a launch description contains."""
 
 import sys
 from collections.abc import Iterable
@@ -12,7 +12,7 @@ _OWN_FOLDER = str(Path(__file__).parent.parent)
 
 
 class LaunchDescriptionEntity:
-    """A node of the tree that a launch walks through.
+    """Node of the tree that a launch visits.
 
     ``origin`` is where it was written, as ``file:line``.
     """
@@ -20,15 +20,15 @@ class LaunchDescriptionEntity:
     origin: str = ""
 
     def visit(self, context: LaunchContext) -> "list[LaunchDescriptionEntity] | None":
-        """Do the work; returns what is to be visited next."""
+        """Do the work; return the entities to visit next."""
         raise NotImplementedError
 
     def describe(self) -> str:
-        """How it reads in an error."""
+        """Describe the entity in an error message or a listing."""
         return type(self).__name__
 
     def describe_sub_entities(self) -> "list[LaunchDescriptionEntity]":
-        """What it is known to lead to, without running it."""
+        """Return the entities inside, as far as they are known without running."""
         return []
 
 
@@ -39,10 +39,10 @@ SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
 
 
 def normalize_to_list_of_entities(value: Any) -> list[LaunchDescriptionEntity]:
-    """One entity, several (also nested lists), or None, as a flat list.
+    """Convert one entity, several (also nested lists), or None to a flat list.
 
     Raises:
-        InvalidLaunchValueError: something in it is no launch entity.
+        InvalidLaunchValueError: an item is not a launch entity.
     """
     if value is None:
         return []
@@ -53,13 +53,12 @@ def normalize_to_list_of_entities(value: Any) -> list[LaunchDescriptionEntity]:
             entity for item in value for entity in normalize_to_list_of_entities(item)
         ]
     raise InvalidLaunchValueError(
-        f"{value!r} ({type(value).__name__}) is no launch entity; wanted an action or "
-        "a list of actions"
+        f"{value!r} ({type(value).__name__}): expected an action or a list of actions"
     )
 
 
 def caller_location() -> str:
-    """``file:line`` of the nearest caller outside this folder."""
+    """Return ``file:line`` of the nearest caller outside this folder."""
     frame = sys._getframe(1)
     while frame.f_code.co_filename.startswith(_OWN_FOLDER) and frame.f_back is not None:
         frame = frame.f_back

@@ -1,4 +1,4 @@
-"""Sources: where a launch description comes from."""
+"""Sources of launch descriptions."""
 
 from pathlib import Path
 from typing import Any
@@ -9,19 +9,17 @@ from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.substitution import (
     Parts,
     TextSubstitution,
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 
 
 class LaunchDescriptionSource:
-    """A description that is there already, or (in subclasses) a file with one.
+    """An existing description, or (in subclasses) a file that contains one.
 
     Args:
         launch_description: the description itself.
         location: path of a file.
-        method: how it is had, for messages.
+        method: kind of source, for messages.
     """
 
     def __init__(
@@ -37,26 +35,26 @@ class LaunchDescriptionSource:
 
     @property
     def location(self) -> str:
-        """The path if it is known, else how it is made."""
-        return str(self.path) if self.path else describe_parts(self._location)
+        """The path if it is known, else its substitutions."""
+        return str(self.path) if self.path else self._location.describe()
 
     def read(self, path: Path) -> LaunchDescription:
-        """Read a file; formats override this."""
-        raise InvalidLaunchFileError(f"{path}: no format to read it")
+        """Read a file; overridden by formats."""
+        raise InvalidLaunchFileError(f"{path}: unknown format")
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
-        """The description; its file is read the first time.
+        """Return the description; its file is read on first use.
 
         Raises:
-            InvalidLaunchFileError: it cannot be read; names file and reason.
+            InvalidLaunchFileError: the file cannot be read.
         """
         if self._description is None:
-            path = Path(perform_substitutions(context, self._location))
+            path = Path(self._location.perform(context))
             self._description = self._load(path)
         return self._description
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
-        """The description, unless its path is only known in a launch."""
+        """Return the description, or None if its path depends on the launch."""
         texts = [p.text for p in self._location if isinstance(p, TextSubstitution)]
         if self._description is None and len(texts) == len(self._location):
             path = "".join(texts)

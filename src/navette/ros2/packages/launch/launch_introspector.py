@@ -1,4 +1,4 @@
-"""A launch description as text."""
+"""Text representation of launch descriptions."""
 
 from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launch_description_entity import (
@@ -7,10 +7,10 @@ from navette.ros2.packages.launch.launch_description_entity import (
 
 
 class LaunchIntrospector:
-    """Says what is in a launch description."""
+    """Formats launch descriptions."""
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
-        """A line for each entity, those inside another one below it."""
+        """Format a description as a tree, one line per entity."""
         return "\n".join(_lines(launch_description, ""))
 
 

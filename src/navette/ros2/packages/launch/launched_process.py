@@ -11,7 +11,7 @@ from navette.ros2.packages.launch.events.process import (
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.output import LabelledOutput
-from navette.ros2.packages.launch.running import Command
+from navette.ros2.packages.launch.running import LaunchCommand
 from navette.supervisor import (
     GracePeriods,
     ManagedProcess,
@@ -26,7 +26,7 @@ class ProcessAction(Protocol):
 
     log_cmd: bool
 
-    def make_command(self, context: LaunchContext) -> Command: ...
+    def make_command(self, context: LaunchContext) -> LaunchCommand: ...
 
     def make_output(self, context: LaunchContext, label: str) -> LabelledOutput: ...
 
@@ -46,7 +46,7 @@ class LaunchedProcess(ManagedProcess):
         grace: GracePeriods,
     ) -> None:
         super().__init__("", policy, grace, context.loop)
-        self.command: Command | None = None
+        self.command: LaunchCommand | None = None
         self._action = action
         self._context = context
         self._last_pid = 0

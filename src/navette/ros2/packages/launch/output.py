@@ -1,4 +1,4 @@
-"""What commands write: whole lines, labelled, on the terminal and in log files."""
+"""Output of processes: labelled lines on the terminal and in log files."""
 
 import os
 import sys
@@ -22,31 +22,31 @@ _MODES: dict[str, dict[str, set[str]]] = {
 
 
 def output_places(value: object) -> dict[str, set[str]]:
-    """stdout and stderr → ``screen``, ``log``, both, from what ``output=`` says.
+    """Return the destinations (``screen``, ``log``) of each stream for ``output=``.
 
     Raises:
-        InvalidLaunchValueError: another word; lists those known.
+        InvalidLaunchValueError: unknown destination; lists the known ones.
     """
     if isinstance(value, dict):
         places: dict[str, set[str]] = {stream: set() for stream in STREAMS}
         for stream, word in value.items():
-            wanted = STREAMS if stream == "both" else (stream,)
-            for each in wanted:
+            streams = STREAMS if stream == "both" else (stream,)
+            for each in streams:
                 if each not in STREAMS:
                     raise InvalidLaunchValueError(
-                        f"output: stream {each!r}; wanted stdout, stderr or both"
+                        f"output: stream {each!r}; expected stdout, stderr or both"
                     )
                 places[each] |= output_places(word)[each]
         return places
     if value not in _MODES:
         raise InvalidLaunchValueError(
-            f"output {value!r}; wanted {', '.join(_MODES)}, or a dict of streams"
+            f"output {value!r}; expected {', '.join(_MODES)}, or a dict of streams"
         )
     return _MODES[str(value)]
 
 
 def _shown(label: str) -> str:
-    """``[talker-1]``; on a terminal in a colour of its own."""
+    """Return ``[talker-1]``, coloured on a terminal."""
     if not sys.stdout.isatty() or "NO_COLOR" in os.environ:
         return f"[{label}]"
     number = label.rpartition("-")[2]
@@ -55,12 +55,11 @@ def _shown(label: str) -> str:
 
 
 class LabelledOutput:
-    """Cuts what a command writes into lines and puts its label before each.
+    """Writes the output of a process line by line, with its label.
 
     Args:
         label: such as ``talker-1``.
-        places: what :func:`output_places` returned.
-        line_format: makes the printed line of a line.
+        places: result of :func:`output_places`.
     """
 
     def __init__(
@@ -76,11 +75,11 @@ class LabelledOutput:
         self._log: IO[str] | None = None
 
     def write(self, stream: str, data: bytes) -> None:
-        """Print the whole lines of what came, keep the rest for later."""
+        """Print the complete lines, keep the rest."""
         self._print(stream, self._cutters[stream].feed(data))
 
     def close(self) -> None:
-        """Print what has no end of line yet."""
+        """Print incomplete last lines."""
         for stream in STREAMS:
             self._print(stream, self._cutters[stream].finish())
         if self._log is not None:

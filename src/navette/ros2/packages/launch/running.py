@@ -26,7 +26,7 @@ class PythonProgram:
 
 
 @dataclass(frozen=True)
-class Command:
+class LaunchCommand:
     """A command with all substitutions performed.
 
     Attributes:
@@ -63,7 +63,7 @@ class Runner(Protocol):
     @property
     def graph(self) -> Graph | None: ...
 
-    def start(self, command: Command) -> ProcessHandle:
+    def start(self, command: LaunchCommand) -> ProcessHandle:
         """Start a command.
 
         Raises:

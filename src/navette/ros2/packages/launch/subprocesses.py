@@ -3,7 +3,7 @@
 import sys
 
 from navette.ros2.packages.launch.errors import LaunchError
-from navette.ros2.packages.launch.running import Command, PythonProgram
+from navette.ros2.packages.launch.running import LaunchCommand, PythonProgram
 from navette.supervisor import (
     ChildProcess,
     ProcessError,
@@ -20,7 +20,7 @@ class SubprocessRunner:
     def __init__(self, manager: ProcessManager | None = None) -> None:
         self.manager = manager or ProcessManager()
 
-    def start(self, command: Command) -> ChildProcess:
+    def start(self, command: LaunchCommand) -> ChildProcess:
         argv = command.words
         if command.program is not None:
             program = program_argv(command.program)

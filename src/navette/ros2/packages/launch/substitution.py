@@ -1,4 +1,4 @@
-"""Substitutions: text that is worked out when the launch runs."""
+"""Substitutions: text that is computed while the launch runs."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,14 +9,14 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 
 
 class Substitution:
-    """Something that becomes text once the launch runs."""
+    """Base class of substitutions."""
 
     def perform(self, context: LaunchContext) -> str:
-        """The text, given the launch's configurations and environment."""
+        """Return the text, given the launch's configurations and environment."""
         raise NotImplementedError
 
     def describe(self) -> str:
-        """How it reads in an error or a listing."""
+        """Describe the substitution in an error message or a listing."""
         return f"{type(self).__name__}()"
 
 
@@ -24,17 +24,25 @@ SomeSubstitutionsType: TypeAlias = (
     str | Path | Substitution | Iterable[str | Path | Substitution]
 )
 SomeSubstitutionsType_types_tuple = (str, Path, Substitution, Iterable)
-Parts: TypeAlias = list[Substitution]
-"""Substitutions whose texts are joined."""
+
+
+class Parts(list[Substitution]):
+    """Substitutions whose texts are joined."""
+
+    def perform(self, context: LaunchContext) -> str:
+        return "".join(part.perform(context) for part in self)
+
+    def describe(self) -> str:
+        return " + ".join(part.describe() for part in self) or "''"
 
 
 class TextSubstitution(Substitution):
-    """Text that is what it is."""
+    """Constant text."""
 
     def __init__(self, *, text: str) -> None:
         if not isinstance(text, str):
             raise InvalidLaunchValueError(
-                f"TextSubstitution: text {text!r}: wanted a string"
+                f"TextSubstitution: text {text!r}: expected a string"
             )
         self.text = text
 
@@ -46,19 +54,19 @@ class TextSubstitution(Substitution):
 
 
 def normalize_to_list_of_substitutions(value: Any) -> Parts:
-    """Text, a path, a substitution or several of them, as a list.
+    """Convert text, a path, a substitution or several of them to a list.
 
     Raises:
-        InvalidLaunchValueError: anything else; names the value.
+        InvalidLaunchValueError: any other value.
     """
     if isinstance(value, Substitution):
-        return [value]
+        return Parts([value])
     if isinstance(value, (str, Path)):
-        return [TextSubstitution(text=str(value))]
+        return Parts([TextSubstitution(text=str(value))])
     if isinstance(value, Iterable) and not isinstance(value, (bytes, dict)):
-        return [part for item in value for part in _single(item)]
+        return Parts(part for item in value for part in _single(item))
     raise InvalidLaunchValueError(
-        f"{value!r} ({type(value).__name__}): wanted text, a path, a substitution, "
+        f"{value!r} ({type(value).__name__}): expected text, a path, a substitution, "
         "or a list of these"
     )
 
@@ -67,21 +75,21 @@ def _single(item: Any) -> Parts:
     if isinstance(item, (str, Path, Substitution)):
         return normalize_to_list_of_substitutions(item)
     raise InvalidLaunchValueError(
-        f"{item!r} ({type(item).__name__}) in a list: wanted text, a path or a "
+        f"{item!r} ({type(item).__name__}) in a list: expected text, a path or a "
         "substitution"
     )
 
 
 def perform_substitutions(context: LaunchContext, parts: Iterable[Substitution]) -> str:
-    """The texts of all parts, joined."""
-    return "".join(part.perform(context) for part in parts)
+    """Return the joined text of substitutions."""
+    return Parts(parts).perform(context)
+
+
+def perform_value(context: LaunchContext, value: Any) -> str:
+    """Return the text of a value that may be text or substitutions."""
+    return normalize_to_list_of_substitutions(value).perform(context)
 
 
 def optional_parts(value: Any) -> Parts | None:
-    """As :func:`normalize_to_list_of_substitutions`; None stays None."""
+    """Convert a value as above; None stays None."""
     return None if value is None else normalize_to_list_of_substitutions(value)
-
-
-def describe_parts(parts: Iterable[Substitution]) -> str:
-    """How joined parts read in an error or a listing."""
-    return " + ".join(part.describe() for part in parts) or "''"

@@ -1,4 +1,4 @@
-"""ROS 2's ``launch_ros``: launching nodes."""
+"""ROS 2's ``launch_ros``: actions that launch nodes."""
 
 from navette.ros2.packages.launch_ros import (
     actions,

@@ -1,4 +1,4 @@
-"""From what a launch file says of a node to the ROS arguments of its program."""
+"""ROS arguments of a node's program."""
 
 import json
 import math
@@ -11,8 +11,7 @@ from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     Substitution,
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
+    perform_value,
 )
 from navette.ros2.packages.launch_ros.parameter_descriptions import (
     Parameter,
@@ -22,14 +21,14 @@ from navette.ros2.packages.launch_ros.parameter_descriptions import (
 from navette.ros2.packages.launch_ros.scope import global_parameters, global_remaps
 
 Evaluated = list[Path | tuple[str, Any]]
-"""Parameter files and (name, value) in their order: the last wins."""
+"""Parameter files and (name, value) pairs; later ones override earlier ones."""
 
 
 def evaluate_parameters(context: LaunchContext, given: Iterable[Any]) -> Evaluated:
-    """The scope's parameters, then those of the node itself.
+    """Return the parameters of the scope, then those of the node.
 
     Raises:
-        InvalidLaunchValueError: an item is none of a path, a dict and a Parameter.
+        InvalidLaunchValueError: an item is not a path, dict or Parameter.
     """
     found: Evaluated = list(global_parameters(context))
     for item in given:
@@ -41,7 +40,7 @@ def evaluate_parameters(context: LaunchContext, given: Iterable[Any]) -> Evaluat
             found.append(ParameterFile(item).evaluate(context))
         else:
             raise InvalidLaunchValueError(
-                f"parameters: {item!r} ({type(item).__name__}): wanted a dict, the "
+                f"parameters: {item!r} ({type(item).__name__}): expected a dict, the "
                 "path of a file, or a Parameter"
             )
     return found
@@ -50,12 +49,12 @@ def evaluate_parameters(context: LaunchContext, given: Iterable[Any]) -> Evaluat
 def evaluate_remaps(
     context: LaunchContext, given: Iterable[Any]
 ) -> list[tuple[str, str]]:
-    """The scope's remappings, then those of the node itself."""
+    """Return the remappings of the scope, then those of the node."""
     found = global_remaps(context)
     for rule in given:
         if isinstance(rule, str) or len(tuple(rule)) != 2:
             raise InvalidLaunchValueError(
-                f"remappings: {rule!r}: wanted a pair, as in ('from', 'to')"
+                f"remappings: {rule!r}: expected a pair, as in ('from', 'to')"
             )
         source, target = rule
         found.append((_text(context, source), _text(context, target)))
@@ -68,7 +67,7 @@ def ros_arguments(
     parameters: Evaluated,
     remaps: Iterable[tuple[str, str]],
 ) -> list[str]:
-    """What stands behind ``--ros-args``."""
+    """Return the words after ``--ros-args``."""
     words: list[str] = []
     if name is not None:
         words += ["-r", f"__node:={name}"]
@@ -85,14 +84,14 @@ def ros_arguments(
 
 
 def parameter_text(name: str, value: Any) -> str:
-    """A value as ``-p`` takes it, read back as the same value of the same type."""
+    """Format a value for ``-p``; parsing it returns the same value and type."""
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(parameter_text(name, each) for each in value)}]"
     if isinstance(value, bool) or not isinstance(value, float):
         if not isinstance(value, (bool, int, str)):
             raise ParameterError(
-                f"parameter {name!r}: {value!r} ({type(value).__name__}) is no "
-                "parameter value; wanted a bool, int, float, string or a list of one"
+                f"parameter {name!r}: {value!r} ({type(value).__name__}): expected a "
+                "bool, int, float, string or a list of one of these"
             )
         return json.dumps(value, ensure_ascii=False)
     if math.isnan(value):
@@ -103,4 +102,4 @@ def parameter_text(name: str, value: Any) -> str:
 
 
 def _text(context: LaunchContext, value: Any) -> str:
-    return perform_substitutions(context, normalize_to_list_of_substitutions(value))
+    return perform_value(context, value)

@@ -1,4 +1,4 @@
-"""Parameter files that reach no node are an error once all nodes are known."""
+"""Check that each parameter file matches a node of the launch."""
 
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ _NOTE = "parameter files"
 
 
 def check_later(context: LaunchContext, node: Any, parameters: Any) -> None:
-    """Remember who got which file; look at it once the description was visited."""
+    """Check the parameter files of a node after the visit of the description."""
     if _NOTE not in context.notes:
         context.notes[_NOTE] = []
         context.loop.call_soon(lambda: _check(context), "parameter files")
@@ -26,13 +26,13 @@ def _check(context: LaunchContext) -> None:
     for path in dict.fromkeys(path for _, path in entries):
         nodes = [node for node, each in entries if each == path]
         patterns = [pattern for pattern, _ in read_parameter_file(path)]
-        # A node that was given no name names itself, which is not known here.
+        # Without a given name, the program chooses the node's name.
         if any(node.expanded_node_name[0] == "<" for node in nodes):
             continue
         names = [node.node_name for node in nodes]
         if not any(_matches(pattern, name) for pattern in patterns for name in names):
             error = ParameterError(
-                f"{path}: has nothing for {', '.join(names)}; it is for "
+                f"{path}: has no parameters for {', '.join(names)}; it has some for "
                 f"{', '.join(patterns) or 'no node'}"
             )
             raise LaunchError.at(nodes[0].origin, nodes[0].describe(), error)

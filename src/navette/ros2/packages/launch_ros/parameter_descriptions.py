@@ -1,4 +1,4 @@
-"""Parameters of nodes: single values and files, with substitutions."""
+"""Parameter values and parameter files with substitutions."""
 
 import types
 from collections.abc import Iterable
@@ -13,6 +13,7 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
+    perform_value,
 )
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.runtime.parameter_files import parse_value
@@ -21,13 +22,12 @@ _SCALARS: dict[str, type] = {"int": int, "float": float, "bool": bool, "str": st
 
 
 class ParameterValue:
-    """A value, or substitutions that give one.
+    """A value, or substitutions that produce it.
 
     Args:
         value: a value, substitutions, or a list of values.
-        value_type: what the text of substitutions is read as: ``int``, ``float``,
-            ``bool``, ``str``, or a list of these (``List[int]``); None: by the rules
-            of parameter files.
+        value_type: type of the value: ``int``, ``float``, ``bool``, ``str``, or a list
+            of one of these (``List[int]``); None: by the rules of parameter files.
     """
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
@@ -36,18 +36,16 @@ class ParameterValue:
         _checked_type(value_type)
 
     def evaluate(self, context: LaunchContext) -> Any:
-        """The value, of the type asked for.
+        """Return the value, of the requested type.
 
         Raises:
-            ParameterError: it cannot be read as that type.
+            ParameterError: the value has another type.
         """
         value = self.value
         if isinstance(value, ParameterValue):
             value = value.evaluate(context)
         elif _has_substitutions(value):
-            text = perform_substitutions(
-                context, normalize_to_list_of_substitutions(value)
-            )
+            text = perform_value(context, value)
             value = text if self.value_type is str else parse_value(text)
         elif isinstance(value, (list, tuple)):
             value = [_item(context, each) for each in value]
@@ -57,7 +55,7 @@ class ParameterValue:
 
 
 def _has_substitutions(value: Any) -> bool:
-    """One substitution, or texts and substitutions to be joined."""
+    """Return whether a value is a substitution or a list to join."""
     if isinstance(value, Substitution):
         return True
     if not isinstance(value, (list, tuple)):
@@ -70,15 +68,14 @@ def _has_substitutions(value: Any) -> bool:
 
 
 def _item(context: LaunchContext, value: Any) -> Any:
-    """An item of a list of values."""
     if isinstance(value, (Substitution, list, tuple)):
-        text = perform_substitutions(context, normalize_to_list_of_substitutions(value))
+        text = perform_value(context, value)
         return parse_value(text)
     return value
 
 
 def _checked_type(value_type: Any) -> tuple[type | None, bool]:
-    """(scalar type, whether a list of it)."""
+    """Return the scalar type and whether it is a list of them."""
     if value_type is None:
         return None, False
     is_list = get_origin(value_type) is list or isinstance(
@@ -87,8 +84,8 @@ def _checked_type(value_type: Any) -> tuple[type | None, bool]:
     scalar = (get_args(value_type) or (None,))[0] if is_list else value_type
     if scalar not in _SCALARS.values():
         raise InvalidLaunchValueError(
-            f"value_type {value_type!r}: wanted int, float, bool, str or a list of one "
-            "of these, as in List[int]"
+            f"value_type {value_type!r}: expected int, float, bool, str or a "
+            "list of one of these, as in List[int]"
         )
     return scalar, is_list
 
@@ -97,7 +94,7 @@ def _as_type(value: Any, value_type: Any) -> Any:
     scalar, is_list = _checked_type(value_type)
     if is_list:
         if not isinstance(value, list):
-            raise ParameterError(f"value {value!r}: wanted a list, {value_type}")
+            raise ParameterError(f"value {value!r}: expected a list, {value_type}")
         return [_as_scalar(each, scalar) for each in value]
     return _as_scalar(value, scalar)
 
@@ -108,12 +105,12 @@ def _as_scalar(value: Any, scalar: type | None) -> Any:
     if scalar is str and not isinstance(value, list):
         return str(value).lower() if isinstance(value, bool) else str(value)
     if scalar is not None and type(value) is not scalar:
-        raise ParameterError(f"value {value!r}: wanted {scalar.__name__}")
+        raise ParameterError(f"value {value!r}: expected {scalar.__name__}")
     return value
 
 
 class Parameter:
-    """A named value, as an item of ``parameters=[…]``."""
+    """A named value, an item of ``parameters=[…]``."""
 
     def __init__(
         self, name: SomeSubstitutionsType, value: Any, *, value_type: Any = None
@@ -122,8 +119,8 @@ class Parameter:
         self._value = ParameterValue(value, value_type=value_type)
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
-        """Name and value."""
-        return perform_substitutions(context, self._name), self._value.evaluate(context)
+        """Return name and value."""
+        return self._name.perform(context), self._value.evaluate(context)
 
 
 class ParameterFile:
@@ -131,7 +128,7 @@ class ParameterFile:
 
     Args:
         param_file: its path.
-        allow_substs: ``$(…)`` in the file is worked out before it is read.
+        allow_substs: perform the substitutions in the file.
     """
 
     def __init__(
@@ -141,12 +138,12 @@ class ParameterFile:
         self._allow_substs = allow_substs
 
     def evaluate(self, context: LaunchContext) -> Path:
-        """The path of a file without substitutions.
+        """Return the path of the file, or of a copy with substitutions performed.
 
         Raises:
-            FileFormatError: there is no such file, or a substitution in it fails.
+            FileFormatError: the file does not exist, or a substitution fails.
         """
-        path = Path(perform_substitutions(context, self._path))
+        path = Path(self._path.perform(context))
         if not path.is_file():
             raise FileFormatError(path, "no such parameter file")
         if not perform_bool(context, self._allow_substs):
@@ -156,21 +153,21 @@ class ParameterFile:
             done = perform_substitutions(context, parse_substitution(text))
         except ValueError as error:
             raise FileFormatError(path, str(error)) from error
-        worked_out = context.scratch_folder() / f"{len(text)}_{abs(hash(done))}.yaml"
-        worked_out.write_text(done, encoding="utf-8")
-        return worked_out
+        performed = context.scratch_folder() / f"{len(text)}_{abs(hash(done))}.yaml"
+        performed.write_text(done, encoding="utf-8")
+        return performed
 
 
 def evaluate_dict(
     context: LaunchContext, values: dict[Any, Any], prefix: str = ""
 ) -> list[tuple[str, Any]]:
-    """(name, value) of a dict; nested dicts give names joined with dots."""
+    """Return the (name, value) pairs of a dict; names of nested dicts are dotted."""
     found: list[tuple[str, Any]] = []
     for key, value in values.items():
         keys = (
             list(key) if isinstance(key, Iterable) and not isinstance(key, str) else key
         )
-        name = perform_substitutions(context, normalize_to_list_of_substitutions(keys))
+        name = perform_value(context, keys)
         name = f"{prefix}{name}"
         if isinstance(value, dict):
             found += evaluate_dict(context, value, f"{name}.")

@@ -1,4 +1,4 @@
-"""From package and executable to what can be run."""
+"""Programs of packages."""
 
 from pathlib import Path
 
@@ -7,10 +7,10 @@ from navette.ros2.workspace import find_package
 
 
 def find_program(package: str, name: str) -> PythonProgram | Path:
-    """A Python program, or the path of any other executable.
+    """Return a Python program, or the path of another executable.
 
     Raises:
-        UnknownNameError: no such package or executable; lists those known.
+        UnknownNameError: unknown package or executable; lists the known ones.
     """
     found = find_package(package)
     executable = found.executable(name)
@@ -25,7 +25,7 @@ def find_program(package: str, name: str) -> PythonProgram | Path:
 
 
 def program_of(path: Path) -> PythonProgram | Path:
-    """A file as Python program if it is one."""
+    """Return a Python program for a Python file, else the path."""
     if path.suffix == ".py":
         return PythonProgram(file=path)
     with path.open("rb") as file:

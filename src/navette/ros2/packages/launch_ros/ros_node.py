@@ -1,4 +1,4 @@
-"""The launch's own node: asks managed nodes for transitions, hears what they do."""
+"""The launch's own node: requests and observes transitions, and runs ROS timers."""
 
 import os
 import threading
@@ -15,10 +15,10 @@ _END_S = 5.0
 
 
 class LaunchNode:
-    """A node of the launch, where the nodes it starts are; with a thread of its own.
+    """A node on the graph of the launched nodes, with a thread of its own.
 
     Args:
-        launch: told, on its loop, of what comes.
+        launch: its loop runs the callbacks.
     """
 
     def __init__(self, launch: LaunchContext) -> None:
@@ -31,15 +31,15 @@ class LaunchNode:
         self._thread = threading.Thread(target=self._spin, daemon=True)
         self._thread.start()
 
-    def listen(
-        self, message_type: Any, topic: str, heard: Callable[[Any], None]
+    def subscribe(
+        self, message_type: Any, topic: str, callback: Callable[[Any], None]
     ) -> None:
-        """Call ``heard`` on the launch's loop with every message."""
+        """Call ``callback`` on the launch's loop with every message."""
 
         def receive(message: Any) -> None:
-            self._tell(lambda: heard(message))
+            self._on_launch_loop(lambda: callback(message))
 
-        self._soon(
+        self._on_node_loop(
             lambda: self._node.create_subscription(message_type, topic, receive, 10)
         )
 
@@ -48,11 +48,11 @@ class LaunchNode:
         service_type: Any,
         name: str,
         request: Any,
-        answered: Callable[[Any], None],
+        on_response: Callable[[Any], None],
     ) -> None:
-        """Call a service once it is there; waits for it until the launch ends.
+        """Call a service as soon as it is available.
 
-        ``answered`` runs on the launch's loop, with the response.
+        ``on_response`` runs on the launch's loop.
         """
 
         def begin() -> None:
@@ -64,24 +64,26 @@ class LaunchNode:
                 timer.cancel()
                 future = client.call_async(request)
                 future.add_done_callback(
-                    lambda done: self._tell(lambda: answered(done.result()))
+                    lambda done: self._on_launch_loop(
+                        lambda: on_response(done.result())
+                    )
                 )
 
             timer = self._node.create_timer(_RETRY_S, attempt)
 
-        self._soon(begin)
+        self._on_node_loop(begin)
 
     def after(self, seconds: float, function: Callable[[], None]) -> None:
-        """Call ``function`` on the launch's loop after so long in ROS time."""
+        """Call ``function`` on the launch's loop after ``seconds`` of ROS time."""
 
         def begin() -> None:
             def fire() -> None:
                 timer.cancel()
-                self._tell(function)
+                self._on_launch_loop(function)
 
             timer = self._node.create_timer(seconds, fire)
 
-        self._soon(begin)
+        self._on_node_loop(begin)
 
     def close(self) -> None:
         """Leave the graph."""
@@ -92,14 +94,14 @@ class LaunchNode:
         try:
             self._executor.spin()
         except CallbackError as error:
-            # Raised where the launch sees it: nothing dies unseen in a thread.
+            # Raised on the launch's loop, where it fails the launch.
             failure = error
-            self._tell(lambda: _raise(failure))
+            self._on_launch_loop(lambda: _raise(failure))
 
-    def _soon(self, function: Callable[[], Any]) -> None:
+    def _on_node_loop(self, function: Callable[[], Any]) -> None:
         self._executor.call_soon_threadsafe(function)
 
-    def _tell(self, function: Callable[[], None]) -> None:
+    def _on_launch_loop(self, function: Callable[[], None]) -> None:
         self._launch.loop.call_soon_threadsafe(function, "ros node")
 
 
@@ -108,7 +110,7 @@ def _raise(error: Exception) -> None:
 
 
 def launch_node(context: LaunchContext) -> LaunchNode:
-    """The node of this launch; made on first use, closed with the launch."""
+    """Return the node of a launch; created on first use, closed with the launch."""
     node: LaunchNode | None = context.notes.get(_NOTE)
     if node is None:
         node = context.notes[_NOTE] = LaunchNode(context)

@@ -1,6 +1,6 @@
-"""What a scope gives the nodes started in it: namespace, parameters, remappings.
+"""Namespace, parameters and remappings of the nodes in a scope.
 
-Kept in the launch configurations, so that groups end it as they end arguments.
+They are stored as launch configurations, so that groups restore them.
 """
 
 import json
@@ -19,19 +19,19 @@ GlobalParameter = tuple[str, Any] | Path
 
 
 def pushed_namespace(context: LaunchContext) -> str:
-    """The namespace of this scope; empty if there is none."""
+    """Return the namespace of the scope; empty if none is set."""
     return context.launch_configurations.get(_NAMESPACE, "")
 
 
 def push_namespace(context: LaunchContext, namespace: str) -> None:
-    """Go one namespace deeper; one that starts with ``/`` starts anew."""
+    """Add a namespace; one that starts with ``/`` is absolute."""
     context.launch_configurations[_NAMESPACE] = joined_namespace(
         pushed_namespace(context), namespace
     )
 
 
 def joined_namespace(outer: str, inner: str) -> str:
-    """``inner`` within ``outer``; ``/…`` stands for itself. Empty: none at all."""
+    """Join namespaces; an absolute ``inner`` (``/…``) stays as it is."""
     inner = inner.strip()
     if not inner.startswith("/"):
         inner = f"{outer.rstrip('/')}/{inner}" if outer else inner
@@ -43,7 +43,7 @@ def joined_namespace(outer: str, inner: str) -> str:
 
 
 def global_parameters(context: LaunchContext) -> list[GlobalParameter]:
-    """Parameters and parameter files set for all nodes of this scope."""
+    """Return the parameters and parameter files of the scope."""
     found = json.loads(context.launch_configurations.get(_PARAMETERS, "[]"))
     return [
         Path(item) if isinstance(item, str) else (item[0], item[1]) for item in found
@@ -51,7 +51,6 @@ def global_parameters(context: LaunchContext) -> list[GlobalParameter]:
 
 
 def add_global_parameter(context: LaunchContext, given: GlobalParameter) -> None:
-    """Set one more for all nodes of this scope."""
     found = [*global_parameters(context), given]
     context.launch_configurations[_PARAMETERS] = json.dumps(
         [str(item) if isinstance(item, Path) else item for item in found]
@@ -59,13 +58,12 @@ def add_global_parameter(context: LaunchContext, given: GlobalParameter) -> None
 
 
 def global_remaps(context: LaunchContext) -> list[tuple[str, str]]:
-    """Remappings set for all nodes of this scope."""
+    """Return the remappings of the scope."""
     found = json.loads(context.launch_configurations.get(_REMAPS, "[]"))
     return [(source, target) for source, target in found]
 
 
 def add_global_remap(context: LaunchContext, source: str, target: str) -> None:
-    """Set one more for all nodes of this scope."""
     context.launch_configurations[_REMAPS] = json.dumps(
         [*global_remaps(context), (source, target)]
     )

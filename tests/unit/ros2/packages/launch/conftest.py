@@ -7,7 +7,7 @@ import pytest
 
 from navette.ros2.packages.launch import LaunchDescription, LaunchService
 from navette.ros2.packages.launch.logging import get_logger
-from navette.ros2.packages.launch.running import Command
+from navette.ros2.packages.launch.running import LaunchCommand
 from navette.runtime import VirtualClock
 from navette.runtime.loop import EventLoop
 from navette.supervisor import INTERRUPT, ProcessListener
@@ -17,7 +17,7 @@ from navette.supervisor import INTERRUPT, ProcessListener
 class FakeProcess:
     """A command that ends when it is interrupted, unless it is stubborn."""
 
-    command: Command
+    command: LaunchCommand
     pid: int
     at_s: float
     stubborn: bool = False
@@ -56,7 +56,7 @@ class FakeRunner:
     def now_s(self) -> float:
         return self.loop.clock.now_ns / 1e9
 
-    def start(self, command: Command) -> FakeProcess:
+    def start(self, command: LaunchCommand) -> FakeProcess:
         pid = 100 + len(self.started)
         process = FakeProcess(command, pid, self.now_s(), now_s=self.now_s)
         process.behaviour = self.behaviour

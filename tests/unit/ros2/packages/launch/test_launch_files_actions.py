@@ -75,10 +75,10 @@ def test_a_required_argument_says_how_to_give_it(launch: Any) -> None:
 
 
 def test_choices_are_checked(launch: Any) -> None:
-    with pytest.raises(InvalidLaunchValueError, match="'c'; wanted one of a, b"):
+    with pytest.raises(InvalidLaunchValueError, match="'c'; expected one of a, b"):
         DeclareLaunchArgument("x", default_value="c", choices=["a", "b"])
     launch.run(DeclareLaunchArgument("x", choices=["a", "b"]), x="d")
-    assert "'d'; wanted one of a, b" in launch.errors
+    assert "'d'; expected one of a, b" in launch.errors
 
 
 def test_a_group_keeps_its_settings_to_itself(
@@ -221,7 +221,7 @@ def test_conditions_hold_actions_back(launch: Any, caplog: Any) -> None:
         Log(msg="maybe", level="perhaps"),
     )
     assert messages(caplog) == ["yes"]
-    assert "'perhaps'; wanted debug, info" in launch.errors
+    assert "'perhaps'; expected debug, info" in launch.errors
 
 
 LAUNCH_FILE = """
@@ -269,7 +269,7 @@ def test_an_include_gets_arguments_and_knows_its_folder(
     )
     assert code == 0, launch.errors
     assert messages(caplog) == ["hello world", str(tmp_path), "who=world"]
-    assert "declares no argument 'wo'; it has who" in caplog.text
+    assert "declares no argument 'wo'; declared: who" in caplog.text
 
 
 @pytest.mark.usefixtures("module")
@@ -277,7 +277,7 @@ def test_an_include_without_a_required_argument(launch: Any, tmp_path: Path) -> 
     file = tmp_path / "part.launch.py"
     file.write_text(LAUNCH_FILE)
     assert launch.run(IncludeLaunchDescription(str(file))) == 1
-    assert f"{file} needs arguments that are not given: who" in launch.errors
+    assert f"{file} requires these arguments: who" in launch.errors
 
 
 @pytest.mark.usefixtures("module")
@@ -312,7 +312,7 @@ def test_a_broken_file_is_named_with_its_line(
 def test_an_unknown_kind_of_file(launch: Any, tmp_path: Path) -> None:
     (tmp_path / "a.toml").touch()
     launch.run(IncludeLaunchDescription(str(tmp_path / "a.toml")))
-    assert "wanted one that ends in .py, .xml, .launch, .yaml, .yml" in launch.errors
+    assert "expected a file ending in .py, .xml, .launch, .yaml, .yml" in launch.errors
     with pytest.raises(InvalidLaunchValueError, match=r"\.items\(\)"):
         IncludeLaunchDescription("x", launch_arguments={"a": "b"})  # type: ignore[arg-type]
 
@@ -341,9 +341,9 @@ def test_loops_make_entities(launch: Any, caplog: Any) -> None:
 @pytest.mark.parametrize(
     ("action", "reason"),
     [
-        (lambda: ForLoop("two", function=list), "length 'two': wanted 0"),
+        (lambda: ForLoop("two", function=list), "length 'two': expected 0"),
         (lambda: ForEach("[1", function=list), "not YAML"),
-        (lambda: ForEach("[1]", function=list), "wanted names and values"),
+        (lambda: ForEach("[1]", function=list), "expected a mapping"),
     ],
 )
 def test_wrong_loops_are_named(launch: Any, action: Any, reason: str) -> None:

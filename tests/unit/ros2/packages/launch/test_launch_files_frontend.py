@@ -14,7 +14,6 @@ from navette.ros2.packages.launch.frontend import (
     parse_substitution,
     yaml_files,
 )
-from navette.ros2.packages.launch.substitution import describe_parts
 
 XML = """<launch version="0.1.1">
   <arg name="robot" default="burger" description="which">
@@ -153,17 +152,17 @@ def test_everything_in_one_file(
         ("<launch><node pkg='a' exec='b' ouput='s'/></launch>", 1, "'ouput'; kn.*out"),
         ("<launch><log message='$(vra x)'/></launch>", 1, r"unknown subst.*'\$\(vra"),
         ("<launch><log message='$(var x'/></launch>", 1, r"closing '\)' is missing"),
-        ("<launch><log message='$(var)'/></launch>", 1, "0 arguments; wanted 1 to 2"),
-        ("<launch><log message='a' if='1' unless='1'/></launch>", 1, "exclude"),
+        ("<launch><log message='$(var)'/></launch>", 1, "0 arguments; expected 1 to 2"),
+        ("<launch><log message='a' if='1' unless='1'/></launch>", 1, "exclusive"),
         ("<launch><node pkg='a' exec='b'>\n<remp from='a' to='b'/></node></launch>", 2,
          "<remp>: not allowed in <node>; allowed: .*<remap>"),
-        ("<launch>text</launch>", 1, "'text' between the tags"),
-        ("<run/>", 1, "wanted <launch>"),
+        ("<launch>text</launch>", 1, "unexpected text 'text'"),
+        ("<run/>", 1, "expected <launch>"),
         ("<launch>", 1, "not XML"),
         ("<!DOCTYPE x [<!ENTITY a 'b'>]><launch/>", None, "refused: DTDForbidden"),
         ("<launch><executable cmd='a' respawn_delay='x'/></launch>", 1, "a number"),
-        ("<launch><executable cmd='a' on_exit='x'/></launch>", 1, "wanted shutdown"),
-        ("<launch><group scoped='x'/></launch>", 1, "wanted true or false"),
+        ("<launch><executable cmd='a' on_exit='x'/></launch>", 1, "expected shutdown"),
+        ("<launch><group scoped='x'/></launch>", 1, "expected true or false"),
         ("<launch><set_parameter name='x' value='1' type='i'/></launch>", 1, "of bool"),
         ("<launch><node pkg='a' exec='b'><param name='x'/></node></launch>", 1, "valu"),
     ],
@@ -186,8 +185,8 @@ def test_a_mistake_is_named_with_file_and_line(
         ("launch:\n- {a: {}, b: {}}\n", 2, "one tag each"),
         ("launch: [\n", 2, "not YAML"),
         ("- a\n", None, "'launch:'"),
-        ("launch:\n- log: text\n", 2, "wanted attributes"),
-        ("launch:\n- log: {message: a, message: b}\n", 2, "given twice"),
+        ("launch:\n- log: text\n", 2, "expected attributes"),
+        ("launch:\n- log: {message: a, message: b}\n", 2, "given more than once"),
         ("launch:\n- log: {message: !!python/object:os.system a}\n", None, "not YAML"),
     ],
 )  # fmt: skip
@@ -226,7 +225,7 @@ def test_a_condition_that_fails_names_its_tag(launch: Any, tmp_path: Path) -> No
     ],
 )  # fmt: skip
 def test_the_grammar(text: str, parts: str) -> None:
-    assert describe_parts(parse_substitution(text)) == parts
+    assert parse_substitution(text).describe() == parts
 
 
 def test_nesting_is_bounded() -> None:

@@ -161,11 +161,11 @@ def test_a_value_is_read_back_as_it_was(value: object) -> None:
 
 
 def test_a_value_that_is_no_parameter(launch: Any, program: str) -> None:
-    with pytest.raises(ParameterError, match="wanted a bool"):
+    with pytest.raises(ParameterError, match="expected a bool"):
         parameter_text("x", object())
     launch.run(Node(executable=program, parameters=[{"x": None}]))
     assert "parameter 'x': None" in launch.errors
-    with pytest.raises(InvalidLaunchValueError, match="wanted a list"):
+    with pytest.raises(InvalidLaunchValueError, match="expected a list"):
         Node(executable=program, parameters={"x": 1})
     with pytest.raises(InvalidLaunchValueError, match="int, float, bool, str"):
         ParameterValue(1, value_type=dict)
@@ -179,7 +179,7 @@ def test_a_value_of_another_type_than_asked_for(
 ) -> None:
     given = ParameterValue(LaunchConfiguration("v"), value_type=value_type)
     launch.run(Node(executable=program, parameters=[{"x": given}]), v=value)
-    assert "wanted" in launch.errors
+    assert "expected" in launch.errors
 
 
 def test_a_parameter_file_that_reaches_no_node(
@@ -189,7 +189,10 @@ def test_a_parameter_file_that_reaches_no_node(
     file.write_text("/talkre:\n  ros__parameters: {x: 1}\n")
     node = Node(executable=program, name="talker", parameters=[file])
     assert launch.run(node) == 1
-    assert f"{file}: has nothing for /talker; it is for /talkre" in launch.errors
+    assert (
+        f"{file}: has no parameters for /talker; it has some for /talkre"
+        in launch.errors
+    )
     assert launch.runner.started[0].signals, "what was started is ended"
 
 
@@ -258,7 +261,7 @@ def test_what_is_set_for_a_scope_reaches_its_nodes(
 
 def test_remappings_are_pairs(launch: Any, program: str) -> None:
     launch.run(Node(executable=program, remappings=["a:=b"]))
-    assert "wanted a pair, as in ('from', 'to')" in launch.errors
+    assert "expected a pair, as in ('from', 'to')" in launch.errors
 
 
 def test_what_only_a_process_can_have(
@@ -356,6 +359,6 @@ def test_an_unknown_container_is_named(launch: Any) -> None:
             composable_node_descriptions=[], target_container=LaunchConfiguration("c")
         ),
     )
-    assert "'/box': no such container has been started; there are: none" in (
+    assert "unknown target_container '/box'; started containers: none" in (
         launch.errors
     )

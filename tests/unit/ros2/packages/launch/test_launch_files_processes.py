@@ -93,7 +93,7 @@ def test_output_may_go_to_a_file(
 
 def test_an_unknown_place_for_output(launch: Any) -> None:
     launch.run(ExecuteProcess(cmd=["t"], output="sreen"))
-    assert "output 'sreen'; wanted screen, log" in launch.errors
+    assert "output 'sreen'; expected screen, log" in launch.errors
 
 
 def test_handlers_hear_of_start_output_and_end(launch: Any, caplog: Any) -> None:
@@ -128,7 +128,7 @@ def test_handlers_hear_of_start_output_and_end(launch: Any, caplog: Any) -> None
         other,
     )
     assert user_lines(caplog) == ["pid 100", "heard ready", "code 0"]
-    with pytest.raises(InvalidLaunchValueError, match="wanted an action"):
+    with pytest.raises(InvalidLaunchValueError, match="expected an action"):
         OnProcessExit(target_action="talker", on_exit=[])
 
 
@@ -246,7 +246,7 @@ def test_a_failed_launch_ends_what_it_started(launch: Any) -> None:
 
 
 def test_wrong_command_lines_are_refused() -> None:
-    with pytest.raises(InvalidLaunchValueError, match="wanted a list of words"):
+    with pytest.raises(InvalidLaunchValueError, match="expected a list of words"):
         ExecuteProcess(cmd="ls -l")
     with pytest.raises(InvalidLaunchValueError, match="empty"):
         ExecuteProcess(cmd=[])

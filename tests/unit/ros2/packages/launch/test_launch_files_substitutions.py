@@ -89,15 +89,15 @@ def test_the_text_of_a_substitution(
 @pytest.mark.parametrize(
     ("substitution", "reason"),
     [
-        (LaunchConfiguration("nam"), "'nam' does not exist; there are: .*name"),
+        (LaunchConfiguration("nam"), "'nam' does not exist \\(known: .*name"),
         (EnvironmentVariable("NOT_SET_HERE"), "'NOT_SET_HERE' is not set"),
-        (NotSubstitution("perhaps"), "'perhaps' is neither true nor false"),
+        (NotSubstitution("perhaps"), "'perhaps': expected true"),
         (FindExecutable(name="no-such-thing"), "'no-such-thing' is not on PATH"),
         (FileContent("/no/such/file"), "/no/such/file: cannot be read"),
         (Command("no-such-thing"), "no-such-thing"),
         (Command([sys.executable, " -c 'exit(3)'"]), "failed with code 3"),
-        (LocalSubstitution("event.pid"), "no local 'event.pid'"),
-        (ThisLaunchFileDir(), "no launch file is being run"),
+        (LocalSubstitution("event.pid"), "unknown local 'event.pid'"),
+        (ThisLaunchFileDir(), "no launch file is running"),
         (PythonExpression("burger == 1"), "unknown name 'burger'"),
         (PythonExpression("1", ["os"]), "module 'os' is not available"),
     ],
@@ -141,7 +141,7 @@ def test_an_anonymous_name_is_the_same_each_time(context: LaunchContext) -> None
 
 @pytest.mark.parametrize("value", [3, 2.5, None, ["a", 3], {"a": 1}])
 def test_what_is_no_substitution_is_refused_at_once(value: object) -> None:
-    with pytest.raises(InvalidLaunchValueError, match="wanted text"):
+    with pytest.raises(InvalidLaunchValueError, match="expected text"):
         LaunchConfiguration(value)  # type: ignore[arg-type]
 
 
@@ -151,5 +151,7 @@ def test_conditions(context: LaunchContext) -> None:
     assert LaunchConfigurationEquals("name", "burger").evaluate(context)
     assert LaunchConfigurationNotEquals("name", "waffle").evaluate(context)
     assert LaunchConfigurationEquals("missing", None).evaluate(context)
-    with pytest.raises(InvalidConditionExpressionError, match="'burger' is neither"):
+    with pytest.raises(
+        InvalidConditionExpressionError, match="'burger': expected true"
+    ):
         IfCondition(LaunchConfiguration("name")).evaluate(context)

@@ -1,4 +1,4 @@
-"""Launch arguments and configurations: declare, set, unset, keep apart."""
+"""Actions that declare arguments, and set, unset and scope configurations."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,18 +8,16 @@ from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
-    describe_parts,
     normalize_to_list_of_substitutions,
     optional_parts,
-    perform_substitutions,
 )
 
 
 class DeclareLaunchArgument(Action):
-    """An argument of the launch file, with or without a default.
+    """Declares an argument of the launch file, with or without a default.
 
     Raises:
-        InvalidLaunchValueError: no choices, or a default that is none of them.
+        InvalidLaunchValueError: empty choices, or a default that is not a choice.
     """
 
     def __init__(
@@ -34,7 +32,7 @@ class DeclareLaunchArgument(Action):
         super().__init__(**kwargs)
         if not isinstance(name, str) or not name:
             raise InvalidLaunchValueError(
-                f"DeclareLaunchArgument: name {name!r}: wanted text"
+                f"DeclareLaunchArgument: name {name!r}: expected text"
             )
         self.name = name
         self.default_value = optional_parts(default_value)
@@ -47,15 +45,14 @@ class DeclareLaunchArgument(Action):
 
     @property
     def declares(self) -> str:
-        """The name, for those who collect declarations."""
+        """The declared name."""
         return self.name
 
     def describe(self) -> str:
         return f"DeclareLaunchArgument({self.name!r})"
 
     def describe_default(self) -> str:
-        """The default as a person reads it."""
-        return "" if self.default_value is None else describe_parts(self.default_value)
+        return "" if self.default_value is None else self.default_value.describe()
 
     def execute(self, context: LaunchContext) -> None:
         context.known_arguments.add(self.name)
@@ -65,21 +62,21 @@ class DeclareLaunchArgument(Action):
                     f"argument {self.name!r} is required: give {self.name}:=value"
                     + (f" ({self.description})" if self.description else "")
                 )
-            context.launch_configurations[self.name] = perform_substitutions(
-                context, self.default_value
+            context.launch_configurations[self.name] = self.default_value.perform(
+                context
             )
         self._check(context.launch_configurations[self.name])
 
     def _check(self, value: str) -> None:
         if self.choices is not None and value not in self.choices:
             raise InvalidLaunchValueError(
-                f"argument {self.name!r}: {value!r}; wanted one of "
+                f"argument {self.name!r}: {value!r}; expected one of "
                 f"{', '.join(self.choices)}"
             )
 
 
 class SetLaunchConfiguration(Action):
-    """Set a configuration (``<let>``) from here on in this scope."""
+    """Sets a configuration (``<let>``) in the present scope."""
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -87,43 +84,43 @@ class SetLaunchConfiguration(Action):
         self.value = normalize_to_list_of_substitutions(value)
 
     def describe(self) -> str:
-        return f"SetLaunchConfiguration({describe_parts(self.name)})"
+        return f"SetLaunchConfiguration({self.name.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
-        name = perform_substitutions(context, self.name)
+        name = self.name.perform(context)
         context.known_arguments.add(name)
-        value = perform_substitutions(context, self.value)
+        value = self.value.perform(context)
         context.launch_configurations[name] = value
 
 
 class UnsetLaunchConfiguration(Action):
-    """Forget a configuration from here on in this scope."""
+    """Unsets a configuration in the present scope."""
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.name = normalize_to_list_of_substitutions(name)
 
     def execute(self, context: LaunchContext) -> None:
-        name = perform_substitutions(context, self.name)
+        name = self.name.perform(context)
         context.launch_configurations.pop(name, None)
 
 
 class PushLaunchConfigurations(Action):
-    """Begin a scope of configurations."""
+    """Begins a scope of configurations."""
 
     def execute(self, context: LaunchContext) -> None:
         context.push_launch_configurations()
 
 
 class PopLaunchConfigurations(Action):
-    """End a scope: configurations are as they were."""
+    """Ends a scope and restores the configurations."""
 
     def execute(self, context: LaunchContext) -> None:
         context.pop_launch_configurations()
 
 
 class ResetLaunchConfigurations(Action):
-    """Keep none of the configurations but those given."""
+    """Replaces all configurations by the given ones."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Environment variables: set, append, unset, keep apart."""
+"""Actions that set, append, unset and scope environment variables."""
 
 import os
 from typing import Any
@@ -7,15 +7,13 @@ from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch.typed import perform_bool
 
 
 class SetEnvironmentVariable(Action):
-    """Set a variable for what is started from here on in this scope."""
+    """Sets a variable in the present scope."""
 
     def __init__(
         self,
@@ -28,15 +26,15 @@ class SetEnvironmentVariable(Action):
         self.value = normalize_to_list_of_substitutions(value)
 
     def describe(self) -> str:
-        return f"{type(self).__name__}({describe_parts(self.name)})"
+        return f"{type(self).__name__}({self.name.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
-        name = perform_substitutions(context, self.name)
-        context.environment[name] = perform_substitutions(context, self.value)
+        name = self.name.perform(context)
+        context.environment[name] = self.value.perform(context)
 
 
 class AppendEnvironmentVariable(SetEnvironmentVariable):
-    """Add to a list of paths, behind what is there (or before, with ``prepend``)."""
+    """Appends a value to a list of paths, or prepends it (``prepend``)."""
 
     def __init__(
         self,
@@ -51,45 +49,45 @@ class AppendEnvironmentVariable(SetEnvironmentVariable):
         self.separator = normalize_to_list_of_substitutions(separator)
 
     def execute(self, context: LaunchContext) -> None:
-        name = perform_substitutions(context, self.name)
-        parts = [perform_substitutions(context, self.value)]
+        name = self.name.perform(context)
+        parts = [self.value.perform(context)]
         before = context.environment.get(name)
         if before is not None:
             parts.insert(1 if perform_bool(context, self.prepend) else 0, before)
-        separator = perform_substitutions(context, self.separator)
+        separator = self.separator.perform(context)
         context.environment[name] = separator.join(parts)
 
 
 class UnsetEnvironmentVariable(Action):
-    """Take a variable away, in this scope."""
+    """Unsets a variable in the present scope."""
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.name = normalize_to_list_of_substitutions(name)
 
     def describe(self) -> str:
-        return f"UnsetEnvironmentVariable({describe_parts(self.name)})"
+        return f"UnsetEnvironmentVariable({self.name.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
-        context.environment.pop(perform_substitutions(context, self.name), None)
+        context.environment.pop(self.name.perform(context), None)
 
 
 class PushEnvironment(Action):
-    """Begin a scope of environment variables."""
+    """Begins a scope of environment variables."""
 
     def execute(self, context: LaunchContext) -> None:
         context.push_environment()
 
 
 class PopEnvironment(Action):
-    """End a scope: the environment is as it was."""
+    """Ends a scope and restores the environment."""
 
     def execute(self, context: LaunchContext) -> None:
         context.pop_environment()
 
 
 class ResetEnvironment(Action):
-    """Back to the environment that the launch was started with."""
+    """Restores the environment of the launch's start."""
 
     def execute(self, context: LaunchContext) -> None:
         context.reset_environment()

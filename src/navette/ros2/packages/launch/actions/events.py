@@ -1,4 +1,4 @@
-"""Actions with events and their handlers; the end of the launch."""
+"""Actions that emit events, register handlers, and shut the launch down."""
 
 from typing import Any
 
@@ -15,14 +15,13 @@ from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 
 _log = get_logger("launch")
 
 
 class RegisterEventHandler(Action):
-    """From here on, events go to the handler."""
+    """Registers an event handler."""
 
     def __init__(self, event_handler: EventHandler, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -39,7 +38,7 @@ class RegisterEventHandler(Action):
 
 
 class UnregisterEventHandler(Action):
-    """From here on, the handler gets no events."""
+    """Unregisters an event handler."""
 
     def __init__(self, event_handler: EventHandler, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -50,7 +49,7 @@ class UnregisterEventHandler(Action):
 
 
 class EmitEvent(Action):
-    """Hands an event to the handlers."""
+    """Emits an event."""
 
     def __init__(self, *, event: Event, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -64,7 +63,7 @@ class EmitEvent(Action):
 
 
 class Shutdown(Action):
-    """Ends the launch: everything that it started is ended."""
+    """Ends the launch and everything that it started."""
 
     def __init__(
         self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any
@@ -73,7 +72,7 @@ class Shutdown(Action):
         self.reason = normalize_to_list_of_substitutions(reason)
 
     def execute(self, context: LaunchContext) -> None:
-        reason = perform_substitutions(context, self.reason)
+        reason = self.reason.perform(context)
         event = context.get_locals_as_dict().get("event")
         if isinstance(event, ProcessExited) and not context.is_shutdown:
             name = event.process_name

@@ -9,7 +9,7 @@ from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.descriptions import Executable
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.event import Event
-from navette.ros2.packages.launch.event_handler import AnsweringHandler
+from navette.ros2.packages.launch.event_handler import CallbackHandler
 from navette.ros2.packages.launch.event_handlers import OnProcessExit
 from navette.ros2.packages.launch.events import Shutdown as ShutdownEvent
 from navette.ros2.packages.launch.events.process import (
@@ -24,11 +24,10 @@ from navette.ros2.packages.launch.launch_description_entity import (
 from navette.ros2.packages.launch.launched_process import LaunchedProcess
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.output import LabelledOutput, output_places
-from navette.ros2.packages.launch.running import Command
+from navette.ros2.packages.launch.running import LaunchCommand
 from navette.ros2.packages.launch.substitution import (
     Substitution,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch.substitutions import LaunchConfiguration
 from navette.ros2.packages.launch.typed import perform_bool, perform_seconds
@@ -124,7 +123,7 @@ class ExecuteLocal(Action):
         if self._process is not None:
             self._process.write(data)
 
-    def make_command(self, context: LaunchContext) -> Command:
+    def make_command(self, context: LaunchContext) -> LaunchCommand:
         """Return the command with all substitutions performed."""
         return self.process_description.command(
             context, shell=self.shell, tty=perform_bool(context, self.emulate_tty)
@@ -135,7 +134,7 @@ class ExecuteLocal(Action):
         output = self.output
         if isinstance(output, (str, Substitution, list, tuple)):
             parts = normalize_to_list_of_substitutions(output)
-            output = perform_substitutions(context, parts)
+            output = parts.perform(context)
         return LabelledOutput(label, output_places(output))
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
@@ -165,7 +164,7 @@ class ExecuteLocal(Action):
         )
 
     def _register_handlers(self, context: LaunchContext) -> None:
-        handlers = [AnsweringHandler(matcher=self._is_target, answer=self._obey)]
+        handlers = [CallbackHandler(matcher=self._is_target, callback=self._obey)]
         if self.required:
             handlers.append(
                 OnProcessExit(target_action=self, on_exit=self._shut_down_launch)

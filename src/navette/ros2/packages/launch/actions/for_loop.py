@@ -1,4 +1,4 @@
-"""Actions that make entities again and again, with other values each time."""
+"""Loops: actions that create entities for each of several values."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -14,19 +14,18 @@ from navette.ros2.packages.launch.launch_description_entity import (
 )
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 
 _MOST = 10_000
 
 
 class ForEach(Action):
-    """Calls ``function`` with each set of values, and visits what it returns.
+    """Calls ``function`` with each set of values and visits the returned entities.
 
     Args:
         input_values: sets of values as text, such as
-            ``{name: 'a', id: 1};{name: 'b', id: 2}``; empty: none.
-        function: takes the values by their names, returns entities.
+            ``{name: 'a', id: 1};{name: 'b', id: 2}``; may be empty.
+        function: takes the values as keyword arguments, returns entities.
     """
 
     def __init__(
@@ -45,7 +44,7 @@ class ForEach(Action):
         return self._function
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        text = perform_substitutions(context, self._input_values)
+        text = self._input_values.perform(context)
         found: list[LaunchDescriptionEntity] = []
         for values in _value_sets(text):
             found += normalize_to_list_of_entities(self._function(**values))
@@ -53,10 +52,10 @@ class ForEach(Action):
 
 
 class ForLoop(Action):
-    """Calls ``function`` with 0, 1, … up to ``length`` - 1, and visits the returned.
+    """Calls ``function`` with 0 … ``length`` - 1 and visits the returned entities.
 
     Args:
-        length: how often; may be substitutions.
+        length: number of calls; may be substitutions.
         function: takes ``i``, returns entities.
     """
 
@@ -77,9 +76,9 @@ class ForLoop(Action):
         return self._function
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        text = perform_substitutions(context, self._length)
+        text = self._length.perform(context)
         if not text.isdigit() or int(text) > _MOST:
-            raise InvalidValueError(f"ForLoop: length {text!r}: wanted 0 … {_MOST}")
+            raise InvalidValueError(f"ForLoop: length {text!r}: expected 0 … {_MOST}")
         found: list[LaunchDescriptionEntity] = []
         for i in range(int(text)):
             found += normalize_to_list_of_entities(self._function(i))
@@ -96,6 +95,6 @@ def _value_sets(text: str) -> Iterable[dict[str, Any]]:
             raise InvalidValueError(f"ForEach: {part!r}: not YAML: {error}") from None
         if not isinstance(values, dict):
             raise InvalidValueError(
-                f"ForEach: {part!r}: wanted names and values, as in {{name: a}}"
+                f"ForEach: {part!r}: expected a mapping, as in {{name: a}}"
             )
         yield {str(name): value for name, value in values.items()}

@@ -1,4 +1,4 @@
-"""Groups: several actions as one, by default in a scope of their own."""
+"""Groups of actions, by default with a scope of their own."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -23,7 +23,7 @@ from navette.ros2.packages.launch.launch_description_entity import (
 
 
 class GroupAction(Action):
-    """Executes ``actions`` in order.
+    """Executes actions in order.
 
     Args:
         actions: what is in the group.
@@ -51,7 +51,7 @@ class GroupAction(Action):
         return list(self.actions)
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """The actions, with those that begin and end the scope around them."""
+        """Return the actions, enclosed by those that begin and end the scope."""
         given = self.launch_configurations
         settings: list[LaunchDescriptionEntity] = [
             SetLaunchConfiguration(name, value) for name, value in given.items()

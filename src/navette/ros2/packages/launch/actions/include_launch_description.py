@@ -1,4 +1,4 @@
-"""Includes: another launch description, with arguments."""
+"""Includes of other launch descriptions."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -22,7 +22,6 @@ from navette.ros2.packages.launch.launch_description_sources import (
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 
 _LOCALS = ("current_launch_file_path", "current_launch_file_directory")
@@ -32,10 +31,9 @@ _log = get_logger("launch")
 
 
 class IncludeLaunchDescription(Action):
-    """Visits what a source gives, after setting ``launch_arguments``.
+    """Sets ``launch_arguments`` and visits a launch description.
 
-    As in ROS 2 the arguments stay set for what follows; a GroupAction around keeps
-    them apart.
+    As in ROS 2, the arguments stay set afterwards; use a GroupAction to limit them.
 
     Args:
         launch_description_source: a source, or a path (any format).
@@ -78,28 +76,28 @@ class IncludeLaunchDescription(Action):
 
     @property
     def included_file(self) -> Path | None:
-        """The file, once it has been read."""
+        """The file; None until it has been read."""
         return self.source.path
 
     def describe(self) -> str:
         return f"IncludeLaunchDescription({self.source.location})"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """The description, where it can be had without running anything."""
+        """Return the description if it is available without running."""
         loaded = self.source.try_get_launch_description_without_context()
         return [] if loaded is None else [loaded]
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         description = self.source.get_launch_description(context)
         given = [
-            (perform_substitutions(context, name), value)
-            for name, value in self.launch_arguments
+            (name.perform(context), value) for name, value in self.launch_arguments
         ]
         self._check(description, [name for name, _ in given], context)
         depth = context.get_locals_as_dict().get("include depth", 0) + 1
         if depth > MAX_DEPTH:
             raise InvalidLaunchValueError(
-                f"includes nested deeper than {MAX_DEPTH}: does a file include itself?"
+                f"includes nested deeper than {MAX_DEPTH}; check for a file that "
+                "includes itself"
             )
         path = self.source.path
         return [
@@ -112,7 +110,7 @@ class IncludeLaunchDescription(Action):
     def _check(
         self, description: LaunchDescription, given: list[str], context: LaunchContext
     ) -> None:
-        """Missing arguments are an error; names that nobody declares, a warning."""
+        """Raise for missing arguments; warn of undeclared ones."""
         declared = {each.name: each for each in description.get_launch_arguments()}
         missing = [
             each.name
@@ -124,16 +122,15 @@ class IncludeLaunchDescription(Action):
         ]
         if missing:
             raise InvalidLaunchValueError(
-                f"{self.source.location} needs arguments that are not given: "
-                f"{', '.join(missing)}"
+                f"{self.source.location} requires these arguments: {', '.join(missing)}"
             )
-        strange = sorted({name for name in given if name not in declared})
-        if strange and declared:
+        undeclared = sorted({name for name in given if name not in declared})
+        if undeclared and declared:
             _log.warning(
-                "%s: %s declares no argument %s; it has %s",
+                "%s: %s declares no argument %s; declared: %s",
                 self.origin,
                 self.source.location,
-                ", ".join(map(repr, strange)),
+                ", ".join(map(repr, undeclared)),
                 ", ".join(declared),
             )
 

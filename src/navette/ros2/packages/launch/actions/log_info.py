@@ -1,4 +1,4 @@
-"""A line in the launch's log."""
+"""Actions that log a message."""
 
 import logging
 from typing import Any
@@ -9,9 +9,7 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 
 _log = get_logger("launch.user")
@@ -29,17 +27,17 @@ class Log(Action):
         self.level = normalize_to_list_of_substitutions(level)
 
     def describe(self) -> str:
-        return f"{type(self).__name__}({describe_parts(self.msg)})"
+        return f"{type(self).__name__}({self.msg.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
-        level = perform_substitutions(context, self.level).lower()
+        level = self.level.perform(context).lower()
         level = "warning" if level == "warn" else level
         if level not in _LEVELS:
             raise InvalidLaunchValueError(
-                f"log level {level!r}; wanted {', '.join(_LEVELS)}"
+                f"log level {level!r}; expected {', '.join(_LEVELS)}"
             )
         number = logging.getLevelNamesMapping()[level.upper()]
-        _log.log(number, "%s", perform_substitutions(context, self.msg))
+        _log.log(number, "%s", self.msg.perform(context))
 
 
 class LogInfo(Log):

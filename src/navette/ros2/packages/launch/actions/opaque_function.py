@@ -1,4 +1,4 @@
-"""A function of the launch file's own."""
+"""Action that calls a function of the launch file."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -26,7 +26,7 @@ class OpaqueFunction(Action):
         super().__init__(**left_over)
         if not callable(function):
             raise InvalidLaunchValueError(
-                f"OpaqueFunction: function {function!r} cannot be called"
+                f"OpaqueFunction: function {function!r} is not callable"
             )
         self._function = function
         self._args = tuple(args or ())

@@ -1,10 +1,10 @@
-"""Actions that happen after a while."""
+"""Action that executes other actions after a delay."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from navette.ros2.packages.launch.action import Action
-from navette.ros2.packages.launch.event_handler import AnsweringHandler
+from navette.ros2.packages.launch.event_handler import CallbackHandler
 from navette.ros2.packages.launch.events import Shutdown
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import (
@@ -16,7 +16,7 @@ from navette.runtime.events import Call
 
 
 class TimerAction(Action):
-    """Executes ``actions`` once, ``period`` seconds after it is reached.
+    """Executes ``actions`` once, after ``period`` seconds.
 
     Args:
         period: seconds, or substitutions that say them.
@@ -63,9 +63,9 @@ class TimerAction(Action):
         self.schedule(context, seconds, fire)
         if perform_bool(context, self.cancel_on_shutdown):
             context.register_event_handler(
-                AnsweringHandler(
+                CallbackHandler(
                     matcher=lambda event: isinstance(event, Shutdown),
-                    answer=lambda event, context: self.cancel(),
+                    callback=lambda event, context: self.cancel(),
                     handle_once=True,
                 )
             )
@@ -73,11 +73,11 @@ class TimerAction(Action):
     def schedule(
         self, context: LaunchContext, seconds: float, fire: Callable[[], None]
     ) -> None:
-        """Let ``fire`` be called on the launch's loop after so long."""
+        """Call ``fire`` on the launch's loop after ``seconds``."""
         self._call = context.call_after(seconds, fire, f"timer of {seconds:g} s")
 
     def cancel(self) -> None:
-        """Let it not happen; after it has happened: nothing."""
+        """Cancel the timer; ignored after it has fired."""
         self._is_waiting = False
         if self._call is not None:
             self._call.cancel()
@@ -86,7 +86,7 @@ class TimerAction(Action):
 
 
 class _Scoped(LaunchDescriptionEntity):
-    """Entities with the configurations that held where the timer was reached."""
+    """Entities with the scope of their timer."""
 
     def __init__(
         self,

@@ -4,10 +4,10 @@ from navette.ros2.packages.launch.events import process
 from navette.ros2.packages.launch.events.execution import (
     ExecutionComplete,
     IncludeLaunchDescription,
+    Shutdown,
     TimerEvent,
     matches_action,
 )
-from navette.ros2.packages.launch.events.shutdown import Shutdown
 
 __all__ = [
     "ExecutionComplete",

@@ -1,4 +1,4 @@
-"""Events about actions: done, timed, included."""
+"""Events about actions and about the launch."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from navette.ros2.packages.launch.launch_description import LaunchDescription
 
 
 class ExecutionComplete(Event):
-    """An action has done all that it does."""
+    """An action is complete."""
 
     name = "launch.events.ExecutionComplete"
 
@@ -34,6 +34,18 @@ class IncludeLaunchDescription(Event):
         self.launch_description = launch_description
 
 
+class Shutdown(Event):
+    """The launch is to end, or is ending."""
+
+    name = "launch.events.Shutdown"
+
+    def __init__(
+        self, *, reason: str = "reason not given", due_to_sigint: bool = False
+    ) -> None:
+        self.reason = reason
+        self.due_to_sigint = due_to_sigint
+
+
 def matches_action(action: Action) -> Callable[[Action], bool]:
-    """A matcher for events of exactly this action."""
+    """Return a matcher of events of this action."""
     return lambda candidate: candidate is action

@@ -1,4 +1,4 @@
-"""What XML and YAML launch files have in common: elements that know their line."""
+"""Elements of XML and YAML launch files, with their line."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,10 +12,10 @@ from navette.ros2.packages.launch.typed import FALSE, TRUE
 
 @dataclass(eq=False)
 class Element:
-    """A tag with attributes and elements inside.
+    """A tag with attributes and child elements.
 
-    Reading marks what was read; :meth:`finish` refuses what was not, so that no
-    mistyped attribute goes unnoticed.
+    The methods record what was read; :meth:`finish` raises for the rest, so that a
+    mistyped attribute is an error.
 
     Args:
         tag: such as ``node``.
@@ -37,67 +37,67 @@ class Element:
         return f"{self.path}:{self.line}"
 
     def error(self, reason: str) -> FileFormatError:
-        """The error to raise about this element; it carries file and line."""
+        """Create an error about this element, with file and line."""
         return FileFormatError(self.path, f"<{self.tag}>: {reason}", self.line)
 
     def value(self, name: str) -> Any:
-        """An attribute as it is written, or None."""
+        """Return an attribute as written, or None."""
         self._seen.add(name)
         return self.attributes.get(name)
 
     def text(self, name: str) -> str | None:
-        """An attribute as text, or None."""
+        """Return an attribute as text, or None."""
         value = self.value(name)
         if isinstance(value, bool):
             return str(value).lower()
         if value is None or isinstance(value, (str, int, float)):
             return None if value is None else str(value)
-        raise self.error(f"attribute {name!r}: {value!r}; wanted text")
+        raise self.error(f"attribute {name!r}: {value!r}; expected text")
 
     def need(self, name: str) -> str:
-        """An attribute that must be there."""
+        """Return a required attribute."""
         text = self.text(name)
         if text is None:
             raise self.error(f"attribute {name!r} is missing")
         return text
 
     def parts(self, name: str) -> Parts | None:
-        """An attribute with substitutions, or None."""
+        """Return an attribute with substitutions, or None."""
         text = self.text(name)
         return None if text is None else self.parse(text)
 
     def need_parts(self, name: str) -> Parts:
-        """An attribute with substitutions that must be there."""
+        """Return a required attribute with substitutions."""
         return self.parse(self.need(name))
 
     def parse(self, text: str) -> Parts:
-        """Text with ``$(…)`` in it."""
+        """Parse text that may contain ``$(…)``."""
         try:
             return parse_substitution(text)
         except ValueError as error:
             raise self.error(str(error)) from None
 
     def flag(self, name: str) -> bool | None:
-        """A truth that can be read without running anything, or None."""
+        """Return a constant boolean attribute, or None."""
         text = self.text(name)
         if text is None:
             return None
         if text.lower() not in TRUE + FALSE:
-            raise self.error(f"attribute {name!r}: {text!r}; wanted true or false")
+            raise self.error(f"attribute {name!r}: {text!r}; expected true or false")
         return text.lower() in TRUE
 
     def elements(self, tag: str) -> list["Element"]:
-        """The elements inside that have this tag."""
+        """Return the children with this tag."""
         self._seen.add(f"<{tag}>")
         return [child for child in self.children if child.tag == tag]
 
     def rest(self) -> list["Element"]:
-        """All elements inside that were not asked for by tag."""
+        """Return the children not read by tag so far."""
         self._all_seen = True
         return [c for c in self.children if f"<{c.tag}>" not in self._seen]
 
     def finish(self) -> None:
-        """Raise for attributes and elements that nobody read."""
+        """Raise for attributes and children that were not read."""
         unread = [name for name in self.attributes if name not in self._seen]
         known = sorted(name for name in self._seen if name[0] != "<")
         if unread:

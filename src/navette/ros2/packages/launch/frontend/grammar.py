@@ -1,7 +1,7 @@
-"""``$(name argument …)`` in text → substitutions.
+"""Parser of substitutions in text: ``$(name argument …)``.
 
-An argument ends at a space unless it is quoted; it may hold ``$(…)`` itself. A
-backslash takes the meaning from the character behind it.
+An argument ends at a space unless it is quoted; it may contain ``$(…)``. A backslash
+escapes the next character.
 """
 
 from collections.abc import Callable
@@ -71,23 +71,24 @@ SUBSTITUTIONS: dict[str, tuple[int, int, Maker]] = {
         lambda a: LaunchConfiguration(a[0], default=a[1] if len(a) > 1 else None),
     ),
 }
-"""Name → fewest and most arguments, and what makes the substitution of them."""
+"""Name → minimum and maximum number of arguments, and factory."""
 
 
 def parse_substitution(text: str) -> Parts:
-    """The parts of a text.
+    """Parse a text into substitutions.
 
     Raises:
-        InvalidValueError: unbalanced, an unknown name, a wrong number of arguments.
+        InvalidValueError: unbalanced brackets, an unknown name, or a wrong number of
+            arguments.
     """
     reader = _Reader(text)
     parts = reader.read("")
-    assert reader.position == len(text), "without an end mark all is read"
-    return parts or [TextSubstitution(text="")]
+    assert reader.position == len(text), "no end character was given"
+    return parts or Parts([TextSubstitution(text="")])
 
 
 class _Reader:
-    """Walks through the text once."""
+    """Recursive descent parser."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -95,8 +96,8 @@ class _Reader:
         self._depth = 0
 
     def read(self, ends: str) -> Parts:
-        """Parts up to, not including, one of the characters that end them."""
-        parts: Parts = []
+        """Parse up to, not including, one of the end characters."""
+        parts = Parts()
         plain = ""
         while self.position < len(self.text):
             character = self.text[self.position]
@@ -135,7 +136,7 @@ class _Reader:
         return _make(name, arguments, self.text[start : self.position])
 
     def _arguments(self, start: int) -> list[Parts]:
-        """All arguments and the closing bracket."""
+        """Parse all arguments and the closing bracket."""
         arguments: list[Parts] = []
         while True:
             while self._peek(0) and self._peek(0) in _SPACE:
@@ -160,7 +161,7 @@ class _Reader:
                 f"{self.text!r}: the closing {character} is missing"
             )
         self.position += 1
-        return parts or [TextSubstitution(text="")]
+        return parts or Parts([TextSubstitution(text="")])
 
 
 def _make(name: str, arguments: list[Parts], text: str) -> Substitution:
@@ -170,15 +171,15 @@ def _make(name: str, arguments: list[Parts], text: str) -> Substitution:
         )
     fewest, most, make = SUBSTITUTIONS[name]
     if name == "eval" and len(arguments) > 1 and not _looks_quoted(text):
-        # `$(eval 1 + 1)`: the words of one expression
-        spaced: Parts = []
+        # `$(eval 1 + 1)`: join the words of one expression
+        spaced = Parts()
         for argument in arguments:
             spaced += [TextSubstitution(text=" "), *argument] if spaced else argument
         arguments = [spaced]
     if not fewest <= len(arguments) <= most:
-        wanted = str(fewest) if fewest == most else f"{fewest} to {most}"
+        count = str(fewest) if fewest == most else f"{fewest} to {most}"
         raise InvalidValueError(
-            f"{text!r}: {len(arguments)} arguments; wanted {wanted} "
+            f"{text!r}: {len(arguments)} arguments; expected {count} "
             "(quote an argument that has spaces)"
         )
     return make(arguments)

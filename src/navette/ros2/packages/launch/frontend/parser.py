@@ -1,4 +1,4 @@
-"""XML and YAML launch files → the same action objects as Python files make."""
+"""Parser of XML and YAML launch files; creates the actions of Python launch files."""
 
 import importlib
 from collections.abc import Callable
@@ -27,17 +27,17 @@ FORMATS: dict[str, Callable[[bytes, Path], Element]] = {
 
 EntityMaker = Callable[[Element], LaunchDescriptionEntity]
 ACTIONS: dict[str, EntityMaker] = {}
-"""Tag → what makes the action of an element."""
+"""Tag → factory of its action."""
 
-# What fills the table. Named by strings, because the makers need the actions, and
-# the include action needs this parser: ROS 2 has entry points for the same reason.
+# Modules that fill the table, imported late: they import the actions, and the include
+# action imports this parser. ROS 2 uses entry points for the same reason.
 EXTENSIONS = ["navette.ros2.launch.tags"]
 
 MakerT = TypeVar("MakerT", bound=EntityMaker)
 
 
 def expose_action(tag: str) -> Callable[[MakerT], MakerT]:
-    """Let a function make the entities of a tag."""
+    """Register a function as the factory of a tag's entity."""
 
     def expose(maker: MakerT) -> MakerT:
         ACTIONS[tag] = maker
@@ -47,10 +47,10 @@ def expose_action(tag: str) -> Callable[[MakerT], MakerT]:
 
 
 def parse_launch_file(path: Path, ending: str | None = None) -> LaunchDescription:
-    """Read a file; ``ending`` chooses another format than the file's name does.
+    """Read a file; ``ending`` overrides the format given by the file name.
 
     Raises:
-        InvalidLaunchFileError: names file, line and tag.
+        InvalidLaunchFileError: names the file, line and tag.
     """
     try:
         if path.stat().st_size > MAX_BYTES:
@@ -65,10 +65,10 @@ def parse_launch_file(path: Path, ending: str | None = None) -> LaunchDescriptio
 
 
 def parse_launch_text(text: bytes, path: Path, ending: str) -> LaunchDescription:
-    """As :func:`parse_launch_file`, from the text itself."""
+    """Parse the text of a launch file."""
     root = FORMATS[ending](text, path)
     if root.tag != "launch":
-        raise root.error("wanted <launch> as the outermost tag")
+        raise root.error("expected <launch> as the outermost tag")
     root.value("version")
     description = LaunchDescription(parse_elements(root.rest()))
     root.finish()
@@ -76,7 +76,7 @@ def parse_launch_text(text: bytes, path: Path, ending: str) -> LaunchDescription
 
 
 def parse_elements(elements: list[Element]) -> list[LaunchDescriptionEntity]:
-    """The entities of elements, in order."""
+    """Create the entities of elements, in order."""
     for name in EXTENSIONS:
         importlib.import_module(name)
     return [_parse(element) for element in elements]

@@ -1,4 +1,4 @@
-"""Launch files in XML, parsed safely: no document types, entities, outside files."""
+"""Reader of XML launch files; refuses document types, entities and external files."""
 
 from pathlib import Path
 from xml.etree.ElementTree import ParseError
@@ -14,7 +14,7 @@ MAX_DEPTH = 64
 
 
 class _Builder:
-    """Target of the parser: makes elements with lines, within bounds."""
+    """Parser target: creates elements with lines, up to a maximum size."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -42,19 +42,17 @@ class _Builder:
 
     def data(self, text: str) -> None:
         if text.strip():
-            raise self._open[-1].error(
-                f"text {text.strip()[:40]!r} between the tags means nothing here"
-            )
+            raise self._open[-1].error(f"unexpected text {text.strip()[:40]!r}")
 
     def close(self) -> Element | None:
         return self.root
 
 
 def read_xml(text: bytes, path: Path) -> Element:
-    """The root element of a file's text.
+    """Return the root element of a file's text.
 
     Raises:
-        FileFormatError: not XML, or hostile; names file and line.
+        FileFormatError: invalid or unsafe XML; names the line.
     """
     builder = _Builder(path)
     parser = DefusedXMLParser(target=builder, forbid_dtd=True)

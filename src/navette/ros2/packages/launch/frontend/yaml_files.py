@@ -1,4 +1,4 @@
-"""Launch files in YAML: the same elements as in XML, from nested mappings."""
+"""Reader of YAML launch files: nested mappings become elements as in XML."""
 
 from pathlib import Path
 from typing import Any
@@ -14,10 +14,10 @@ _CHILDREN = "children"
 
 
 def read_yaml(text: bytes, path: Path) -> Element:
-    """The root element (``launch``) of a file's text.
+    """Return the root element (``launch``) of a file's text.
 
     Raises:
-        FileFormatError: not YAML, or not of a launch file's form; names the line.
+        FileFormatError: invalid YAML, or an invalid structure; names the line.
     """
     try:
         root = yaml.compose(text, Loader=yaml.SafeLoader)
@@ -29,22 +29,22 @@ def read_yaml(text: bytes, path: Path) -> Element:
     except RecursionError:
         raise FileFormatError(path, f"nested deeper than {MAX_DEPTH}") from None
     if not isinstance(root, yaml.MappingNode) or len(root.value) != 1:
-        raise FileFormatError(path, "wanted one mapping, 'launch:', at the top")
+        raise FileFormatError(path, "expected one mapping, 'launch:', at the top")
     key, value = root.value[0]
     return _Reader(path).element(str(key.value), value, key.start_mark.line + 1, 0)
 
 
 class _Reader:
-    """Turns YAML's nodes into elements."""
+    """Converts YAML nodes to elements."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._count = 0
 
     def element(self, tag: str, node: yaml.Node, line: int, depth: int) -> Element:
-        """``tag: {attributes and lists}``, or ``tag: [children]``."""
+        """Convert ``tag: {attributes and lists}`` or ``tag: [children]``."""
         element = Element(tag, self._path, line)
-        self._count += 1  # aliases can make very many of a few lines
+        self._count += 1  # a few aliases can expand to very many elements
         if depth > MAX_DEPTH or self._count > MAX_ELEMENTS:
             raise element.error(
                 f"nested deeper than {MAX_DEPTH}, or more than {MAX_ELEMENTS} elements"
@@ -55,13 +55,12 @@ class _Reader:
         if not isinstance(node, yaml.MappingNode):
             if node.value in ("", None):
                 return element
-            raise element.error(f"{node.value!r}; wanted attributes or a list")
+            raise element.error(f"{node.value!r}; expected attributes or a list")
         for key, value in node.value:
             self._add(element, str(key.value), value, depth)
         return element
 
     def _add(self, element: Element, name: str, value: yaml.Node, depth: int) -> None:
-        """One ``name: value`` of a mapping."""
         if name == _CHILDREN and isinstance(value, yaml.SequenceNode):
             element.children += self._children(element, value, depth)
         elif self._holds_mappings(value) or isinstance(value, yaml.MappingNode):
@@ -70,7 +69,7 @@ class _Reader:
                 line = int(item.start_mark.line) + 1
                 element.children.append(self.element(name, item, line, depth + 1))
         elif name in element.attributes:
-            raise element.error(f"attribute {name!r} is given twice")
+            raise element.error(f"attribute {name!r} is given more than once")
         else:
             element.attributes[name] = self._scalar(element, name, value)
 
@@ -82,7 +81,7 @@ class _Reader:
             if not isinstance(item, yaml.MappingNode) or len(item.value) != 1:
                 raise FileFormatError(
                     self._path,
-                    f"in <{element.tag}>: wanted '- tag:' with one tag each",
+                    f"in <{element.tag}>: expected '- tag:' with one tag each",
                     int(item.start_mark.line) + 1,
                 )
             key, value = item.value[0]
@@ -100,10 +99,10 @@ class _Reader:
 
     @staticmethod
     def _scalar(element: Element, name: str, node: yaml.Node) -> Any:
-        """A scalar or a list of scalars, as ``yaml.safe_load`` reads it."""
+        """Return a scalar or a list of scalars, as ``yaml.safe_load`` does."""
         items = node.value if isinstance(node, yaml.SequenceNode) else [node]
         if not all(isinstance(item, yaml.ScalarNode) for item in items):
-            raise element.error(f"attribute {name!r}: wanted a value or a list of them")
+            raise element.error(f"attribute {name!r}: expected a value or a list")
         try:
             return yaml.safe_load(yaml.serialize(node, Dumper=yaml.SafeDumper))
         except yaml.YAMLError as error:

@@ -1,4 +1,4 @@
-"""Launch files of any format, chosen by the file's ending."""
+"""Sources of launch files in any format."""
 
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ def get_launch_description_from_any_launch_file(
     """Read a ``.py``, ``.xml``, ``.launch``, ``.yaml`` or ``.yml`` file.
 
     Raises:
-        InvalidLaunchFileError: another ending, or the file is wrong.
+        InvalidLaunchFileError: an unknown file ending, or an invalid file.
     """
     path = Path(launch_file_path)
     if path.suffix == ".py":
@@ -28,13 +28,13 @@ def get_launch_description_from_any_launch_file(
     if path.suffix in FORMATS:
         return parse_launch_file(path)
     raise InvalidLaunchFileError(
-        f"{path}: unknown kind of launch file; wanted one that ends in .py, "
+        f"{path}: unknown launch file format; expected a file ending in .py, "
         f"{', '.join(FORMATS)}"
     )
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file of any format."""
+    """Source of a launch file in any format."""
 
     def __init__(self, launch_file_path: Any) -> None:
         super().__init__(None, launch_file_path, "launch file")
@@ -44,7 +44,7 @@ class AnyLaunchDescriptionSource(LaunchDescriptionSource):
 
 
 class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file in XML or YAML."""
+    """Source of a launch file in XML or YAML."""
 
     def __init__(self, launch_file_path: Any, **kwargs: Any) -> None:
         super().__init__(None, launch_file_path, "XML or YAML launch file")
@@ -54,14 +54,14 @@ class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
 
 
 class XMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
-    """A launch file in XML, whatever its ending."""
+    """Source of an XML launch file with any ending."""
 
     def read(self, path: Path) -> LaunchDescription:
         return parse_launch_file(path, ".xml")
 
 
 class YAMLLaunchDescriptionSource(FrontendLaunchDescriptionSource):
-    """A launch file in YAML, whatever its ending."""
+    """Source of a YAML launch file with any ending."""
 
     def read(self, path: Path) -> LaunchDescription:
         return parse_launch_file(path, ".yaml")

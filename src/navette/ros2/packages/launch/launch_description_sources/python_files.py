@@ -1,4 +1,4 @@
-"""Launch files in Python: ``generate_launch_description()``."""
+"""Sources of Python launch files."""
 
 import sys
 from importlib.machinery import SourceFileLoader
@@ -17,24 +17,24 @@ _FUNCTION = "generate_launch_description"
 
 
 class InvalidPythonLaunchFileError(InvalidLaunchFileError):
-    """A Python launch file raised, or lacks ``generate_launch_description``."""
+    """A Python launch file raised, or has no ``generate_launch_description``."""
 
 
 def load_python_launch_file_as_module(path: Path | str) -> ModuleType:
-    """Run the file as a module that nobody else can import.
+    """Run the file as a module that is not importable by name.
 
     Raises:
-        InvalidPythonLaunchFileError: it raised; names file and line.
+        InvalidPythonLaunchFileError: the file raised; names the line.
     """
     path = Path(path)
     loader = SourceFileLoader(f"navette_launch_file_{abs(hash(path))}", str(path))
     spec = spec_from_loader(loader.name, loader)
-    assert spec is not None, "a loader that is given makes a spec"
+    assert spec is not None, "created from a loader"
     module = module_from_spec(spec)
     writes_bytecode, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     try:
         loader.exec_module(module)
-    except Exception as error:  # the file's own code: anything can come out of it
+    except Exception as error:  # the file's own code may raise anything
         raise _error(path, error) from error
     finally:
         sys.dont_write_bytecode = writes_bytecode
@@ -44,11 +44,11 @@ def load_python_launch_file_as_module(path: Path | str) -> ModuleType:
 def get_launch_description_from_python_launch_file(
     launch_file_path: Path | str,
 ) -> LaunchDescription:
-    """What the file's ``generate_launch_description()`` returns.
+    """Return the result of the file's ``generate_launch_description()``.
 
     Raises:
-        InvalidPythonLaunchFileError: there is none, it raised, or it returned
-            something else.
+        InvalidPythonLaunchFileError: the function is missing, raised, or returned
+            another type.
     """
     path = Path(launch_file_path)
     module = load_python_launch_file_as_module(path)
@@ -57,11 +57,11 @@ def get_launch_description_from_python_launch_file(
         raise InvalidPythonLaunchFileError(f"{path}: has no {_FUNCTION}()")
     try:
         description = function()
-    except Exception as error:  # the file's own code, as above
+    except Exception as error:  # as above
         raise _error(path, error) from error
     if not isinstance(description, LaunchDescription):
         raise InvalidPythonLaunchFileError(
-            f"{path}: {_FUNCTION}() returned {description!r}; wanted a "
+            f"{path}: {_FUNCTION}() returned {description!r}; expected a "
             "LaunchDescription"
         )
     return description
@@ -79,7 +79,7 @@ def _error(path: Path, error: Exception) -> InvalidPythonLaunchFileError:
 
 
 class PythonLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file in Python."""
+    """Source of a Python launch file."""
 
     def __init__(self, launch_file_path: Any) -> None:
         super().__init__(None, launch_file_path, "interpreted python launch file")

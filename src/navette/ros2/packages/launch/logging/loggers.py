@@ -1,4 +1,4 @@
-"""Loggers of a launch: the standard library's, printed as ROS 2 prints them."""
+"""Loggers of launches, printed in ROS 2's format."""
 
 import logging
 import os
@@ -13,12 +13,12 @@ DATE_AND_NAME = "[%(levelname)s] [%(launch_name)s]: %(message)s"
 
 
 def get_logger(name: str | None = None) -> logging.Logger:
-    """The logger of a launch file or action; printed while a launch runs."""
+    """Return the logger of a launch file or action."""
     return logging.getLogger(f"{ROOT}.{name}" if name else ROOT)
 
 
 class ConsoleHandler(logging.Handler):
-    """``[INFO] [launch]: …`` on standard output (warnings and worse: error)."""
+    """Prints ``[INFO] [launch]: …``; warnings and errors on the standard error."""
 
     def __init__(
         self, stdout: TextIO | None = None, stderr: TextIO | None = None
@@ -40,7 +40,7 @@ class ConsoleHandler(logging.Handler):
 
 @contextmanager
 def console(*, debug: bool) -> Iterator[None]:
-    """Print what launches log, as long as the block runs."""
+    """Print the log of launches while the block runs."""
     logger = get_logger()
     handler = ConsoleHandler()
     before = logger.level, logger.propagate
@@ -55,7 +55,7 @@ def console(*, debug: bool) -> Iterator[None]:
 
 
 class LaunchConfig:
-    """Where logs go and from which level on; ``launch.logging.launch_config``."""
+    """Folder and level of logs: ``launch.logging.launch_config``."""
 
     @property
     def level(self) -> int:

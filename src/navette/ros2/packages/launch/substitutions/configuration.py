@@ -1,4 +1,4 @@
-"""Substitutions by what the launch knows: arguments, environment, its own file."""
+"""Substitutions of launch configurations, environment, scope and launch file."""
 
 import os
 from collections.abc import Iterable
@@ -12,36 +12,35 @@ from navette.ros2.packages.launch.errors import (
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import launch_config
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     SomeSubstitutionsType,
     Substitution,
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 
 
 class LaunchConfiguration(Substitution):
-    """The value of a launch argument (``$(var name)``)."""
+    """Value of a launch configuration (``$(var name)``)."""
 
     def __init__(self, variable_name: SomeSubstitutionsType, *, default: Any = None):
         self.variable_name = normalize_to_list_of_substitutions(variable_name)
         self._default = None if default is None else _default_parts(default)
 
     def perform(self, context: LaunchContext) -> str:
-        name = perform_substitutions(context, self.variable_name)
+        name = self.variable_name.perform(context)
         context.known_arguments.add(name)
         if name in context.launch_configurations:
             return context.launch_configurations[name]
         if self._default is None:
             known = sorted(context.launch_configurations)
             raise UndeclaredConfigurationFailure(name, known)
-        return perform_substitutions(context, self._default)
+        return self._default.perform(context)
 
     def describe(self) -> str:
-        return f"LaunchConfiguration({describe_parts(self.variable_name)})"
+        return f"LaunchConfiguration({self.variable_name.describe()})"
 
 
-def _default_parts(default: Any) -> list[Substitution]:
+def _default_parts(default: Any) -> Parts:
     if isinstance(default, (str, Path, Substitution)):
         return normalize_to_list_of_substitutions(default)
     if isinstance(default, Iterable):
@@ -52,7 +51,7 @@ def _default_parts(default: Any) -> list[Substitution]:
 
 
 class EnvironmentVariable(Substitution):
-    """The value of an environment variable (``$(env NAME default)``)."""
+    """Value of an environment variable (``$(env NAME default)``)."""
 
     def __init__(
         self,
@@ -68,7 +67,7 @@ class EnvironmentVariable(Substitution):
         )
 
     def perform(self, context: LaunchContext) -> str:
-        name = perform_substitutions(context, self.name)
+        name = self.name.perform(context)
         value = context.environment.get(name)
         if value is not None:
             return value
@@ -76,14 +75,14 @@ class EnvironmentVariable(Substitution):
             raise SubstitutionFailure(
                 f"environment variable {name!r} is not set, and there is no default"
             )
-        return perform_substitutions(context, self.default_value)
+        return self.default_value.perform(context)
 
     def describe(self) -> str:
-        return f"EnvironmentVariable({describe_parts(self.name)})"
+        return f"EnvironmentVariable({self.name.describe()})"
 
 
 class LocalSubstitution(Substitution):
-    """A value of the present scope, such as ``event.pid`` in an event handler."""
+    """Value of the present scope, such as ``event.pid`` in an event handler."""
 
     def __init__(self, expression: str, description: str | None = None) -> None:
         self.expression = expression
@@ -98,7 +97,7 @@ class LocalSubstitution(Substitution):
                 value = getattr(value, attribute)
         except (KeyError, AttributeError):
             raise SubstitutionFailure(
-                f"no local {self.expression!r} here; there are: "
+                f"unknown local {self.expression!r}; known: "
                 f"{', '.join(sorted(known)) or 'none'}"
             ) from None
         return str(value)
@@ -125,26 +124,26 @@ def _launch_file(context: LaunchContext) -> Path:
     path = context.launch_file
     if path is None:
         raise SubstitutionFailure(
-            "ThisLaunchFile: no launch file is being run (the description was made in "
+            "ThisLaunchFile: no launch file is running (the description was created by "
             "a program)"
         )
     return path
 
 
 class LaunchLogDir(Substitution):
-    """The folder for logs (``$(log_dir)``)."""
+    """Folder of the logs (``$(log_dir)``)."""
 
     def perform(self, context: LaunchContext) -> str:
         return launch_config.log_dir
 
 
 class AnonName(Substitution):
-    """A name that no other launch has, the same for the same base (``$(anon x)``)."""
+    """Unique name, the same for the same base within a launch (``$(anon x)``)."""
 
     def __init__(self, name: SomeSubstitutionsType) -> None:
         self.name = normalize_to_list_of_substitutions(name)
 
     def perform(self, context: LaunchContext) -> str:
-        base = perform_substitutions(context, self.name)
+        base = self.name.perform(context)
         given: dict[str, str] = context.notes.setdefault("anonymous names", {})
         return given.setdefault(base, f"{base}_{os.getpid()}_{len(given)}")

@@ -1,4 +1,4 @@
-"""Substitutions by what the machine has: paths, files, executables, commands."""
+"""Substitutions of paths, file contents, executables and command output."""
 
 import os
 import shlex
@@ -17,9 +17,7 @@ from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 
 _MAX_BYTES = 16 * 1024 * 1024
@@ -27,7 +25,7 @@ _ON_STDERR = ("fail", "ignore", "warn", "capture")
 
 
 class PathJoinSubstitution(Substitution):
-    """Parts of a path, joined; a part may be a list of substitutions."""
+    """Joined path; a part may be a list of substitutions."""
 
     def __init__(self, substitutions: Iterable[Any]) -> None:
         if isinstance(substitutions, (str, Path, Substitution)):
@@ -35,27 +33,27 @@ class PathJoinSubstitution(Substitution):
         self.parts = [normalize_to_list_of_substitutions(p) for p in substitutions]
 
     def perform(self, context: LaunchContext) -> str:
-        parts = [perform_substitutions(context, part) for part in self.parts]
+        parts = [part.perform(context) for part in self.parts]
         return str(Path(*parts)) if parts else ""
 
     def __truediv__(self, part: Any) -> "PathJoinSubstitution":
         return PathJoinSubstitution([*self.parts, part])
 
     def describe(self) -> str:
-        return f"PathJoin({' / '.join(map(describe_parts, self.parts))})"
+        return f"PathJoin({' / '.join(part.describe() for part in self.parts)})"
 
 
 PathSubstitution = PathJoinSubstitution
 
 
 class FileContent(Substitution):
-    """What is written in a file (``$(file-content path)``)."""
+    """Content of a file (``$(file-content path)``)."""
 
     def __init__(self, path: SomeSubstitutionsType) -> None:
         self.path = normalize_to_list_of_substitutions(path)
 
     def perform(self, context: LaunchContext) -> str:
-        path = Path(perform_substitutions(context, self.path))
+        path = Path(self.path.perform(context))
         try:
             if path.stat().st_size > _MAX_BYTES:
                 raise SubstitutionFailure(f"{path}: more than {_MAX_BYTES} bytes")
@@ -71,7 +69,7 @@ class FindExecutable(Substitution):
         self.name = normalize_to_list_of_substitutions(name)
 
     def perform(self, context: LaunchContext) -> str:
-        name = perform_substitutions(context, self.name)
+        name = self.name.perform(context)
         found = shutil.which(name)
         if found is None:
             raise SubstitutionFailure(
@@ -80,15 +78,15 @@ class FindExecutable(Substitution):
         return found
 
     def describe(self) -> str:
-        return f"FindExecutable({describe_parts(self.name)})"
+        return f"FindExecutable({self.name.describe()})"
 
 
 class Command(Substitution):
-    """What a command prints (``$(command 'xacro robot.xacro')``).
+    """Output of a command (``$(command 'xacro robot.xacro')``).
 
     Args:
-        command: split as a shell would; no shell is involved.
-        on_stderr: what to do if it writes errors: fail, ignore, warn or capture.
+        command: split as in a shell, but run without one.
+        on_stderr: effect of error output: fail, ignore, warn or capture.
     """
 
     def __init__(
@@ -101,11 +99,11 @@ class Command(Substitution):
         self.on_stderr = normalize_to_list_of_substitutions(on_stderr)
 
     def perform(self, context: LaunchContext) -> str:
-        text = perform_substitutions(context, self.command)
-        mode = perform_substitutions(context, self.on_stderr)
+        text = self.command.perform(context)
+        mode = self.on_stderr.perform(context)
         if mode not in _ON_STDERR:
             raise InvalidLaunchValueError(
-                f"Command: on_stderr {mode!r}; wanted {', '.join(_ON_STDERR)}"
+                f"Command: on_stderr {mode!r}; expected {', '.join(_ON_STDERR)}"
             )
         try:
             done = subprocess.run(
@@ -127,4 +125,4 @@ class Command(Substitution):
         return done.stdout + (done.stderr if mode == "capture" else "")
 
     def describe(self) -> str:
-        return f"Command({describe_parts(self.command)})"
+        return f"Command({self.command.describe()})"

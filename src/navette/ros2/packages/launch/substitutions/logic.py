@@ -1,4 +1,4 @@
-"""Substitutions that are ``true`` or ``false``, or choose by it."""
+"""Boolean substitutions and the conditional."""
 
 import math
 from collections.abc import Iterable
@@ -14,11 +14,10 @@ from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
     Substitution,
-    describe_parts,
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-from navette.ros2.packages.launch.typed import truth
+from navette.ros2.packages.launch.typed import parse_bool
 
 
 def _word(value: bool) -> str:
@@ -27,13 +26,13 @@ def _word(value: bool) -> str:
 
 def _is_true(context: LaunchContext, parts: Parts, what: str) -> bool:
     try:
-        return truth(perform_substitutions(context, parts))
+        return parse_bool(parts.perform(context))
     except InvalidConditionExpressionError as error:
         raise SubstitutionFailure(f"{what}: {error}") from None
 
 
 class NotSubstitution(Substitution):
-    """The opposite (``$(not x)``)."""
+    """Negation (``$(not x)``)."""
 
     def __init__(self, value: SomeSubstitutionsType) -> None:
         self.value = normalize_to_list_of_substitutions(value)
@@ -42,17 +41,19 @@ class NotSubstitution(Substitution):
         return _word(not _is_true(context, self.value, self.describe()))
 
     def describe(self) -> str:
-        return f"NotSubstitution({describe_parts(self.value)})"
+        return f"NotSubstitution({self.value.describe()})"
 
 
 class AnySubstitution(Substitution):
-    """Whether at least one is true (``$(any a b …)``)."""
+    """True if at least one value is true (``$(any a b …)``)."""
 
     _combine: Any = staticmethod(any)
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
         if not args:
-            raise InvalidLaunchValueError(f"{type(self).__name__}: nothing given")
+            raise InvalidLaunchValueError(
+                f"{type(self).__name__}: expected at least one value"
+            )
         self.values = [normalize_to_list_of_substitutions(value) for value in args]
 
     def perform(self, context: LaunchContext) -> str:
@@ -61,18 +62,18 @@ class AnySubstitution(Substitution):
         )
 
     def describe(self) -> str:
-        listed = ", ".join(map(describe_parts, self.values))
+        listed = ", ".join(part.describe() for part in self.values)
         return f"{type(self).__name__}({listed})"
 
 
 class AllSubstitution(AnySubstitution):
-    """Whether every one is true (``$(all a b …)``)."""
+    """True if all values are true (``$(all a b …)``)."""
 
     _combine = staticmethod(all)
 
 
 class OrSubstitution(AnySubstitution):
-    """Whether one of two is true (``$(or a b)``)."""
+    """True if one of two values is true (``$(or a b)``)."""
 
     def __init__(
         self, left: SomeSubstitutionsType, right: SomeSubstitutionsType
@@ -81,7 +82,7 @@ class OrSubstitution(AnySubstitution):
 
 
 class AndSubstitution(AllSubstitution):
-    """Whether both are true (``$(and a b)``)."""
+    """True if both values are true (``$(and a b)``)."""
 
     def __init__(
         self, left: SomeSubstitutionsType, right: SomeSubstitutionsType
@@ -90,7 +91,7 @@ class AndSubstitution(AllSubstitution):
 
 
 class EqualsSubstitution(Substitution):
-    """Whether two texts are the same; truths and numbers by value."""
+    """True if two texts are equal; booleans and numbers compare by value."""
 
     def __init__(self, left: Any, right: Any) -> None:
         self.left = _side(left)
@@ -100,8 +101,8 @@ class EqualsSubstitution(Substitution):
         return _word(self._same(context))
 
     def _same(self, context: LaunchContext) -> bool:
-        left = perform_substitutions(context, self.left)
-        right = perform_substitutions(context, self.right)
+        left = self.left.perform(context)
+        right = self.right.perform(context)
         if left == right:
             return True
         words = {left.lower(), right.lower()}
@@ -113,12 +114,12 @@ class EqualsSubstitution(Substitution):
             return False
 
     def describe(self) -> str:
-        sides = f"{describe_parts(self.left)}, {describe_parts(self.right)}"
+        sides = f"{self.left.describe()}, {self.right.describe()}"
         return f"{type(self).__name__}({sides})"
 
 
 class NotEqualsSubstitution(EqualsSubstitution):
-    """Whether two texts differ (``$(not-equals a b)``)."""
+    """True if two texts differ (``$(not-equals a b)``)."""
 
     def perform(self, context: LaunchContext) -> str:
         return _word(not self._same(context))
@@ -132,7 +133,7 @@ def _side(value: Any) -> Parts:
     if isinstance(value, (int, float)):
         value = str(value)
     if isinstance(value, Iterable) and not isinstance(value, str):
-        return [part for item in value for part in _side(item)]
+        return Parts(part for item in value for part in _side(item))
     return normalize_to_list_of_substitutions(value)
 
 
@@ -147,7 +148,7 @@ class IfElseSubstitution(Substitution):
     ) -> None:
         if if_value == "" and else_value == "":
             raise InvalidLaunchValueError(
-                "IfElseSubstitution: neither if_value nor else_value is given"
+                "IfElseSubstitution: expected if_value or else_value"
             )
         self.condition = normalize_to_list_of_substitutions(condition)
         self.if_value = normalize_to_list_of_substitutions(if_value)
@@ -160,4 +161,4 @@ class IfElseSubstitution(Substitution):
         )
 
     def describe(self) -> str:
-        return f"IfElseSubstitution({describe_parts(self.condition)})"
+        return f"IfElseSubstitution({self.condition.describe()})"

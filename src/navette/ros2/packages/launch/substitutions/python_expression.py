@@ -1,4 +1,4 @@
-"""The value of a Python expression."""
+"""Substitution of a Python expression."""
 
 from navette.msgs.expressions import ExpressionError, evaluate
 from navette.ros2.packages.launch.errors import SubstitutionFailure
@@ -6,9 +6,7 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     SomeSubstitutionsType,
     Substitution,
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 
 _MODULES = ("math",)
@@ -16,13 +14,13 @@ _HINT = "for more than an expression, use OpaqueFunction in a Python launch file
 
 
 class PythonExpression(Substitution):
-    """The text of a Python expression's value (``$(eval '1 + 1')``).
+    """Value of a Python expression (``$(eval '1 + 1')``).
 
     Expressions are bounded: see :mod:`navette.msgs.expressions`.
 
     Args:
-        expression: joined to one expression.
-        python_modules: modules it uses; ``math`` is the one there is.
+        expression: parts of the expression.
+        python_modules: modules that it uses; only ``math`` is available.
     """
 
     def __init__(
@@ -45,10 +43,10 @@ class PythonExpression(Substitution):
                     f"expressions; available: {', '.join(_MODULES)}"
                 )
         try:
-            text = perform_substitutions(context, self.expression)
+            text = self.expression.perform(context)
             return str(evaluate(text, _HINT))
         except ExpressionError as error:
             raise SubstitutionFailure(str(error)) from None
 
     def describe(self) -> str:
-        return f"PythonExpression({describe_parts(self.expression)})"
+        return f"PythonExpression({self.expression.describe()})"

@@ -1,4 +1,4 @@
-"""Containers, and nodes that are loaded into them."""
+"""Actions that start containers and load components into them."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -8,9 +8,7 @@ from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.running import PythonProgram
 from navette.ros2.packages.launch.substitution import (
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch_ros.actions.node import Node
 from navette.ros2.packages.launch_ros.descriptions import ComposableNode
@@ -18,14 +16,14 @@ from navette.ros2.packages.launch_ros.scope import joined_namespace, pushed_name
 
 _NOTE = "containers"
 CONTAINER = PythonProgram(module="navette.ros2.launch.container", function="main")
-"""The program that loads node classes and runs them on one loop."""
+"""The container program."""
 
 
 class ComposableNodeContainer(Node):
-    """Starts a container and loads nodes into it.
+    """Starts a container and loads components into it.
 
-    ``package`` and ``executable`` may name any container of ROS 2; Navette's own is
-    what runs.
+    ``package`` and ``executable`` may name any container of ROS 2; Navette's own
+    container is started.
     """
 
     def __init__(
@@ -67,7 +65,7 @@ class ComposableNodeContainer(Node):
 
 
 class LoadComposableNodes(Action):
-    """Loads nodes into a container, given as action or by its name."""
+    """Loads components into a container, given as an action or by name."""
 
     def __init__(
         self,
@@ -81,7 +79,7 @@ class LoadComposableNodes(Action):
         for node in self._nodes:
             if not isinstance(node, ComposableNode):
                 raise InvalidLaunchValueError(
-                    f"composable_node_descriptions: {node!r}: wanted ComposableNode"
+                    f"composable_node_descriptions: {node!r}: expected ComposableNode"
                 )
         self._target = (
             target_container
@@ -90,7 +88,7 @@ class LoadComposableNodes(Action):
         )
 
     def describe(self) -> str:
-        nodes = ", ".join(describe_parts(node.node_plugin) for node in self._nodes)
+        nodes = ", ".join(node.node_plugin.describe() for node in self._nodes)
         return f"LoadComposableNodes({nodes})"
 
     def execute(self, context: LaunchContext) -> None:
@@ -102,14 +100,16 @@ class LoadComposableNodes(Action):
     def _container(self, context: LaunchContext) -> ComposableNodeContainer:
         if isinstance(self._target, ComposableNodeContainer):
             if self._target.process_details is None:
-                raise InvalidLaunchValueError("the container has not been started yet")
+                raise InvalidLaunchValueError(
+                    "target_container: the container was not started yet"
+                )
             return self._target
-        name = perform_substitutions(context, self._target)
+        name = self._target.perform(context)
         full_name = joined_namespace(pushed_namespace(context) or "/", name)
         known: dict[str, ComposableNodeContainer] = context.notes.get(_NOTE, {})
         if full_name not in known:
             raise InvalidLaunchValueError(
-                f"target_container {full_name!r}: no such container has been started; "
-                f"there are: {', '.join(sorted(known)) or 'none'}"
+                f"unknown target_container {full_name!r}; started containers: "
+                f"{', '.join(sorted(known)) or 'none'}"
             )
         return known[full_name]

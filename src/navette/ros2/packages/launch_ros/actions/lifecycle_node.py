@@ -1,4 +1,4 @@
-"""Managed nodes: started like any other, and taken from state to state by events."""
+"""Action that starts a lifecycle node."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from navette.msgs.lifecycle_msgs.msg import Transition, TransitionEvent
 from navette.msgs.lifecycle_msgs.srv import ChangeState as ChangeStateService
 from navette.ros2.packages.launch import Event, LaunchContext, LaunchDescriptionEntity
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
-from navette.ros2.packages.launch.event_handler import AnsweringHandler
+from navette.ros2.packages.launch.event_handler import CallbackHandler
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.ros2.packages.launch_ros.actions.node import Node
@@ -21,28 +21,28 @@ _log = get_logger("launch")
 
 
 class LifecycleNode(Node):
-    """A node with a managed lifecycle; its name must be known.
+    """Starts a lifecycle node; its name is required.
 
-    It obeys :class:`ChangeState` events that are for it, and each change of its state
-    is told by a :class:`StateTransition`.
+    :class:`ChangeState` events request its transitions; each transition causes a
+    :class:`StateTransition` event.
 
     Args:
-        autostart: configure and activate it as soon as it is there.
+        autostart: configure and activate the node.
     """
 
     def __init__(
         self, *, name: Any, namespace: Any, autostart: Any = False, **kwargs: Any
     ) -> None:
         if name is None:
-            raise InvalidLaunchValueError("LifecycleNode: name: wanted one")
+            raise InvalidLaunchValueError("LifecycleNode: name is required")
         super().__init__(name=name, namespace=namespace, **kwargs)
         self._autostart = autostart
         self._launch: LaunchContext | None = None
 
     @property
     def launch(self) -> LaunchContext:
-        """The launch that started it."""
-        assert self._launch is not None, "it was started"
+        """The launch that started the node."""
+        assert self._launch is not None, "started"
         return self._launch
 
     @property
@@ -54,13 +54,13 @@ class LifecycleNode(Node):
             return None
         self._launch = context
         super().execute(context)
-        launch_node(context).listen(
+        launch_node(context).subscribe(
             TransitionEvent,
             f"{self.node_name}/transition_event",
             lambda msg: context.emit_event(StateTransition(action=self, msg=msg)),
         )
         context.register_event_handler(
-            AnsweringHandler(matcher=self._is_asked, answer=self._change)
+            CallbackHandler(matcher=self._is_target, callback=self._change)
         )
         if not perform_bool(context, self._autostart):
             return None
@@ -78,14 +78,14 @@ class LifecycleNode(Node):
             )
         ]
 
-    def _is_asked(self, event: Event) -> bool:
+    def _is_target(self, event: Event) -> bool:
         return isinstance(event, ChangeState) and event.lifecycle_node_matcher(self)
 
     def _change(self, event: Any, context: LaunchContext) -> None:
         request = ChangeStateService.Request()
         request.transition.id = event.transition_id
 
-        def answered(response: Any) -> None:
+        def on_response(response: Any) -> None:
             if not response.success:
                 _log.error(
                     "failed to make transition '%s' for LifecycleNode '%s'",
@@ -94,5 +94,5 @@ class LifecycleNode(Node):
                 )
 
         launch_node(context).call(
-            ChangeStateService, f"{self.node_name}/change_state", request, answered
+            ChangeStateService, f"{self.node_name}/change_state", request, on_response
         )

@@ -1,4 +1,4 @@
-"""The action that takes managed nodes through transitions, one after the other."""
+"""Action that requests a sequence of transitions of lifecycle nodes."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -6,12 +6,11 @@ from typing import Any
 from navette.msgs.lifecycle_msgs.msg import Transition
 from navette.ros2.packages.launch import Action, Event
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
-from navette.ros2.packages.launch.event_handler import AnsweringHandler, EventHandler
+from navette.ros2.packages.launch.event_handler import CallbackHandler, EventHandler
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch_ros.events.lifecycle import (
     ChangeState,
@@ -29,14 +28,14 @@ _GOALS = {
     Transition.TRANSITION_INACTIVE_SHUTDOWN: ("shuttingdown", "finalized"),
     Transition.TRANSITION_ACTIVE_SHUTDOWN: ("shuttingdown", "finalized"),
 }
-"""Transition → the state on the way, and the one at its end."""
+"""Transition → its transition state and its goal state."""
 _log = get_logger("launch")
 
 
 class LifecycleTransition(Action):
-    """Each node is asked for the next transition once it has made the one before.
+    """Requests transitions of each node, one after another.
 
-    One that goes elsewhere (an error) is asked for no more.
+    The sequence of a node ends if a transition does not reach its goal state.
     """
 
     def __init__(
@@ -49,7 +48,7 @@ class LifecycleTransition(Action):
         super().__init__(**kwargs)
         if not transition_ids or not lifecycle_node_names:
             raise InvalidLaunchValueError(
-                "LifecycleTransition: wanted lifecycle_node_names and transition_ids"
+                "LifecycleTransition: expected lifecycle_node_names and transition_ids"
             )
         self._names = [
             normalize_to_list_of_substitutions(name) for name in lifecycle_node_names
@@ -62,49 +61,49 @@ class LifecycleTransition(Action):
         ]
 
     def execute(self, context: LaunchContext) -> None:
-        numbers = [_number(perform_substitutions(context, text)) for text in self._ids]
+        numbers = [_number(text.perform(context)) for text in self._ids]
         for parts in self._names:
-            _Way(context, perform_substitutions(context, parts), numbers).go_on()
+            _TransitionSequence(context, parts.perform(context), numbers).request_next()
 
 
-class _Way:
-    """The transitions of one node that are still to come."""
+class _TransitionSequence:
+    """Remaining transitions of one node."""
 
     def __init__(
         self, context: LaunchContext, name: str, transitions: list[int]
     ) -> None:
         self._context = context
         self._name = name
-        self._is_it: Callable[[Any], bool] = matches_node_name(name)
-        self._left = list(transitions)
+        self._matches: Callable[[Any], bool] = matches_node_name(name)
+        self._remaining = list(transitions)
         self._handler: EventHandler | None = None
 
-    def go_on(self) -> None:
-        """Ask for the next, if there is one."""
-        if not self._left:
+    def request_next(self) -> None:
+        """Request the next transition."""
+        if not self._remaining:
             return
-        number = self._left.pop(0)
-        on_the_way, goal = _GOALS[number]
-        self._handler = AnsweringHandler(
-            matcher=lambda event: self._is_end(event, on_the_way),
-            answer=lambda event, context: self._arrived(event, goal, number),
+        number = self._remaining.pop(0)
+        transition_state, goal = _GOALS[number]
+        self._handler = CallbackHandler(
+            matcher=lambda event: self._is_end(event, transition_state),
+            callback=lambda event, context: self._on_end(event, goal, number),
             handle_once=True,
         )
         self._context.register_event_handler(self._handler)
         self._context.emit_event(
-            ChangeState(lifecycle_node_matcher=self._is_it, transition_id=number)
+            ChangeState(lifecycle_node_matcher=self._matches, transition_id=number)
         )
 
-    def _is_end(self, event: Event, on_the_way: str) -> bool:
+    def _is_end(self, event: Event, transition_state: str) -> bool:
         return (
             isinstance(event, StateTransition)
-            and self._is_it(event.action)
-            and event.start_state == on_the_way
+            and self._matches(event.action)
+            and event.start_state == transition_state
         )
 
-    def _arrived(self, event: Any, goal: str, number: int) -> None:
+    def _on_end(self, event: Any, goal: str, number: int) -> None:
         if event.goal_state == goal:
-            self.go_on()
+            self.request_next()
         else:
             _log.error(
                 "%s: %s ended in %s instead of %s; no more transitions",

@@ -1,4 +1,4 @@
-"""The action that starts a node's program."""
+"""Action that starts the program of a node."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -7,12 +7,10 @@ from typing import Any
 from navette.ros2.packages.launch.actions import ExecuteProcess
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.running import Command, PythonProgram
+from navette.ros2.packages.launch.running import LaunchCommand, PythonProgram
 from navette.ros2.packages.launch.substitution import (
-    describe_parts,
     normalize_to_list_of_substitutions,
     optional_parts,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.ros2.packages.launch_ros.node_arguments import (
@@ -28,19 +26,19 @@ from navette.runtime.names import full_node_name, validate_node_name
 
 
 class Node(ExecuteProcess):
-    """Starts an executable of a package with a node's name, parameters and so on.
+    """Starts an executable with the name, namespace, parameters … of a node.
 
     Args:
-        executable: its name, or without ``package`` its path.
-        package: where it is from.
-        name: the node's name; else the program's own.
-        namespace: relative to the one that PushRosNamespace set.
-        exec_name: how the output is labelled; else by the executable.
-        parameters: dicts, parameter files, Parameter items; the last wins.
+        executable: its name, or its path if ``package`` is None.
+        package: package of the executable.
+        name: name of the node (default: the program's own).
+        namespace: relative to that of PushRosNamespace.
+        exec_name: label of the output (default: the executable).
+        parameters: dicts, parameter files, Parameter items; later ones override.
         remappings: (from, to) pairs.
-        ros_arguments: more words behind ``--ros-args``.
-        arguments: words for the program itself.
-        kwargs: as of ExecuteProcess.
+        ros_arguments: further words after ``--ros-args``.
+        arguments: command line arguments of the program.
+        kwargs: as for ExecuteProcess.
     """
 
     def __init__(
@@ -60,7 +58,7 @@ class Node(ExecuteProcess):
         for what, given in (("parameters", parameters), ("arguments", arguments)):
             if isinstance(given, (str, dict)):
                 raise InvalidLaunchValueError(
-                    f"Node: {what} {given!r}: wanted a list, as in {what}=[…]"
+                    f"Node: {what} {given!r}: expected a list, as in {what}=[…]"
                 )
         super().__init__(cmd=[executable], name=exec_name, **kwargs)
         self._executable = normalize_to_list_of_substitutions(executable)
@@ -89,25 +87,23 @@ class Node(ExecuteProcess):
 
     @property
     def node_name(self) -> str:
-        """Full name, once it was started."""
+        """Full name of the node, after the start."""
         return full_node_name(
             self.expanded_node_name, self.expanded_node_namespace or "/"
         )
 
     def describe(self) -> str:
-        words = [describe_parts(self._executable)]
+        words = [self._executable.describe()]
         if self._package is not None:
-            words.insert(0, describe_parts(self._package))
+            words.insert(0, self._package.describe())
         return f"{type(self).__name__}({' '.join(words)})"
 
-    # -- working out ---------------------------------------------------------------
-
-    def make_command(self, context: LaunchContext) -> Command:
+    def make_command(self, context: LaunchContext) -> LaunchCommand:
         program = self._find(context)
         description = self.process_description
-        executable = perform_substitutions(context, self._executable)
+        executable = self._executable.perform(context)
         name = (
-            perform_substitutions(context, description.name)
+            description.name.perform(context)
             if description.name is not None
             else Path(executable).stem
         )
@@ -115,7 +111,7 @@ class Node(ExecuteProcess):
         cwd = description.working_folder(context)
         env = description.environment(context)
         is_path = isinstance(program, Path)
-        return Command(
+        return LaunchCommand(
             label=context.unique_name(name),
             argv=(str(program) if is_path else executable, *self._words(context)),
             prefix=tuple(prefix),
@@ -128,33 +124,27 @@ class Node(ExecuteProcess):
         )
 
     def _find(self, context: LaunchContext) -> PythonProgram | Path:
-        executable = perform_substitutions(context, self._executable)
+        executable = self._executable.perform(context)
         if self._package is not None:
-            return find_program(
-                perform_substitutions(context, self._package), executable
-            )
+            return find_program(self._package.perform(context), executable)
         path = Path(executable)
         return program_of(path) if path.is_file() else path
 
     def _words(self, context: LaunchContext) -> list[str]:
-        """The program's own arguments, then the ROS arguments."""
-        words = [perform_substitutions(context, word) for word in self._arguments]
-        extra = [perform_substitutions(context, word) for word in self._ros_arguments]
+        """Return the program's arguments, then the ROS arguments."""
+        words = [word.perform(context) for word in self._arguments]
+        extra = [word.perform(context) for word in self._ros_arguments]
         extra += self.node_words(context)
         return [*words, "--ros-args", *extra] if extra else words
 
     def node_words(self, context: LaunchContext) -> list[str]:
-        """Name, namespace, parameters and remappings as ROS arguments."""
+        """Return name, namespace, parameters and remappings as ROS arguments."""
         name = None
         if self._node_name is not None:
-            name = perform_substitutions(context, self._node_name)
+            name = self._node_name.perform(context)
             validate_node_name(name)
             self.expanded_node_name = name
-        own = (
-            ""
-            if self._namespace is None
-            else perform_substitutions(context, self._namespace)
-        )
+        own = "" if self._namespace is None else self._namespace.perform(context)
         namespace = joined_namespace(pushed_namespace(context), own)
         self.expanded_node_namespace = namespace or "/"
         parameters: Evaluated = evaluate_parameters(context, self._parameters)

@@ -1,4 +1,4 @@
-"""A timer that runs on ROS time, which a simulation may set."""
+"""Timer on ROS time."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from navette.ros2.packages.launch_ros.ros_node import launch_node
 
 
 class RosTimer(TimerAction):
-    """As TimerAction, ``period`` seconds of ROS time after it is reached."""
+    """TimerAction whose ``period`` is in seconds of ROS time."""
 
     def schedule(
         self, context: LaunchContext, seconds: float, fire: Callable[[], None]

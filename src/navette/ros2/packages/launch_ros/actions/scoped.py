@@ -1,4 +1,4 @@
-"""Actions that hold for the nodes behind them in the same scope."""
+"""Actions that affect the following nodes of the scope."""
 
 from pathlib import Path
 from typing import Any
@@ -6,9 +6,7 @@ from typing import Any
 from navette.ros2.packages.launch import Action, SomeSubstitutionsType
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.ros2.packages.launch_ros.parameter_descriptions import (
@@ -23,24 +21,24 @@ from navette.ros2.packages.launch_ros.scope import (
 
 
 class PushRosNamespace(Action):
-    """Nodes are in this namespace, within the one that held so far."""
+    """Adds a namespace to the nodes of the scope."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.namespace = normalize_to_list_of_substitutions(namespace)
 
     def describe(self) -> str:
-        return f"PushRosNamespace({describe_parts(self.namespace)})"
+        return f"PushRosNamespace({self.namespace.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
-        push_namespace(context, perform_substitutions(context, self.namespace))
+        push_namespace(context, self.namespace.perform(context))
 
 
 PushROSNamespace = PushRosNamespace
 
 
 class SetParameter(Action):
-    """Nodes get this parameter; what they are given themselves wins."""
+    """Sets a parameter of the nodes; their own values override it."""
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -49,14 +47,14 @@ class SetParameter(Action):
         self._parameter = Parameter(self.name, value)
 
     def describe(self) -> str:
-        return f"SetParameter({describe_parts(self.name)})"
+        return f"SetParameter({self.name.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
         add_global_parameter(context, self._parameter.evaluate(context))
 
 
 class SetUseSimTime(SetParameter):
-    """Nodes take their time from ``/clock``, or not."""
+    """Sets ``use_sim_time`` of the nodes."""
 
     def __init__(self, value: Any, **kwargs: Any) -> None:
         super().__init__("use_sim_time", value, **kwargs)
@@ -67,7 +65,7 @@ class SetUseSimTime(SetParameter):
 
 
 class SetParametersFromFile(Action):
-    """Nodes get what this parameter file has for them."""
+    """Adds a parameter file to the nodes."""
 
     def __init__(self, filename: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -78,7 +76,7 @@ class SetParametersFromFile(Action):
 
 
 class SetRemap(Action):
-    """Nodes get this remapping."""
+    """Adds a remapping to the nodes."""
 
     def __init__(
         self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any
@@ -88,24 +86,22 @@ class SetRemap(Action):
         self.dst = normalize_to_list_of_substitutions(dst)
 
     def describe(self) -> str:
-        return f"SetRemap({describe_parts(self.src)}, {describe_parts(self.dst)})"
+        return f"SetRemap({self.src.describe()}, {self.dst.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
         add_global_remap(
             context,
-            perform_substitutions(context, self.src),
-            perform_substitutions(context, self.dst),
+            self.src.perform(context),
+            self.dst.perform(context),
         )
 
 
 class SetROSLogDir(Action):
-    """Log files go to this folder."""
+    """Sets the folder of log files."""
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
 
     def execute(self, context: LaunchContext) -> None:
-        context.environment["ROS_LOG_DIR"] = perform_substitutions(
-            context, self.log_dir
-        )
+        context.environment["ROS_LOG_DIR"] = self.log_dir.perform(context)

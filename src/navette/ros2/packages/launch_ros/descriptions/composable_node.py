@@ -1,4 +1,4 @@
-"""Nodes that share a process and a loop: classes loaded into a container."""
+"""Description of a component."""
 
 import json
 from collections.abc import Iterable
@@ -7,10 +7,8 @@ from typing import Any
 from navette.ros2.packages.launch import Condition
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
-    describe_parts,
     normalize_to_list_of_substitutions,
     optional_parts,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch_ros.node_arguments import (
     evaluate_parameters,
@@ -22,15 +20,15 @@ from navette.runtime.names import validate_node_name
 
 
 class ComposableNode:
-    """A node class to be loaded into a container.
+    """A node class to load into a container.
 
     Args:
-        package: where it is from.
+        package: package of the class.
         plugin: the class: ``package::Class``, ``package.module.Class``,
             ``package.module:Class``, or a name registered as a component.
-        name, namespace, parameters, remappings: as of a Node.
-        extra_arguments: accepted; what they ask for is always so here.
-        condition: whether it is loaded.
+        name, namespace, parameters, remappings: as for a Node.
+        extra_arguments: accepted without effect.
+        condition: whether to load the class.
     """
 
     def __init__(
@@ -56,20 +54,17 @@ class ComposableNode:
 
     def describe(self) -> str:
         return (
-            f"ComposableNode({describe_parts(self.package)} "
-            f"{describe_parts(self.node_plugin)})"
+            f"ComposableNode({self.package.describe()} {self.node_plugin.describe()})"
         )
 
     def load_request(self, context: LaunchContext) -> bytes:
-        """One line of JSON for the container."""
+        """Return the load request for the container, one line of JSON."""
         name = None
         if self.node_name is not None:
-            name = perform_substitutions(context, self.node_name)
+            name = self.node_name.perform(context)
             validate_node_name(name)
         own = (
-            ""
-            if self.node_namespace is None
-            else perform_substitutions(context, self.node_namespace)
+            "" if self.node_namespace is None else self.node_namespace.perform(context)
         )
         words = ros_arguments(
             name,
@@ -78,8 +73,8 @@ class ComposableNode:
             evaluate_remaps(context, self.remappings),
         )
         request = {
-            "package": perform_substitutions(context, self.package),
-            "plugin": perform_substitutions(context, self.node_plugin),
+            "package": self.package.perform(context),
+            "plugin": self.node_plugin.perform(context),
             "arguments": words,
         }
         return json.dumps(request).encode() + b"\n"

@@ -1,16 +1,15 @@
-"""The handler for what becomes of managed nodes."""
+"""Handler of state transitions of lifecycle nodes."""
 
 from collections.abc import Callable
 from typing import Any
 
 from navette.ros2.packages.launch import Event
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
-from navette.ros2.packages.launch.event_handler import AnsweringHandler
+from navette.ros2.packages.launch.event_handler import CallbackHandler
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import caller_location
 from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
+    perform_value,
 )
 from navette.ros2.packages.launch_ros.actions.lifecycle_node import LifecycleNode
 from navette.ros2.packages.launch_ros.events.lifecycle.state_transition import (
@@ -18,16 +17,16 @@ from navette.ros2.packages.launch_ros.events.lifecycle.state_transition import (
 )
 
 
-class OnStateTransition(AnsweringHandler):
-    """When a managed node came into another state.
+class OnStateTransition(CallbackHandler):
+    """Handler of a state transition.
 
     Args:
-        entities: what to visit then, or ``function(event, context)`` that gives some.
-        target_lifecycle_node: of this node only.
-        transition: only by this transition (``configure``, …).
-        start_state: only from there (``configuring``, …).
-        goal_state: only to there (``inactive``, …).
-        matcher: instead of all these: whether an event is meant.
+        entities: entities to visit, or ``function(event, context)`` that returns them.
+        target_lifecycle_node: only transitions of this node.
+        transition: only this transition (``configure``, …).
+        start_state: only from this state (``configuring``, …).
+        goal_state: only to this state (``inactive``, …).
+        matcher: replaces all these filters.
     """
 
     def __init__(
@@ -45,7 +44,7 @@ class OnStateTransition(AnsweringHandler):
         target = target_lifecycle_node
         if target is not None and not isinstance(target, LifecycleNode):
             raise InvalidLaunchValueError(
-                f"OnStateTransition: target_lifecycle_node {target!r}: wanted a "
+                f"OnStateTransition: target_lifecycle_node {target!r}: expected a "
                 "LifecycleNode"
             )
         self._target = target
@@ -55,10 +54,12 @@ class OnStateTransition(AnsweringHandler):
             "goal_state": goal_state,
         }
         super().__init__(
-            matcher=matcher or self._is_meant, answer=entities, handle_once=handle_once
+            matcher=matcher or self._matches_filters,
+            callback=entities,
+            handle_once=handle_once,
         )
 
-    def _is_meant(self, event: Event) -> bool:
+    def _matches_filters(self, event: Event) -> bool:
         if not isinstance(event, StateTransition):
             return False
         if self._target is not None and event.action is not self._target:
@@ -70,4 +71,4 @@ class OnStateTransition(AnsweringHandler):
 
 
 def _text(context: LaunchContext, value: Any) -> str:
-    return perform_substitutions(context, normalize_to_list_of_substitutions(value))
+    return perform_value(context, value)

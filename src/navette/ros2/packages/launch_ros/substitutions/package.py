@@ -1,32 +1,30 @@
-"""Substitutions by packages: their folders and executables."""
+"""Substitutions of package folders and executables."""
 
 from navette.ros2.packages.launch import SomeSubstitutionsType, Substitution
 from navette.ros2.packages.launch.errors import SubstitutionFailure
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
-    describe_parts,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch.substitutions import PathJoinSubstitution
 from navette.ros2.workspace import find_package
 
 
 class FindPackagePrefix(Substitution):
-    """Where a package is installed (``$(find-pkg-prefix name)``)."""
+    """Install prefix of a package (``$(find-pkg-prefix name)``)."""
 
     def __init__(self, package: SomeSubstitutionsType) -> None:
         self.package = normalize_to_list_of_substitutions(package)
 
     def find(self, package_name: str) -> str:
-        """The folder of a package."""
+        """Return the folder of a package."""
         return str(find_package(package_name).prefix)
 
     def perform(self, context: LaunchContext) -> str:
-        return self.find(perform_substitutions(context, self.package))
+        return self.find(self.package.perform(context))
 
     def describe(self) -> str:
-        return f"{type(self).__name__}({describe_parts(self.package)})"
+        return f"{type(self).__name__}({self.package.describe()})"
 
     def __truediv__(self, part: object) -> PathJoinSubstitution:
         return PathJoinSubstitution([self, part])
@@ -36,7 +34,7 @@ FindPackage = FindPackagePrefix
 
 
 class FindPackageShare(FindPackagePrefix):
-    """The folder with a package's files (``$(find-pkg-share name)``)."""
+    """Share folder of a package (``$(find-pkg-share name)``)."""
 
     def find(self, package_name: str) -> str:
         return str(find_package(package_name).share)
@@ -52,8 +50,8 @@ class ExecutableInPackage(Substitution):
         self.package = normalize_to_list_of_substitutions(package)
 
     def perform(self, context: LaunchContext) -> str:
-        package = perform_substitutions(context, self.package)
-        name = perform_substitutions(context, self.executable)
+        package = self.package.perform(context)
+        name = self.executable.perform(context)
         path = find_package(package).executable(name).path
         if path is None:
             raise SubstitutionFailure(

@@ -1,4 +1,4 @@
-"""The value of a parameter that SetParameter has set."""
+"""Substitution of a parameter set by SetParameter."""
 
 from typing import Any
 
@@ -8,24 +8,23 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     normalize_to_list_of_substitutions,
     optional_parts,
-    perform_substitutions,
 )
 from navette.ros2.packages.launch_ros.scope import global_parameters
 
 
 class Parameter(Substitution):
-    """The value that SetParameter gave in this scope (``$(param name)``)."""
+    """Value set by SetParameter in this scope (``$(param name)``)."""
 
     def __init__(self, name: SomeSubstitutionsType, *, default: Any = None) -> None:
         self.name = normalize_to_list_of_substitutions(name)
         self.default = optional_parts(default)
 
     def perform(self, context: LaunchContext) -> str:
-        name = perform_substitutions(context, self.name)
+        name = self.name.perform(context)
         for given in reversed(global_parameters(context)):
             if isinstance(given, tuple) and given[0] == name:
                 value = given[1]
                 return str(value).lower() if isinstance(value, bool) else str(value)
         if self.default is not None:
-            return perform_substitutions(context, self.default)
+            return self.default.perform(context)
         raise SubstitutionFailure(f"parameter {name!r} is not set with SetParameter")

@@ -1,4 +1,4 @@
-"""The event that asks managed nodes for a transition."""
+"""Event that requests a transition of lifecycle nodes."""
 
 from collections.abc import Callable
 from typing import Any
@@ -21,11 +21,11 @@ TRANSITIONS = {
         "TRANSITION_DESTROY",
     )
 }
-"""Number → name."""
+"""Transition id → name."""
 
 
 class ChangeState(Event):
-    """For the managed nodes that ``lifecycle_node_matcher`` picks by their actions."""
+    """Request to the lifecycle nodes whose actions the matcher selects."""
 
     name = "launch_ros.events.lifecycle.ChangeState"
     valid_transitions = TRANSITIONS

@@ -1,4 +1,4 @@
-"""The event that tells that a managed node came into another state."""
+"""Event of a state transition of a lifecycle node."""
 
 from typing import Any
 
@@ -6,7 +6,10 @@ from navette.ros2.packages.launch import Event
 
 
 class StateTransition(Event):
-    """``action``: the LifecycleNode; ``msg``: its TransitionEvent."""
+    """A lifecycle node changed its state.
+
+    ``action`` is the LifecycleNode, ``msg`` its TransitionEvent.
+    """
 
     name = "launch_ros.events.lifecycle.StateTransition"
 

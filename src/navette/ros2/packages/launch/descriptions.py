@@ -1,4 +1,4 @@
-"""What is to be executed: a command line with its folder and environment."""
+"""Descriptions of commands: command line, working directory, environment."""
 
 import os
 import shlex
@@ -8,14 +8,15 @@ from typing import Any
 
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.running import Command
+from navette.ros2.packages.launch.running import LaunchCommand
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     SomeSubstitutionsType,
-    describe_parts,
     normalize_to_list_of_substitutions,
     optional_parts,
-    perform_substitutions,
 )
+
+__all__ = ["Executable"]
 
 SomeVariables = Mapping[Any, Any]
 
@@ -25,12 +26,12 @@ class Executable:
 
     Args:
         cmd: its words; each may be a list of substitutions.
-        prefix: words before it, such as ``gdb -ex run --args``; split as a shell would.
-        name: how it is called in the output, before a number.
-        cwd: where it runs.
-        env: its whole environment; else the launch's.
-        additional_env: added to that.
-        arguments: words behind it.
+        prefix: words before it, such as ``gdb -ex run --args``; split as in a shell.
+        name: its label in the output, before a number.
+        cwd: working directory.
+        env: its whole environment (default: that of the launch).
+        additional_env: added to its environment.
+        arguments: appended words.
     """
 
     def __init__(
@@ -46,12 +47,12 @@ class Executable:
     ) -> None:
         if isinstance(cmd, (str, Path)):
             raise InvalidLaunchValueError(
-                f"cmd {cmd!r}: wanted a list of words, as in cmd=['ls', '-l']"
+                f"cmd {cmd!r}: expected a list of words, as in cmd=['ls', '-l']"
             )
-        self.cmd = [normalize_to_list_of_substitutions(word) for word in cmd]
-        self.cmd += [normalize_to_list_of_substitutions(w) for w in arguments or ()]
-        if not self.cmd:
+        words = [*cmd, *(arguments or ())]
+        if not words:
             raise InvalidLaunchValueError("cmd is empty")
+        self.cmd = [normalize_to_list_of_substitutions(word) for word in words]
         self.prefix = optional_parts(prefix)
         self.name = optional_parts(name)
         self.cwd = optional_parts(cwd)
@@ -59,43 +60,41 @@ class Executable:
         self.additional_env = _variables(additional_env)
 
     def describe(self) -> str:
-        return " ".join(describe_parts(word) for word in self.cmd)
-
-    def words(self, context: LaunchContext) -> list[str]:
-        """The command line, without its prefix."""
-        return [perform_substitutions(context, word) for word in self.cmd]
+        return " ".join(word.describe() for word in self.cmd)
 
     def prefix_words(self, context: LaunchContext) -> list[str]:
-        """What ``prefix``, or the argument ``launch-prefix``, puts before it."""
+        """Return the words of ``prefix`` or of the argument ``launch-prefix``."""
         if self.prefix is not None:
-            return shlex.split(perform_substitutions(context, self.prefix))
+            return shlex.split(self.prefix.perform(context))
         return shlex.split(context.launch_configurations.get("launch-prefix", ""))
 
     def working_folder(self, context: LaunchContext) -> str | None:
-        """Where it runs; None: where the launch runs."""
+        """Return the working directory; None: that of the launch."""
         if self.cwd is None:
             return None
-        folder = perform_substitutions(context, self.cwd)
+        folder = self.cwd.perform(context)
         if not Path(folder).is_dir():
             raise InvalidLaunchValueError(f"cwd {folder!r}: no such folder")
         return folder
 
     def environment(self, context: LaunchContext) -> dict[str, str] | None:
-        """Its whole environment; None: nothing differs from the launch's."""
+        """Return the whole environment; None: that of the launch."""
         if self.env is None and self.additional_env is None:
             return None
         base = dict(os.environ) if self.env is None else _perform(context, self.env)
         return base | _perform(context, self.additional_env or [])
 
-    def command(self, context: LaunchContext, *, shell: bool, tty: bool) -> Command:
-        """Everything worked out, with a label that no other command has."""
-        words = self.words(context)
+    def command(
+        self, context: LaunchContext, *, shell: bool, tty: bool
+    ) -> LaunchCommand:
+        """Return the command, with a label that is unique in the launch."""
+        words = [word.perform(context) for word in self.cmd]
         name = (
-            perform_substitutions(context, self.name)
+            self.name.perform(context)
             if self.name is not None
             else Path(words[0].split()[0] if shell else words[0]).name
         )
-        return Command(
+        return LaunchCommand(
             label=context.unique_name(name),
             argv=tuple(words),
             prefix=tuple(self.prefix_words(context)),
@@ -106,22 +105,14 @@ class Executable:
         )
 
 
-def _variables(given: SomeVariables | None) -> list[tuple[Any, Any]] | None:
+def _variables(given: SomeVariables | None) -> list[tuple[Parts, Parts]] | None:
     if given is None:
         return None
-    return [
-        (
-            normalize_to_list_of_substitutions(name),
-            normalize_to_list_of_substitutions(value),
-        )
-        for name, value in given.items()
-    ]
+    normalize = normalize_to_list_of_substitutions
+    return [(normalize(name), normalize(value)) for name, value in given.items()]
 
 
 def _perform(
-    context: LaunchContext, variables: list[tuple[Any, Any]]
+    context: LaunchContext, variables: list[tuple[Parts, Parts]]
 ) -> dict[str, str]:
-    return {
-        perform_substitutions(context, name): perform_substitutions(context, value)
-        for name, value in variables
-    }
+    return {name.perform(context): value.perform(context) for name, value in variables}

@@ -1,6 +1,4 @@
-"""Conditions on substitutions and on launch arguments."""
-
-from typing import Any
+"""Conditions on substitutions and on launch configurations."""
 
 from navette.ros2.packages.launch.condition import Condition
 from navette.ros2.packages.launch.errors import InvalidConditionExpressionError
@@ -8,31 +6,38 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
-    describe_parts,
     normalize_to_list_of_substitutions,
     optional_parts,
-    perform_substitutions,
 )
-from navette.ros2.packages.launch.typed import truth
+from navette.ros2.packages.launch.typed import parse_bool
+
+__all__ = [
+    "IfCondition",
+    "InvalidConditionExpressionError",
+    "LaunchConfigurationEquals",
+    "LaunchConfigurationNotEquals",
+    "UnlessCondition",
+    "evaluate_condition_expression",
+]
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Parts) -> bool:
-    """Whether the text of the substitutions is true (``true``, ``1``) or false.
+    """Return whether the text of the substitutions is true (``true``, ``1``).
 
     Raises:
-        InvalidConditionExpressionError: neither; shows what was evaluated.
+        InvalidConditionExpressionError: the text is neither true nor false.
     """
-    text = perform_substitutions(context, expression)
+    expression = Parts(expression)
     try:
-        return truth(text)
+        return parse_bool(expression.perform(context))
     except InvalidConditionExpressionError as error:
         raise InvalidConditionExpressionError(
-            f"condition {describe_parts(expression)}: {error}"
+            f"condition {expression.describe()}: {error}"
         ) from None
 
 
 class IfCondition(Condition):
-    """Holds where the text is true."""
+    """True if the text is true."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         self._expression = normalize_to_list_of_substitutions(predicate_expression)
@@ -43,14 +48,14 @@ class IfCondition(Condition):
 
 
 class UnlessCondition(IfCondition):
-    """Holds where the text is false."""
+    """True if the text is false."""
 
     def _is_true(self, context: LaunchContext) -> bool:
         return not super()._is_true(context)
 
 
 class LaunchConfigurationEquals(Condition):
-    """Holds where an argument has a value; None: where it is not set."""
+    """True if a configuration has a value; None: if it is not set."""
 
     def __init__(
         self,
@@ -58,7 +63,7 @@ class LaunchConfigurationEquals(Condition):
         expected_value: SomeSubstitutionsType | None,
     ) -> None:
         self._name = launch_configuration_name
-        self._expected: Any = optional_parts(expected_value)
+        self._expected = optional_parts(expected_value)
         super().__init__(predicate=self._equals)
 
     def _equals(self, context: LaunchContext) -> bool:
@@ -66,11 +71,11 @@ class LaunchConfigurationEquals(Condition):
         context.known_arguments.add(self._name)
         if self._expected is None:
             return value is None
-        return value == perform_substitutions(context, self._expected)
+        return value == self._expected.perform(context)
 
 
 class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
-    """Holds where an argument has another value."""
+    """True if a configuration has another value."""
 
     def _equals(self, context: LaunchContext) -> bool:
         return not super()._equals(context)

@@ -1,12 +1,16 @@
-"""Handlers for what becomes of commands."""
+"""Handlers of events about processes and about the launch itself."""
 
 from collections.abc import Callable
 from typing import Any
 
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.event import Event
-from navette.ros2.packages.launch.event_handler import AnsweringHandler
-from navette.ros2.packages.launch.events.execution import ExecutionComplete
+from navette.ros2.packages.launch.event_handler import CallbackHandler, EventHandler
+from navette.ros2.packages.launch.events import (
+    ExecutionComplete,
+    IncludeLaunchDescription,
+    Shutdown,
+)
 from navette.ros2.packages.launch.events.process import (
     ProcessExited,
     ProcessIO,
@@ -19,15 +23,26 @@ from navette.ros2.packages.launch.launch_description_entity import (
     normalize_to_list_of_entities,
 )
 
+__all__ = [
+    "OnActionEventBase",
+    "OnExecutionComplete",
+    "OnIncludeLaunchDescription",
+    "OnProcessExit",
+    "OnProcessIO",
+    "OnProcessStart",
+    "OnShutdown",
+    "event_named",
+]
 
-class OnActionEventBase(AnsweringHandler):
-    """Answers events of one action, of those a function picks, or of all.
+
+class OnActionEventBase(CallbackHandler):
+    """Handler of events of one action, of selected actions, or of all.
 
     Args:
         action_matcher: the action, ``matcher(action) -> bool``, or None for all.
-        on_event: entities, or ``on_event(event, context)`` that returns some.
-        target_event_cls: the kind of event.
-        target_action_cls: the kind of action, where it matters.
+        on_event: entities, or ``on_event(event, context)`` that returns entities.
+        target_event_cls: class of the events.
+        target_action_cls: class of the actions.
     """
 
     def __init__(
@@ -43,8 +58,8 @@ class OnActionEventBase(AnsweringHandler):
         is_action = isinstance(action_matcher, LaunchDescriptionEntity)
         if not (action_matcher is None or is_action or callable(action_matcher)):
             raise InvalidLaunchValueError(
-                f"{type(self).__name__}: target_action {action_matcher!r}: wanted an "
-                "action such as a Node, or a function of one"
+                f"{type(self).__name__}: target_action {action_matcher!r}: expected an "
+                "action such as a Node, or a function of an action"
             )
 
         def matches(event: Event) -> bool:
@@ -57,11 +72,11 @@ class OnActionEventBase(AnsweringHandler):
                 return action_matcher is None or action is action_matcher
             return bool(action_matcher(action))
 
-        super().__init__(matcher=matches, answer=on_event, handle_once=handle_once)
+        super().__init__(matcher=matches, callback=on_event, handle_once=handle_once)
 
 
 class OnProcessStart(OnActionEventBase):
-    """When a command runs."""
+    """Handler of the start of a process."""
 
     def __init__(
         self, *, target_action: Any = None, on_start: Any, handle_once: bool = False
@@ -75,7 +90,7 @@ class OnProcessStart(OnActionEventBase):
 
 
 class OnProcessExit(OnActionEventBase):
-    """When a command has ended."""
+    """Handler of the exit of a process."""
 
     def __init__(
         self, *, target_action: Any = None, on_exit: Any, handle_once: bool = False
@@ -89,7 +104,7 @@ class OnProcessExit(OnActionEventBase):
 
 
 class OnExecutionComplete(OnActionEventBase):
-    """When an action has done all that it does."""
+    """Handler of the completion of an action."""
 
     def __init__(
         self,
@@ -106,32 +121,62 @@ class OnExecutionComplete(OnActionEventBase):
         )
 
 
-IoAnswer = Callable[[ProcessIO], Any]
+IoCallback = Callable[[ProcessIO], Any]
 
 
 class OnProcessIO(OnActionEventBase):
-    """When a command writes; each function gets the event, with ``.text`` bytes."""
+    """Handler of output; each function gets the event, with ``.text`` as bytes."""
 
     def __init__(
         self,
         *,
         target_action: Any = None,
-        on_stdin: IoAnswer | None = None,
-        on_stdout: IoAnswer | None = None,
-        on_stderr: IoAnswer | None = None,
+        on_stdin: IoCallback | None = None,
+        on_stdout: IoCallback | None = None,
+        on_stderr: IoCallback | None = None,
         handle_once: bool = False,
     ) -> None:
-        answers = (on_stdin, on_stdout, on_stderr)
+        callbacks = (on_stdin, on_stdout, on_stderr)
 
-        def answer(
+        def on_event(
             event: ProcessIO, context: LaunchContext
         ) -> list[LaunchDescriptionEntity]:
-            chosen = answers[event.fd]
-            return normalize_to_list_of_entities(chosen(event) if chosen else None)
+            callback = callbacks[event.fd]
+            return normalize_to_list_of_entities(callback(event) if callback else None)
 
         super().__init__(
             action_matcher=target_action,
-            on_event=answer,
+            on_event=on_event,
             target_event_cls=ProcessIO,
             handle_once=handle_once,
         )
+
+
+class OnShutdown(CallbackHandler):
+    """Handler of the end of the launch; ``on_shutdown(event, context)`` or entities."""
+
+    def __init__(self, *, on_shutdown: Any, handle_once: bool = False) -> None:
+        super().__init__(
+            matcher=lambda event: isinstance(event, Shutdown),
+            callback=on_shutdown,
+            handle_once=handle_once,
+        )
+
+
+class OnIncludeLaunchDescription(EventHandler):
+    """Handler that visits the launch description of an event."""
+
+    def __init__(self, *, handle_once: bool = False) -> None:
+        super().__init__(
+            matcher=lambda event: isinstance(event, IncludeLaunchDescription),
+            handle_once=handle_once,
+        )
+
+    def handle(self, event: Event, context: Any) -> list[LaunchDescriptionEntity]:
+        assert isinstance(event, IncludeLaunchDescription), "the matcher selected it"
+        return [event.launch_description]
+
+
+def event_named(name: str) -> Callable[[Event], bool]:
+    """Return a matcher of events by name (``launch.events.Shutdown``)."""
+    return lambda event: event.name == name
