@@ -2,6 +2,7 @@
 
 import threading
 from collections import deque
+from collections.abc import Callable
 from typing import Any
 
 from navette.errors import InvalidValueError
@@ -30,11 +31,19 @@ from navette.transports.service_ports import ReplySink, RequestSink
 class InProcessPublisher(PublisherPort):
     """Calls the sinks of the matched subscriptions, in order of matching."""
 
-    __slots__ = ("_history", "_shared_sinks", "_sinks", "_transport", "endpoint")
+    __slots__ = (
+        "_history",
+        "_lifespan_ns",
+        "_shared_sinks",
+        "_sinks",
+        "_transport",
+        "endpoint",
+    )
 
     def __init__(self, endpoint: Endpoint, transport: "InProcessTransport") -> None:
         self.endpoint = endpoint
         self._transport = transport
+        self._lifespan_ns = endpoint.qos.lifespan_ns
         # Tuples, replaced as a whole: a publishing thread sees no partial change.
         self._sinks: tuple[Sink, ...] = ()
         self._shared_sinks: tuple[Sink, ...] = ()
@@ -43,25 +52,20 @@ class InProcessPublisher(PublisherPort):
             self._history = deque(maxlen=endpoint.qos.queue_length)
 
     def send(self, message: Any, source_ns: int, sequence: int) -> None:
-        if message.__class__ is Encoded:
-            self._send_encoded((message, source_ns, source_ns, sequence))
-            return
+        copied: Callable[[Any], Any] = copy_message
+        if self._lifespan_ns < INFINITE_NS:
+            message, copied = Expiring(message, source_ns + self._lifespan_ns), _copied
+        elif message.__class__ is Encoded:
+            copied = _copied
         for sink in self._sinks:
-            sink((copy_message(message), source_ns, source_ns, sequence))
+            sink((copied(message), source_ns, source_ns, sequence))
         if self._shared_sinks or self._history is not None:
             # One copy for all readers: the caller may change its own later.
-            item = (copy_message(message), source_ns, source_ns, sequence)
+            item = (copied(message), source_ns, source_ns, sequence)
             if self._history is not None:
                 self._history.append(item)
             for sink in self._shared_sinks:
                 sink(item)
-
-    def _send_encoded(self, item: Item) -> None:
-        """Deliver bytes uncopied: each subscription decodes its own object."""
-        for sink in (*self._sinks, *self._shared_sinks):
-            sink(item)
-        if self._history is not None:
-            self._history.append(item)
 
     def relink(self, subscriptions: "list[InProcessSubscription]") -> None:
         """Replace the matched subscriptions."""
@@ -87,25 +91,6 @@ class InProcessPublisher(PublisherPort):
         self._transport.remove_publisher(self)
 
 
-class _PublisherWithLifespan(InProcessPublisher):
-    """Publisher whose samples expire."""
-
-    __slots__ = ()
-
-    def send(self, message: Any, source_ns: int, sequence: int) -> None:
-        expires_ns = source_ns + self.endpoint.qos.lifespan_ns
-        for sink in self._sinks:
-            content = Expiring(_copied(message), expires_ns)
-            sink((content, source_ns, source_ns, sequence))
-        if self._shared_sinks or self._history is not None:
-            content = Expiring(_copied(message), expires_ns)
-            item = (content, source_ns, source_ns, sequence)
-            if self._history is not None:
-                self._history.append(item)
-            for sink in self._shared_sinks:
-                sink(item)
-
-
 def _copied(message: Any) -> Any:
     """Return a copy for one receiver; bytes are shared."""
     if message.__class__ is Encoded:
@@ -113,14 +98,6 @@ def _copied(message: Any) -> Any:
     if message.__class__ is Expiring:
         return Expiring(_copied(message.message), message.expires_ns)
     return copy_message(message)
-
-
-def _publisher(
-    endpoint: Endpoint, transport: "InProcessTransport"
-) -> InProcessPublisher:
-    if endpoint.qos.lifespan_ns < INFINITE_NS:
-        return _PublisherWithLifespan(endpoint, transport)
-    return InProcessPublisher(endpoint, transport)
 
 
 class InProcessSubscription(SubscriptionPort):
@@ -187,7 +164,7 @@ class InProcessTransport(Transport):
     def advertise(self, endpoint: Endpoint, message_class: type) -> InProcessPublisher:
         with self._lock:
             topic = self._topic_for(endpoint)
-            publisher = _publisher(endpoint, self)
+            publisher = InProcessPublisher(endpoint, self)
             topic.publishers.append(publisher)
             publisher.relink(topic.matches(publisher))
             self._report_matches(

@@ -1,7 +1,9 @@
-"""Attachment of each sample, request and reply: sequence number, time and gid."""
+"""Attachment of each sample, request and reply, and limit of their payloads."""
 
 import struct
 from typing import NamedTuple
+
+import zenoh
 
 from navette.errors import DecodeError
 
@@ -20,6 +22,18 @@ class Attachment(NamedTuple):
 
     def encode(self) -> bytes:
         return _LAYOUT.pack(self.sequence, self.source_ns, GID_SIZE, self.gid)
+
+
+def check_length(payload: zenoh.ZBytes, max_bytes: int) -> None:
+    """Check the length of a payload before it is copied.
+
+    Raises:
+        DecodeError: it is longer than ``max_bytes``.
+    """
+    if len(payload) > max_bytes:
+        raise DecodeError(
+            f"{len(payload)} bytes: longer than {max_bytes} (NAVETTE_MAX_MESSAGE_BYTES)"
+        )
 
 
 def decode_attachment(data: bytes) -> Attachment:

@@ -8,7 +8,11 @@ import zenoh
 from navette.errors import DecodeError
 from navette.msgs import deserialize, get_interface, serialize
 from navette.transports.service_ports import ClientPort, Reply, ReplySink
-from navette.transports.zenoh.attachment import Attachment, decode_attachment
+from navette.transports.zenoh.attachment import (
+    Attachment,
+    check_length,
+    decode_attachment,
+)
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 
 _MAX_REASON_BYTES = 2000
@@ -106,12 +110,7 @@ class ZenohClient(ClientPort):
     def _decoded(self, sample: zenoh.Sample | None, sequence: int) -> Any:
         if sample is None or sample.attachment is None:
             raise DecodeError("without an attachment")
-        max_bytes = self._owner.session.settings.max_message_bytes
-        if len(sample.payload) > max_bytes:
-            raise DecodeError(
-                f"{len(sample.payload)} bytes: longer than {max_bytes} "
-                "(NAVETTE_MAX_MESSAGE_BYTES)"
-            )
+        check_length(sample.payload, self._owner.session.settings.max_message_bytes)
         attachment = decode_attachment(sample.attachment.to_bytes())
         if (attachment.sequence, attachment.gid) != (sequence, self._entity.gid):
             raise DecodeError(

@@ -180,12 +180,12 @@ class RemoteGraph:
         )
         self._endpoints[key] = endpoint
         if endpoint.kind in _SENDERS:
-            self._note_topic(endpoint)
+            self._store_topic(endpoint)
         self._by_name.setdefault((endpoint.kind, endpoint.topic), {})[key] = endpoint
         for matches in self._locals.get((_OPPOSITE[token.kind], token.topic), ()):
             self._match(matches, key, endpoint)
 
-    def _note_topic(self, sender: Endpoint) -> None:
+    def _store_topic(self, sender: Endpoint) -> None:
         if len(self._topics) >= _MAX_TOPICS:
             del self._topics[next(iter(self._topics))]
         self._topics[sender.gid] = sender.topic

@@ -34,7 +34,6 @@ class OwnTokens:
         self._pool = TokenPool()
         #: Created tokens by gid, until the endpoint is opened.
         self._created: dict[bytes, tuple[EndpointToken, int]] = {}
-        self._hashes: dict[str, str] = {}
         self._lock = threading.Lock()
 
     # -- nodes -----------------------------------------------------------------
@@ -72,10 +71,10 @@ class OwnTokens:
 
     def gid_for(self, endpoint: Endpoint) -> bytes:
         """Return the gid of a new endpoint: the hash of a token created here."""
-        token, used = self._create(endpoint)
+        token, initial_sequence = self._create(endpoint)
         gid = gid_of(token.key())
         with self._lock:
-            self._created[gid] = token, used
+            self._created[gid] = token, initial_sequence
         return gid
 
     def take(self, endpoint: Endpoint) -> tuple[EndpointToken, int]:
@@ -110,7 +109,7 @@ class OwnTokens:
             node=node,
             topic=endpoint.topic,
             type_name=endpoint.type_name,
-            type_hash=self._hash(endpoint.type_name),
+            type_hash=type_hash(endpoint.type_name),
             qos=announced(endpoint.qos, offers=offers),
         )
         return self._pool.take(token) if self._reuses_endpoints else (token, 0)
@@ -122,9 +121,3 @@ class OwnTokens:
                 if node.full_name == endpoint.node_full_name:
                     return tokens[-1][0], node
         return 0, NodeInfo(endpoint.node_name, endpoint.node_namespace)
-
-    def _hash(self, type_name: str) -> str:
-        found = self._hashes.get(type_name)
-        if found is None:
-            found = self._hashes[type_name] = type_hash(type_name)
-        return found

@@ -51,12 +51,8 @@ class Queryables:
                 if key not in shared.handlers:
                     shared.handlers[key] = handler
                     return lambda: self._close_one(head, key)
-        queryable = _declare(self._session, key, handler)
-
-        def close() -> None:
-            queryable.undeclare()
-
-        return close
+        undeclare: Callable[[], None] = _declare(self._session, key, handler).undeclare
+        return undeclare
 
     def _close_one(self, head: str, key: str) -> None:
         with self._lock:

@@ -16,7 +16,11 @@ from navette.transports.service_ports import (
     RequestSink,
     ServicePort,
 )
-from navette.transports.zenoh.attachment import Attachment, decode_attachment
+from navette.transports.zenoh.attachment import (
+    Attachment,
+    check_length,
+    decode_attachment,
+)
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.queryables import Queryables
 
@@ -100,12 +104,7 @@ class ZenohService(ServicePort):
         payload, attachment = query.payload, query.attachment
         if payload is None or attachment is None:
             raise DecodeError("without a payload or an attachment")
-        max_bytes = self._owner.session.settings.max_message_bytes
-        if len(payload) > max_bytes:
-            raise DecodeError(
-                f"{len(payload)} bytes: longer than {max_bytes} "
-                "(NAVETTE_MAX_MESSAGE_BYTES)"
-            )
+        check_length(payload, self._owner.session.settings.max_message_bytes)
         self.waiting.check_room(len(payload))
         sequence, source_ns, gid = decode_attachment(attachment.to_bytes())
         if other := self.matches.publisher_of_other_topic(gid):

@@ -11,7 +11,7 @@ from navette.transports.base import Endpoint, Item, Sink, SubscriptionPort
 from navette.transports.encoded import Encoded
 from navette.transports.expiring import Lifespans
 from navette.transports.lockstep import BufferedSubscription
-from navette.transports.zenoh.attachment import decode_attachment
+from navette.transports.zenoh.attachment import check_length, decode_attachment
 from navette.transports.zenoh.ports import PortOwner, ZenohEntity
 from navette.transports.zenoh.retransmission import declare_subscriber
 from navette.transports.zenoh.sequence_filter import SequenceFilter
@@ -127,12 +127,7 @@ class ZenohSubscription(SubscriptionPort):
 
     def _decoded(self, sample: zenoh.Sample) -> tuple[bytes, Item]:
         payload, attachment = sample.payload, sample.attachment
-        max_bytes = self._owner.session.settings.max_message_bytes
-        if len(payload) > max_bytes:
-            raise DecodeError(
-                f"{len(payload)} bytes: longer than {max_bytes} "
-                "(NAVETTE_MAX_MESSAGE_BYTES)"
-            )
+        check_length(payload, self._owner.session.settings.max_message_bytes)
         if attachment is None:
             raise DecodeError("without an attachment")
         if len(payload) < _HEADER_SIZE:
