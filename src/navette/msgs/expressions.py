@@ -81,7 +81,7 @@ class Expression:
         Raises:
             ExpressionError: the evaluation fails or exceeds a bound.
         """
-        self._evaluator.names = names or {}
+        self._evaluator.names = {} if names is None else names
         try:
             return self._evaluator.eval(self.text, self._tree)
         except (RecursionError, MemoryError):
@@ -116,7 +116,7 @@ class Expression:
     def _check_names(self, given: Collection[str]) -> None:
         names = [node for node in ast.walk(self._tree) if isinstance(node, ast.Name)]
         loop_variables = {each.id for each in names if isinstance(each.ctx, ast.Store)}
-        for each in {node.id for node in names} - loop_variables:
+        for each in sorted({node.id for node in names} - loop_variables):
             if each not in given and each not in _FUNCTIONS:
                 known = ", ".join([*given, "math", *sorted(_PLAIN_FUNCTIONS)])
                 raise self._error(

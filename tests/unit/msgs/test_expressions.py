@@ -117,6 +117,8 @@ def test_a_name_is_computed_only_when_it_is_needed() -> None:
     assert expression.value(Names(topic="/b")) is False
     with pytest.raises(DecodeError, match="m is damaged"):
         expression.value(Names(topic="/a"))
+    with pytest.raises(DecodeError, match="topic is damaged"):
+        expression.value(Names())
 
 
 def test_an_unknown_name_is_reported_at_construction() -> None:
