@@ -2,7 +2,7 @@
 
 # ruff: noqa: N818 - the names are rclpy's
 
-from typing import Any
+from typing import Any, ClassVar
 
 from navette.errors import (
     InvalidNameError,
@@ -77,32 +77,37 @@ class NameValidationException(InvalidNameError):
         self.invalid_index = invalid_index
 
 
-class InvalidNamespaceException(NameValidationException):
+class _InvalidName(NameValidationException):
+    """A name of the type ``kind`` is invalid."""
+
+    kind: ClassVar[str]
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
+        super().__init__(self.kind, name, error_msg, invalid_index)
+
+
+class InvalidNamespaceException(_InvalidName):
     """A namespace is invalid."""
 
-    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
-        super().__init__("namespace", name, error_msg, invalid_index)
+    kind = "namespace"
 
 
-class InvalidNodeNameException(NameValidationException):
+class InvalidNodeNameException(_InvalidName):
     """A node name is invalid."""
 
-    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
-        super().__init__("node name", name, error_msg, invalid_index)
+    kind = "node name"
 
 
-class InvalidTopicNameException(NameValidationException):
+class InvalidTopicNameException(_InvalidName):
     """A topic name is invalid."""
 
-    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
-        super().__init__("topic name", name, error_msg, invalid_index)
+    kind = "topic name"
 
 
-class InvalidServiceNameException(NameValidationException):
+class InvalidServiceNameException(_InvalidName):
     """A service name is invalid."""
 
-    def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
-        super().__init__("service name", name, error_msg, invalid_index)
+    kind = "service name"
 
 
 class ParameterException(ParameterError):

@@ -101,7 +101,7 @@ class NodeTopics:
             shared=shared,
         )
         self._entities.add(subscription)
-        sink = watch.observe_received(subscription.receive)
+        sink = watch.observe(subscription.receive)
         try:
             if content_filter_options is not None:
                 subscription.set_content_filter(*content_filter_options)

@@ -56,7 +56,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         self._owner = owner
         self._watch = watch
         send = ports[0].send if len(ports) == 1 else self._send_to_all
-        self._send = watch.observe_sent(send)
+        self._send = watch.observe(send)
 
     def publish(self, msg: MsgT | bytes) -> None:
         """Send a copy of ``msg`` (or a CDR message); later edits have no effect.

@@ -1,8 +1,9 @@
 """QoS events of one endpoint: deadlines, liveliness, matches, incompatible peers."""
 
 import threading
+from collections import Counter
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ParamSpec
 
 from navette.runtime.context import Context
 from navette.runtime.deadlines import Watchdog
@@ -11,7 +12,6 @@ from navette.runtime.log import Logger
 from navette.runtime.qos_events import (
     EventCallbacks,
     EventHandler,
-    IncompatibleTypeInfo,
     QoSCountInfo,
     QoSIncompatibleInfo,
     QoSMatchedInfo,
@@ -20,13 +20,10 @@ from navette.transports import (
     INFINITE_NS,
     Endpoint,
     EndpointKind,
-    Item,
     QoSPolicyKind,
-    Sink,
 )
 
-Send = Callable[[Any, int, int], None]
-"""Sends a message with its source stamp (ns) and sequence number."""
+P = ParamSpec("P")
 
 
 class EndpointWatch:
@@ -50,10 +47,7 @@ class EndpointWatch:
         self.event_handlers: list[EventHandler] = (
             [] if callbacks is None else callbacks.handlers()
         )
-        self._incompatible = 0
-        self._other_types = 0
-        self._lost = 0
-        self._missed = 0
+        self._totals: Counter[str] = Counter()
         self._match = QoSMatchedInfo()
         self._has_warned = False
         self._deadline: Watchdog | None = None
@@ -89,27 +83,20 @@ class EndpointWatch:
         """Whether the endpoint is a publisher with manual liveliness."""
         return self._lease is not None
 
-    def observe_sent(self, send: Send) -> Send:
-        """Return ``send``, extended to restart the deadline and renew the lease."""
-        hook = self._sample_hook()
-        if hook is None:
-            return send
+    def observe(self, deliver: Callable[P, None]) -> Callable[P, None]:
+        """Extend ``deliver`` to restart the deadline and to renew the lease."""
+        hooks: list[Callable[[], None]] = []
+        if self._deadline is not None:
+            hooks.append(self._deadline.restart)
+        if self._lease is not None:
+            hooks.append(self._lease.renew)
+        if not hooks:
+            return deliver
 
-        def observed(message: Any, source_ns: int, sequence: int) -> None:
-            hook()
-            send(message, source_ns, sequence)
-
-        return observed
-
-    def observe_received(self, sink: Sink) -> Sink:
-        """Return ``sink``, extended to restart the deadline."""
-        hook = self._sample_hook()
-        if hook is None:
-            return sink
-
-        def observed(item: Item) -> None:
-            hook()
-            sink(item)
+        def observed(*args: P.args, **kwargs: P.kwargs) -> None:
+            for hook in hooks:
+                hook()
+            deliver(*args, **kwargs)
 
         return observed
 
@@ -129,21 +116,6 @@ class EndpointWatch:
                 "subscriptions only; ROS 2 subscriptions detect liveliness by "
                 "messages: publish one within the lease"
             )
-
-    def _sample_hook(self) -> Callable[[], None] | None:
-        """Return the function to call for each sample; None if there is none."""
-        hooks = [
-            *([self._deadline.restart] if self._deadline is not None else []),
-            *([self._lease.renew] if self._lease is not None else []),
-        ]
-        if len(hooks) < 2:
-            return hooks[0] if hooks else None
-
-        def both() -> None:
-            for hook in hooks:
-                hook()
-
-        return both
 
     def _watch_deadline(self) -> None:
         period_ns = self._endpoint.qos.deadline_ns
@@ -173,14 +145,16 @@ class EndpointWatch:
                 lambda: callback(info), f"{event} event", self._endpoint.node_full_name
             )
 
+    def _count(self, event: str, change: int = 1) -> QoSCountInfo:
+        self._totals[event] += change
+        return QoSCountInfo(self._totals[event], change)
+
     def _notify_liveliness(self, info: Any) -> None:
         self._notify(self._callbacks.liveliness, info, "liveliness")
 
     def _on_deadline(self) -> None:
-        self._missed += 1
-        self._notify(
-            self._callbacks.deadline, QoSCountInfo(self._missed, 1), "deadline"
-        )
+        info = self._count("deadline")
+        self._notify(self._callbacks.deadline, info, "deadline")
 
     def _on_incompatible(
         self,
@@ -190,10 +164,10 @@ class EndpointWatch:
     ) -> None:
         if self._endpoint not in (publisher, subscription):
             return
-        self._incompatible += 1
+        total = self._count("incompatible_qos").total_count
         callback = self._callbacks.incompatible_qos
         if callback is not None:
-            info = QoSIncompatibleInfo(self._incompatible, 1, policies[0])
+            info = QoSIncompatibleInfo(total, 1, policies[0])
             self._notify(callback, info, "incompatible_qos")
         elif self._callbacks.use_default_callbacks:
             self._logger.warning(self._qos_warning(publisher, subscription, policies))
@@ -201,19 +175,18 @@ class EndpointWatch:
     def _on_incompatible_type(self, local: Endpoint, remote: Endpoint) -> None:
         if self._endpoint != local:
             return
-        self._other_types += 1
+        info = self._count("incompatible_type")
         callback = self._callbacks.incompatible_type
         if callback is not None:
-            info = IncompatibleTypeInfo(self._other_types, 1)
             self._notify(callback, info, "incompatible_type")
         elif self._callbacks.use_default_callbacks:
             self._logger.warning(_type_warning(local, remote))
 
     def _on_lost(self, subscription: Endpoint, count: int) -> None:
         if self._endpoint == subscription:
-            self._lost += count
             callback = getattr(self._callbacks, "message_lost", None)
-            self._notify(callback, QoSCountInfo(self._lost, count), "message_lost")
+            info = self._count("message_lost", count)
+            self._notify(callback, info, "message_lost")
 
     def _on_match(self, publisher: Endpoint, subscription: Endpoint, up: bool) -> None:
         if self._endpoint not in (publisher, subscription):

@@ -1,7 +1,8 @@
 """Time and Duration: integer nanoseconds with ROS 2's arithmetic."""
 
 from enum import IntEnum
-from typing import Any, Union, overload
+from functools import total_ordering
+from typing import Union, overload
 
 from navette.msgs.builtin_interfaces.msg import Duration as DurationMsg
 from navette.msgs.builtin_interfaces.msg import Time as TimeMsg
@@ -35,6 +36,7 @@ def seconds_to_ns(seconds: float) -> int:
     return whole * NS_PER_S + round((seconds - whole) * NS_PER_S)
 
 
+@total_ordering
 class Duration:
     """A span of time; positive or negative."""
 
@@ -89,15 +91,6 @@ class Duration:
     def __lt__(self, other: object) -> bool:
         return self._ns < other._ns if isinstance(other, Duration) else NotImplemented
 
-    def __le__(self, other: object) -> bool:
-        return self._ns <= other._ns if isinstance(other, Duration) else NotImplemented
-
-    def __gt__(self, other: object) -> bool:
-        return self._ns > other._ns if isinstance(other, Duration) else NotImplemented
-
-    def __ge__(self, other: object) -> bool:
-        return self._ns >= other._ns if isinstance(other, Duration) else NotImplemented
-
     def to_msg(self) -> DurationMsg:
         seconds, nanoseconds = divmod(self._ns, NS_PER_S)
         return DurationMsg(sec=seconds, nanosec=nanoseconds)
@@ -112,6 +105,7 @@ class Duration:
 Infinite = Duration(nanoseconds=INFINITE_NS)
 
 
+@total_ordering
 class Time:
     """A point in time of a clock; only times of one clock type can be compared."""
 
@@ -179,17 +173,11 @@ class Time:
             return self._ns == other._ns
         return NotImplemented
 
-    def __lt__(self, other: object) -> Any:
-        return self._compared(other, lambda a, b: a < b)
-
-    def __le__(self, other: object) -> Any:
-        return self._compared(other, lambda a, b: a <= b)
-
-    def __gt__(self, other: object) -> Any:
-        return self._compared(other, lambda a, b: a > b)
-
-    def __ge__(self, other: object) -> Any:
-        return self._compared(other, lambda a, b: a >= b)
+    def __lt__(self, other: object) -> bool:
+        if isinstance(other, Time):
+            self._check_comparable(other)
+            return self._ns < other._ns
+        return NotImplemented
 
     def to_msg(self) -> TimeMsg:
         seconds, nanoseconds = divmod(self._ns, NS_PER_S)
@@ -215,12 +203,6 @@ class Time:
                 "cannot compare times of different clock types: "
                 f"{self._clock_type.name} and {other._clock_type.name}"
             )
-
-    def _compared(self, other: object, test: Any) -> Any:
-        if not isinstance(other, Time):
-            return NotImplemented
-        self._check_comparable(other)
-        return bool(test(self._ns, other._ns))
 
 
 def stamp_to_ns(stamp: TimeMsg) -> int:
