@@ -40,6 +40,23 @@ def default_signal_action() -> Iterator[None]:
 
 
 @contextmanager
+def sigterm_as_interrupt() -> Iterator[None]:
+    """Inside, SIGTERM raises KeyboardInterrupt, so that files are closed cleanly."""
+    if not _in_main_thread():
+        yield
+        return
+
+    def interrupt(signum: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
 def ending_on_signals() -> Iterator[None]:
     """Inside, both raise KeyboardInterrupt, which leaves the block as an exit code."""
     with _handling(_signals.on_signal):

@@ -1,11 +1,9 @@
 """Run a simulation with progress on the terminal and an exit code."""
 
-import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from navette.cli.interruption import INTERRUPTED, sigterm_as_interrupt
 from navette.cli.status import StatusScreen
 from navette.errors import CallbackError
 from navette.navigation.stack.options import RunOptions
@@ -15,7 +13,6 @@ if TYPE_CHECKING:
 
 SUCCEEDED = 0
 FAILED = 1
-INTERRUPTED = 130
 
 
 def run_simulation(options: RunOptions, *, as_json: bool) -> int:
@@ -39,7 +36,7 @@ def run_simulation(options: RunOptions, *, as_json: bool) -> int:
 
 def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> int:
     failure: CallbackError | None = None
-    with _terminate_as_interrupt(), screen.watching(simulation):
+    with sigterm_as_interrupt(), screen.watching(simulation):
         try:
             simulation.run()
             interrupted = False
@@ -63,17 +60,3 @@ def _drive(simulation: "Simulation", screen: StatusScreen, *, as_json: bool) -> 
     if interrupted:
         return INTERRUPTED
     return SUCCEEDED if summary.succeeded else FAILED
-
-
-@contextmanager
-def _terminate_as_interrupt() -> Iterator[None]:
-    """Handle SIGTERM as KeyboardInterrupt, so that the run is closed cleanly."""
-
-    def interrupt(signum: int, frame: object) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)

@@ -160,7 +160,7 @@ def test_convert_filter_cut_merge(sample_bag: Path, tmp_path: Path) -> None:
 
 
 def test_wrong_uses(sample_bag: Path) -> None:
-    assert "not written over" in run("convert", sample_bag, "-o", sample_bag).output
+    assert "is the input" in run("convert", sample_bag, "-o", sample_bag).output
     result = run("cut", sample_bag, "--start", "soon", "-o", "b.mcap")
     assert result.exit_code == 2
     assert "no time in seconds" in result.output

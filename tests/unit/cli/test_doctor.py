@@ -42,8 +42,8 @@ def test_a_graph_that_is_well(here: World) -> None:
     node(here, "listener").create_subscription(String, "chatter", lambda _: None, 10)
     found = findings(here)
     assert found["nodes"]["data"] == {"nodes": ["/listener", "/talker"]}
-    assert found["topics"]["text"] == "1 topic with both sides, all fit"
-    assert found["clock"]["text"] == "the system's"
+    assert found["topics"]["text"] == "1 topic connected, types and QoS match"
+    assert found["clock"]["text"] == "system time"
     assert found["versions"]["level"] == "good"
 
 
@@ -83,7 +83,7 @@ def test_heartbeats(here: World) -> None:
     here.graph.run_for(3.0)
     found = findings(here)["/planner/status"]
     assert found["level"] == "problem"
-    assert found["text"] == "silent for 4.2 s, last state following"
+    assert found["text"] == "no status for 4.2 s, last state following"
     planner.create_timer(
         0.5, lambda: status.publish(DiagnosticStatus(message="reached"))
     )

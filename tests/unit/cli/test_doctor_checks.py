@@ -9,9 +9,9 @@ from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.graph_checks import check_nodes, check_services, check_topics
 from navette.cli.doctor.machine import is_navette, left_running, stopped
 from navette.cli.doctor.network import Network, Router, check_network
-from navette.cli.doctor.ports import PortProbe, Process
+from navette.cli.doctor.processes import Process
 from navette.cli.doctor.report import report_lines, summary
-from navette.cli.doctor.router_diagnosis import Refusal
+from navette.cli.doctor.router_diagnosis import PortProbe, Refusal
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
 from navette.cli.doctor.state_checks import check_stages, check_time
 from navette.cli.doctor.up_checks import check_supervised
@@ -56,10 +56,10 @@ def test_nodes_that_are_well() -> None:
     (finding,) = check_nodes(seen)
     assert (finding.level, finding.text) == (
         Level.GOOD,
-        "2 nodes, each with a name of its own; all answer",
+        "2 nodes with unique names; all respond",
     )
     (finding,) = check_nodes(Snapshot(nodes=("/a",), sim_time={"/a": False}))
-    assert finding.text == "1 node; it answers"
+    assert finding.text == "1 node; it responds"
 
 
 def test_no_nodes_is_no_problem_but_says_what_to_do() -> None:
@@ -80,8 +80,8 @@ def test_nodes_of_one_name() -> None:
 def test_a_node_that_does_not_answer() -> None:
     seen = Snapshot(nodes=("/a",), sim_time={"/a": None}, unreached=("/b",))
     findings = list(check_nodes(seen))
-    assert of(findings, "/a").text == "is there, but does not answer"
-    assert of(findings, "/b").text == "is known to the router, but cannot be reached"
+    assert of(findings, "/a").text == "does not respond"
+    assert of(findings, "/b").text == "is listed by the router, but cannot be reached"
     assert {finding.level for finding in findings} == {Level.PROBLEM}
 
 
@@ -95,11 +95,11 @@ def test_who_cannot_be_reached_explains_what_is_missing() -> None:
     )
     finding = of(check_nodes(seen), "/control")
     assert finding.text == (
-        "is known to the router, but cannot be reached; the robot stands"
+        "is listed by the router, but cannot be reached; the robot is stopped"
     )
     assert finding.data["publishes"] == ["/cmd_vel", "/control/status"]
     whats = [each.what for each in (*check_nodes(seen), *check_topics(seen))]
-    assert whats == ["/control", "nodes", "nobody reads"]
+    assert whats == ["/control", "nodes", "unread"]
 
 
 def test_a_stage_that_is_missing_between_others() -> None:
@@ -138,7 +138,7 @@ def test_topics_that_fit() -> None:
     (finding,) = check_topics(seen)
     assert (finding.level, finding.text) == (
         Level.GOOD,
-        "1 topic with both sides, all fit",
+        "1 topic connected, types and QoS match",
     )
 
 
@@ -172,7 +172,7 @@ def test_qos_that_does_not_fit(
     finding = of(check_topics(seen), "/scan")
     assert finding.level is Level.PROBLEM
     assert finding.text == (
-        f"/costmap gets nothing from /lidar: {policy} of less than it asks for"
+        f"/costmap receives nothing from /lidar: incompatible {policy}"
     )
     assert finding.advice
 
@@ -182,12 +182,12 @@ def test_a_topic_that_nobody_publishes_and_the_one_that_was_meant() -> None:
     findings = list(check_topics(seen))
     finding = of(findings, "/scan")
     assert finding.level is Level.WARNING
-    assert finding.text == "nobody publishes it; /costmap waits for it"
+    assert finding.text == "has no publisher; /costmap waits for it"
     assert finding.advice == (
-        "nobody reads /lidar, of the same type: if that is meant,"
+        "/lidar has the same type and no subscription; to use it:"
         " --ros-args -r /scan:=/lidar"
     )
-    assert of(findings, "nobody reads").level is Level.NOTE
+    assert of(findings, "unread").level is Level.NOTE
 
 
 def test_what_a_person_publishes_and_what_every_node_has_is_not_missed() -> None:
@@ -206,7 +206,7 @@ def test_a_client_without_a_server() -> None:
     assert list(check_services(Snapshot(services=(asks,)))) == []
     client = end(EndpointKind.CLIENT, "/add", "asker", "a/srv/Add")
     finding = of(check_services(Snapshot(services=(client,))), "/add")
-    assert finding.text == "nobody serves it; /asker may wait for it"
+    assert finding.text == "has no server; /asker may wait for it"
     server = end(EndpointKind.SERVICE, "/add", "adder", "a/srv/Add")
     assert list(check_services(Snapshot(services=(client, server)))) == []
     odd = replace(server, type_name="b/srv/Add")
@@ -245,9 +245,9 @@ def test_clocks() -> None:
         (
             Heartbeat("/planner/status", "following", 0, 7.0),
             Level.PROBLEM,
-            "silent for 7.0 s, last state following",
+            "no status for 7.0 s, last state following",
         ),
-        (Heartbeat("/planner/status"), Level.PROBLEM, "silent, last state unknown"),
+        (Heartbeat("/planner/status"), Level.PROBLEM, "no status, last state unknown"),
     ],
 )
 def test_heartbeats(beat: Heartbeat, level: Level, text: str) -> None:
@@ -269,8 +269,8 @@ def test_what_the_robot_does() -> None:
     seen = Snapshot(heartbeats=(stale,), speed_mps=0.0)
     status, robot = check_stages(seen)
     assert status.level is Level.WARNING
-    assert status.text == "stale_path: nothing new from that side; the robot stands"
-    assert (robot.what, robot.text) == ("robot", "the robot stands")
+    assert status.text == "stale_path: this input is too old; the robot is stopped"
+    assert (robot.what, robot.text) == ("robot", "the robot is stopped")
 
 
 HERE = "tcp/127.0.0.1:7447"
@@ -288,7 +288,7 @@ DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
         (
             Network(routers=(Router(HERE, PortProbe.REFUSED),), nodes=None),
             Level.NOTE,
-            f"{HERE} is free: the first program that starts serves",
+            f"{HERE} is free: the first program becomes the router",
         ),
         (
             Network(
@@ -296,27 +296,27 @@ DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
                 nodes=None,
             ),
             Level.PROBLEM,
-            f"{HERE} answers, but wants TLS",
+            f"{HERE} is open, but wants TLS",
         ),
         (
             Network(
                 routers=(Router(HERE, PortProbe.OPEN, DEMO._replace(is_stopped=True)),)
             ),
             Level.PROBLEM,
-            f"{HERE} belongs to navette demo (process 12), which is stopped: nobody"
-            " can join",
+            f"{HERE} belongs to navette demo (process 12), which is stopped: no"
+            " program can connect",
         ),
         (
             Network(
                 routers=(Router("tcp/10.0.0.2:7447", PortProbe.TIMED_OUT),), nodes=None
             ),
             Level.PROBLEM,
-            "tcp/10.0.0.2:7447 does not answer",
+            "tcp/10.0.0.2:7447 does not respond",
         ),
         (
             Network(routers=(Router("quic/10.0.0.2:7447"),), nodes={}),
             Level.NOTE,
-            "quic/10.0.0.2:7447, which cannot be tried from here",
+            "quic/10.0.0.2:7447, whose protocol cannot be probed",
         ),
     ],
 )
@@ -383,8 +383,8 @@ def test_programs_that_were_left_running() -> None:
     ]
     findings = list(left_running(every, here=14))
     assert [finding.what for finding in findings] == ["process 10"]
-    assert findings[0].text.startswith("navette demo runs without the terminal")
-    assert findings[0].advice == "if nobody needs it: kill 10"
+    assert findings[0].text.startswith("navette demo still runs, but the terminal")
+    assert findings[0].advice == "if it is not needed: kill 10"
     in_container = [Process(1, 0, ("bash",), session=1), demo._replace(session=1)]
     assert list(left_running(in_container, here=14)) == []
     orphan = [in_container[0], demo]  # its terminal, session 9, has gone
@@ -429,5 +429,5 @@ def test_the_report() -> None:
         "  ! /map   odd",
     ]
     assert report_lines(findings, everything=False)[0] == "Topics"
-    assert summary(findings) == "1 problem, 1 thing to look at"
+    assert summary(findings) == "1 problem, 1 warning"
     assert summary(findings[:1]) == "no problems"

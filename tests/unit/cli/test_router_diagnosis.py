@@ -1,4 +1,4 @@
-"""Why a router does not let us in: what is found out by knocking at its door."""
+"""Why a router rejects the session: what is found out by knocking at its door."""
 
 import datetime
 import socket
@@ -11,8 +11,14 @@ from pathlib import Path
 import pytest
 
 from navette.cli.doctor.network import Network, Router
-from navette.cli.doctor.ports import PortProbe, Process, probe
-from navette.cli.doctor.router_diagnosis import distrust, refusal, speaks_tls
+from navette.cli.doctor.processes import Process
+from navette.cli.doctor.router_diagnosis import (
+    PortProbe,
+    certificate_error,
+    probe,
+    refusal,
+    speaks_tls,
+)
 from navette.runtime import SystemClock
 from navette.transports.certificates import create_keys
 
@@ -68,35 +74,35 @@ def test_a_door_with_tls_and_one_without(keys: Path) -> None:
     with door() as plain:
         assert not speaks_tls(*plain)
         found = refusal("tls/x:1", plain, keys / "ours" / "laptop", None)
-        assert found.text.startswith("speaks no TLS, and we want it")
+        assert found.text.startswith("does not use TLS, which this program requires")
         found = refusal("tcp/x:1", plain, None, None)
-        assert "it wants a password" in found.text
+        assert "it requires a password" in found.text
     with tls_door(keys / "ours" / "robot") as closed:
         assert speaks_tls(*closed)
         found = refusal("tcp/x:1", closed, None, None)
-        assert found.text == "wants TLS, and we come without"
+        assert found.text == "requires TLS, which this program does not use"
         assert "NAVETTE_SECURITY" in found.advice
         found = refusal("tls/x:1", closed, None, None)
-        assert found.text == "wants a certificate, and we have none"
+        assert found.text == "requires a certificate, and this program has none"
 
 
 def test_whose_certificate_is_of_another_authority(keys: Path) -> None:
     with tls_door(keys / "theirs" / "robot") as address:
-        trouble = distrust(*address, keys / "ours" / "laptop")
+        trouble = certificate_error(*address, keys / "ours" / "laptop")
         assert trouble
         found = refusal("tls/x:1", address, keys / "ours" / "laptop", None)
-        assert found.text == f"has a certificate that we do not trust: {trouble}"
+        assert found.text == f"has a certificate that is not trusted here: {trouble}"
     with tls_door(keys / "ours" / "robot") as address:
-        assert distrust(*address, keys / "ours" / "laptop") == ""
+        assert certificate_error(*address, keys / "ours" / "laptop") == ""
         found = refusal("tls/x:1", address, keys / "ours" / "laptop", None)
-        assert found.text == "does not take our certificate or password"
+        assert found.text == "rejects the certificate or password"
 
 
 def test_a_password(tmp_path: Path) -> None:
     (tmp_path / "login").write_text("robot:secret")
     with door() as address:
         found = refusal("tcp/x:1", address, tmp_path, None)
-    assert found.text == "does not take our name and password"
+    assert found.text == "rejects the user name and password"
     assert str(tmp_path / "login") in found.advice
 
 
@@ -105,7 +111,7 @@ def test_a_program_that_is_none_of_zenoh() -> None:
     with door() as address:
         found = refusal("tcp/x:1", address, None, shell)
     # Of another user's process nothing can be seen.
-    assert found.text.startswith(("is no Zenoh program", "does not let us in"))
+    assert found.text.startswith(("is not a Zenoh program", "rejects the session"))
 
 
 def test_knocking() -> None:

@@ -77,13 +77,13 @@ def test_the_doctors_lines_are_wrapped_under_themselves() -> None:
         Level.PROBLEM,
         "Topics",
         "/scan",
-        "/costmap gets nothing from /lidar: reliability of less than it asks for",
+        "/costmap receives nothing from /lidar: incompatible reliability",
         "let the subscription ask for best effort, or the publisher offer reliable",
     )
     assert report_lines([finding], everything=True) == [
         "Topics",
-        "  ✗ /scan  /costmap gets nothing from /lidar:",
-        "           reliability of less than it asks for",
+        "  ✗ /scan  /costmap receives nothing from /lidar:",
+        "           incompatible reliability",
         "           → let the subscription ask for best",
         "             effort, or the publisher offer",
         "             reliable",

@@ -1,5 +1,5 @@
-"""``navette bag …``: record, look into, repair and rework recordings."""
+"""``navette bag``: record, play, inspect, repair and edit recordings."""
 
-from navette.cli.bag.app import bag
+from navette.cli.bag.verbs import bag
 
 __all__ = ["bag"]

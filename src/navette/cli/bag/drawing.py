@@ -1,4 +1,4 @@
-"""Lines as a picture: over time in panels, or over each other on one plane."""
+"""Draw series with matplotlib: over time in panels, or field over field in a plane."""
 
 from collections.abc import Sequence
 from itertools import cycle
@@ -9,7 +9,7 @@ from navette.cli.bag.series import Series
 from navette.errors import FileFormatError, InvalidValueError, MissingPartError
 
 SUFFIXES = (".png", ".svg", ".pdf")
-# As the live view's page has them: readable beside each other, also without colour.
+# The live view's colours, distinguishable without colour vision.
 _COLOURS = ("#c9430c", "#0b7285", "#5f3dc4", "#1f8a4c", "#b7791f", "#67707b")
 _INK, _QUIET, _LINE = "#1c2025", "#67707b", "#e4e0d8"
 _STYLE: Any = {
@@ -31,24 +31,24 @@ _STYLE: Any = {
     "ytick.major.size": 0,
     "lines.linewidth": 1.4,
     "legend.frameon": False,
-    "svg.hashsalt": "navette",  # the same picture has the same bytes
+    "svg.hashsalt": "navette",  # makes the file reproducible
 }
 
 
 def draw(series: Sequence[Series], title: str, path: Path) -> None:
-    """Write a picture of the lines.
+    """Write a picture of the series.
 
     Raises:
-        InvalidValueError: a suffix that is no picture's, or lines of both kinds.
+        InvalidValueError: unknown suffix, or series of both kinds.
         MissingPartError: matplotlib is not installed.
         FileFormatError: the file cannot be written.
     """
     if path.suffix not in SUFFIXES:
-        raise InvalidValueError(f"{path}: wanted a name in {', '.join(SUFFIXES)}")
+        raise InvalidValueError(f"{path}: the suffix is not {' or '.join(SUFFIXES)}")
     if len({bool(each.wanted.x) for each in series}) > 1:
         raise InvalidValueError(
-            "fields over time and fields over each other (with a colon) do not go into "
-            "one picture; make two"
+            "fields over time and fields over each other (with a colon) cannot be in"
+            " one picture; make two"
         )
     try:
         from matplotlib import rc_context
@@ -75,7 +75,7 @@ def draw(series: Sequence[Series], title: str, path: Path) -> None:
 
 
 def _paint_panels(figure: Any, series: Sequence[Series]) -> None:
-    """A panel for each field's name, under one time axis."""
+    """Draw a panel for each field name with a common time axis."""
     panels: dict[str, list[Series]] = {}
     for each in series:
         panels.setdefault(each.wanted.y.rpartition(".")[2], []).append(each)
@@ -91,12 +91,12 @@ def _paint_panels(figure: Any, series: Sequence[Series]) -> None:
 
 
 def _paint_plane(figure: Any, series: Sequence[Series]) -> None:
-    """All lines on one plane, as long one way as the other."""
+    """Draw all lines in one plane with equal scales."""
     figure.set_size_inches(7.2, 6.2)
     axis = figure.subplots()
     alike = len({(each.wanted.x, each.wanted.y) for each in series}) == 1 < len(series)
     for each, colour in zip(series, cycle(_COLOURS), strict=False):
-        # What all have in common, the axes say.
+        # The axes name common fields.
         label = each.wanted.topic if alike else _label(each)
         axis.plot(each.x, each.y, color=colour, label=label)
         axis.plot(each.x[0], each.y[0], "o", color=colour, markersize=4.5)
@@ -107,7 +107,7 @@ def _paint_plane(figure: Any, series: Sequence[Series]) -> None:
 
 
 def _name(axis: Any, lines: Sequence[Series]) -> None:
-    """One line: its name as a title; several: a legend."""
+    """Set the title for one line, a legend for several."""
     if len(lines) == 1:
         axis.set_title(_label(lines[0]))
     else:

@@ -1,7 +1,6 @@
-"""``navette bag recover|convert|filter|cut|merge``: commands that write a new one."""
+"""``navette bag recover``, ``convert``, ``filter``, ``cut`` and ``merge``."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import click
@@ -9,17 +8,14 @@ import click
 from navette.cli.bag.options import (
     Bag,
     Bags,
-    Compression,
     Duration,
     End,
     Exclude,
-    Output,
-    Overwrite,
     Regex,
     Start,
-    Storage,
     Topics,
     Types,
+    WriteOptions,
 )
 from navette.cli.options import Option
 from navette.cli.session import FAILED
@@ -30,66 +26,41 @@ if TYPE_CHECKING:
     from navette.bags.editing import MessageFilter
 
 
-def recover(
-    bag: Bag,
-    output: Output,
-    storage: Storage = "",
-    compression: Compression = "",
-    overwrite: Overwrite = False,
-) -> None:
-    """Write what is good of a damaged or killed recording into a new one.
+def recover(bag: Bag, target: WriteOptions) -> None:
+    """Copy the readable part of a damaged recording.
 
-    Exits 0 if anything could be saved.
+    The exit code is 0 if any message was recovered.
     """
     from navette.bags import open_bag
 
     lost: list[str] = []
 
-    def damaged(damage: "Damage") -> None:
+    def on_damage(damage: "Damage") -> None:
         lost.append(damage.reason)
         note(f"lost: {damage.reason}")
 
     with open_bag(bag) as reader:
         for problem in reader.problems:
             note(f"damaged: {problem}")
-        count = _copy(
-            reader,
-            output,
-            storage=storage,
-            compression=compression,
-            overwrite=overwrite,
-            on_damage=damaged,
-        )
+        count = _copy(reader, target, on_damage=on_damage)
     if count == 0 and lost:
         raise click.exceptions.Exit(FAILED)
 
 
-def convert(
-    bag: Bag,
-    output: Output,
-    storage: Storage = "",
-    compression: Compression = "",
-    overwrite: Overwrite = False,
-) -> None:
-    """Write a recording in another format, or compressed in another way.
+def convert(bag: Bag, target: WriteOptions) -> None:
+    """Convert a recording to another format or compression.
 
-    Types and messages of ROS 1 become ROS 2's and the other way round.
+    Types and messages of ROS 1 are converted to ROS 2 and vice versa.
     """
     from navette.bags import open_bag
 
     with open_bag(bag) as reader:
-        _copy(
-            reader,
-            output,
-            storage=storage,
-            compression=compression,
-            overwrite=overwrite,
-        )
+        _copy(reader, target)
 
 
 def filter_(
     bag: Bag,
-    output: Output,
+    target: WriteOptions,
     topic: Topics = None,
     type_: Types = None,
     regex: Regex = "",
@@ -99,21 +70,18 @@ def filter_(
     where: Annotated[
         str,
         Option(
-            metavar="PYTHON",
-            help="Take messages for which this holds; it knows topic (name), t (s) and"
-            ' m (message), as in "m.twist.twist.linear.x > 1".',
+            metavar="EXPR",
+            help="Keep messages for which the expression is true. Names: topic, t (time"
+            ' in s) and m (message), as in "m.twist.twist.linear.x > 1".',
         ),
     ] = "",
-    storage: Storage = "",
-    compression: Compression = "",
-    overwrite: Overwrite = False,
 ) -> None:
-    """Write only some topics, types, times or messages."""
+    """Copy only some topics, types, times or messages."""
     from navette.bags import open_bag
     from navette.bags.editing import MessageFilter
 
     with open_bag(bag) as reader:
-        selected = MessageFilter(
+        selection = MessageFilter(
             topics=tuple(topic or ()),
             types=tuple(type_ or ()),
             regex=regex,
@@ -122,87 +90,60 @@ def filter_(
             end_ns=_time(end, reader),
             expression=where,
         )
-        _copy(
-            reader,
-            output,
-            selected,
-            storage=storage,
-            compression=compression,
-            overwrite=overwrite,
-        )
+        _copy(reader, target, selection)
 
 
 def cut(
     bag: Bag,
-    output: Output,
+    target: WriteOptions,
     start: Start = "",
     end: End = "",
     duration: Duration = None,
-    storage: Storage = "",
-    compression: Compression = "",
-    overwrite: Overwrite = False,
 ) -> None:
-    """Write the part between two times."""
+    """Copy the part between two times."""
     from navette.bags import open_bag
     from navette.bags.editing import MessageFilter
 
+    if end and duration is not None:
+        raise click.UsageError("--end and --duration cannot be combined")
     with open_bag(bag) as reader:
         first = _time(start, reader)
         last = _time(end, reader)
         if duration is not None:
-            if end:
-                raise click.BadParameter("--end and --duration say the same")
             begin = first if first is not None else reader.start_ns
             last = begin + round(duration * 1e9)
-        _copy(
-            reader,
-            output,
-            MessageFilter(start_ns=first, end_ns=last),
-            storage=storage,
-            compression=compression,
-            overwrite=overwrite,
-        )
+        _copy(reader, target, MessageFilter(start_ns=first, end_ns=last))
 
 
-def merge(
-    bags: Bags,
-    output: Output,
-    storage: Storage = "",
-    compression: Compression = "",
-    overwrite: Overwrite = False,
-) -> None:
-    """Write several recordings as one, in the order of time."""
+def merge(bags: Bags, target: WriteOptions) -> None:
+    """Merge several recordings into one, in order of time."""
     from navette.bags.editing import join
 
     with join(bags) as reader:
-        _copy(
-            reader,
-            output,
-            storage=storage,
-            compression=compression,
-            overwrite=overwrite,
-        )
+        _copy(reader, target)
 
 
 def _copy(
     reader: "BagReader",
-    output: Path,
-    selected: "MessageFilter | None" = None,
+    target: WriteOptions,
+    selection: "MessageFilter | None" = None,
     *,
-    storage: str,
-    compression: str,
-    overwrite: bool,
     on_damage: "Callable[[Damage], None] | None" = None,
 ) -> int:
+    """Copy the selected messages and return their number."""
     from navette.bags.editing import copy
     from navette.bags.writing import open_writer
     from navette.cli.bag.progress import progress
     from navette.cli.bag.text import count_text, size_text
 
+    output = target.output
     if output.exists() and any(output.samefile(path) for path in reader.files):
-        raise click.BadParameter(f"{output} is what is read; it is not written over")
+        raise click.UsageError(f"--output {output} is the input; give another name")
     writer = open_writer(
-        output, storage=storage, compression=compression, overwrite=overwrite
+        output,
+        storage=target.storage,
+        compression=target.compression,
+        overwrite=target.overwrite,
     )
     first, last = reader.start_ns, reader.end_ns
     with progress(f"writing {output.name}", (last - first) / 1e9) as advance:
@@ -215,22 +156,22 @@ def _copy(
                 at = message.stamp_ns
 
         count = copy(
-            reader, writer, selected, on_message=on_message, on_damage=on_damage
+            reader, writer, selection, on_message=on_message, on_damage=on_damage
         )
     size = output.stat().st_size if output.is_file() else 0
-    how_large = f", {size_text(size)}" if size else ""
-    note(f"{output}: {count_text(count)} messages{how_large}")
+    suffix = f", {size_text(size)}" if size else ""
+    note(f"{output}: {count_text(count)} messages{suffix}")
     return count
 
 
 def _time(text: str, reader: "BagReader") -> int | None:
-    """A stamp from seconds since the start, before the end, or since 1970."""
+    """Return a stamp from seconds after the start, before the end, or since 1970."""
     if not text:
         return None
     try:
         nanoseconds = round(float(text) * 1e9)
     except (ValueError, OverflowError):
-        raise click.BadParameter(f"{text!r} is no time in seconds") from None
+        raise click.BadParameter(f"{text!r} is not a time in seconds") from None
     if text.startswith("-"):
         return reader.end_ns + nanoseconds
     if nanoseconds <= reader.end_ns - reader.start_ns or nanoseconds < reader.start_ns:

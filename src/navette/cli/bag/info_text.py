@@ -1,4 +1,4 @@
-"""A recording's figures for people."""
+"""Print the summary of a recording."""
 
 from collections import Counter
 
@@ -19,14 +19,14 @@ from navette.cli.bag.text import (
 from navette.errors import UnknownNameError
 
 _FORMATS = {"mcap": "MCAP", "rosbag1": "ROS 1 bag", "sqlite3": "rosbag2 SQLite"}
-# A gap is worth a look when so many messages are missing in it.
+# Mark gaps in which at least this number of messages is missing.
 _GAP_MESSAGES = 5
-# Messages come in bursts where the median rate is so many times the mean one.
+# Messages arrive in bursts if the median rate exceeds the mean rate by this factor.
 _BURST = 10
 
 
 def show_info(summary: BagSummary, *, verbose: bool = False) -> None:
-    """As ``rosbag info`` and ``ros2 bag info`` lay it out."""
+    """Print the summary in the layout of ``rosbag info`` and ``ros2 bag info``."""
     console = open_console()
     for name, value in _head(summary).items():
         console.print(Text.assemble((f"{name + ':':<13}", "dim"), value))
@@ -43,17 +43,15 @@ def show_info(summary: BagSummary, *, verbose: bool = False) -> None:
         _show_details(console, summary)
     if any(not each.known for each in summary.topics):
         console.print(
-            Text(
-                "* not installed, or of another release; read all the same", style="dim"
-            )
+            Text("* not installed or another version; still readable", style="dim")
         )
 
 
 def value_of(summary: BagSummary, key: str) -> str:
-    """One figure, as plain text.
+    """Return one value as plain text.
 
     Raises:
-        UnknownNameError: lists the names there are.
+        UnknownNameError: unknown key; the message lists the known ones.
     """
     values = {name: str(value) for name, value in summary.to_json().items()}
     values |= {
@@ -119,29 +117,29 @@ def _comes_in_bursts(each: TopicSummary) -> bool:
 
 
 def _rate(each: TopicSummary) -> str:
-    """The median; of bursts, whose median says nothing, the mean."""
+    """Format the median rate; for bursts the mean rate."""
     if _comes_in_bursts(each):
         return f"~{rate_text(each.mean_rate_hz)}"
     return rate_text(each.rate_hz)
 
 
 def _gap(each: TopicSummary) -> Text:
-    """Marked where a regular topic fell silent."""
+    """Format the longest gap; highlighted if a regular topic was interrupted."""
     text = gap_text(each.longest_gap_s)
-    silent = (
+    interrupted = (
         each.longest_gap_s is not None
         and each.rate_hz is not None
         and not _comes_in_bursts(each)
         and each.count > 2 * _GAP_MESSAGES
         and each.longest_gap_s * each.rate_hz > _GAP_MESSAGES
     )
-    if not silent or each.gap_start_s is None:
+    if not interrupted or each.gap_start_s is None:
         return Text(text)
     return Text(f"{text} at {each.gap_start_s:.1f} s", style="yellow")
 
 
 def _qos(offers: tuple[OfferedQos, ...]) -> str:
-    """What differs from what publishers offer by default."""
+    """Return the policies that differ from the defaults."""
     words = []
     if any(each.reliability == "best_effort" for each in offers):
         words.append("best effort")

@@ -1,4 +1,4 @@
-"""Recordings in a folder."""
+"""List the recordings in a folder."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from navette.errors import FileFormatError
 
 @dataclass(frozen=True)
 class Listed:
-    """A recording at a glance; ``problem`` says why nothing more is known."""
+    """Summary of a recording, or the problem that prevents reading it."""
 
     path: Path
     size: int = 0
@@ -40,14 +40,14 @@ class Listed:
 
 
 def find(folder: Path, *, recursive: bool = False) -> list[Listed]:
-    """All recordings in a folder (or the one that it is), by name.
+    """Return all recordings in a folder (or the folder itself), sorted by name.
 
     Raises:
-        FileFormatError: no such folder.
+        FileFormatError: the folder does not exist.
     """
     if not folder.exists():
         raise FileFormatError(folder, "no such folder")
-    return [_look(path) for path in sorted(_bags(folder, recursive=recursive))]
+    return [_summary(path) for path in sorted(_bags(folder, recursive=recursive))]
 
 
 def _bags(folder: Path, *, recursive: bool) -> Iterator[Path]:
@@ -61,7 +61,7 @@ def _bags(folder: Path, *, recursive: bool) -> Iterator[Path]:
             yield from _bags(path, recursive=True)
 
 
-def _look(path: Path) -> Listed:
+def _summary(path: Path) -> Listed:
     try:
         with open_bag(path) as reader:
             return Listed(
@@ -78,7 +78,6 @@ def _look(path: Path) -> Listed:
 
 
 def show_list(found: list[Listed]) -> None:
-    """One line each."""
     table = new_table("bag", "start", ">duration", ">size", ">messages", ">topics", "")
     for each in found:
         duration = (each.end_ns - each.start_ns) / 1e9

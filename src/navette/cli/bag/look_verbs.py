@@ -1,4 +1,4 @@
-"""``navette bag info|list|check``: commands that only look."""
+"""``navette bag info``, ``list`` and ``check``: verbs that only read."""
 
 from pathlib import Path
 from typing import Annotated
@@ -15,7 +15,7 @@ from navette.cli.stderr import note
 def info(
     bags: Bags,
     verbose: Annotated[
-        bool, Option("--verbose", "-v", help="With hashes, QoS and files.")
+        bool, Option("--verbose", "-v", help="Also print type hashes, QoS and files.")
     ] = False,
     key: Annotated[
         str,
@@ -23,15 +23,15 @@ def info(
             "--key",
             "-k",
             metavar="NAME",
-            help="Print only this: path, duration, start, end, size, messages, …",
+            help="Print only this value: path, duration, start, end, size, messages, …",
         ),
     ] = "",
     topic_name: Annotated[
-        bool, Option("--topic-name", "-t", help="Print only names of topics.")
+        bool, Option("--topic-name", "-t", help="Print only the topic names.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Say what is in a recording: time, size, and each topic's type, count and rate."""
+    """Show time, size and topics of a recording, with type, count and rate."""
     from navette.bags import open_bag
     from navette.bags.summary import summarise
     from navette.cli.bag import info_text
@@ -59,14 +59,14 @@ def info(
 
 def list_(
     folder: Annotated[
-        Path, Argument(metavar="[FOLDER]", help="Where to look; by default here.")
+        Path, Argument(metavar="[FOLDER]", help="Default: the current folder.")
     ] = Path(),
     recursive: Annotated[
-        bool, Option("--recursive", "-r", help="Look into folders below, too.")
+        bool, Option("--recursive", "-r", help="Include subfolders.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """List the recordings in a folder, with time, length and size."""
+    """List the recordings in a folder with time, duration and size."""
     from navette.cli.bag import listing
 
     found = listing.find(folder, recursive=recursive)
@@ -81,14 +81,14 @@ def list_(
 def check(
     bags: Bags,
     decode: Annotated[
-        bool, Option("--decode", help="Also read every message as its type.")
+        bool, Option("--decode", help="Also decode every message.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Say what is wrong with a recording; exits 0 if it is sound.
+    """Check recordings for damage; the exit code is 0 if there is none.
 
-    Goes through all of it: beginning and end, index, lengths and checksums of chunks,
-    counts, and stamps that go back.
+    Reads the whole file: header and footer, index, lengths and checksums of chunks,
+    message counts, and the order of stamps.
     """
     from navette.bags.checking import check_bag
     from navette.cli.bag import report

@@ -1,23 +1,22 @@
-"""``navette bag play``: recordings as if they happened now."""
+"""``navette bag play``: publish the messages of recordings in real time."""
 
 import signal
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import click
 
+from navette.cli.interruption import INTERRUPTED, sigterm_as_interrupt
 from navette.cli.options import Argument, Option
+from navette.cli.session import FAILED
 
 if TYPE_CHECKING:
     from navette.bags.play import PlayOptions
     from navette.bags.play.node import PlayerNode
     from navette.navigation.stack.playback import Playback
 
-FAILED = 1
-INTERRUPTED = 130
 _BACK_NS = 5_000_000_000
 _FASTER = 1.1
 
@@ -25,42 +24,43 @@ Files = Annotated[
     list[Path],
     Argument(
         metavar="FILE...",
-        help=".mcap, .bag or .db3 files, or rosbag2 folders; several play as one.",
+        help=".mcap, .bag or .db3 files, or rosbag2 folders. Several are merged.",
     ),
 ]
-Loop = Annotated[bool, Option("-l", "--loop", help="Start over at the end.")]
+Loop = Annotated[bool, Option("-l", "--loop", help="Restart at the end.")]
 Paused = Annotated[
-    bool, Option("-p", "--pause", "--start-paused", help="Stand at the start.")
+    bool, Option("-p", "--pause", "--start-paused", help="Start paused.")
 ]
-Rate = Annotated[float, Option("-r", "--rate", metavar="X", help="Times real time.")]
+Rate = Annotated[float, Option("-r", "--rate", metavar="X", help="Playback rate.")]
 Start = Annotated[
     float,
-    Option("-s", "--start-offset", metavar="S", help="Seconds to leave out."),
+    Option("-s", "--start-offset", metavar="S", help="Skip the first S seconds."),
 ]
 Length = Annotated[
     float | None,
-    Option("-u", "--duration", metavar="S", help="Seconds to play."),
+    Option("-u", "--duration", metavar="S", help="Play S seconds."),
 ]
 Topics = Annotated[
     list[str] | None,
-    Option("--topics", metavar="TOPIC...", help="Play these topics only."),
+    Option("--topics", metavar="TOPIC...", help="Play only these topics."),
 ]
 Regex = Annotated[
     str,
-    Option("-e", "--regex", metavar="REGEX", help="Play topics that match."),
+    Option("-e", "--regex", metavar="REGEX", help="Play only matching topics."),
 ]
 Exclude = Annotated[
     str,
-    Option("-x", "--exclude", metavar="REGEX", help="Leave out what matches."),
+    Option("-x", "--exclude", metavar="REGEX", help="Omit matching topics."),
 ]
 Remap = Annotated[
     list[str] | None,
-    Option("-m", "--remap", metavar="FROM:=TO...", help="Other names."),
+    Option("-m", "--remap", metavar="FROM:=TO...", help="Rename topics."),
 ]
 Clock = Annotated[
     float | None,
     Option(
-        metavar="[HZ]", help="Tell the recording's time on /clock, 40 times a second."
+        metavar="[HZ]",
+        help="Publish the time of the recording on /clock (default: 40 Hz).",
     ),
 ]
 With = Annotated[
@@ -68,13 +68,13 @@ With = Annotated[
     Option(
         "--with",
         metavar="'PROGRAM [ARGS]'",
-        help="Run a program in the same process, as navette run does; it is ended"
-        " when the bag is.",
+        help="Run a program in the same process, as navette run does; it ends with"
+        " the bag.",
     ),
 ]
 View = Annotated[
     bool,
-    Option("--view", help="Open the live view; play, pause and seek there."),
+    Option("--view", help="Open the live view with playback controls."),
 ]
 Port = Annotated[
     int, Option(min=0, max=65535, help="Port of the live view on 127.0.0.1.")
@@ -97,10 +97,10 @@ def play(
     view: View = False,
     port: Port = 8765,
 ) -> None:
-    """Play recordings: the same messages at the same times, to whoever listens.
+    """Play recordings: publish their messages with the recorded timing.
 
-    Keys: space pauses and goes on, s (or →) gives the next message, ← goes 5 s back,
-    ↑ and ↓ change the rate, q ends.
+    Keys: space pauses and resumes, s or → plays the next message, ← goes back 5 s,
+    ↑ and ↓ change the rate, q quits.
     """
     from navette.bags.play import PlayOptions
 
@@ -134,7 +134,7 @@ def _play(
     from navette.navigation.stack.playback import Playback
 
     with ExitStack() as stack:
-        stack.enter_context(_terminate_as_interrupt())
+        stack.enter_context(sigterm_as_interrupt())
         playback = Playback(
             files, options, remap=remap, clock_rate_hz=clock_rate_hz, view_port=port
         )
@@ -183,7 +183,7 @@ _ACTIONS: dict[str, Callable[["PlayerNode"], object]] = {
 
 
 def _play_with(words: list[str], run: Callable[[], int]) -> int:
-    """The bag and the programs, a thread each; the end of the bag ends them all."""
+    """Run the playback and programs in threads; the end of the bag ends all of them."""
     import shlex
 
     from navette.ros2.names import install
@@ -201,20 +201,3 @@ def _play_with(words: list[str], run: Callable[[], int]) -> int:
     activate()
     programs = [p for each in words for p in read_programs(shlex.split(each))]
     return run_together([*programs, Program("navette bag play", (), play_and_end)])
-
-
-@contextmanager
-def _terminate_as_interrupt() -> Iterator[None]:
-    """SIGTERM ends it as cleanly as Ctrl-C does; only a main thread can."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def interrupt(signum: int, frame: object) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)

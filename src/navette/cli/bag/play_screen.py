@@ -1,4 +1,4 @@
-"""What the terminal shows of a bag that plays; on stderr, so that stdout is data."""
+"""Progress of the playback on stderr; stdout is left for data."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,8 +15,8 @@ from navette.bags.play.node import PlayProgress
 
 _REFRESH_HZ = 12
 _WIDTH = 32
-_BESIDE_BAR = 62  # columns that the figures beside the bar may take
-_FIRST_DATE_NS = 10**17  # before (1973) it is seconds of a simulation, not a date
+_BESIDE_BAR = 62  # columns of the figures beside the bar
+_FIRST_DATE_NS = 10**17  # smaller stamps (before 1973) are simulated time
 _SIGNS = {
     PlayState.PLAYING: ("▶", "bold green"),
     PlayState.PAUSED: ("⏸", "bold yellow"),
@@ -32,14 +32,14 @@ _KEYS = (
 
 
 class PlayScreen:
-    """A line on what is played and, on a terminal, one live line on how it goes."""
+    """One line on the recording and, on a terminal, one live line of progress."""
 
     def __init__(self, progress: Callable[[], PlayProgress]) -> None:
         self._progress = progress
         self._console = Console(stderr=True, highlight=False)
 
     def show_head(self, paths: list[Path], topics: int, url: str | None) -> None:
-        """What is played, and where to look at it."""
+        """Print the recording and the address of the live view."""
         progress = self._progress()
         length_s = (progress.end_ns - progress.begin_ns) / 1e9
         head = Text("Playing", style="bold cyan")
@@ -55,7 +55,7 @@ class PlayScreen:
 
     @contextmanager
     def watching(self, *, keys: bool) -> Iterator[None]:
-        """Show how it goes until the block ends."""
+        """Show the progress until the block ends."""
         if not self._console.is_terminal:
             yield
             return
@@ -70,7 +70,7 @@ class PlayScreen:
             yield
 
     def report(self, word: str) -> None:
-        """The end, in a line."""
+        """Print the summary."""
         progress = self._progress()
         place_s = (progress.position_ns - progress.begin_ns) / 1e9
         passes = f", pass {progress.passes}" if progress.passes > 1 else ""
@@ -80,7 +80,6 @@ class PlayScreen:
         self._console.print(line, soft_wrap=True)
 
     def report_failure(self, text: str) -> None:
-        """What went wrong, in one line."""
         self._console.print(Text(text, style="bold red"), soft_wrap=True)
 
     def _line(self) -> RenderableType:

@@ -1,4 +1,4 @@
-"""``navette bag plot``: fields of a recording as a picture."""
+"""``navette bag plot``: plot fields of a recording."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,8 +12,9 @@ Fields = Annotated[
     list[str],
     Argument(
         metavar="TOPIC.FIELD...",
-        help="/odom.twist.twist.linear.x: over time; /odom.pose.pose.position.x:y: y"
-        " over x. Fields of one name share a panel; a quaternion is drawn as its yaw.",
+        help="/odom.twist.twist.linear.x plots over time, /odom.pose.pose.position.x:y"
+        " plots y over x. Fields with the same name share a panel. A quaternion is"
+        " plotted as its yaw.",
     ),
 ]
 Picture = Annotated[
@@ -22,13 +23,14 @@ Picture = Annotated[
         "--output",
         "-o",
         metavar="FILE",
-        help="A .png, .svg or .pdf; by default the recording's name with .png, here.",
+        help="File to write: .png, .svg or .pdf. Default: the recording's name with"
+        " .png, in this folder.",
     ),
 ]
 
 
 def plot(bag: Bag, fields: Fields, output: Picture = None) -> None:
-    r"""Draw fields of a recording: over time, or one over the other.
+    r"""Plot fields of a recording over time or over another field.
 
     Needs matplotlib: pip install 'navette\[plot]'.
     """

@@ -1,4 +1,4 @@
-"""A bar on standard error while something long goes on; nothing when piped."""
+"""Progress bar on standard error; nothing in a pipe."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -9,10 +9,10 @@ from contextlib import contextmanager
 def progress(
     text: str, total: float | None, *, as_bytes: bool = False
 ) -> Iterator[Callable[[float], None] | None]:
-    """Gives what is to be told of each step; None where nobody watches.
+    """Yield a function that advances the bar; None without a terminal.
 
     Args:
-        total: how far it is; None if nobody knows.
+        total: length of the bar; None if unknown.
     """
     if not sys.stderr.isatty():
         yield None

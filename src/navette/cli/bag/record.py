@@ -1,4 +1,4 @@
-"""``navette bag record``: what a running system says, into a file."""
+"""``navette bag record``: record topics to a file."""
 
 import re
 from pathlib import Path
@@ -24,16 +24,18 @@ TopicNames = Annotated[
         complete=complete_topics,
     ),
 ]
-All = Annotated[bool, Option("--all", "-a", help="Record every topic, raw images too.")]
+All = Annotated[
+    bool, Option("--all", "-a", help="Record all topics, including raw images.")
+]
 Regex = Annotated[
-    str, Option("--regex", "-e", metavar="PATTERN", help="Topics that match.")
+    str, Option("--regex", "-e", metavar="PATTERN", help="Record matching topics.")
 ]
 TopicTypes = Annotated[
     list[str] | None,
     Option(
         "--topic-types",
         metavar="TYPE...",
-        help="Topics of these types.",
+        help="Record topics of these types.",
         complete=complete_messages,
     ),
 ]
@@ -44,7 +46,7 @@ Exclude = Annotated[
         "--exclude",
         "-x",
         metavar="PATTERN",
-        help="Leave out topics that match.",
+        help="Omit matching topics.",
     ),
 ]
 ExcludeTopics = Annotated[
@@ -52,7 +54,7 @@ ExcludeTopics = Annotated[
     Option(
         "--exclude-topics",
         metavar="TOPIC...",
-        help="Leave out these.",
+        help="Omit these topics.",
         complete=complete_topics,
     ),
 ]
@@ -61,13 +63,13 @@ ExcludeTypes = Annotated[
     Option(
         "--exclude-topic-types",
         metavar="TYPE...",
-        help="Leave out these types.",
+        help="Omit topics of these types.",
         complete=complete_messages,
     ),
 ]
 Hidden = Annotated[
     bool,
-    Option("--include-hidden-topics", help="Also topics such as /_action/…."),
+    Option("--include-hidden-topics", help="Include hidden topics, such as /_action/…"),
 ]
 Output = Annotated[
     str,
@@ -75,19 +77,21 @@ Output = Annotated[
         "--output",
         "-o",
         metavar="NAME",
-        help="NAME.mcap; a folder NAME where files are split. By default the date.",
+        help="Write NAME.mcap, or a folder NAME if the bag is split. Default: a date.",
     ),
 ]
 Overwrite = Annotated[
-    bool, Option("--overwrite", help="Replace a recording of that name.")
+    bool, Option("--overwrite", help="Replace an existing recording.")
 ]
 MaxSize = Annotated[
     int,
-    Option("--max-bag-size", "-b", metavar="BYTES", min=0, help="Split at it."),
+    Option("--max-bag-size", "-b", metavar="BYTES", min=0, help="Split at this size."),
 ]
 MaxDuration = Annotated[
     float,
-    Option("--max-bag-duration", "-d", metavar="S", min=0, help="Split at it."),
+    Option(
+        "--max-bag-duration", "-d", metavar="S", min=0, help="Split every S seconds."
+    ),
 ]
 Snapshot = Annotated[
     float,
@@ -95,19 +99,19 @@ Snapshot = Annotated[
         "--snapshot-duration",
         metavar="S",
         min=0,
-        help="Keep the last S seconds in memory; key s or the service"
-        " /recorder/snapshot writes them.",
+        help="Keep the last S seconds in memory; write them on key s or a call of"
+        " /recorder/snapshot.",
     ),
 ]
 Compression = Annotated[
-    str, Option(metavar="KIND", help="Of the chunks: zstd, lz4 or none.")
+    str, Option(metavar="KIND", help="Compression of the chunks: zstd, lz4 or none.")
 ]
 SimTime = Annotated[
-    bool, Option("--use-sim-time", help="Stamps of /clock, not of the machine.")
+    bool, Option("--use-sim-time", help="Stamp with /clock instead of system time.")
 ]
 Paused = Annotated[
     bool,
-    Option("--start-paused", "--paused", help="Record nothing until space."),
+    Option("--start-paused", "--paused", help="Start paused; space resumes."),
 ]
 
 
@@ -129,13 +133,13 @@ def record(
     use_sim_time: SimTime = False,
     paused: Paused = False,
 ) -> None:
-    """Record what is said into a bag, until Ctrl-C.
+    """Record topics to a bag, until Ctrl-C.
 
-    Topics that come up later are taken up, too. Keys: space pauses and goes on, s
-    writes a snapshot, q ends.
+    Topics that appear later are included. Keys: space pauses and resumes, s writes a
+    snapshot, q quits.
     """
     if not (topics or all_ or regex or topic_types):
-        raise click.BadParameter("name topics, or --all, --regex, --topic-types")
+        raise click.UsageError("give topics, --all, --regex or --topic-types")
     patterns = [exclude] if exclude else []
     patterns += [f"^{re.escape(_full(each))}$" for each in exclude_topics or ()]
     in_folder = bool(max_bag_size or max_bag_duration or snapshot_duration)
@@ -165,7 +169,7 @@ def _full(topic: str) -> str:
 
 
 def _path(output: str, *, in_folder: bool, overwrite: bool) -> Path:
-    """Where to; one that exists is refused or removed."""
+    """Return the path of the bag; an existing bag is an error or removed."""
     import shutil
 
     from navette.bags.opening import is_bag
@@ -178,9 +182,9 @@ def _path(output: str, *, in_folder: bool, overwrite: bool) -> Path:
         path = path.with_name(f"{path.name}.mcap")
     if path.exists():
         if not overwrite:
-            raise FileFormatError(path, "exists already; --overwrite replaces it")
+            raise FileFormatError(path, "already exists; --overwrite replaces it")
         if not is_bag(path):
-            raise FileFormatError(path, "exists, is not a bag and is not replaced")
+            raise FileFormatError(path, "exists and is not a bag; not overwritten")
         if path.is_dir():
             shutil.rmtree(path)
     return path
@@ -220,38 +224,39 @@ def _record(path: Path, parameters: dict[str, Any]) -> int:
             with screen.watching(keys=keys):
                 session.run()
         except KeyboardInterrupt:
-            pass  # the usual end of a recording
+            pass  # a normal end of a recording
         recorder.close()
         screen.report()
         return FAILED if recorder.error is not None else 0
 
 
 class _Session:
-    """Spins the recorder until it is to end."""
+    """Run the recorder until key q or an error."""
 
     def __init__(self, node: "Node", recorder: "RecorderNode") -> None:
         self._node = node
         self._recorder = recorder
-        self._asked: set[str] = set()
+        self._requested: set[str] = set()
         self._is_over = False
 
     def run(self) -> None:
-        """Until key q or a failure; asks nodes for types that nobody else has."""
+        """Record; request unknown type definitions from their publishers."""
         from navette.cli.session import wait_for
 
         while not self._is_over and self._recorder.error is None:
-            wait_for(self._node, self._has_to_look)
-            for topic in self._unasked():
-                self._asked.add(topic)
+            wait_for(self._node, self._needs_attention)
+            for topic in self._undefined():
+                self._requested.add(topic)
                 self._fetch(topic, self._recorder.undefined[topic])
 
-    def _has_to_look(self) -> bool:
+    def _needs_attention(self) -> bool:
         return (
-            self._is_over or self._recorder.error is not None or bool(self._unasked())
+            self._is_over or self._recorder.error is not None or bool(self._undefined())
         )
 
-    def _unasked(self) -> list[str]:
-        return [each for each in self._recorder.undefined if each not in self._asked]
+    def _undefined(self) -> list[str]:
+        undefined = self._recorder.undefined
+        return [each for each in undefined if each not in self._requested]
 
     def _fetch(self, topic: str, type_name: str) -> None:
         from navette.cli.peer_definitions import fetch_definition
@@ -273,7 +278,7 @@ class _Session:
                 return
 
     def on_key(self, key: str) -> None:
-        """From the keyboard's thread."""
+        """Handle a key; called from the keyboard thread."""
         act = {" ": self._toggle, "s": self._snapshot, "q": self._end}.get(key)
         if act is not None:
             loop = self._node.context.loop
@@ -293,7 +298,7 @@ class _Session:
         except FileFormatError as error:
             note(str(error))
         else:
-            note(f"snapshot: {path or 'nothing was said'}")
+            note(f"snapshot: {path or 'no messages'}")
 
     def _end(self) -> None:
         self._is_over = True

@@ -1,4 +1,4 @@
-"""What the terminal shows of a recording; all of it on stderr."""
+"""Progress of a recording on stderr."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,7 +18,7 @@ _REFRESH_HZ = 4
 
 
 class RecordScreen:
-    """A line while it records, and one for what came of it."""
+    """A live line of progress, and a summary."""
 
     def __init__(self, recorder: "RecorderNode") -> None:
         self._recorder = recorder
@@ -27,7 +27,7 @@ class RecordScreen:
 
     @contextmanager
     def watching(self, *, keys: bool) -> Iterator[None]:
-        """Show how it goes until the block ends."""
+        """Show the progress until the block ends."""
         hint = "space pauses, q ends" if keys else "Ctrl-C ends"
         self._console.print(
             Text.assemble(
@@ -49,10 +49,10 @@ class RecordScreen:
             yield
 
     def report(self) -> None:
-        """The end of it."""
+        """Print the summary."""
         recorder = self._recorder
         if recorder.error is not None:
-            text = f"{recorder.error}; what was recorded until then is sound"
+            text = f"{recorder.error}; messages recorded before are valid"
             self._console.print(Text(text, style="bold red"), soft_wrap=True)
         self._console.print(
             Text(f"{recorder.path}: ") + Text(self._figures()), soft_wrap=True

@@ -1,4 +1,4 @@
-"""``navette bag replay``: recorded inputs through nodes, as fast as they can."""
+"""``navette bag replay``: feed recorded inputs to nodes, as fast as possible."""
 
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -18,21 +18,19 @@ if TYPE_CHECKING:
 
 FAILED = 1
 
-File = Annotated[
-    Path, Argument(metavar="FILE", help="The recording that feeds the nodes.")
-]
+File = Annotated[Path, Argument(metavar="FILE", help="Recording of the inputs.")]
 Nodes = Annotated[
     list[str],
     Option(
         "--node",
         metavar="NAME",
         help="A stage (costmap, map_memory, planner, control, …), MODULE:Class or"
-        " FILE.py:Class; repeat for several.",
+        " FILE.py:Class. Repeat for several.",
     ),
 ]
 Parameters = Annotated[
     list[str] | None,
-    Option("-p", metavar="[NODE:]NAME:=VALUE", help="A parameter."),
+    Option("-p", metavar="[NODE:]NAME:=VALUE", help="Set a parameter."),
 ]
 ParamsFiles = Annotated[
     list[Path] | None,
@@ -40,49 +38,49 @@ ParamsFiles = Annotated[
 ]
 World = Annotated[
     str | None,
-    Option(help="The world it was recorded in, for its robot's parameters."),
+    Option(help="World of the recording, for the parameters of its robot."),
 ]
-Robot = Annotated[
-    str | None, Option(help="The robot whose parameters the stages take.")
-]
+Robot = Annotated[str | None, Option(help="Robot whose parameters the stages use.")]
 Record = Annotated[
     Path | None,
-    Option(metavar="OUT.mcap", help="Record what the nodes say."),
+    Option(metavar="OUT.mcap", help="Record the output of the nodes."),
 ]
 Golden = Annotated[
     Path | None,
     Option(
         "--compare",
         metavar="GOLDEN",
-        help="Compare what the nodes say with this recording; exit code 1 if it"
-        " differs. FILE itself will do.",
+        help="Compare the output of the nodes with this recording, which can be FILE;"
+        " exit code 1 if it differs.",
     ),
 ]
 Tolerance = Annotated[
     list[str] | None,
     Option(
         metavar="[TOPIC[.FIELD]=]VALUE[:SHARE%]",
-        help="How far numbers may be apart, and how many of an array's elements"
-        " further than that; repeat, the last that matches counts.",
+        help="Allowed difference of numbers, and share of array elements that may"
+        " exceed it. Repeat for several; the last match wins.",
     ),
 ]
 TimeTolerance = Annotated[
     float,
-    Option(metavar="S", help="How far stamps may be apart.", min=0.0),
+    Option(metavar="S", help="Allowed difference of stamps.", min=0),
 ]
 Inputs = Annotated[
     list[str] | None,
-    Option("--input", metavar="TOPIC", help="Feed this topic in any case."),
+    Option(
+        "--input", metavar="TOPIC", help="Feed this topic even if a node publishes it."
+    ),
 ]
 Start = Annotated[
     float,
-    Option("-s", "--start-offset", metavar="S", help="Seconds to leave out."),
+    Option("-s", "--start-offset", metavar="S", help="Skip the first S seconds."),
 ]
 Length = Annotated[
     float | None,
-    Option("-u", "--duration", metavar="S", help="Seconds to replay."),
+    Option("-u", "--duration", metavar="S", help="Replay S seconds."),
 ]
-Json = Annotated[bool, Option("--json", help="Print one JSON object on stdout.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 
 def replay(
@@ -103,8 +101,8 @@ def replay(
 ) -> None:
     """Feed recorded inputs to nodes in lock-step, faster than real time.
 
-    What the nodes say themselves is not taken from the recording. Two replays write
-    the same bytes.
+    Topics that the nodes publish are not read from the recording. The replay is
+    deterministic: repeated replays write identical files.
     """
     from navette.bags import open_bag
     from navette.bags.compare import Tolerances, compare
@@ -144,7 +142,7 @@ def replay(
                 tolerances=tolerances,
                 time_tolerance_ns=round(time_tolerance * 1e9),
                 start_ns=replayed.begin_ns,
-                # Its own recording was ended amid all that happened at the last stamp.
+                # The source may lack later messages with the last stamp.
                 end_ns=replayed.end_ns - golden.samefile(file),
             )
     if as_json:
@@ -155,7 +153,7 @@ def replay(
 
 
 def _maker(name: str) -> "MakeNode":
-    """A stage by its name, or a class by where it is."""
+    """Return the constructor of a stage, or of a class given by its location."""
     if ":" not in name:
         from navette.navigation.stack.stack import node_class
 
@@ -193,4 +191,4 @@ def _check_record(record: Path | None, *read: Path | None) -> None:
     if any(
         path is not None and path.exists() and record.samefile(path) for path in read
     ):
-        raise InvalidValueError(f"--record {record}: would replace what is read")
+        raise InvalidValueError(f"--record {record} would overwrite an input")

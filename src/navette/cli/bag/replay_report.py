@@ -1,4 +1,4 @@
-"""What a person, or a program, reads of a replay."""
+"""Format the result of a replay as text and JSON."""
 
 from pathlib import Path
 from typing import Any
@@ -12,10 +12,10 @@ from navette.navigation.stack.replay import ReplaySummary
 def report(
     summary: ReplaySummary, comparison: Comparison | None, record: Path | None
 ) -> None:
-    """The replay on standard error, what differs on standard output."""
+    """Print the summary on standard error and the differences on standard output."""
     factor = summary.duration_s / summary.wall_time_s if summary.wall_time_s else 0.0
     note(
-        f"fed {summary.fed} messages of {', '.join(summary.inputs)}: "
+        f"fed {summary.fed} messages on {', '.join(summary.inputs)}: "
         f"{summary.duration_s:.1f} s in {summary.wall_time_s:.1f} s (×{factor:.0f})"
     )
     if record is not None:
@@ -35,7 +35,7 @@ def _comparison_lines(comparison: Comparison, begin_ns: int) -> list[str]:
     for topic in comparison.topics:
         lines += _topic_lines(topic, begin_ns)
     if comparison.unexpected:
-        lines.append(f"not compared, new: {', '.join(comparison.unexpected)}")
+        lines.append(f"new topics, not compared: {', '.join(comparison.unexpected)}")
     return lines
 
 
@@ -63,7 +63,7 @@ def _topic_lines(topic: TopicComparison, begin_ns: int) -> list[str]:
 def as_document(
     summary: ReplaySummary, comparison: Comparison | None, record: Path | None
 ) -> dict[str, Any]:
-    """The same for a program."""
+    """Return the result for JSON."""
     document: dict[str, Any] = {
         "inputs": list(summary.inputs),
         "outputs": list(summary.outputs),

@@ -1,4 +1,4 @@
-"""What is wrong with a recording, for people and programs."""
+"""Format the findings of ``navette bag check`` as text and JSON."""
 
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow"}
 
 
 def size_of(path: Path) -> int | None:
-    """Bytes of a file or of a folder's files."""
+    """Return the size in bytes of a file or of the files in a folder."""
     if path.is_file():
         return path.stat().st_size
     if path.is_dir():
@@ -22,7 +22,7 @@ def size_of(path: Path) -> int | None:
 
 
 def show_report(report: CheckReport) -> None:
-    """A line for each finding, and what comes of them."""
+    """Print a line for each finding, and the verdict."""
     console = open_console()
     for finding in report.findings:
         severity = f"{finding.severity.value:<8}"
@@ -34,14 +34,14 @@ def show_report(report: CheckReport) -> None:
     elif report.messages:
         hint = f"navette bag recover {report.path} -o …"
         verdict = ("damaged", "bold red")
-        rest = f": {count} can be read; {hint} saves them"
+        rest = f": {count} are readable; {hint} saves them"
     else:
-        verdict, rest = ("damaged", "bold red"), ": nothing can be read"
+        verdict, rest = ("damaged", "bold red"), ": nothing is readable"
     console.print(Text.assemble(f"{report.path}: ", verdict, rest))
 
 
 def to_json(report: CheckReport) -> dict[str, Any]:
-    """The same for programs."""
+    """Return the findings for JSON."""
     return {
         "path": str(report.path),
         "sound": report.is_sound,

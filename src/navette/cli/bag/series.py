@@ -1,4 +1,4 @@
-"""Numbers out of a recording, as ``navette bag plot`` is asked for them."""
+"""Read the series of numbers that ``navette bag plot`` draws."""
 
 import math
 import re
@@ -16,15 +16,15 @@ from navette.msgs.field_path import FieldPath, parse_field_path
 
 _STAMPS = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 _QUATERNION = "geometry_msgs/msg/Quaternion"
-_NO_NUMBERS = ("string", "wstring", "byte")
-_FORM = "wanted TOPIC.FIELD, or TOPIC.FIELD:FIELD for one over the other"
-# A colon that is no slice's.
+_NOT_NUMBERS = ("string", "wstring", "byte")
+_FORM = "is not TOPIC.FIELD, or TOPIC.FIELD:FIELD for one over the other"
+# A colon outside of brackets.
 _PAIR = re.compile(r":(?![^\[]*\])")
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What one argument asks for: a field over time, or over another field."""
+    """A field to plot over time, or over another field."""
 
     text: str
     topic: str
@@ -34,18 +34,18 @@ class Wanted:
 
     @classmethod
     def read(cls, text: str) -> "Wanted":
-        """From ``/odom.pose.pose.position.x``, or ``….x:y`` for y over x.
+        """Parse ``/odom.pose.pose.position.x``, or ``….x:y`` for y over x.
 
-        Behind the colon stands a field beside the first one, or a path with dots from
-        the message on.
+        After the colon follows a field of the same message as the first one, or a path
+        with dots from the top.
 
         Raises:
-            InvalidValueError: it has another form.
+            InvalidValueError: malformed text.
         """
         topic, dot, rest = text.partition(".")
         first, *more = _PAIR.split(rest)
         if not topic or not dot or not first or len(more) > 1 or "" in more:
-            raise InvalidValueError(f"{text[:100]!r}: {_FORM}")
+            raise InvalidValueError(f"{text[:100]!r} {_FORM}")
         topic = topic if topic.startswith("/") else f"/{topic}"
         if not more:
             return cls(text, topic, first)
@@ -57,28 +57,27 @@ class Wanted:
 
 @dataclass
 class Series:
-    """A line of a plot; ``x`` is time in seconds since the recording's start, or as
-    asked for."""
+    """A line of a plot; ``x`` is the time in seconds since the start, or a field."""
 
     wanted: Wanted
     x: "array[float]" = field(default_factory=lambda: array("d"))
     y: "array[float]" = field(default_factory=lambda: array("d"))
     note: str = ""
-    """what the numbers are, where the path does not say"""
+    """Quantity and unit of converted values."""
 
 
 def read_series(
     reader: BagReader, wanted: Sequence[Wanted], on_damage: OnDamage | None = None
 ) -> list[Series]:
-    """The numbers, one series for each argument, in the order of the stamps.
+    """Read one series for each argument, in order of the stamps.
 
-    Stamps and durations are given in seconds, a quaternion as its yaw in radians that
-    does not jump at π. Where a sequence is too short in a message there is a gap (NaN).
+    Stamps and durations are in seconds; a quaternion becomes its unwrapped yaw in
+    radians. If a sequence of a message is too short, the value is NaN.
 
     Raises:
-        UnknownNameError: no such topic; lists those there are.
-        MessageError: no such field, or it is no number.
-        InvalidValueError: there is not one message.
+        UnknownNameError: unknown topic; the message lists the known ones.
+        MessageError: unknown field, or not a number.
+        InvalidValueError: no messages.
     """
     known = sorted({topic.name for topic in reader.topics})
     for name in (each.topic for each in wanted):
@@ -99,7 +98,7 @@ def read_series(
 
 
 class _Picker:
-    """Adds what a topic's messages hold to the series that ask for it."""
+    """Append values of a topic's messages to the series."""
 
     def __init__(self, topic: BagTopic, series: Sequence[Series]) -> None:
         self._decode = Decoder(topic)
@@ -124,7 +123,7 @@ class _Picker:
 
 
 class _Number:
-    """A field as a number."""
+    """Convert a field to a number."""
 
     def __init__(self, text: str, type_name: str) -> None:
         self._path: FieldPath = parse_field_path(text, type_name)
@@ -133,11 +132,15 @@ class _Number:
         self.note = {_QUATERNION: "yaw, rad"}.get(kind.base, "")
         self._yaw = 0.0
         if not kind.is_scalar:
-            raise MessageError(f"field {text!r}: {kind} is many; take one, as in [0]")
+            raise MessageError(
+                f"field {text!r}: {kind} is an array; add an index, as in [0]"
+            )
         if kind.is_message and kind.base not in (*_STAMPS, _QUATERNION):
-            raise MessageError(f"field {text!r}: {kind} is no number; take one of its")
-        if kind.is_string or kind.base in _NO_NUMBERS:
-            raise MessageError(f"field {text!r}: {kind} is no number")
+            raise MessageError(
+                f"field {text!r}: {kind} is not a number; select one of its fields"
+            )
+        if kind.is_string or kind.base in _NOT_NUMBERS:
+            raise MessageError(f"field {text!r}: {kind} is not a number")
 
     def of(self, message: Any) -> float:
         try:

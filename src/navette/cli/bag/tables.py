@@ -1,4 +1,4 @@
-"""Tables whose columns are as wide as they must be: names are never folded."""
+"""Rich tables whose columns are never wrapped."""
 
 from rich.console import Console
 from rich.table import Table
@@ -7,12 +7,12 @@ _WIDTH = 1000
 
 
 def open_console() -> Console:
-    """Prints lines as they are; a terminal too narrow wraps them."""
+    """Return a console that does not break lines."""
     return Console(highlight=False, soft_wrap=True, width=_WIDTH)
 
 
 def new_table(*names: str) -> Table:
-    """A table without lines; names that begin with ``>`` are of right columns."""
+    """Return a table without borders; a leading ``>`` aligns a column to the right."""
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for name in names:
         table.add_column(
@@ -25,7 +25,7 @@ def new_table(*names: str) -> Table:
 
 
 def show_table(console: Console, table: Table) -> None:
-    """Print it without blanks at the ends of lines."""
+    """Print the table without trailing spaces."""
     with console.capture() as capture:
         console.print(table)
     for line in capture.get().splitlines():

@@ -1,4 +1,4 @@
-"""How figures of recordings are said to people."""
+"""Format sizes, times, rates and counts of recordings."""
 
 from datetime import UTC, datetime
 
@@ -6,11 +6,11 @@ from navette.cli.output import is_terminal
 
 _UNITS = ("B", "kB", "MB", "GB", "TB")
 _EPOCH_FROM_S = 10**8
-"""Stamps below are a robot's own time since its start, not a date."""
+"""Smaller stamps are seconds since the start of a robot, not a date."""
 
 
 def size_text(size: int) -> str:
-    """``3.7 MB``; powers of 1000, as disks are sold."""
+    """Return ``3.7 MB``, in powers of 1000."""
     value, unit = float(size), 0
     while value >= 999.95 and unit < len(_UNITS) - 1:
         value, unit = value / 1000, unit + 1
@@ -18,7 +18,7 @@ def size_text(size: int) -> str:
 
 
 def duration_text(seconds: float) -> str:
-    """``12:20 (740.55 s)``; short ones in seconds alone."""
+    """Return ``12:20 (740.55 s)``; below a minute only seconds."""
     plain = f"{seconds:.2f} s"
     if seconds < 60:
         return plain
@@ -29,7 +29,7 @@ def duration_text(seconds: float) -> str:
 
 
 def stamp_text(stamp_ns: int) -> str:
-    """A date with the seconds since 1970, or the seconds of a robot's own time."""
+    """Return a date with the seconds since 1970, or only seconds for a robot's time."""
     milliseconds = round(stamp_ns / 1e6)
     seconds = milliseconds / 1e3
     if abs(seconds) < _EPOCH_FROM_S:
@@ -43,7 +43,7 @@ def stamp_text(stamp_ns: int) -> str:
 
 
 def gap_text(seconds: float | None) -> str:
-    """A time between two messages."""
+    """Return the time between two messages."""
     if seconds is None:
         return ""
     if seconds < 1:
@@ -52,7 +52,7 @@ def gap_text(seconds: float | None) -> str:
 
 
 def rate_text(rate_hz: float | None) -> str:
-    """``10.0 Hz``; very slow ones by their period."""
+    """Return ``10.0 Hz``; slow rates as a period."""
     if rate_hz is None:
         return ""
     if rate_hz < 0.1:
@@ -61,7 +61,7 @@ def rate_text(rate_hz: float | None) -> str:
 
 
 def count_text(count: int, *, grouped: bool | None = None) -> str:
-    """``12 765``: digits in groups of three where a person reads it."""
+    """Return ``12 765``, in groups of three digits on a terminal."""
     if grouped is None:
         grouped = is_terminal()
     return f"{count:,}".replace(",", "\u202f") if grouped else str(count)

@@ -1,4 +1,4 @@
-"""``navette doctor``: what is wrong, and what to do about it."""
+"""``navette doctor``: find problems and suggest what to do."""
 
 from navette.cli.doctor.command import doctor
 

@@ -1,12 +1,11 @@
-"""What drives the robot: which stage makes what of what, and what is missed without."""
+"""The chain of stages that drives the robot, and the effect of a missing stage."""
 
 from collections.abc import Iterable
 
 from navette.cli.doctor.snapshot import Snapshot
 from navette.topics import CHAIN, LIDAR, ODOMETRY, Link
 
-_STANDS_MPS = 0.03
-
+_STOPPED_MPS = 0.03
 
 #: Topics without which the robot does not drive.
 NEEDED = frozenset(
@@ -15,8 +14,8 @@ NEEDED = frozenset(
 
 
 def missing_links(seen: Snapshot) -> list[Link]:
-    """Stages that are not there, between others that are."""
-    unreached = {topic for topics in seen.unreached_topics.values() for topic in topics}
+    """Return missing stages whose input is published and whose output is subscribed."""
+    unreached = _unreached_topics(seen)
     return [
         link
         for link in CHAIN
@@ -28,23 +27,27 @@ def missing_links(seen: Snapshot) -> list[Link]:
 
 
 def explained(seen: Snapshot) -> set[str]:
-    """Topics that nobody publishes for a reason that is told already."""
-    unreached = {topic for topics in seen.unreached_topics.values() for topic in topics}
-    return unreached | {link.publishes.name for link in missing_links(seen)}
+    """Return topics whose missing publisher is reported already."""
+    missing = {link.publishes.name for link in missing_links(seen)}
+    return missing | _unreached_topics(seen)
+
+
+def _unreached_topics(seen: Snapshot) -> set[str]:
+    return {topic for topics in seen.unreached_topics.values() for topic in topics}
 
 
 def consequence(seen: Snapshot, topics: Iterable[str]) -> str:
-    """What it means for the robot that these are not published; empty for nothing."""
-    return and_the_robot(seen) if NEEDED.intersection(topics) else ""
+    """Return what missing topics mean for the robot, as the end of a sentence."""
+    return robot_clause(seen) if NEEDED.intersection(topics) else ""
 
 
-def and_the_robot(seen: Snapshot) -> str:
-    """The end of a sentence: what the robot does; empty where nobody says."""
-    return "" if seen.speed_mps is None else f"; {robot(seen.speed_mps)}"
+def robot_clause(seen: Snapshot) -> str:
+    """Return the end of a sentence on the robot's motion; empty if it is unknown."""
+    return "" if seen.speed_mps is None else f"; {motion(seen.speed_mps)}"
 
 
-def robot(speed_mps: float) -> str:
-    """What the robot does, by its odometry."""
-    if speed_mps < _STANDS_MPS:
-        return "the robot stands"
+def motion(speed_mps: float) -> str:
+    """Describe the robot's motion, from its odometry."""
+    if speed_mps < _STOPPED_MPS:
+        return "the robot is stopped"
     return f"the robot drives at {speed_mps:.1f} m/s"

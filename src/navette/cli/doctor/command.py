@@ -1,4 +1,4 @@
-"""The command: look everywhere, print what was found."""
+"""Run all checks and print the report."""
 
 import logging
 import os
@@ -19,19 +19,17 @@ if TYPE_CHECKING:
 
 def doctor(
     quiet: Annotated[
-        bool, Option("--quiet", "-q", help="Only what wants a look.")
+        bool, Option("--quiet", "-q", help="Print only warnings and problems.")
     ] = False,
-    as_json: Annotated[
-        bool, Option("--json", help="One JSON value, for programs.")
-    ] = False,
+    as_json: Annotated[bool, Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Find problems of this system and suggest what to do.
 
-    ✓ well, · to know, ! to look at, ✗ a problem. Exit code 1 if there is a problem.
+    Marks: ✓ good, · note, ! warning, ✗ problem. Exit code 1 if there is a problem.
     """
     from navette.cli.doctor import report
 
-    # Leaving the network takes a while where somebody on it is frozen: report first.
+    # Report first: disconnecting takes long if a peer is frozen.
     with ExitStack() as joined:
         findings = list(_findings(joined))
         if as_json:
@@ -45,16 +43,16 @@ def doctor(
 
 
 def _findings(joined: ExitStack) -> Iterator[Finding]:
-    """``joined`` holds what is to be left in the end."""
+    """Run the checks; ``joined`` closes the connection after the report."""
     from navette.cli.doctor.look import look
     from navette.cli.doctor.machine import check_machine, stopped
     from navette.cli.doctor.network import NETWORK, check_network, look_at_network
-    from navette.cli.doctor.ports import processes
+    from navette.cli.doctor.processes import processes
     from navette.cli.doctor.up_checks import check_supervised, services_here
     from navette.errors import NetworkError
 
     joined.enter_context(_quiet())
-    # Before anything joins: a program that finds no router serves as one itself.
+    # Before connecting: without a router, this process becomes the router.
     network = look_at_network()
     stops = any(router.is_stopped for router in network.routers)
     if stops or network.is_out_of_reach:
@@ -71,7 +69,7 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
         if not isinstance(end.__context__, NetworkError):
             raise
         yield from check_network(network, None)
-        yield Finding(Level.PROBLEM, NETWORK, "joining", str(end.__context__))
+        yield Finding(Level.PROBLEM, NETWORK, "connection", str(end.__context__))
     else:
         yield from check_network(network, domain)
         yield from stopped(processes(), os.getpid())
@@ -82,7 +80,7 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """What Zenoh's side has to complain of is in the report, in other words."""
+    """Suppress the transport's warnings: the report contains them."""
     logger = logging.getLogger("navette.transports")
     before = logger.level
     logger.setLevel(logging.ERROR)

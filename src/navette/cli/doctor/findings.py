@@ -1,4 +1,4 @@
-"""What the doctor found: each finding says what is, and what to do about it."""
+"""Findings of the doctor."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -7,7 +7,7 @@ from typing import Any
 
 
 class Level(Enum):
-    """How bad it is; the value is the mark that a person sees."""
+    """Severity; the value is the printed mark."""
 
     GOOD = "✓"
     NOTE = "·"
@@ -20,11 +20,11 @@ class Finding:
     """One line of the report.
 
     Args:
-        section: heading that it stands under.
-        what: the thing looked at, in a word or two.
-        text: what is the matter with it.
-        advice: what a person can do; empty where nothing needs doing.
-        data: the same for a program, beside the words.
+        section: heading in the report.
+        what: the checked object, in one or two words.
+        text: state or problem of the object.
+        advice: what to do; empty if nothing.
+        data: details for programs.
     """
 
     level: Level
@@ -50,12 +50,12 @@ def count(findings: Iterable[Finding], level: Level) -> int:
 
 
 def plural(number: int, thing: str) -> str:
-    """``1 node``, ``2 nodes``, ``no nodes``."""
+    """Return ``1 node``, ``2 nodes`` or ``no nodes``."""
     return f"{number or 'no'} {thing}{'' if number == 1 else 's'}"
 
 
 def listed(names: Iterable[str], most: int = 6) -> str:
-    """Names with commas between; the rest of a long list as a number."""
+    """Join names with commas; the rest of a long list is a number."""
     every = sorted(names)
     if len(every) <= most:
         return ", ".join(every)

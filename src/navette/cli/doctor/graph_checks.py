@@ -1,4 +1,4 @@
-"""Checks of the graph: who is there, and does what is said reach those who listen?"""
+"""Check nodes, topics and services of the graph."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -16,7 +16,7 @@ NODES = "Nodes"
 TOPICS = "Topics"
 SERVICES = "Services"
 
-# What a person publishes, by a click or a command: silence is normal.
+# Published by hand: a missing publisher is normal.
 _BY_HAND = {
     GOAL_POINT.name,
     GOAL_POSE.name,
@@ -24,22 +24,22 @@ _BY_HAND = {
     "/clicked_point",
 }
 
-_MENDS = {
-    QoSPolicyKind.RELIABILITY: "let the subscription ask for best effort"
-    " (qos_profile_sensor_data), or the publisher offer reliable",
-    QoSPolicyKind.DURABILITY: "let the publisher be transient local (latched), or the"
+_REMEDIES = {
+    QoSPolicyKind.RELIABILITY: "make the subscription best effort"
+    " (qos_profile_sensor_data) or the publisher reliable",
+    QoSPolicyKind.DURABILITY: "make the publisher transient local (latched) or the"
     " subscription volatile",
     QoSPolicyKind.DEADLINE: "give the subscription a longer deadline",
-    QoSPolicyKind.LIVELINESS: "let the subscription ask for automatic liveliness",
+    QoSPolicyKind.LIVELINESS: "make the liveliness of the subscription automatic",
     QoSPolicyKind.LIVELINESS_LEASE_DURATION: "give the subscription a longer lease",
 }
 
 
 def check_nodes(seen: Snapshot) -> Iterator[Finding]:
-    """Are there nodes, under names of their own, and do they answer?"""
+    """Check that nodes have unique names and respond, and that no stage is missing."""
     for name in seen.unreached:
         topics = seen.unreached_topics.get(name, ())
-        how = "is known to the router, but cannot be reached"
+        how = "is listed by the router, but cannot be reached"
         yield _silent(name, how + consequence(seen, topics), topics)
     for link in missing_links(seen):
         yield Finding(
@@ -48,8 +48,8 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
             link.stage,
             f"is missing: no node turns {link.reads.name} into {link.publishes.name}"
             + consequence(seen, [link.publishes.name]),
-            "it has ended, is cut off, or was never started: navette ps;"
-            f" navette run navette {link.stage}",
+            "it ended, was never started, or is disconnected: check navette ps, or"
+            f" start it with navette run navette {link.stage}",
             {
                 "missing": link.stage,
                 "reads": link.reads.name,
@@ -61,8 +61,8 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
             Level.NOTE,
             NODES,
             "nodes",
-            "none is there",
-            "start something (navette demo), in a terminal with the same"
+            "none",
+            "start a program (navette demo) in a terminal with the same"
             " ROS_DOMAIN_ID and NAVETTE_ROUTER as this one",
         )
         return
@@ -73,20 +73,20 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
             NODES,
             name,
             f"{seen.nodes.count(name)} nodes have this name",
-            "a program was started twice (navette ps --all), or two need names of"
-            " their own: --ros-args -r __node:=NAME",
+            "a program was started twice (navette ps --all), or one needs another"
+            " name: --ros-args -r __node:=NAME",
         )
     silent = sorted(name for name, answer in seen.sim_time.items() if answer is None)
     for name in silent:
         makes = seen.published_by(name)
-        how = "is there, but does not answer"
+        how = "does not respond"
         yield _silent(name, how + consequence(seen, makes), makes)
     if not twice and not silent:
         several = len(seen.nodes) > 1
         text = plural(len(seen.nodes), "node")
-        text += ", each with a name of its own" if several else ""
+        text += " with unique names" if several else ""
         text += (
-            f"; {'all answer' if several else 'it answers'}" if seen.sim_time else ""
+            f"; {'all respond' if several else 'it responds'}" if seen.sim_time else ""
         )
         yield Finding(
             Level.GOOD, NODES, "nodes", text, data={"nodes": sorted(seen.nodes)}
@@ -94,27 +94,27 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
 
 
 def _silent(name: str, how: str, topics: Iterable[str]) -> Finding:
-    advice = "its program is stopped (Ctrl-Z), hangs in a callback, or is cut off"
+    advice = "its program is stopped (Ctrl-Z), hangs in a callback, or is disconnected"
     data = {"silent": name, "publishes": sorted(topics)}
     return Finding(Level.PROBLEM, NODES, name, how, advice, data)
 
 
 def check_topics(seen: Snapshot) -> Iterator[Finding]:
-    """Do publishers and subscriptions of each topic fit, and find each other?"""
-    troubles = [
+    """Check types and QoS of each topic, and report topics without a publisher."""
+    problems = [
         finding
         for topic in seen.topics
-        for finding in (*_type_trouble(seen, topic), *_qos_trouble(seen, topic))
+        for finding in (*_type_problems(seen, topic), *_qos_problems(seen, topic))
     ]
-    yield from troubles
+    yield from problems
     joined = [t for t in seen.topics if seen.publishers(t) and seen.subscriptions(t)]
-    if joined and not troubles:
-        text = f"{plural(len(joined), 'topic')} with both sides, all fit"
+    if joined and not problems:
+        text = f"{plural(len(joined), 'topic')} connected, types and QoS match"
         yield Finding(Level.GOOD, TOPICS, "topics", text, data={"topics": joined})
-    yield from _lonely(seen)
+    yield from _unconnected(seen)
 
 
-def _type_trouble(seen: Snapshot, topic: str) -> Iterator[Finding]:
+def _type_problems(seen: Snapshot, topic: str) -> Iterator[Finding]:
     ends = [*seen.publishers(topic), *seen.subscriptions(topic)]
     types: dict[str, set[str]] = {}
     for end in ends:
@@ -126,11 +126,10 @@ def _type_trouble(seen: Snapshot, topic: str) -> Iterator[Finding]:
             TOPICS,
             topic,
             f"has {len(types)} types: {who}",
-            "they do not hear each other; give one of them another topic, or the"
-            " same type",
+            "they cannot communicate: rename one topic, or use the same type",
         )
         return
-    # Of nodes in this process nothing is known; before Jazzy there was a word instead.
+    # Nodes of this process have no hash; before Jazzy it was a placeholder.
     hashed = [e for e in ends if e.type_hash.startswith("RIHS")]
     versions: dict[str, set[str]] = {}
     for end in hashed:
@@ -142,13 +141,13 @@ def _type_trouble(seen: Snapshot, topic: str) -> Iterator[Finding]:
             TOPICS,
             topic,
             f"{next(iter(types))} has {len(versions)} definitions: {who}",
-            "they do not hear each other: install the same version of its package"
+            "they cannot communicate: install the same version of its package"
             " on both sides",
             {"hashes": {each: sorted(names) for each, names in versions.items()}},
         )
 
 
-def _qos_trouble(seen: Snapshot, topic: str) -> Iterator[Finding]:
+def _qos_problems(seen: Snapshot, topic: str) -> Iterator[Finding]:
     for publisher, subscription in product(
         seen.publishers(topic), seen.subscriptions(topic)
     ):
@@ -160,10 +159,9 @@ def _qos_trouble(seen: Snapshot, topic: str) -> Iterator[Finding]:
                 Level.PROBLEM,
                 TOPICS,
                 topic,
-                f"{subscription.node_full_name} gets nothing from"
-                f" {publisher.node_full_name}: {_policies(short)} of less than it"
-                " asks for",
-                "; ".join(_MENDS[kind] for kind in short),
+                f"{subscription.node_full_name} receives nothing from"
+                f" {publisher.node_full_name}: incompatible {_policies(short)}",
+                "; ".join(_REMEDIES[kind] for kind in short),
             )
 
 
@@ -171,42 +169,43 @@ def _policies(kinds: tuple[QoSPolicyKind, ...]) -> str:
     return ", ".join(kind.name.lower().replace("_", " ") for kind in kinds)
 
 
-def _lonely(seen: Snapshot) -> Iterator[Finding]:
-    """Topics with one side only: a wrong name shows here."""
+def _unconnected(seen: Snapshot) -> Iterator[Finding]:
+    """Report topics with only one side, often caused by a mistyped name."""
     unread = [t for t in seen.topics if not seen.subscriptions(t)]
     known = _BY_HAND | explained(seen)
-    unsaid = [t for t in seen.topics if not seen.publishers(t) and t not in known]
-    for topic in unsaid:
+    unpublished = [t for t in seen.topics if not seen.publishers(t) and t not in known]
+    for topic in unpublished:
         wanted = seen.subscriptions(topic)[0]
-        yield _unsaid(seen, wanted, [t for t in unread if _is_of(seen, t, wanted)])
+        instead = [t for t in unread if _has_type(seen, t, wanted.type_name)]
+        yield _unpublished(seen, wanted, instead)
     if unread:
         yield Finding(
             Level.NOTE,
             TOPICS,
-            "nobody reads",
+            "unread",
             listed(unread),
             data={"topics": unread},
         )
 
 
-def _is_of(seen: Snapshot, topic: str, wanted: Endpoint) -> bool:
-    return any(e.type_name == wanted.type_name for e in seen.publishers(topic))
+def _has_type(seen: Snapshot, topic: str, type_name: str) -> bool:
+    return any(e.type_name == type_name for e in seen.publishers(topic))
 
 
-def _unsaid(seen: Snapshot, wanted: Endpoint, instead: list[str]) -> Finding:
+def _unpublished(seen: Snapshot, wanted: Endpoint, instead: list[str]) -> Finding:
     topic = wanted.topic
     readers = {e.node_full_name for e in seen.subscriptions(topic)}
-    advice = "start what publishes it, or look for a mistyped name"
+    advice = "start its publisher, or check the spelling of the name"
     if instead:
         advice = (
-            f"nobody reads {listed(instead)}, of the same type: if that is meant,"
+            f"{listed(instead)} has the same type and no subscription; to use it:"
             f" --ros-args -r {topic}:={instead[0]}"
         )
     return Finding(
         Level.WARNING,
         TOPICS,
         topic,
-        f"nobody publishes it; {listed(readers)} "
+        f"has no publisher; {listed(readers)} "
         f"{'waits' if len(readers) == 1 else 'wait'} for it",
         advice,
         {"type": wanted.type_name, "published_instead": instead},
@@ -214,7 +213,7 @@ def _unsaid(seen: Snapshot, wanted: Endpoint, instead: list[str]) -> Finding:
 
 
 def check_services(seen: Snapshot) -> Iterator[Finding]:
-    """Is there a server for every client, and one only?"""
+    """Check that every client has a server with the same type."""
     every = [
         e for e in seen.services if not (is_own(e.topic) or is_of_every_node(e.topic))
     ]
@@ -236,7 +235,7 @@ def check_services(seen: Snapshot) -> Iterator[Finding]:
                 Level.WARNING,
                 SERVICES,
                 name,
-                f"nobody serves it; {listed({e.node_full_name for e in clients})}"
+                f"has no server; {listed({e.node_full_name for e in clients})}"
                 " may wait for it",
-                "start its server, or look for a mistyped name",
+                "start its server, or check the spelling of the name",
             )

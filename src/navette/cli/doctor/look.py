@@ -1,4 +1,4 @@
-"""Looking at what runs for a moment: the graph, its answers, heartbeats and clock."""
+"""Take a snapshot of the running system: graph, responses, status topics and clock."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -13,11 +13,11 @@ from navette.transports import Endpoint, EndpointKind
 if TYPE_CHECKING:
     from navette.runtime import Future, Node
 
-LOOK_S = 1.2  # over two periods of a stage's status; who lives has answered by then
+LOOK_S = 1.2  # more than two status periods of a stage
 
 _STATUS = "diagnostic_msgs/msg/DiagnosticStatus"
 _GET = "rcl_interfaces/srv/GetParameters"
-_SANE_AGE_S = 3600.0  # older than that, a stamp is of another clock
+_SANE_AGE_S = 3600.0  # older stamps come from another clock
 
 
 def look(
@@ -25,44 +25,44 @@ def look(
     known: Sequence[str],
     published: Mapping[str, Sequence[str]] | None = None,
 ) -> Snapshot:
-    """Ask and listen; about as long as the slowest node needs, 1.2 s at most.
+    """Request and subscribe until all nodes have responded, at most 1.2 s.
 
     Args:
-        known: full names of the nodes that the router knows.
-        published: of each → topics.
+        known: full names of the nodes that the router lists.
+        published: topics by node, as listed by the router.
     """
     nodes = node_names(here, hidden=True)
     topics = endpoints(here)
     services = service_endpoints(here)
-    listening = _Listening(here, topics)
-    asked = _ask_for_sim_time(here, services)
+    received = _Subscriptions(here, topics)
+    requests = _request_sim_time(here, services)
 
-    def is_all_said() -> bool:
-        answered = all(future.done() for future in asked.values())
-        return answered and listening.is_settled()
+    def is_complete() -> bool:
+        answered = all(future.done() for future in requests.values())
+        return answered and received.is_complete()
 
-    wait_for(here, is_all_said, LOOK_S if topics or asked else 0.0)
+    wait_for(here, is_complete, LOOK_S if topics or requests else 0.0)
     unreached = sorted(n for n in {*known} - {*nodes} if not is_hidden(n))
     return Snapshot(
         nodes=tuple(nodes),
         endpoints=tuple(topics),
         services=tuple(services),
-        sim_time={name: _is_simulated(future) for name, future in asked.items()},
+        sim_time={name: _is_simulated(future) for name, future in requests.items()},
         unreached=tuple(unreached),
         unreached_topics={
             name: tuple(sorted(set((published or {}).get(name, ()))))
             for name in unreached
         },
-        speed_mps=listening.speed_mps,
-        clock_ticks=listening.clock_ns is not None,
-        heartbeats=tuple(listening.heartbeats()),
+        speed_mps=received.speed_mps,
+        clock_ticks=received.clock_ns is not None,
+        heartbeats=tuple(received.heartbeats()),
     )
 
 
-def _ask_for_sim_time(
+def _request_sim_time(
     here: "Node", services: list[Endpoint]
 ) -> "dict[str, Future[Any]]":
-    """Every node that serves parameters is asked: that tells whether it lives, too."""
+    """Request use_sim_time from all nodes, which also shows whether they respond."""
     from navette.msgs import get_interface
 
     served = {
@@ -70,31 +70,31 @@ def _ask_for_sim_time(
         for end in services
         if end.type_name == _GET and end.kind is EndpointKind.SERVICE
     }
-    asked = {}
+    requests = {}
     for name in sorted(served):
         client = here.create_client(get_interface(_GET), f"{name}/get_parameters")
         request = client.srv_type.Request(names=["use_sim_time"])
-        asked[name] = client.call_async(request)
-    return asked
+        requests[name] = client.call_async(request)
+    return requests
 
 
 def _is_simulated(future: "Future[Any]") -> bool | None:
-    """What a node answered; None: nothing."""
+    """Return a node's use_sim_time; None without a response."""
     if not future.done() or future.exception() is not None:
         return None
     response = future.result()
     return response is not None and any(v.bool_value for v in response.values)
 
 
-class _Listening:
-    """Hears /clock, the odometry and every status topic."""
+class _Subscriptions:
+    """Subscriptions to /clock, the odometry and all status topics."""
 
     def __init__(self, here: "Node", topics: list[Endpoint]) -> None:
         self._here = here
-        #: The newest time that /clock told.
+        #: Newest time of /clock.
         self.clock_ns: int | None = None
         self._has_clock = False
-        #: How fast the robot drives; None: not heard.
+        #: Speed of the robot; None before the first odometry.
         self.speed_mps: float | None = None
         self._has_odometry = False
         self._last: dict[str, tuple[Any, int]] = {}
@@ -103,14 +103,14 @@ class _Listening:
             if end.kind is not EndpointKind.PUBLISHER:
                 continue
             if end.topic == CLOCK.name and not self._has_clock:
-                self._hear_clock()
+                self._subscribe_clock()
             elif _is_odometry(end) and not self._has_odometry:
-                self._hear_odometry(end)
+                self._subscribe_odometry(end)
             elif _is_heartbeat(end) and end.topic not in self._count:
-                self._hear_status(end)
+                self._subscribe_status(end)
 
-    def is_settled(self) -> bool:
-        """Whether longer listening would tell nothing new."""
+    def is_complete(self) -> bool:
+        """Whether a message has arrived on every topic."""
         waits_for_clock = self._has_clock and self.clock_ns is None
         waits_for_speed = self._has_odometry and self.speed_mps is None
         waits = waits_for_clock or waits_for_speed
@@ -128,50 +128,52 @@ class _Listening:
             beats.append(Heartbeat(topic, status.message, level, age_s))
         return beats
 
-    def _hear_clock(self) -> None:
+    def _subscribe_clock(self) -> None:
         from navette.msgs.rosgraph_msgs.msg import Clock
         from navette.runtime import QoSProfile, ReliabilityPolicy
         from navette.runtime.time import stamp_to_ns
 
-        def hear(message: Any) -> None:
+        def on_clock(message: Any) -> None:
             self.clock_ns = stamp_to_ns(message.clock)
 
         self._has_clock = True
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._here.create_subscription(Clock, CLOCK.name, hear, qos)
+        self._here.create_subscription(Clock, CLOCK.name, on_clock, qos)
 
-    def _hear_odometry(self, end: Endpoint) -> None:
+    def _subscribe_odometry(self, end: Endpoint) -> None:
         from navette.msgs.nav_msgs.msg import Odometry
         from navette.runtime import qos_profile_sensor_data
 
-        def hear(message: Any) -> None:
+        def on_odometry(message: Any) -> None:
             velocity = message.twist.twist.linear
             self.speed_mps = math.hypot(velocity.x, velocity.y)
 
         self._has_odometry = True
         self._here.create_subscription(
-            Odometry, end.topic, hear, qos_profile_sensor_data
+            Odometry, end.topic, on_odometry, qos_profile_sensor_data
         )
 
-    def _hear_status(self, end: Endpoint) -> None:
+    def _subscribe_status(self, end: Endpoint) -> None:
         from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
         from navette.runtime import QoSProfile
 
-        def hear(message: Any, info: Any) -> None:
+        def on_status(message: Any, info: Any) -> None:
             self._last[end.topic] = message, info["source_timestamp"]
             self._count[end.topic] += 1
 
         self._count[end.topic] = 0
         qos = QoSProfile.from_endpoint_qos(end.qos)
-        self._here.create_subscription(DiagnosticStatus, end.topic, hear, qos)
+        self._here.create_subscription(DiagnosticStatus, end.topic, on_status, qos)
 
     def _is_alive(self, topic: str) -> bool:
         age_s = self._age_s(topic)
         return age_s is not None and age_s < LOOK_S
 
     def _age_s(self, topic: str) -> float | None:
-        """By the clock that the sender's stamp is of; unknown: one beat tells nothing
-        (it may have been kept for late joiners), two tell that it lives."""
+        """Return the age by the clock of the stamp, which is system or simulated time.
+
+        With another clock, a single status may be an old latched one; two are new.
+        """
         if topic not in self._last:
             return None
         stamp_ns = self._last[topic][1]

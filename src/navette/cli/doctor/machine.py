@@ -1,4 +1,4 @@
-"""Checks of this machine: versions, optional parts, ports, what was left running."""
+"""Check this machine: versions, optional software, ports, orphaned programs."""
 
 import ctypes
 import importlib.metadata
@@ -12,27 +12,21 @@ from pathlib import Path
 from navette import __version__
 from navette.cli.doctor.findings import Finding, Level
 from navette.cli.doctor.graph_checks import NODES
-from navette.cli.doctor.ports import (
-    PortProbe,
-    Process,
-    has_nodes,
-    listener,
-    probe,
-    processes,
-)
+from navette.cli.doctor.processes import Process, has_nodes, listener, processes
+from navette.cli.doctor.router_diagnosis import PortProbe, probe
 
 MACHINE = "This machine"
 OLDEST_PYTHON = (3, 11)
 VIEW_PORT = 8765
 
 _GL_LIBRARIES = {"EGL": "libEGL.so.1", "OSMesa": "libOSMesa.so.8"}
-# Who takes over the children of what has ended.
+# Processes that adopt orphans.
 _INITS = {"systemd", "init", "launchd", "tini", "dumb-init", "docker-init"}
 _BROWSERS = ("xdg-open", "open", "firefox", "chromium", "google-chrome")
 
 
 def check_machine() -> Iterator[Finding]:
-    """Everything that does not need the network."""
+    """Run the checks that do not need the network."""
     yield _versions()
     yield from _optional_parts()
     yield check_packages()
@@ -59,7 +53,7 @@ def _versions() -> Finding:
         advice = f"Navette needs Python {oldest} or newer"
         return Finding(Level.PROBLEM, MACHINE, "versions", text, advice, data)
     if zenoh is None:
-        advice = "pip install eclipse-zenoh, to meet programs of other processes"
+        advice = "pip install eclipse-zenoh, to communicate between processes"
         return Finding(Level.PROBLEM, MACHINE, "versions", text, advice, data)
     return Finding(Level.GOOD, MACHINE, "versions", text, data=data)
 
@@ -72,16 +66,16 @@ def _version_of(distribution: str) -> str | None:
 
 
 def _optional_parts() -> Iterator[Finding]:
-    """What Navette uses where it is there; nothing of it is needed."""
+    """Report software that is used if present; none of it is required."""
     from navette.ros2.names import installed_rclpy
 
     browser = next((name for name in _BROWSERS if shutil.which(name)), None)
     library = next((n for n, file in _GL_LIBRARIES.items() if _loads(file)), None)
     ros = installed_rclpy()
     for what, found, with_it, without in (
-        ("browser", browser, f"{browser}", "none; the live view opens from elsewhere"),
-        ("OpenGL", library, f"{library}", "none; cameras are ray cast, without it"),
-        ("ROS 2", ros, f"{ros}", "none; its programs run on Navette"),
+        ("browser", browser, f"{browser}", "none; open the live view elsewhere"),
+        ("OpenGL", library, f"{library}", "none; cameras use ray casting instead"),
+        ("ROS 2", ros, f"{ros}", "none; ROS 2 programs run on Navette"),
     ):
         level = Level.GOOD if found else Level.NOTE
         text = with_it if found else without
@@ -117,7 +111,7 @@ def _loads(library: str) -> bool:
 
 
 def _live_view() -> Finding:
-    """Who is on the live view's port?"""
+    """Report the process on the live view's port."""
     what = f"port {VIEW_PORT}"
     if probe("127.0.0.1", VIEW_PORT) is not PortProbe.OPEN:
         return Finding(Level.NOTE, MACHINE, what, "free: no live view runs")
@@ -130,16 +124,16 @@ def _live_view() -> Finding:
         url = f"http://127.0.0.1:{VIEW_PORT}"
         text = f"live view at {url}, of {who.command} (process {who.pid})"
         return Finding(Level.GOOD, MACHINE, what, text, data=data)
-    advice = "give the live view another: navette demo --port 8766"
+    advice = "use another port for the live view: navette demo --port 8766"
     return Finding(Level.WARNING, MACHINE, what, text, advice, data)
 
 
 def left_running(every: list[Process], here: int) -> Iterator[Finding]:
-    """Navette programs whose parent is gone: nobody will end them.
+    """Report Navette programs that lost their parent process.
 
     Args:
         every: all processes.
-        here: the id of the process that asks.
+        here: id of this process.
     """
     by_id = {process.pid: process for process in every}
     for process in every:
@@ -147,25 +141,25 @@ def left_running(every: list[Process], here: int) -> Iterator[Finding]:
             continue
         parent = by_id.get(process.parent)
         of_init = parent is not None and parent.command.partition(" ")[0] in _INITS
-        # In a container, the first process may be anything, a shell as well.
+        # In a container, process 1 can be any program, also a shell.
         if of_init or (process.parent == 1 and process.session not in by_id):
             yield Finding(
                 Level.WARNING,
                 MACHINE,
                 f"process {process.pid}",
-                f"{process.command} runs without the terminal or program that"
-                " started it",
-                f"if nobody needs it: kill {process.pid}",
+                f"{process.command} still runs, but the terminal or program that"
+                " started it has ended",
+                f"if it is not needed: kill {process.pid}",
                 {"pid": process.pid, "command": process.command},
             )
 
 
 def stopped(every: list[Process], here: int) -> Iterator[Finding]:
-    """Programs with nodes that are stopped: to the others they look frozen.
+    """Report stopped programs with nodes: their nodes do not respond.
 
     Args:
         every: all processes.
-        here: the id of the process that asks.
+        here: id of this process.
     """
     for process in every:
         if process.pid == here or not process.is_stopped:
@@ -176,14 +170,14 @@ def stopped(every: list[Process], here: int) -> Iterator[Finding]:
                 NODES,
                 f"process {process.pid}",
                 f"{process.command} is stopped (Ctrl-Z, SIGSTOP): its nodes are frozen",
-                f"let it go on: fg in its terminal, or kill -CONT {process.pid}; or end"
+                f"continue it: fg in its terminal, or kill -CONT {process.pid}; or end"
                 f" it: kill -KILL {process.pid}",
                 {"pid": process.pid, "command": process.command},
             )
 
 
 def is_navette(process: Process) -> bool:
-    """Whether it is the command ``navette``, or Python with the module of that name."""
+    """Whether the process is the command ``navette`` or ``python -m navette``."""
     words = [word for word in process.words if word != "-u"][:3]
     names = [Path(word).name for word in words]
     is_python = bool(names) and names[0].startswith("python")

@@ -1,4 +1,4 @@
-"""Checks of the way to the others: transport, router, domain."""
+"""Check the network: transport, router, domain."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from navette.cli.doctor.findings import Finding, Level, plural
-from navette.cli.doctor.ports import PortProbe, Process, listener, probe
-from navette.cli.doctor.router_diagnosis import Refusal, refusal
+from navette.cli.doctor.processes import Process, listener
+from navette.cli.doctor.router_diagnosis import PortProbe, Refusal, probe, refusal
 from navette.transports import EndpointKind
 
 if TYPE_CHECKING:
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 NETWORK = "Network"
 
 _LOCAL = {"127.0.0.1", "localhost", "[::1]", "::1"}
-_PROBED = {"tcp", "tls", "ws"}  # what a TCP connection tells about
+_PROBED = {"tcp", "tls", "ws"}  # protocols over TCP
 
 
 @dataclass(frozen=True)
 class Router:
-    """Where the router is looked for.
+    """Endpoint of the router, and what was found there.
 
     Args:
-        endpoint: Zenoh's, as tcp/127.0.0.1:7447.
-        probe: what came of a connection; None: cannot be tried.
-        process: who that is, if it is here and can be seen.
-        refusal: why it does not let us in, where it does not.
+        endpoint: Zenoh endpoint, such as tcp/127.0.0.1:7447.
+        probe: result of a TCP connection; None for other protocols.
+        process: the process that listens there, if local and visible.
+        refusal: why it rejects the session; None if it does not.
     """
 
     endpoint: str
@@ -38,7 +38,7 @@ class Router:
 
     @property
     def is_stopped(self) -> bool:
-        """Whether its program has the port, but does not run."""
+        """Whether its process is stopped."""
         return self.process is not None and self.process.is_stopped
 
     @property
@@ -48,16 +48,15 @@ class Router:
 
 @dataclass(frozen=True)
 class Network:
-    """What there is before one joins.
+    """State of the network before connecting.
 
     Args:
-        transport: what NAVETTE_TRANSPORT says.
+        transport: value of NAVETTE_TRANSPORT.
         routers: one per endpoint.
-        nodes: full names by domain, of those that the router knows; None: no router
-            told.
-        published: by domain and full name of the node: topics.
-        session_file: of ZENOH_SESSION_CONFIG_URI.
-        middleware: RMW_IMPLEMENTATION, for ROS 2's programs.
+        nodes: full names by domain, as listed by the router; None without a router.
+        published: topics by domain and full name of the node.
+        session_file: value of ZENOH_SESSION_CONFIG_URI.
+        middleware: value of RMW_IMPLEMENTATION, for ROS 2 programs.
     """
 
     transport: str = ""
@@ -69,12 +68,12 @@ class Network:
 
     @property
     def is_alone(self) -> bool:
-        """Whether programs started here join nobody."""
+        """Whether programs started here do not use the network."""
         return self.transport == "inprocess"
 
     @property
     def is_out_of_reach(self) -> bool:
-        """Whether nobody can be met: the router is elsewhere, and does not answer."""
+        """Whether the router is on another machine and does not respond."""
         reached = any(
             router.is_here or router.probe in (None, PortProbe.OPEN)
             for router in self.routers
@@ -83,7 +82,7 @@ class Network:
 
 
 def look_at_network() -> Network:
-    """Try the router's endpoints and ask it who is there."""
+    """Probe the router's endpoints and request its list of nodes."""
     from navette.transports.zenoh import Settings
     from navette.transports.zenoh.config import router_endpoints
     from navette.transports.zenoh.discovery import known_to_router
@@ -107,7 +106,7 @@ def look_at_network() -> Network:
 def _by_domain(
     tokens: "Iterable[Token]",
 ) -> tuple[dict[int, list[str]], dict[int, dict[str, list[str]]]]:
-    """Names of nodes, and what each publishes."""
+    """Return node names by domain, and published topics by domain and node."""
     from navette.transports.zenoh.tokens import EndpointToken
 
     nodes: dict[int, list[str]] = {}
@@ -133,7 +132,7 @@ def _router(endpoint: str) -> Router:
 
 
 def _with_refusal(router: Router, security: Path | None) -> Router:
-    """Look why it does not let us in."""
+    """Add the reason of a rejected session."""
     host, port = _address(router.endpoint)
     if router.probe is not PortProbe.OPEN or port is None or router.is_stopped:
         return router
@@ -143,24 +142,24 @@ def _with_refusal(router: Router, security: Path | None) -> Router:
 
 
 def _address(endpoint: str) -> tuple[str, int | None]:
-    """Host and port of ``tcp/host:port?metadata#config``."""
+    """Return host and port of ``tcp/host:port?metadata#config``."""
     address = endpoint.partition("/")[2].partition("?")[0].partition("#")[0]
     host, _, port = address.rpartition(":")
     return host, int(port) if port.isdecimal() else None
 
 
 def check_network(network: Network, domain: int | None) -> Iterator[Finding]:
-    """Does this terminal reach the others?
+    """Check that programs started here reach the others.
 
     Args:
-        domain: this terminal's; None if nothing could be joined.
+        domain: domain of this process; None if it could not connect.
     """
     if network.is_alone:
         yield Finding(
             Level.PROBLEM,
             NETWORK,
             "transport",
-            "NAVETTE_TRANSPORT=inprocess: programs started here stay alone",
+            "NAVETTE_TRANSPORT=inprocess: programs started here are isolated",
             "unset NAVETTE_TRANSPORT",
         )
     if network.session_file:
@@ -175,8 +174,8 @@ def check_network(network: Network, domain: int | None) -> Iterator[Finding]:
             Level.WARNING,
             NETWORK,
             "ROS 2",
-            f"its programs started here speak {network.middleware} and do not meet"
-            " Navette's",
+            f"its programs started here use {network.middleware} and cannot"
+            " communicate with Navette's",
             "export RMW_IMPLEMENTATION=rmw_zenoh_cpp",
         )
 
@@ -190,7 +189,7 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
     }
     by = f", served by {who.command} (process {who.pid})" if who else ""
     if router.probe is None:
-        text = f"{router.endpoint}, which cannot be tried from here"
+        text = f"{router.endpoint}, whose protocol cannot be probed"
         return Finding(Level.NOTE, NETWORK, "router", text, data=data)
     if who is not None and who.is_stopped:
         return Finding(
@@ -198,8 +197,8 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
             NETWORK,
             "router",
             f"{router.endpoint} belongs to {who.command} (process {who.pid}), which is"
-            " stopped: nobody can join",
-            f"let it go on: fg in its terminal, or kill -CONT {who.pid}; or end it:"
+            " stopped: no program can connect",
+            f"continue it: fg in its terminal, or kill -CONT {who.pid}; or end it:"
             f" kill -KILL {who.pid}",
             data,
         )
@@ -208,34 +207,34 @@ def _router_finding(router: Router, *, speaks: bool) -> Finding:
             Level.GOOD, NETWORK, "router", f"{router.endpoint}{by}", data=data
         )
     if router.probe is PortProbe.OPEN:
-        why = router.refusal or Refusal("does not let us in", "")
-        text = f"{router.endpoint} answers{by}, but {why.text}"
+        why = router.refusal or Refusal("rejects the session", "")
+        text = f"{router.endpoint} is open{by}, but {why.text}"
         return Finding(Level.PROBLEM, NETWORK, "router", text, why.advice, data)
     if router.is_here:
-        text = f"{router.endpoint} is free: the first program that starts serves"
+        text = f"{router.endpoint} is free: the first program becomes the router"
         return Finding(Level.NOTE, NETWORK, "router", text, data=data)
     how, advice = _UNREACHED[router.probe]
     text = f"{router.endpoint} {how}"
     return Finding(Level.PROBLEM, NETWORK, "router", text, advice, data)
 
 
-_THERE = "start Navette there, with NAVETTE_ROUTER on that address"
+_THERE = "start Navette on that machine with NAVETTE_ROUTER set to this address"
 _UNREACHED = {
     PortProbe.REFUSED: (
-        "is refused: that machine is on, but no router runs there",
+        "refuses connections: the machine is on, but no router runs there",
         _THERE,
     ),
     PortProbe.TIMED_OUT: (
-        "does not answer",
-        f"is that machine on, and no firewall between? Then {_THERE}",
+        "does not respond",
+        f"check that the machine is on and that no firewall blocks it; then {_THERE}",
     ),
     PortProbe.UNREACHABLE: (
-        "cannot be reached: there is no way to that address",
-        "is this machine on the same network? ping it",
+        "cannot be reached: there is no route to that address",
+        "check with ping that this machine is on the same network",
     ),
     PortProbe.UNKNOWN_HOST: (
-        "cannot be reached: nobody knows that name",
-        "look for a mistyped name, or give the address in numbers",
+        "cannot be reached: the host name is unknown",
+        "check the spelling of the name, or use the IP address",
     ),
 }
 
@@ -243,7 +242,7 @@ _UNREACHED = {
 def _domain_findings(
     nodes: Mapping[int, Sequence[str]], domain: int
 ) -> Iterator[Finding]:
-    """Is it in another domain that the nodes are?"""
+    """Report nodes in other domains."""
     elsewhere = {d: names for d, names in nodes.items() if d != domain}
     others = ", ".join(
         f"{plural(len(names), 'node')} in {d}" for d, names in elsewhere.items()

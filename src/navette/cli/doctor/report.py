@@ -1,4 +1,4 @@
-"""The doctor's report, for people and for programs."""
+"""Format the report as text and as JSON."""
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
@@ -16,10 +16,10 @@ _COLOURS = {
 
 
 def report_lines(findings: Sequence[Finding], *, everything: bool) -> list[str]:
-    """Under headings: a mark, the thing, what is, and in the next line what to do.
+    """Format findings under headings; the advice follows on the next line.
 
     Args:
-        everything: also what is well; else only what wants a look.
+        everything: include good findings and notes, not only warnings and problems.
     """
     shown = [
         each
@@ -52,7 +52,7 @@ def _finding_lines(finding: Finding, width: int) -> Iterator[str]:
 
 
 def summary(findings: Sequence[Finding]) -> str:
-    """The end of the report in a line."""
+    """Return the last line of the report."""
     problems = count(findings, Level.PROBLEM)
     warnings = count(findings, Level.WARNING)
     if not problems and not warnings:
@@ -61,7 +61,7 @@ def summary(findings: Sequence[Finding]) -> str:
     if problems:
         parts.append(styled(plural(problems, "problem"), fg="red", bold=True))
     if warnings:
-        text = f"{plural(warnings, 'thing')} to look at"
+        text = plural(warnings, "warning")
         parts.append(styled(text, fg="yellow", bold=True))
     return ", ".join(parts)
 

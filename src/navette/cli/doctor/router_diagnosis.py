@@ -1,23 +1,49 @@
-"""Why a router that takes calls does not let us in, as far as its door tells."""
+"""Why a router cannot be reached, or rejects the connection."""
 
 import socket
 import ssl
+from enum import Enum
 from pathlib import Path
 from typing import NamedTuple
 
-from navette.cli.doctor.ports import Process, environment, has_zenoh
+from navette.cli.doctor.processes import Process, environment, has_zenoh
 
-_LOOK_S = 0.3
+_TLS_TIMEOUT_S = 0.3
 _OTHER_PORT = (
-    "choose another port, the same for all: export NAVETTE_ROUTER=tcp/127.0.0.1:7448"
+    "choose another port for all programs: export NAVETTE_ROUTER=tcp/127.0.0.1:7448"
 )
 
 
+class PortProbe(Enum):
+    """Result of a TCP connection attempt."""
+
+    OPEN = "open"
+    REFUSED = "refused"
+    TIMED_OUT = "timed out"
+    UNREACHABLE = "unreachable"
+    UNKNOWN_HOST = "unknown host"
+
+
 class Refusal(NamedTuple):
-    """What is the matter, and what to do about it."""
+    """Reason of a rejected connection, and what to do."""
 
     text: str
     advice: str
+
+
+def probe(host: str, port: int, timeout_s: float = 0.2) -> PortProbe:
+    """Try to connect."""
+    try:
+        with socket.create_connection((host, port), timeout_s):
+            return PortProbe.OPEN
+    except socket.gaierror:
+        return PortProbe.UNKNOWN_HOST
+    except TimeoutError:
+        return PortProbe.TIMED_OUT
+    except ConnectionRefusedError:
+        return PortProbe.REFUSED
+    except OSError:
+        return PortProbe.UNREACHABLE
 
 
 def refusal(
@@ -26,17 +52,18 @@ def refusal(
     security: Path | None,
     process: Process | None,
 ) -> Refusal:
-    """Look at the door of a router that does not speak with us.
+    """Find out why an open port rejects the Zenoh session.
 
     Args:
-        endpoint: Zenoh's, as tcp/127.0.0.1:7447.
-        security: folder of our credentials.
-        process: who listens there, where that is known.
+        endpoint: Zenoh endpoint, such as tcp/127.0.0.1:7447.
+        address: host and port of the endpoint.
+        security: folder of this program's credentials.
+        process: the process that listens there, if visible.
     """
     if process is not None and has_zenoh(process) is False:
-        return Refusal("is no Zenoh program", _OTHER_PORT)
+        return Refusal("is not a Zenoh program", _OTHER_PORT)
     found = _by_protocol(endpoint, address, security)
-    return Refusal(found.text + _their_folder(security, process), found.advice)
+    return Refusal(found.text + _other_folder(security, process), found.advice)
 
 
 def _by_protocol(
@@ -46,47 +73,47 @@ def _by_protocol(
     theirs = speaks_tls(*address)
     if theirs and not ours:
         return Refusal(
-            "wants TLS, and we come without",
+            "requires TLS, which this program does not use",
             "export NAVETTE_SECURITY=FOLDER (navette keys create), and let the"
             " endpoints of NAVETTE_ROUTER and NAVETTE_LISTEN begin with tls/",
         )
     if ours and not theirs:
         return Refusal(
-            "speaks no TLS, and we want it",
-            "start that program with NAVETTE_SECURITY and tls/ endpoints, too, or"
-            " none of both",
+            "does not use TLS, which this program requires",
+            "start that program with NAVETTE_SECURITY and tls/ endpoints as well, or"
+            " use neither in both",
         )
     if ours:
         return _by_certificate(address, security)
     if security is not None and (security / "login").is_file():
         return Refusal(
-            "does not take our name and password",
-            f"compare {security / 'login'} with the file users over there",
+            "rejects the user name and password",
+            f"compare {security / 'login'} with the file users of the router",
         )
     return Refusal(
-        "does not let us in: it wants a password, or speaks another protocol",
-        f"export NAVETTE_SECURITY=FOLDER with a login; or {_OTHER_PORT}",
+        "rejects the session: it requires a password or uses another protocol",
+        f"export NAVETTE_SECURITY=FOLDER with a file login; or {_OTHER_PORT}",
     )
 
 
 def _by_certificate(address: tuple[str, int], security: Path | None) -> Refusal:
     if security is None:
         return Refusal(
-            "wants a certificate, and we have none",
-            "export NAVETTE_SECURITY=FOLDER, this machine's (navette keys create)",
+            "requires a certificate, and this program has none",
+            "export NAVETTE_SECURITY=FOLDER of this machine (navette keys create)",
         )
     advice = (
-        "both need certificates of the same authority (navette keys create); is"
-        f" NAVETTE_SECURITY={security} the right folder? navette keys show {security}"
+        "both need certificates of the same authority (navette keys create); check"
+        f" NAVETTE_SECURITY={security} with navette keys show {security}"
     )
-    trouble = distrust(*address, security)
-    if trouble:
-        return Refusal(f"has a certificate that we do not trust: {trouble}", advice)
-    return Refusal("does not take our certificate or password", advice)
+    error = certificate_error(*address, security)
+    if error:
+        return Refusal(f"has a certificate that is not trusted here: {error}", advice)
+    return Refusal("rejects the certificate or password", advice)
 
 
-def _their_folder(security: Path | None, process: Process | None) -> str:
-    """What it was started with, where that can be seen and is other than ours."""
+def _other_folder(security: Path | None, process: Process | None) -> str:
+    """Report that the process was started with another NAVETTE_SECURITY."""
     if process is None:
         return ""
     theirs = environment(process).get("NAVETTE_SECURITY", "")
@@ -99,27 +126,27 @@ def _their_folder(security: Path | None, process: Process | None) -> str:
 
 
 def speaks_tls(host: str, port: int) -> bool:
-    """Whether a TLS handshake gets an answer that is one."""
+    """Whether the port responds to a TLS handshake."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     context.check_hostname = False
     context.verify_mode = ssl.CERT_NONE
     try:
-        _shake_hands(host, port, context)
+        _handshake(host, port, context)
     except ssl.SSLError as error:
-        return "ALERT" in str(error.reason)  # it wants to see our certificate
+        return "ALERT" in str(error.reason)  # it requires a client certificate
     except OSError:
         return False
     return True
 
 
-def distrust(host: str, port: int, security: Path) -> str:
-    """Why our authority does not vouch for that certificate; empty where it does."""
+def certificate_error(host: str, port: int, security: Path) -> str:
+    """Return why this program's authority rejects the certificate; empty if valid."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-    context.check_hostname = False  # Zenoh does not look at names either
+    context.check_hostname = False  # as in Zenoh
     try:
         context.load_verify_locations(security / "ca.pem")
         context.load_cert_chain(security / "cert.pem", security / "key.pem")
-        _shake_hands(host, port, context)
+        _handshake(host, port, context)
     except ssl.SSLCertVerificationError as error:
         return error.verify_message
     except (ssl.SSLError, OSError):
@@ -127,9 +154,9 @@ def distrust(host: str, port: int, security: Path) -> str:
     return ""
 
 
-def _shake_hands(host: str, port: int, context: ssl.SSLContext) -> None:
+def _handshake(host: str, port: int, context: ssl.SSLContext) -> None:
     with (
-        socket.create_connection((host, port), _LOOK_S) as plain,
+        socket.create_connection((host, port), _TLS_TIMEOUT_S) as plain,
         context.wrap_socket(plain),
     ):
         return

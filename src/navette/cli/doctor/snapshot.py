@@ -1,4 +1,4 @@
-"""What the checks look at, as plain values: the graph and what its nodes answered."""
+"""Input of the checks: the graph and the responses of its nodes, as plain values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,10 +8,10 @@ from navette.transports import Endpoint, EndpointKind
 
 @dataclass(frozen=True)
 class Heartbeat:
-    """The newest word on a status topic.
+    """Newest message of a status topic.
 
-    ``age_s`` is the time since it was sent, or None where none came; ``level`` is
-    diagnostic_msgs/msg/DiagnosticStatus's.
+    ``age_s`` is the time since it was published, None without a message; ``level`` is
+    that of diagnostic_msgs/msg/DiagnosticStatus.
     """
 
     topic: str
@@ -25,16 +25,15 @@ class Snapshot:
     """The graph at one moment.
 
     Args:
-        nodes: full names; a name that two nodes share is in it twice.
-        endpoints: of topics.
+        nodes: full names; duplicate names are kept.
+        endpoints: publishers and subscriptions.
         services: servers and clients.
-        sim_time: full names of the nodes that were asked → what their use_sim_time
-            is; None if they did not answer in time.
-        unreached: full names of nodes that the router knows, but that are not seen.
-        unreached_topics: of each of these → what it publishes.
-        speed_mps: how fast the robot drives, by its odometry; None: nobody says.
-        clock_ticks: whether a message came on /clock.
-        heartbeats: of every status topic.
+        sim_time: use_sim_time by full name; None if the node did not respond.
+        unreached: full names of nodes that the router lists but that are not visible.
+        unreached_topics: published topics of each of these.
+        speed_mps: speed of the robot from its odometry; None if unknown.
+        clock_ticks: whether /clock has messages.
+        heartbeats: newest message of every status topic.
     """
 
     nodes: tuple[str, ...] = ()
@@ -51,7 +50,7 @@ class Snapshot:
         return self._of(topic, EndpointKind.PUBLISHER)
 
     def published_by(self, node: str) -> list[str]:
-        """Topics, by the full name of a node that is seen."""
+        """Return the topics that a visible node publishes."""
         kind = EndpointKind.PUBLISHER
         found = (e for e in self.endpoints if e.kind is kind)
         return sorted({e.topic for e in found if e.node_full_name == node})
@@ -61,7 +60,7 @@ class Snapshot:
 
     @property
     def topics(self) -> list[str]:
-        """Those that people use, sorted."""
+        """Topics except hidden and standard ones, sorted."""
         return sorted({e.topic for e in self.endpoints if not is_own(e.topic)})
 
     def _of(self, topic: str, kind: EndpointKind) -> list[Endpoint]:
@@ -72,7 +71,7 @@ _EVERY_NODE_HAS = {"/rosout", "/parameter_events"}
 
 
 def is_own(name: str) -> bool:
-    """Whether a topic is the machinery's: hidden, or one that every node has."""
+    """Whether a topic is hidden or one that every node has."""
     return name in _EVERY_NODE_HAS or any(
         part.startswith("_") for part in name.split("/")
     )

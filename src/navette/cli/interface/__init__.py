@@ -1,5 +1,5 @@
-"""``navette interface …``: what messages, services and actions are made of."""
+"""``navette interface``: definitions of messages, services and actions."""
 
-from navette.cli.interface.app import interface
+from navette.cli.interface.verbs import interface
 
 __all__ = ["interface"]
