@@ -40,7 +40,9 @@ def refusal(
 
     def refuse(*arguments: str) -> str:
         monkeypatch.setattr(sys, "argv", ["navette", *arguments])
-        monkeypatch.setattr(app, "_end_at_once", lambda code: None)  # it goes on
+        monkeypatch.setattr(
+            app, "_exit_without_waiting", lambda code: None
+        )  # it goes on
         with pytest.raises(SystemExit) as ended:
             app.main()
         assert ended.value.code == 2

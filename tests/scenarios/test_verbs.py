@@ -211,7 +211,7 @@ def test_bash_completes(talker: Child) -> None:
         "/talker",
         "speed",
         "lifecycle",
-        "complete -o default -F _navette_completion navette",
+        "complete -o nosort -F _navette_completion navette",
     ]
 
 

@@ -121,7 +121,7 @@ def _click_parameter(parameter: inspect.Parameter) -> click.Parameter:
         [parameter.name, *flags],
         panel=declaration.panel,
         multiple=is_list,
-        is_flag=kind is bool,
+        is_flag=True if kind is bool else None,  # False: the value is optional
         show_default=True,
         **attributes,
     )

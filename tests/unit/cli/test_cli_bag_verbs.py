@@ -163,7 +163,7 @@ def test_wrong_uses(sample_bag: Path) -> None:
     assert "is the input" in run("convert", sample_bag, "-o", sample_bag).output
     result = run("cut", sample_bag, "--start", "soon", "-o", "b.mcap")
     assert result.exit_code == 2
-    assert "no time in seconds" in result.output
+    assert "not a time in seconds" in result.output
     result = run("cut", sample_bag, "--end", "1", "-u", "1", "-o", "b.mcap")
     assert result.exit_code == 2
 

@@ -92,3 +92,12 @@ def test_the_shell_completes_files_where_no_name_matches() -> None:
 
     assert completions("ar") == [("plain", "arena")]
     assert completions("./ma") == [("file", "./ma")]
+
+
+def test_a_value_can_begin_with_a_dash_and_cannot_be_omitted() -> None:
+    def verb(number: Annotated[int, Option()] = 3) -> None:
+        click.echo(number)
+
+    command = Command("verb", callback=verb)
+    assert CliRunner().invoke(command, ["--number", "-4"]).output == "-4\n"
+    assert "requires an argument" in CliRunner().invoke(command, ["--number"]).stderr
