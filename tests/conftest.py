@@ -31,14 +31,14 @@ def logs_end_with_their_test() -> Iterator[None]:
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """With NAVETTE_REQUIRE_ALL set (as .ci/run does) a skipped test has failed.
+    """With NAVETTE_REQUIRE_ALL set (as in .ci/run), a skipped test fails.
 
-    What can be installed, must be; what the machine does not let its user do (make
-    network namespaces, say) nobody can.
+    Except for tests that need permissions which the machine does not grant, such as
+    network namespaces.
     """
     report = yield
     installable = "not permitted here" not in str(report.longrepr)
     if report.skipped and installable and os.environ.get("NAVETTE_REQUIRE_ALL"):
         report.outcome = "failed"
-        report.longrepr = f"skipped where nothing may be: {report.longrepr}"
+        report.longrepr = f"skipped with NAVETTE_REQUIRE_ALL set: {report.longrepr}"
     return report

@@ -1,9 +1,8 @@
-"""TCP ports on the loopback interface for programs that are told where to listen.
+"""TCP ports on the loopback interface for programs with a configured port.
 
-The kernel gives a socket that asks for no port one of its own range (from 32768 on, on
-Linux). If a test takes one from it for a program, it may be anybody's before the
-program listens there, and two networks that should not meet are one. So these are of
-another range.
+The kernel assigns ephemeral ports (on Linux from 32768) to sockets bound to port 0.
+Such a port could be assigned again before the program under test listens on it, and two
+separate networks would be connected. These ports are outside that range.
 """
 
 import itertools
@@ -11,12 +10,12 @@ import os
 import socket
 
 _FIRST, _COUNT = 10_000, 20_000
-# Processes that test at the same time begin far from each other.
+# Concurrent test processes start far from each other.
 _numbers = itertools.count(509 * os.getpid())
 
 
 def free_port() -> int:
-    """One that nobody uses now, and that this process does not give again soon."""
+    """Return an unused port that this process does not return again soon."""
     for number in itertools.islice(_numbers, _COUNT):
         port = _FIRST + number % _COUNT
         with socket.socket() as probe:
@@ -29,5 +28,5 @@ def free_port() -> int:
 
 
 def free_endpoint() -> str:
-    """The same, as Zenoh writes it."""
+    """Return a free port as a Zenoh endpoint."""
     return f"tcp/127.0.0.1:{free_port()}"

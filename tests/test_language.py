@@ -55,6 +55,9 @@ ALLOWED = (
     r"letters,? (and )?digits",
     r"(capital|lower-?case|upper-?case|small|drive|ASCII) letters?",
     r"letters, (numbers|underscores)",
+    r"letter-spacing",  # CSS
+    r"I heard|Listener heard|Talker says|heard enough",  # ROS 2's demos
+    r"do not say, hear, know or want",
 )
 
 #: Folders and files that are still to be cleaned; only ever made shorter.

@@ -1,4 +1,4 @@
-"""Whether recordings are read as other readers read them: counts, stamps, values.
+"""Compare Navette's reading of recordings with other readers: counts, stamps, values.
 
     python tests/conformance/check_bags.py FOLDER
 
@@ -22,11 +22,11 @@ from navette.bags.checking import check_bag
 from navette.bags.message_types import Decoder
 from navette.bags.opening import is_bag
 
-Told = dict[tuple[str, int], list[Any]]
+Recorded = dict[tuple[str, int], list[Any]]
 
 
 def recordings(folder: Path) -> Iterator[Path]:
-    """Files and folders of recordings, also in folders below."""
+    """Find recordings, recursively."""
     for path in sorted(folder.iterdir()):
         if is_bag(path):
             yield path
@@ -35,10 +35,10 @@ def recordings(folder: Path) -> Iterator[Path]:
 
 
 def differences(path: Path) -> list[str]:
-    """What Navette and ``rosbags`` do not agree on."""
-    ours, theirs = told_by_navette(path), told_by_rosbags(path)
+    """Return the differences between Navette and ``rosbags``."""
+    ours, theirs = read_by_navette(path), read_by_rosbags(path)
     found = [f"navette check: {f.text}" for f in check_bag(path, decode=True).findings]
-    counts = [Counter(topic for topic, _ in told) for told in (ours, theirs)]
+    counts = [Counter(topic for topic, _ in recorded) for recorded in (ours, theirs)]
     if counts[0] != counts[1]:
         found.append(f"counts: {counts[0]} and {counts[1]}")
     if ours.keys() != theirs.keys():
@@ -47,33 +47,33 @@ def differences(path: Path) -> list[str]:
         if not all(map(same, ours[key], theirs[key])):
             found.append(f"values of {key[0]} at {key[1]} ns")
     if path.suffix == ".mcap":
-        found += [f"mcap: {text}" for text in told_by_mcap(path, ours)]
+        found += [f"mcap: {text}" for text in read_by_mcap(path, ours)]
     return found
 
 
-def told_by_navette(path: Path) -> Told:
-    """Messages by topic and stamp."""
-    told: Told = {}
+def read_by_navette(path: Path) -> Recorded:
+    """Return messages by topic and stamp."""
+    recorded: Recorded = {}
     decoders: dict[Any, Decoder] = {}
     with open_bag(path) as reader:
         for topic, stamp_ns, data in reader.messages():
             decoder = decoders.setdefault(topic, Decoder(topic))
-            told.setdefault((topic.name, stamp_ns), []).append(decoder(data))
-    return told
+            recorded.setdefault((topic.name, stamp_ns), []).append(decoder(data))
+    return recorded
 
 
-def told_by_rosbags(path: Path) -> Told:
-    """The same by ``rosbags``."""
-    told: Told = {}
+def read_by_rosbags(path: Path) -> Recorded:
+    """Return messages by topic and stamp, read by ``rosbags``."""
+    recorded: Recorded = {}
     with AnyReader([path]) as reader:
         for connection, stamp_ns, data in reader.messages():
             message = reader.deserialize(data, connection.msgtype)
-            told.setdefault((connection.topic, stamp_ns), []).append(message)
-    return told
+            recorded.setdefault((connection.topic, stamp_ns), []).append(message)
+    return recorded
 
 
-def told_by_mcap(path: Path, ours: Told) -> Iterator[str]:
-    """What ``mcap`` counts otherwise."""
+def read_by_mcap(path: Path, ours: Recorded) -> Iterator[str]:
+    """Return the differences to ``mcap``'s counts."""
     with path.open("rb") as file:
         found = Counter(
             (channel.topic, message.log_time)
@@ -84,7 +84,7 @@ def told_by_mcap(path: Path, ours: Told) -> Iterator[str]:
 
 
 def same(ours: Any, theirs: Any) -> bool:
-    """Whether two messages hold the same values, field by field in their order."""
+    """Whether two messages have the same values, field by field in order."""
     if hasattr(ours, "get_fields_and_field_types"):
         return all(
             same(getattr(ours, name), field_of(theirs, name))
@@ -102,7 +102,7 @@ def same(ours: Any, theirs: Any) -> bool:
 
 
 def field_of(message: Any, name: str) -> Any:
-    """A field by ROS 2's name, or by that of ROS 1, where some are in capitals."""
+    """Return a field by its ROS 2 name, or its ROS 1 name, which may have capitals."""
     return getattr(message, name if hasattr(message, name) else name.upper())
 
 

@@ -12,16 +12,16 @@ from dataclasses import dataclass, field
 
 NAVETTE = [sys.executable, "-u", "-c", "from navette.cli import main; main()"]
 _LONGEST_END_S = 60.0
-_OWN_END_S = 0.3  # after all was printed
+_OWN_END_S = 0.3  # after the expected output
 
 
-# How Python ends on SIGINT: in the program, and on the way out of the interpreter.
+# Exit codes of Python on SIGINT: in the program, and during interpreter shutdown.
 _ENDED_BY_INTERRUPT = (0, 130, -signal.SIGINT)
 
 
 @dataclass
 class ProgramRun:
-    """What a run printed, and how it ended."""
+    """Output and end of a run."""
 
     expected: Sequence[str]
     forbidden: str
@@ -32,11 +32,11 @@ class ProgramRun:
 
     @property
     def is_good(self) -> bool:
-        """All was printed, and it ended by itself or on Ctrl-C without an error."""
+        """Whether all was printed and the run ended, or was interrupted, without error."""
         return not self.faults()
 
     def faults(self) -> list[str]:
-        """What is wrong, in words."""
+        """Describe the failure."""
         found = [f"not printed: {pattern}" for pattern in self.missing]
         if re.search(self.forbidden, self.output):
             found.append(f"printed: {self.forbidden}")
@@ -45,7 +45,7 @@ class ProgramRun:
         return found
 
     def look(self) -> None:
-        """Each expected pattern has to be found behind the one before it."""
+        """Search each expected pattern after the previous match."""
         position = 0
         self.missing = []
         for pattern in self.expected:
@@ -66,8 +66,8 @@ def run_until_printed(
 ) -> ProgramRun:
     """Run ``navette run WORDS`` until ``expected`` (regexes) was printed in that order.
 
-    ``packages``: folders of packages that the program may look for.
-    A program that goes on for ``own_end_s`` gets SIGINT, as from Ctrl-C.
+    ``packages``: folders of packages that the program may find.
+    A program that runs longer than ``own_end_s`` gets SIGINT, as from Ctrl-C.
     """
     run = ProgramRun(expected, forbidden)
     run.look()

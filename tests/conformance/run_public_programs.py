@@ -1,4 +1,4 @@
-"""Run the rclpy programs of ros2/examples and ros2/demos, as they are.
+"""Run the rclpy programs of ros2/examples and ros2/demos, unmodified.
 
     python tests/conformance/run_public_programs.py FOLDER [WORD]
 
@@ -19,7 +19,7 @@ from program_run import ProgramRun, run_until_printed
 BLACKBOARD = "programs/parameter_blackboard.py"
 
 PUBLISHING = [r'Publishing: "Hello World: 0"', r'Publishing: "Hello World: 1"']
-HEARD = [r'I heard: "Hello World: \d+"'] * 2
+LISTENER_LINES = [r'I heard: "Hello World: \d+"'] * 2
 SUM = r"Result of add_two_ints: for 41 \+ 1 = 42"
 INCOMING = r"Incoming request\na: 41 b: 1"
 SEQUENCE = r"array\('i', \[0, 1, 1, 2, 3, 5, 8, 13, 21, 34, 55\]\)"
@@ -28,7 +28,7 @@ FEEDBACK = r"array\('i', \[0, 1, 1, 2\]\)"
 
 @dataclass(frozen=True)
 class Case:
-    """Programs by the ends of their paths, each followed by its arguments."""
+    """Programs by path suffix, each followed by its arguments."""
 
     programs: tuple[str, ...]
     expected: list[str]
@@ -46,7 +46,7 @@ def _pairs() -> list[Case]:
     topics = [
         Case(
             (f"minimal_publisher/publisher_{p}.py", f"subscriber_{s}.py"),
-            [*PUBLISHING[:1], *HEARD],
+            [*PUBLISHING[:1], *LISTENER_LINES],
         )
         for p, s in zip(publishers, subscribers, strict=True)
     ]
@@ -70,7 +70,7 @@ def _executors() -> list[Case]:
             ("rclpy_executors/callback_group.py",),
             [r"Publishing: \"Hello World: 0\"", r"I heard: \"Hello World: 1\""],
         ),
-        # Ten messages at ten a second, then one whenever the bucket gets a token.
+        # Ten messages at 10 Hz, then one for each token of the bucket.
         Case(("rclpy_executors/custom_callback_group.py",), [r"Hello World: 12"]),
         Case(
             ("rclpy_executors/custom_executor.py",),
@@ -203,7 +203,7 @@ def _qos() -> list[Case]:
             ("demo_py/lifespan.py 1000 --publish-count 3 --subscribe-after 3000",),
             ["Publishing: 'Talker says 2'", "Listener starting up"],
             8.0,
-            forbidden="Listener heard",  # all were too old by then
+            forbidden="Listener heard",  # all had expired by then
         ),
         Case(
             ("demo_py/liveliness.py 1000 --kill-publisher-after 1500",),

@@ -1,4 +1,4 @@
-"""Other tools read what we write, and count the same."""
+"""Other tools read Navette's bags and count the same messages."""
 
 import json
 import re
@@ -22,7 +22,7 @@ from navette.navigation.stack.simulation import Simulation
 
 @pytest.fixture(scope="module")
 def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Every topic of the whole stack, for two seconds."""
+    """Record every topic of the whole stack for two seconds."""
     path = tmp_path_factory.mktemp("drive") / "drive.mcap"
     simulation = Simulation(
         RunOptions(headless=True, goals=((3.0, 0.0),), record=path, max_time_s=2.0)
@@ -39,7 +39,7 @@ def counts_of(path: Path) -> Counter[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["mcap", "bag", "db3"])
-def test_a_drive_in_every_format_is_the_same_to_rosbags(
+def test_rosbags_reads_the_same_drive_in_every_format(
     drive: Path, tmp_path: Path, suffix: str
 ) -> None:
     path = tmp_path / f"drive.{suffix}"
@@ -49,7 +49,7 @@ def test_a_drive_in_every_format_is_the_same_to_rosbags(
     assert counts_of(path) == counts_of(drive)
 
 
-def test_a_folder_as_rosbag2_makes_it(tmp_path: Path) -> None:
+def test_a_folder_as_of_rosbag2(tmp_path: Path) -> None:
     writer = open_writer(tmp_path / "run", storage="sqlite3", compression="zstd")
     for message in sample(50):
         writer.write(message)
@@ -70,7 +70,7 @@ def test_mcap_counts_the_same(tmp_path: Path, compression: str) -> None:
 
 @pytest.mark.slow
 def test_rosbag_info_counts_the_same(drive: Path, tmp_path: Path) -> None:
-    """The tool of ROS 1 itself, as Debian packages it (python3-rosbag)."""
+    """ROS 1's own tool, from Debian's package python3-rosbag."""
     rosbag = shutil.which("rosbag")
     if rosbag is None:
         pytest.skip(_why_not())
@@ -81,10 +81,10 @@ def test_rosbag_info_counts_the_same(drive: Path, tmp_path: Path) -> None:
         [rosbag, "info", str(path)], capture_output=True, text=True, timeout=60
     )
     assert run.returncode == 0, run.stderr
-    told = dict(re.findall(r"(/\S+) +(\d+) msgs? ", run.stdout))
-    assert {topic: int(n) for topic, n in told.items()} == counts_of(drive)
+    counts = dict(re.findall(r"(/\S+) +(\d+) msgs? ", run.stdout))
+    assert {topic: int(n) for topic, n in counts.items()} == counts_of(drive)
     assert re.search(r"compression: +lz4", run.stdout)
-    # ROS 1's own checksums: its programs would take the messages.
+    # ROS 1's own checksums: its programs accept the messages.
     for name, checksum in (
         ("sensor_msgs/LaserScan", "90c7ef2dc6895d81024acba2ac42f369"),
         ("nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"),
@@ -93,7 +93,7 @@ def test_rosbag_info_counts_the_same(drive: Path, tmp_path: Path) -> None:
 
 
 def _why_not() -> str:
-    """A machine that could have it must; others are excused."""
+    """Skip only on machines without the Debian package."""
     cache = shutil.which("apt-cache")
     if cache is not None:
         run = subprocess.run(
@@ -104,7 +104,7 @@ def _why_not() -> str:
     return "rosbag cannot be installed: there is no package (not permitted here)"
 
 
-def test_info_as_json_says_what_the_file_holds(
+def test_info_as_json_describes_the_file(
     drive: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from click.testing import CliRunner
@@ -113,5 +113,5 @@ def test_info_as_json_says_what_the_file_holds(
 
     result = CliRunner().invoke(bag, ["info", str(drive), "--json"])
     assert result.exit_code == 0, result.output
-    told = json.loads(result.stdout)
-    assert {t["name"]: t["messages"] for t in told["topics"]} == counts_of(drive)
+    counts = json.loads(result.stdout)
+    assert {t["name"]: t["messages"] for t in counts["topics"]} == counts_of(drive)

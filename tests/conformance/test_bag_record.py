@@ -44,7 +44,7 @@ def environment(router: str) -> dict[str, str]:
 
 
 class Talker:
-    """100 numbers a second on ``/chatter``, a latched word; in this process."""
+    """Publishes numbers at 100 Hz on ``/chatter`` and a latched word, in this process."""
 
     def __init__(self, context: Context) -> None:
         self.executor = Executor(context=context)
@@ -69,7 +69,7 @@ class Talker:
             self.executor.spin_once(timeout_sec=0.01)
 
     def until_recorded(self) -> None:
-        """The recorder listens to it."""
+        """Wait for the recorder's subscription."""
         self.until(lambda: self.publisher.get_subscription_count() > 0, "a recorder")
 
 
@@ -112,7 +112,7 @@ def numbers(path: Path) -> list[int]:
         return [int(m.data[8:-1]) for m in reader.messages(["/chatter"])]
 
 
-def test_what_runs_is_recorded_and_late_topics_too(
+def test_running_and_late_topics_are_recorded(
     talker: Talker, router: str, tmp_path: Path
 ) -> None:
     with recorder(router, "--all", "-o", "run", cwd=tmp_path) as process:
@@ -127,9 +127,9 @@ def test_what_runs_is_recorded_and_late_topics_too(
         process.send_signal(signal.SIGINT)
         assert process.wait(LIMIT_S) == 0
         assert process.stderr is not None
-        said = process.stderr.read()
+        output = process.stderr.read()
     path = tmp_path / "run.mcap"
-    assert "recording to run.mcap" in said
+    assert "recording to run.mcap" in output
     assert check_bag(path, decode=True).is_sound
     found = numbers(path)
     assert found == list(range(1, len(found) + 1))
@@ -142,7 +142,7 @@ def test_what_runs_is_recorded_and_late_topics_too(
     assert counts["/word"] == counts["/late"] == 1
 
 
-def test_types_that_only_their_publisher_knows(
+def test_types_that_only_their_publisher_defines(
     talker: Talker, router: str, tmp_path: Path
 ) -> None:
     text = "int32 volume\nstd_msgs/Header header\n"
@@ -162,16 +162,16 @@ def test_types_that_only_their_publisher_knows(
 
 
 def on_disk(path: Path) -> int:
-    """How many numbers somebody else can read while it is recorded."""
+    """Return how many numbers another reader finds during the recording."""
     try:
         with open_bag(path) as reader:
             kept = reader.messages(["/chatter"], on_damage=lambda damage: None)
             return sum(1 for _ in kept)
     except (FileNotFoundError, FileFormatError):
-        return 0  # it has not begun
+        return 0  # not started yet
 
 
-def test_a_killed_recorder_leaves_what_it_has_written_so_far(
+def test_a_killed_recorder_leaves_the_written_messages(
     talker: Talker, router: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "run.mcap"
@@ -209,10 +209,10 @@ def test_a_full_disk_ends_the_recording_with_a_clear_error(
         cwd=tmp_path,
     ) as process:
         ended = threading.Event()
-        said: list[str] = []
+        output: list[str] = []
 
         def read() -> None:
-            said.append(process.communicate(timeout=LIMIT_S)[1])
+            output.append(process.communicate(timeout=LIMIT_S)[1])
             ended.set()
 
         reading = threading.Thread(target=read)
@@ -222,13 +222,13 @@ def test_a_full_disk_ends_the_recording_with_a_clear_error(
         talker.until(ended.is_set, "the end of the recording")
         reading.join()
     assert process.returncode == 1
-    assert "run.mcap: recording ended: File too large" in said[0]
+    assert "run.mcap: recording ended: File too large" in output[0]
     report = check_bag(tmp_path / "run.mcap")
     assert report.is_sound
     assert report.messages > 50
 
 
-def test_a_robot_drives_on_when_its_disk_is_full(tmp_path: Path) -> None:
+def test_a_robot_keeps_driving_when_its_disk_is_full(tmp_path: Path) -> None:
     words = "sim --goal 2 0 --headless --json --record run.mcap".split()
     run = subprocess.run(
         [sys.executable, "-c", LIMITED.format(500_000), *words],
@@ -245,7 +245,7 @@ def test_a_robot_drives_on_when_its_disk_is_full(tmp_path: Path) -> None:
     assert report.messages > 100
 
 
-def test_wrong_uses(tmp_path: Path) -> None:
+def test_invalid_uses(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("", "utf-8")
     for arguments, reason in (
         ([], "name topics, or --all"),

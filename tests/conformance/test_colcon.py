@@ -1,4 +1,4 @@
-"""A package that ``navette pkg create`` makes is one for ROS 2's own tools as well."""
+"""ROS 2's own tools accept the packages of ``navette pkg create``."""
 
 import os
 import subprocess
@@ -41,7 +41,7 @@ def test_colcon_builds_a_created_package(
     assert (installed / "share" / "my_robot" / "launch").is_dir()
 
 
-def test_the_manifests_are_what_ros_reads(
+def test_ros_reads_the_manifests(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     words = ("my_pkg", "--msgs", "--dependencies", "geometry_msgs")

@@ -1,4 +1,4 @@
-"""Bags of a drive, played: the distance that odom_integrator counts."""
+"""Distance by odom_integrator for played bags of a drive."""
 
 import runpy
 from pathlib import Path
@@ -15,7 +15,7 @@ SECONDS = 30.0
 
 @pytest.fixture(scope="module")
 def drive() -> tuple[np.ndarray, np.ndarray]:
-    """Times and positions of a car that winds up a hill, slower and faster."""
+    """Return times and positions of a car on a winding uphill road at varying speed."""
     times = np.arange(0.0, SECONDS, 0.1)
     way = 8.0 * times + 12.0 * np.sin(times / 3.0)
     heading = 1.5 * np.sin(way / 40.0)
@@ -54,26 +54,26 @@ def test_neither_rate_nor_looping_nor_seeking_adds_a_jump(
     assert played(rate=50.0) == pytest.approx(once, rel=1e-9)
     assert played(passes=2) == pytest.approx(2 * once, rel=1e-9)
 
-    # What is played twice counts twice, what is left out does not.
+    # A part played twice counts twice, a skipped part does not.
     def between(begin_s: float, end_s: float) -> float:
         taken = (times >= begin_s - 1e-9) & (times <= end_s + 1e-9)
         return length(positions[taken])
 
-    one_step = 2.0  # at which message the jump falls
+    one_step = 2.0  # the message at which the jump occurs
     back = played(seeks=[(20.0, 5.0)])
     assert back == pytest.approx(once + between(5.0, 20.0), abs=one_step)
     ahead = played(seeks=[(8.0, 22.0)])
     assert ahead == pytest.approx(once - between(8.0, 22.0), abs=one_step)
 
 
-def test_the_shipped_drive_is_what_its_script_makes(tmp_path: Path) -> None:
+def test_the_shipped_drive_equals_the_output_of_its_script(tmp_path: Path) -> None:
     data = Path(__file__).parents[2] / "examples" / "data"
     make = runpy.run_path(str(data / "make_drive.py"))["make"]
     make(tmp_path / "drive.mcap")
     shipped = data / "drive.mcap"
     with open_bag(shipped) as expected, open_bag(tmp_path / "drive.mcap") as got:
         topics = [topic.name for topic in expected.topics]
-        # Values are rounded; another machine's sine may round the other way.
+        # Values are rounded; another machine's sine may round differently.
         found = compare(
             expected, got, topics=topics, tolerances=Tolerances.parse(["0.0011"])
         )

@@ -1,4 +1,4 @@
-"""The tutorial's three terminals: node, recording, and the distance that counts up."""
+"""The tutorial's three terminals: node, playback, and the increasing distance."""
 
 import os
 import re
@@ -17,7 +17,7 @@ DISTANCE = "/odom_integrator/distance"
 
 
 def navette(env: Mapping[str, str], *words: str) -> str:
-    """What a verb prints."""
+    """Return the output of a verb."""
     done = subprocess.run(
         [sys.executable, "-m", "navette", *words],
         env={**os.environ, "NAVETTE_TRANSPORT": "zenoh", **env},
@@ -32,7 +32,7 @@ def navette(env: Mapping[str, str], *words: str) -> str:
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
-def test_the_distance_counts_up_while_the_bag_plays(tmp_path: Path) -> None:
+def test_the_distance_increases_while_the_bag_plays(tmp_path: Path) -> None:
     env = {"NAVETTE_ROUTER": free_endpoint()}
     with Fleet(tmp_path, env) as fleet:
         fleet.start("integrator", "odom_integrator")

@@ -1,4 +1,4 @@
-"""A bag that is played to another process, and to programs in its own."""
+"""A bag played to another process, and to programs in the same process."""
 
 import subprocess
 import sys
@@ -34,17 +34,17 @@ class Listener(Node):
     def __init__(self):
         super().__init__("listener")
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.heard = []
+        self.received = []
         self.create_subscription(String, "map", self.show, latched)
-        self.create_subscription(String, "chatter", self.hear, 1000)
+        self.create_subscription(String, "chatter", self.receive, 1000)
 
     def show(self, msg):
         print("map", msg.data, flush=True)
 
-    def hear(self, msg):
-        self.heard.append(int(msg.data))
+    def receive(self, msg):
+        self.received.append(int(msg.data))
         if msg.data == LAST:
-            print("heard", len(self.heard), self.heard[0], flush=True)
+            print("received", len(self.received), self.received[0], flush=True)
 
 
 def main():
@@ -64,7 +64,7 @@ if __name__ == "__main__":
 
 @pytest.fixture
 def bag(tmp_path: Path) -> Path:
-    """A map that is told once, and 200 numbers in 20 s."""
+    """A map published once, and 200 numbers in 20 s."""
     path = tmp_path / "talk.mcap"
     writer = BagWriter(path)
     kind = "std_msgs/msg/String"
@@ -100,7 +100,7 @@ def start() -> Iterator["Starter"]:
 
 
 class Starter:
-    """Starts commands on a network of their own, and ends what is left."""
+    """Starts commands on their own network, and ends the remaining ones."""
 
     def __init__(self, stack: ExitStack) -> None:
         self._stack = stack
@@ -131,19 +131,19 @@ def line_of(process: "subprocess.Popen[str]") -> str:
 
 
 @pytest.mark.slow
-def test_another_process_hears_everything_from_the_first_on(
+def test_another_process_receives_every_message(
     start: Starter, bag: Path, program: Path
 ) -> None:
     listener = start("run", program, COUNT - 1)
     assert line_of(listener) == "ready"
     player = start("bag", "play", bag, "-r", "20")
     assert line_of(listener) == "map of the world"
-    assert line_of(listener) == f"heard {COUNT} 0"
+    assert line_of(listener) == f"received {COUNT} 0"
     assert player.wait(LIMIT_S) == 0
 
 
 @pytest.mark.slow
-def test_who_comes_late_gets_what_was_latched(
+def test_a_late_process_receives_latched_messages(
     start: Starter, bag: Path, program: Path
 ) -> None:
     player = start("bag", "play", bag, "-s", "10", "--pause")
@@ -164,7 +164,7 @@ def test_programs_run_in_the_same_process(
     out, err = player.communicate(timeout=LIMIT_S)
     assert sorted(out.split("\n")) == [
         "",
-        f"heard {COUNT} 0",
+        f"received {COUNT} 0",
         "map of the world",
         "ready",
     ]

@@ -1,4 +1,4 @@
-"""Recordings in the eyes of other readers, and after a real kill."""
+"""Recordings read by other readers, and after a real kill."""
 
 import os
 import signal
@@ -92,7 +92,7 @@ def test_rosbags_reads_every_message(bag: Path) -> None:
     assert connections["/map"].msgtype == "nav_msgs/msg/OccupancyGrid"
 
 
-# Talks for ever at full speed under virtual time; reports each simulated second.
+# Publishes endlessly at full speed in virtual time; prints each simulated second.
 TALKER = """
 import sys
 from navette.bags.node import RecorderNode
@@ -121,26 +121,26 @@ while True:
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGKILL on Windows")
-def test_a_killed_process_leaves_a_file_that_reads(tmp_path: Path) -> None:
+def test_a_killed_process_leaves_a_readable_file(tmp_path: Path) -> None:
     path = tmp_path / "killed.mcap"
     with subprocess.Popen(
         [sys.executable, "-c", TALKER, str(path)], stdout=subprocess.PIPE, text=True
     ) as process:
         assert process.stdout is not None
         for _ in range(3):
-            said = int(process.stdout.readline())
+            printed = int(process.stdout.readline())
         process.send_signal(signal.SIGKILL)
     assert process.returncode == -signal.SIGKILL
 
     words = [data.decode() for data in chatter_of(path)]
-    heard = [int(word) for word in words]
-    assert heard == list(range(1, len(heard) + 1)), "nothing is missing in between"
-    # A quarter of a second of a 100 Hz topic may be lost, no more.
-    assert len(heard) >= said - 25
+    recorded = [int(word) for word in words]
+    assert recorded == list(range(1, len(recorded) + 1)), "no gaps"
+    # At most 0.25 s of a 100 Hz topic may be lost.
+    assert len(recorded) >= printed - 25
 
 
 def chatter_of(path: Path) -> list[bytes]:
-    """The strings of a file without an end, by a reader that needs no index."""
+    """Return the strings of an unfinished file, read without an index."""
     found: list[bytes] = []
     with path.open("rb") as file, suppress(EndOfFile):
         reader = NonSeekingReader(file)

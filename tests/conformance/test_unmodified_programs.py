@@ -1,4 +1,4 @@
-"""Programs written for rclpy run as they are: ``navette run`` in a real process."""
+"""Unmodified rclpy programs with ``navette run`` in a real process."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 
 
 def printed(words: list[str], *expected: str, own_end_s: float = 0.3) -> ProgramRun:
-    """``own_end_s``: so long it may take to end by itself, before Ctrl-C."""
+    """Run a program; it gets Ctrl-C after ``own_end_s``."""
     run = run_until_printed(words, expected, timeout_s=60.0, own_end_s=own_end_s)
     assert run.is_good, f"{run.faults()}\n{run.output}"
     return run
@@ -30,13 +30,13 @@ def test_a_program_alone_ends_on_ctrl_c() -> None:
     assert run.exit_code == 0  # it caught KeyboardInterrupt itself
 
 
-def test_two_programs_meet_and_end_on_ctrl_c() -> None:
+def test_two_programs_communicate_and_end_on_ctrl_c() -> None:
     run = printed([TALKER, "--with", LISTENER_NODE], r"I heard: \[message \d+\]")
     assert run.interrupted
     assert run.exit_code == 0
 
 
-def test_programs_that_end_by_themselves() -> None:
+def test_programs_that_end_without_ctrl_c() -> None:
     run = printed(
         [TALKER, "--ros-args", "-p", "count:=50", "--with", LISTENER, "2"],
         "I heard: message 0",
@@ -109,7 +109,7 @@ def test_a_managed_node() -> None:
 
 def test_nodes_of_other_files_in_one_executor() -> None:
     run = printed([str(PROGRAMS / "composed.py")], r"I heard: \[message 2\]")
-    assert "interrupted, heard True" in run.output
+    assert "interrupted, received True" in run.output
 
 
 def test_events_of_quality_of_service() -> None:
@@ -118,7 +118,7 @@ def test_events_of_quality_of_service() -> None:
     assert not run.interrupted
 
 
-def test_corners_of_the_surface() -> None:
+def test_corner_cases_of_the_api() -> None:
     run = printed(
         [SURFACE],
         r"sequence array\('i', \[0, 1, 1\]\) 1 False",
@@ -134,7 +134,7 @@ def test_corners_of_the_surface() -> None:
     assert "[surface]: before init" in run.output
 
 
-def test_what_navette_has_not_got_is_named(tmp_path: Path) -> None:
+def test_missing_modules_are_named(tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     program.write_text("from rclpy.qos import QoSWormhole\n")
     run = run_until_printed([str(program)], ["has no rclpy.qos.QoSWormhole"], 60.0)

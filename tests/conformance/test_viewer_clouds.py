@@ -22,7 +22,7 @@ WIDTH, HEIGHT, STEP, PADDING = 900, 16, 23, 11
 
 
 def street() -> np.ndarray:
-    """(16, 900, 3) what 16 beams see 1.8 m above a street 12 m wide; NaN: the sky."""
+    """Return (16, 900, 3) points of 16 beams, 1.8 m above a street 12 m wide."""
     turn = np.linspace(0.0, math.tau, WIDTH, endpoint=False)
     rise = np.radians(np.arange(-15, 17, 2))[:, None]
     along = np.stack(

@@ -82,7 +82,7 @@ def program() -> Iterator[Program]:
 
 
 def run_node(script: str, *arguments: str) -> Any:
-    """What a script prints; skipped where Node.js or its packages are missing."""
+    """Run a script and return its output; skip without Node.js or its packages."""
     node = shutil.which("node")
     if node is None:
         pytest.skip("Node.js is not installed")
@@ -143,7 +143,7 @@ def test_the_page_works_in_a_browser(program: Program) -> None:
     rows = {row[0]: row for row in seen["rows"]}
     assert rows["/chatter"][2] == "robot"
     assert rows["/chatter"][3].endswith("Hz")
-    # A camera is left alone until somebody asks.
+    # A camera is subscribed on request only.
     assert rows["/camera"][3] == "measure"
     assert "/robot" in seen["nodes"]
     assert seen["slider"] == ["0.5", "2"]

@@ -52,7 +52,7 @@ class Robot(Node):
 
 
 def example_of(type_name: str) -> Any:
-    """A message whose header and arrays are not all empty."""
+    """Return a message with a non-empty header and arrays."""
     message = get_interface(type_name)()
     fields = message.get_fields_and_field_types()
     if "header" in fields:
@@ -108,7 +108,7 @@ def test_rosbags_decodes_what_was_sent(program: Program, topic: str) -> None:
 
 
 def assert_same(other: Any, ours: Any) -> None:
-    """Field by field, all the way down."""
+    """Compare recursively, field by field."""
     if hasattr(ours, "get_fields_and_field_types"):
         for name in ours.get_fields_and_field_types():
             assert_same(getattr(other, name), getattr(ours, name))
@@ -127,7 +127,7 @@ def assert_same(other: Any, ours: Any) -> None:
 
 @pytest.fixture(scope="module")
 def reference() -> Iterator[str]:
-    """Address of a foxglove-sdk server with one ROS 2 topic that never falls silent."""
+    """Address of a foxglove-sdk server with one ROS 2 topic, published continuously."""
     context = foxglove.Context()
     server = foxglove.start_server(
         context=context,
@@ -162,7 +162,7 @@ class ParameterOwner(foxglove.ServerListener):
 
 
 def conversation(address: str) -> dict[str, Any]:
-    """The same requests to either server; gives one answer of each kind."""
+    """Send the same requests to either server; return one response of each kind."""
     with Client(address, "foxglove.sdk.v1") as client:
         channel = client.wait_for_topic("/clock")
         client.send(op="getParameters", parameterNames=["/robot.speed_mps"], id="a")
@@ -185,7 +185,9 @@ def conversation(address: str) -> dict[str, Any]:
 
 def test_frames_have_the_form_of_the_foxglove_server(reference: str) -> None:
     theirs = conversation(reference)
-    theirs["serverInfo"].pop("metadata")  # theirs names their library, ours ROS 2
+    theirs["serverInfo"].pop(
+        "metadata"
+    )  # the metadata differ: library name and ROS distribution
     with Program(SpeedyRobot) as program:
         ours = conversation(program.address)
     for name, frame in theirs.items():
@@ -206,7 +208,7 @@ _CODES = ("op", "level", "encoding", "schemaEncoding", "type")
 
 
 def shape(frame: Any, model: Any) -> Any:
-    """Keys and JSON types of what ``model`` has; values only where they are codes."""
+    """Return the keys and JSON types of ``model``; values only of codes."""
     if isinstance(model, dict):
         if not isinstance(frame, dict):
             return type(frame).__name__

@@ -1,9 +1,10 @@
-"""Makes the golden bags: one drive of the simulator, cut into a bag for each stage.
+"""Create the golden bags: one drive of the simulator, cut into one bag per stage.
 
     python tests/replay/make_golden.py
 
-Run it when a stage is meant to give other results, look at what `navette bag replay
---compare` says of the old bags first, and commit the new ones with the change.
+Run it when a stage is meant to produce other results: first check the output of
+`navette bag replay --compare` with the old bags, then commit the new bags with the
+change.
 """
 
 import math
@@ -49,7 +50,7 @@ def drive(path: Path) -> None:
 
 
 def cut(source: BagReader, stage: Stage) -> None:
-    """What the stage hears and says, from the start on."""
+    """Write the stage's inputs and outputs to its bag, from the start."""
     writer = BagWriter(stage.bag)
     numbers = {}
     end_ns = source.start_ns + round(stage.duration_s * 1e9)

@@ -1,9 +1,9 @@
-"""The stages that are replayed: what feeds each, and how far its results may be off.
+"""The replayed stages: inputs of each, and tolerances of its results.
 
 The golden bags hold inputs, parameters and results of one drive of our own simulator,
-each a bag for ``navette bag replay BAG --node STAGE --compare BAG``. What a stage
-says when it is fed the same again is compared with what it said then: exactly, except
-for what another processor or another release of NumPy may round otherwise.
+each a bag for ``navette bag replay BAG --node STAGE --compare BAG``. The outputs of a
+stage for the recorded inputs are compared with the recorded outputs: exactly, except
+for values that another processor or NumPy release may round differently.
 """
 
 from collections.abc import Callable
@@ -80,7 +80,7 @@ def replay(
     make: Callable[[Context], Node] | None = None,
     arguments: tuple[str, ...] = (),
 ) -> Comparison:
-    """Feed the stage with its golden bag; what differs from the results in it."""
+    """Replay the golden bag through the stage; compare its outputs."""
     kind: Callable[..., Node] = node_class(stage.name)
     with open_bag(stage.bag) as source:
         replayed = Replay(

@@ -1,4 +1,4 @@
-"""Every stage says today what its golden bag says."""
+"""Every stage reproduces the outputs in its golden bag."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -42,7 +42,7 @@ def test_golden_bags_stay_small(stage: Stage) -> None:
         ("control", "control:cruise_speed_mps:=0.5", "linear.x"),
     ],
 )
-def test_another_parameter_shows(
+def test_a_changed_parameter_is_detected(
     name: str, argument: str, field: str, tmp_path: Path
 ) -> None:
     (stage,) = (each for each in STAGES if each.name == name)
@@ -51,10 +51,10 @@ def test_another_parameter_shows(
     assert any(field in topic.fields for topic in comparison.topics)
 
 
-def test_another_algorithm_shows(tmp_path: Path) -> None:
+def test_a_changed_algorithm_is_detected(tmp_path: Path) -> None:
     class Blind(CostmapNode):
         def on_scan(self, msg: object) -> None:
-            """Say nothing every second time."""
+            """Omit every second message."""
             self.deaf = not getattr(self, "deaf", False)
             if not self.deaf:
                 super().on_scan(msg)  # type: ignore[arg-type]

@@ -1,6 +1,6 @@
-"""Bags that loop, and what is set back: who listens begins anew.
+"""Bags that loop, and time jumps back: nodes reset their state.
 
-The nodes run as under the machine's clock, which here jumps instead of waiting.
+The nodes run as with the system clock, which here jumps instead of waiting.
 """
 
 from typing import Any
@@ -36,14 +36,14 @@ S = 1_000_000_000
 
 
 class HostClock(VirtualClock):
-    """Counts as the machine's clock: nodes may follow /clock instead."""
+    """Replaces the system clock: nodes may follow /clock instead."""
 
     is_virtual = False
 
 
 def passes(stage: Stage, count: int, *, tell_time: bool) -> list[dict[str, list[Any]]]:
-    """What the stage says in each pass of its bag, by topic."""
-    heard = []
+    """Return the outputs of the stage in each pass of its bag, by topic."""
+    outputs = []
     with GraphHarness(clock=HostClock(10**18)) as graph, open_bag(stage.bag) as bag:
         overrides = graph.context.overrides
         give_recorded_parameters(overrides, bag)
@@ -67,8 +67,8 @@ def passes(stage: Stage, count: int, *, tell_time: bool) -> list[dict[str, list[
             for probe in probes:
                 probe.clear()
             graph.run_for(length_s)
-            heard.append({probe.topic: list(probe.messages) for probe in probes})
-    return heard
+            outputs.append({probe.topic: list(probe.messages) for probe in probes})
+    return outputs
 
 
 @pytest.mark.slow
@@ -87,8 +87,8 @@ def test_every_pass_of_a_loop_gives_the_same(stage: Stage) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stage", STAGES, ids=lambda stage: stage.name)
-def test_a_loop_without_a_clock_is_survived(stage: Stage) -> None:
-    """Stamps go back, the nodes' time goes on: they say as much as before."""
+def test_a_loop_without_a_clock_gives_as_many_messages(stage: Stage) -> None:
+    """Stamps jump back while the nodes' time advances."""
     second, third = passes(stage, 2, tell_time=False)
     for topic, messages in second.items():
         assert messages
@@ -110,7 +110,7 @@ def x_of(buffer: Buffer, child: str = "base") -> float:
     return float(found.transform.translation.x)
 
 
-def test_transforms_that_go_back_clear_the_buffer() -> None:
+def test_a_jump_back_of_transforms_clears_the_buffer() -> None:
     with GraphHarness() as graph:
         buffer = Buffer()
         TransformListener(buffer, graph.node)
@@ -141,7 +141,7 @@ def point(stamp_s: float) -> PointStamped:
     return PointStamped(header=Header(stamp=ns_to_stamp(round(stamp_s * S))))
 
 
-def test_message_filters_begin_anew() -> None:
+def test_message_filters_reset() -> None:
     with GraphHarness() as graph:
         inputs = [Subscriber(graph.node, PointStamped, name) for name in ("a", "b")]
         together: list[float] = []

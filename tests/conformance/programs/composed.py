@@ -18,7 +18,7 @@ def main():
     try:
         executor.spin()
     except KeyboardInterrupt:
-        print("interrupted, heard", bool(listener.heard))
+        print("interrupted, received", bool(listener.received))
     finally:
         executor.shutdown()
         rclpy.try_shutdown()

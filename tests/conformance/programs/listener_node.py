@@ -8,15 +8,15 @@ from std_msgs.msg import String
 class Listener(Node):
     def __init__(self, group=None):
         super().__init__("listener")
-        self.heard = []
+        self.received = []
         self.create_subscription(
             String,
             "chatter",
-            self.hear,
+            self.receive,
             QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE),
             callback_group=group,
         )
 
-    def hear(self, msg):
-        self.heard.append(msg.data)
+    def receive(self, msg):
+        self.received.append(msg.data)
         self.get_logger().info(f"I heard: [{msg.data}]")

@@ -39,8 +39,10 @@ def drive():
     look = node.create_client(GetState, "talker/get_state")
     change.wait_for_service()
     look.wait_for_service()
-    heard = []
-    node.create_subscription(String, "chatter", lambda msg: heard.append(msg.data), 10)
+    received = []
+    node.create_subscription(
+        String, "chatter", lambda msg: received.append(msg.data), 10
+    )
 
     def go(transition):
         request = ChangeState.Request(transition=Transition(id=transition))
@@ -52,9 +54,9 @@ def drive():
 
     go(Transition.TRANSITION_CONFIGURE)
     go(Transition.TRANSITION_ACTIVATE)
-    while not heard:
+    while not received:
         rclpy.spin_once(node)
-    print(heard[0])
+    print(received[0])
     go(Transition.TRANSITION_DEACTIVATE)
     go(Transition.TRANSITION_CLEANUP)
 

@@ -24,12 +24,12 @@ def sequences():
 
 
 def filters(node):
-    heard = []
+    received = []
     publisher = node.create_publisher(Int32, "numbers", 10)
     node.create_subscription(
         Int32,
         "numbers",
-        lambda message: heard.append(message.data),
+        lambda message: received.append(message.data),
         QoSProfile(depth=2),
         content_filter_options=ContentFilterOptions("data > %0", ["1"]),
     )
@@ -37,7 +37,7 @@ def filters(node):
         publisher.publish(Int32(data=number))
     for _ in range(2):
         rclpy.spin_once(node, timeout_sec=1.0)
-    print("filtered", heard)
+    print("filtered", received)
 
 
 def errors(node):

@@ -1,4 +1,4 @@
-"""Says where the simulated robot is and when, and what becomes of its goal, in JSON.
+"""Prints the pose of the simulated robot and the state of its goal as JSON.
 
 Run as a program: the tests read its output.
 """
