@@ -32,7 +32,7 @@ class ProgramRun:
 
     @property
     def is_good(self) -> bool:
-        """Whether all was printed and the run ended, or was interrupted, without error."""
+        """Whether all was printed and the run ended or was interrupted cleanly."""
         return not self.faults()
 
     def faults(self) -> list[str]:

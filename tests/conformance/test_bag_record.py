@@ -44,7 +44,7 @@ def environment(router: str) -> dict[str, str]:
 
 
 class Talker:
-    """Publishes numbers at 100 Hz on ``/chatter`` and a latched word, in this process."""
+    """Publishes numbers at 100 Hz on ``/chatter``, and a latched word."""
 
     def __init__(self, context: Context) -> None:
         self.executor = Executor(context=context)

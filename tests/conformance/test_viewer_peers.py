@@ -185,9 +185,7 @@ def conversation(address: str) -> dict[str, Any]:
 
 def test_frames_have_the_form_of_the_foxglove_server(reference: str) -> None:
     theirs = conversation(reference)
-    theirs["serverInfo"].pop(
-        "metadata"
-    )  # the metadata differ: library name and ROS distribution
+    theirs["serverInfo"].pop("metadata")  # library name, ROS distribution
     with Program(SpeedyRobot) as program:
         ours = conversation(program.address)
     for name, frame in theirs.items():
