@@ -164,9 +164,9 @@ def test_programs_run_in_the_same_process(
     out, err = player.communicate(timeout=LIMIT_S)
     assert sorted(out.split("\n")) == [
         "",
-        f"received {COUNT} 0",
         "map of the world",
         "ready",
+        f"received {COUNT} 0",
     ]
     assert player.returncode == 0, err
     assert "played: 201 messages" in err
