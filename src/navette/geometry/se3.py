@@ -3,10 +3,15 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from navette.geometry.se2 import Pose2
 
 Quaternion = tuple[float, float, float, float]
 Vector3 = tuple[float, float, float]
+
+_AXES: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
@@ -55,6 +60,11 @@ def rotate(q: Quaternion, v: Vector3) -> Vector3:
         vy + w * ty + z * tx - x * tz,
         vz + w * tz + x * ty - y * tx,
     )
+
+
+def rotation_matrix(q: Quaternion) -> NDArray[np.float64]:
+    """Rotation matrix, shape (3, 3), of the unit quaternion ``q``."""
+    return np.array([rotate(q, axis) for axis in _AXES]).T
 
 
 def slerp(a: Quaternion, b: Quaternion, fraction: float) -> Quaternion:

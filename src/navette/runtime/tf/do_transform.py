@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from navette.geometry import Transform3
 from navette.geometry.se3 import Vector3 as Triple
-from navette.geometry.se3 import rotate
+from navette.geometry.se3 import rotate, rotation_matrix
 from navette.msgs.geometry_msgs.msg import (
     Point,
     Point32,
@@ -135,10 +135,8 @@ def transform_covariance(
         36 values, row by row.
     """
     rotation = transform_from_msg(transform.transform).rotation
-    axes: tuple[Triple, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    R = np.array([rotate(rotation, axis) for axis in axes]).T
     blocks = np.zeros((6, 6))
-    blocks[:3, :3] = blocks[3:, 3:] = R
+    blocks[:3, :3] = blocks[3:, 3:] = rotation_matrix(rotation)
     covariance = np.asarray(cov_in, dtype=np.float64).reshape(6, 6)
     rotated: NDArray[np.float64] = (blocks @ covariance @ blocks.T).ravel()
     return rotated

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.geometry.se3 import Quaternion, Vector3, rotate
+from navette.geometry.se3 import rotation_matrix
 from navette.msgs import copy_message
 from navette.msgs.geometry_msgs.msg import Transform, TransformStamped
 from navette.msgs.sensor_msgs.msg import PointCloud2
@@ -28,8 +28,6 @@ from navette.runtime.tf import (
 
 __all__ = ["do_transform_cloud", "from_msg_msg", "to_msg_msg", "transform_points"]
 
-_AXES: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
 
 def transform_points(
     point_cloud: NDArray[Any], transform: Transform
@@ -44,9 +42,8 @@ def transform_points(
         (N, 3) points (m) in a.
     """
     t, q = transform.translation, transform.rotation
-    rotation: Quaternion = (q.x, q.y, q.z, q.w)
-    R_transposed = np.array([rotate(rotation, axis) for axis in _AXES])
-    transformed: NDArray[np.float64] = point_cloud @ R_transposed + (t.x, t.y, t.z)
+    R = rotation_matrix((q.x, q.y, q.z, q.w))
+    transformed: NDArray[np.float64] = point_cloud @ R.T + (t.x, t.y, t.z)
     return transformed
 
 

@@ -5,10 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from navette.geometry.se3 import Vector3, rotate
+from navette.geometry.se3 import rotation_matrix
 from navette.ros2.packages.tf_transformations.quaternions import Array, unit
-
-_AXES: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def identity_matrix() -> Array:
@@ -29,9 +27,8 @@ def translation_from_matrix(matrix: ArrayLike) -> Array:
 
 def quaternion_matrix(quaternion: ArrayLike) -> Array:
     """Return the matrix of a quaternion's rotation."""
-    rotation = unit(quaternion)
     matrix = np.eye(4)
-    matrix[:3, :3] = np.array([rotate(rotation, axis) for axis in _AXES]).T
+    matrix[:3, :3] = rotation_matrix(unit(quaternion))
     return matrix
 
 
