@@ -59,26 +59,36 @@ class ParameterStore:
         if name in self.values:
             raise ParameterAlreadyDeclaredException(name)
         descriptor.name = name
-        result = self._try_set([parameter], {name: descriptor})
+        if descriptor.dynamic_typing:
+            descriptor.type = int(parameter.type_)
+        reason = _range_rejection(parameter, descriptor)
+        result = _rejected(reason) if reason else self._run_callbacks([parameter])
         if not result.successful:
             reason = f"{result.reason} (from {origin})" if origin else result.reason
             raise InvalidParameterValueException(name, parameter.value, reason)
+        self.descriptors[name] = descriptor
+        self.values[name] = parameter
+        self._report(([parameter], [], []), [parameter])
 
     def set(self, parameters: Sequence[Parameter[Any]]) -> SetParametersResult:
         """Set all parameters or none; the result contains the reason of a rejection."""
-        wanted = list(parameters)
+        requested = list(parameters)
         for pre in self.pre_callbacks:
-            wanted = pre(wanted)
-        if self.pre_callbacks and not wanted:
-            return SetParametersResult(
-                successful=False,
-                reason="the pre-set callbacks left no parameter to set",
-            )
+            requested = pre(requested)
+        if self.pre_callbacks and not requested:
+            return _rejected("the pre-set callbacks left no parameter to set")
         try:
-            wanted = [self._coerced(parameter) for parameter in wanted]
+            requested = [self._coerced(parameter) for parameter in requested]
         except ParameterError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return self._try_set(wanted, None)
+            return _rejected(str(error))
+        for parameter in requested:
+            reason = self._rejection(parameter)
+            if reason:
+                return _rejected(reason)
+        result = self._run_callbacks(requested)
+        if result.successful:
+            self._report(self._store(requested), requested)
+        return result
 
     def remove(self, name: str) -> None:
         del self.values[name]
@@ -93,20 +103,25 @@ class ParameterStore:
             or parameter.type_ is ParameterType.NOT_SET
         ):
             return parameter
-        wanted = ParameterType(descriptor.type)
-        value = coerced(parameter.name, parameter.value, wanted)
-        return Parameter(parameter.name, wanted, value)
+        declared = ParameterType(descriptor.type)
+        value = coerced(parameter.name, parameter.value, declared)
+        return Parameter(parameter.name, declared, value)
 
-    def _try_set(
-        self,
-        parameters: list[Parameter[Any]],
-        descriptors: dict[str, ParameterDescriptor] | None,
-    ) -> SetParametersResult:
-        """Check all parameters, then store them; ``descriptors`` of a declaration."""
-        for parameter in parameters:
-            reason = self._rejection(parameter, descriptors)
-            if reason:
-                return SetParametersResult(successful=False, reason=reason)
+    def _rejection(self, parameter: Parameter[Any]) -> str:
+        """Return why the descriptor rejects a new value; empty if it does not."""
+        name = parameter.name
+        descriptor = self.descriptors.get(name)
+        if descriptor is None:
+            return ""
+        if descriptor.read_only:
+            return f"parameter {name!r} is read-only"
+        if descriptor.dynamic_typing:
+            descriptor.type = int(parameter.type_)
+        elif parameter.type_ is ParameterType.NOT_SET:
+            return f"static parameter {name!r} cannot be undeclared"
+        return _range_rejection(parameter, descriptor)
+
+    def _run_callbacks(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
         for callback in self.on_callbacks:
             result: Any = callback(parameters)
             if not isinstance(result, SetParametersResult):  # a forgotten return
@@ -116,54 +131,19 @@ class ParameterStore:
                 )
             if not result.successful:
                 return result
-        self._on_change(self._store(parameters, descriptors))
-        for post in self.post_callbacks:
-            post(parameters)
         return SetParametersResult(successful=True)
 
-    def _rejection(
-        self,
-        parameter: Parameter[Any],
-        descriptors: dict[str, ParameterDescriptor] | None,
-    ) -> str:
-        name = parameter.name
-        descriptor = (self.descriptors if descriptors is None else descriptors).get(
-            name
-        )
-        if descriptor is None:
-            return ""
-        if descriptors is None and descriptor.read_only:
-            return f"parameter {name!r} is read-only"
-        if descriptor.dynamic_typing:
-            descriptor.type = int(parameter.type_)
-        elif parameter.type_ is ParameterType.NOT_SET:
-            if descriptors is None:
-                return f"static parameter {name!r} cannot be undeclared"
-        elif parameter.type_ != descriptor.type:
-            return (
-                f"parameter {name!r}: {parameter.value!r} is {parameter.type_.name}, "
-                f"expected {ParameterType(descriptor.type).name}"
-            )
-        return _range_rejection(parameter, descriptor)
-
-    def _store(
-        self,
-        parameters: list[Parameter[Any]],
-        descriptors: dict[str, ParameterDescriptor] | None,
-    ) -> Changes:
-        new: list[Parameter[Any]] = []
-        changed: list[Parameter[Any]] = []
-        deleted: list[Parameter[Any]] = []
+    def _store(self, parameters: list[Parameter[Any]]) -> Changes:
+        changes: Changes = ([], [], [])
+        new, changed, deleted = changes
         for parameter in parameters:
             name = parameter.name
-            if descriptors is None and parameter.type_ is ParameterType.NOT_SET:
+            if parameter.type_ is ParameterType.NOT_SET:
                 deleted.append(parameter)
                 self.values.pop(name, None)
                 self.descriptors.pop(name, None)
                 continue
-            if descriptors is not None:
-                self.descriptors[name] = descriptors[name]
-            elif name not in self.descriptors:
+            if name not in self.descriptors:
                 self.descriptors[name] = ParameterDescriptor(
                     name=name, type=int(parameter.type_), dynamic_typing=True
                 )
@@ -171,7 +151,16 @@ class ParameterStore:
             is_new = before is None or before.type_ is ParameterType.NOT_SET
             (new if is_new else changed).append(parameter)
             self.values[name] = parameter
-        return new, changed, deleted
+        return changes
+
+    def _report(self, changes: Changes, parameters: list[Parameter[Any]]) -> None:
+        self._on_change(changes)
+        for post in self.post_callbacks:
+            post(parameters)
+
+
+def _rejected(reason: str) -> SetParametersResult:
+    return SetParametersResult(successful=False, reason=reason)
 
 
 def _range_rejection(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> str:

@@ -343,6 +343,15 @@ def test_the_on_set_callback_can_reject(node: Node) -> None:
     assert node.set_parameters([Parameter("x", value=6)])[0].successful
 
 
+def test_the_on_set_callback_can_reject_without_a_reason(node: Node) -> None:
+    node.declare_parameter("x", 1)
+    node.add_on_set_parameters_callback(lambda _: SetParametersResult(successful=False))
+    assert not node.set_parameters([Parameter("x", value=6)])[0].successful
+    with pytest.raises(InvalidParameterValueException):
+        node.declare_parameter("y", 1)
+    assert not node.has_parameter("y")
+
+
 def test_the_pre_set_callback_can_change_and_the_post_set_callback_runs_after(
     node: Node,
 ) -> None:
