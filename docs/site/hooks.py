@@ -14,6 +14,7 @@ from typing import Any
 from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).parents[2]
+ROLE = re.compile(r":(?:attr|class|data|exc|func|meth|mod):<code>~?")
 LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?(\))")
 
 # Files outside docs/ with the page that shows them.
@@ -62,6 +63,11 @@ def on_files(files: Files, config: Any) -> Files:
         files.append(File.generated(config, f"examples/{path.stem}.md", content=page))
     files.append(File.generated(config, "examples/index.md", content=_contents()))
     return files
+
+
+def on_page_content(html: str, **_: Any) -> str:
+    """Show names of Sphinx roles (:class:`Node`) as plain code."""
+    return ROLE.sub(r"<code>", html)
 
 
 def on_page_markdown(markdown: str, *, page: Any, **_: Any) -> str:
