@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from navette.errors import InvalidValueError
 from navette.transports import EndpointQos, ReliabilityPolicy
 from navette.transports.zenoh.retransmission import retransmits
 from navette.transports.zenoh.settings import Settings
@@ -31,3 +32,8 @@ def test_reliable_endpoints_retransmit_if_latched_or_listed(
 ) -> None:
     patterns = Settings.from_environment({"NAVETTE_RETRANSMIT": setting}).retransmit
     assert retransmits(qos, topic, patterns) is expected
+
+
+def test_a_topic_without_its_namespace_is_refused() -> None:
+    with pytest.raises(InvalidValueError, match="NAVETTE_RETRANSMIT: 'goal' is not a"):
+        Settings.from_environment({"NAVETTE_RETRANSMIT": "/map, goal"})

@@ -6,7 +6,7 @@ Any program can send them, so every field is checked and limited.
 import json
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, NamedTuple, TypeVar
 
 from navette.errors import DecodeError
@@ -41,7 +41,7 @@ class StepReport:
         step: number of the step; 0 before the first.
         nodes: full names of its nodes.
         own: how many nodes and endpoints it has announced.
-        seen: session → how many known nodes and endpoints of it.
+        seen: session → number of its nodes and endpoints that are known here.
         sent: publishers by gid that have sent samples since the last step.
     """
 
@@ -52,14 +52,7 @@ class StepReport:
     sent: Mapping[bytes, Sent]
 
     def encode(self) -> bytes:
-        record = {
-            "step": self.step,
-            "nodes": self.nodes,
-            "own": self.own,
-            "seen": dict(self.seen),
-            "sent": _packed(self.sent),
-        }
-        return json.dumps(record, separators=(",", ":")).encode()
+        return _encoded(self)
 
 
 @dataclass(frozen=True)
@@ -83,15 +76,7 @@ class StepGrant:
     is_last: bool = False
 
     def encode(self) -> bytes:
-        record = {
-            "coordinator": self.coordinator,
-            "step": self.step,
-            "until_ns": self.until_ns,
-            "roster": self.roster,
-            "sent": _packed(self.sent),
-            "is_last": self.is_last,
-        }
-        return json.dumps(record, separators=(",", ":")).encode()
+        return _encoded(self)
 
 
 def parse_report(data: bytes) -> StepReport:
@@ -100,7 +85,7 @@ def parse_report(data: bytes) -> StepReport:
     Raises:
         DecodeError: ``data`` is not a report.
     """
-    record = _record(data, {"step", "nodes", "own", "seen", "sent"})
+    record = _record(data, StepReport)
     return StepReport(
         step=_count(record["step"], "step"),
         nodes=_list(record["nodes"], "nodes", _name),
@@ -119,8 +104,7 @@ def parse_grant(data: bytes) -> StepGrant:
     Raises:
         DecodeError: ``data`` is not a grant.
     """
-    fields = {"coordinator", "step", "until_ns", "roster", "sent", "is_last"}
-    record = _record(data, fields)
+    record = _record(data, StepGrant)
     if not isinstance(record["is_last"], bool):
         raise DecodeError("is_last: expected true or false")
     return StepGrant(
@@ -133,19 +117,21 @@ def parse_grant(data: bytes) -> StepGrant:
     )
 
 
-def _packed(sent: Mapping[bytes, Sent]) -> dict[str, list[Any]]:
-    return {gid.hex(): list(each) for gid, each in sent.items()}
+def _encoded(message: StepReport | StepGrant) -> bytes:
+    sent = {gid.hex(): list(each) for gid, each in message.sent.items()}
+    return json.dumps({**vars(message), "sent": sent}, separators=(",", ":")).encode()
 
 
-def _record(data: bytes, fields: set[str]) -> dict[str, Any]:
+def _record(data: bytes, kind: type) -> dict[str, Any]:
     if len(data) > MAX_BYTES:
         raise DecodeError(f"{len(data)} bytes: longer than {MAX_BYTES}")
     try:
         record = json.loads(data)
     except (ValueError, RecursionError) as error:
         raise DecodeError(f"not JSON: {error}") from error
-    if not isinstance(record, dict) or record.keys() != fields:
-        raise DecodeError(f"expected an object with {', '.join(sorted(fields))}")
+    names = {field.name for field in fields(kind)}
+    if not isinstance(record, dict) or record.keys() != names:
+        raise DecodeError(f"expected an object with {', '.join(sorted(names))}")
     return record
 
 

@@ -88,7 +88,7 @@ class Settings:
             service_timeout_s=_seconds(
                 environment, "NAVETTE_SERVICE_TIMEOUT", DEFAULT_SERVICE_TIMEOUT_S
             ),
-            retransmit=_list(environment, "NAVETTE_RETRANSMIT"),
+            retransmit=_topics(environment, "NAVETTE_RETRANSMIT"),
         )
 
 
@@ -100,6 +100,17 @@ def _is_local(endpoint: str) -> bool:
 def _list(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
     parts = (part.strip() for part in environment.get(name, "").split(","))
     return tuple(part for part in parts if part)
+
+
+def _topics(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
+    topics = _list(environment, name)
+    for topic in topics:
+        if not topic.startswith(("/", "*")):
+            raise InvalidValueError(
+                f"{name}: {topic!r} is not a full topic name; expected /topic or a "
+                "pattern such as /arm/*"
+            )
+    return topics
 
 
 def _endpoints(environment: Mapping[str, str], name: str) -> tuple[str, ...]:
