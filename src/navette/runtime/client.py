@@ -6,8 +6,6 @@ from typing import Any
 
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.context import Context
-from navette.runtime.destroyable import EntityOwner
 from navette.runtime.events import Entity
 from navette.runtime.exceptions import (
     InvalidHandle,
@@ -16,6 +14,7 @@ from navette.runtime.exceptions import (
     ServiceTimeoutError,
 )
 from navette.runtime.future import Future, ResponseFuture
+from navette.runtime.node_entities import NodeEntities
 from navette.runtime.qos import QoSProfile
 from navette.runtime.service_endpoint import ServiceEndpoint
 from navette.runtime.service_introspection import ServiceEvents
@@ -51,14 +50,13 @@ class Client(ServiceEndpoint):
 
     def __init__(
         self,
-        context: Context,
         endpoint: Endpoint,
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         events: ServiceEvents,
-        owner: EntityOwner,
+        entities: NodeEntities,
     ) -> None:
-        self.context = context
+        self.context = context = entities.context
         self.endpoint = endpoint
         self.group = callback_group
         self.qos_profile = qos_profile
@@ -70,7 +68,7 @@ class Client(ServiceEndpoint):
         self._sequence = 0
         self._lock = threading.Lock()
         self._destroyed = False
-        self._owner = owner
+        self._entities = entities
 
     def open_port(self, transport: Transport) -> None:
         """Also send requests through that transport.
@@ -192,4 +190,4 @@ class Client(ServiceEndpoint):
             port.close()
         for future in list(self._pending.values()):
             future.cancel()
-        self._owner.forget(self)
+        self._entities.forget(self)

@@ -2,13 +2,7 @@
 
 from abc import ABC, abstractmethod
 from types import TracebackType
-from typing import Any, Protocol, Self
-
-
-class EntityOwner(Protocol):
-    """Registry that an entity is removed from when it is destroyed."""
-
-    def forget(self, entity: Any) -> None: ...
+from typing import Self
 
 
 class Destroyable(ABC):

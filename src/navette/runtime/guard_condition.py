@@ -5,19 +5,19 @@ from typing import Any
 
 from navette.runtime.callback_groups import CallbackGroup
 from navette.runtime.context import Context, get_default_context
-from navette.runtime.destroyable import EntityOwner
 from navette.runtime.events import Entity
 from navette.runtime.handles import Handle
+from navette.runtime.node_entities import NodeEntities
 
 
 class GuardCondition(Entity):
     """Runs a callback after :meth:`trigger`. Created by ``create_guard_condition``.
 
     Triggers before the callback has started count as one. A guard condition without
-    an owner belongs to no node: its callback runs whenever the context's loop runs.
+    ``entities`` belongs to no node: its callback runs whenever the loop runs.
     """
 
-    __slots__ = ("_loop", "_node_name", "_owner", "_triggered", "callback")
+    __slots__ = ("_entities", "_loop", "_triggered", "callback")
 
     def __init__(
         self,
@@ -25,14 +25,12 @@ class GuardCondition(Entity):
         callback_group: CallbackGroup | None = None,
         context: Context | None = None,
         *,
-        node_name: str = "",
-        owner: EntityOwner | None = None,
+        entities: NodeEntities | None = None,
     ) -> None:
         self.callback = callback
         self._loop = (context or get_default_context()).loop
         self.group = callback_group or self._loop.free_group
-        self._node_name = node_name
-        self._owner = owner
+        self._entities = entities
         self._triggered = False
 
     @property
@@ -64,9 +62,10 @@ class GuardCondition(Entity):
         return None if self.callback is None else self.callback()
 
     def origin(self) -> tuple[str, str]:
-        return self._node_name, "guard condition"
+        entities = self._entities
+        return "" if entities is None else entities.full_name, "guard condition"
 
     def destroy(self) -> None:
         self._triggered = False
-        if self._owner is not None:
-            self._owner.forget(self)
+        if self._entities is not None:
+            self._entities.forget(self)

@@ -433,8 +433,7 @@ class Node(GraphQueries, NodeParameters):
             self._node_entities.adopt(callback_group),
             seconds_to_ns(float(timer_period_sec)),
             clock or self._clock,
-            node_name=self._node_entities.full_name,
-            owner=self._node_entities,
+            self._node_entities,
             autostart=autostart,
         )
         self._node_entities.add(timer)
@@ -447,7 +446,6 @@ class Node(GraphQueries, NodeParameters):
         rate = Rate(
             round(1e9 / frequency),
             clock or self._clock,
-            self._context,
             self._node_entities,
         )
         self._node_entities.add(rate)
@@ -463,8 +461,7 @@ class Node(GraphQueries, NodeParameters):
             callback,
             self._node_entities.adopt(callback_group),
             self._context,
-            node_name=self._node_entities.full_name,
-            owner=self._node_entities,
+            entities=self._node_entities,
         )
         self._node_entities.add(guard)
         return guard

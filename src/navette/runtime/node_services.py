@@ -46,7 +46,6 @@ class NodeServices:
             callback,
             self._entities.adopt(callback_group),
             qos_profile,
-            context.loop,
             ServiceEvents(endpoint, self._topics),
             self._entities,
             deferred=deferred,
@@ -73,7 +72,6 @@ class NodeServices:
         endpoint = self._endpoint(EndpointKind.CLIENT, type_name, srv_name, qos_profile)
         context = self._entities.context
         client = Client(
-            context,
             endpoint,
             self._entities.adopt(callback_group),
             qos_profile,

@@ -62,7 +62,7 @@ class NodeTopics:
             watch.stop()
             raise
         publisher = publisher_class(
-            msg_type, endpoint, qos, ports, context.loop, self._entities, watch
+            msg_type, endpoint, qos, ports, self._entities, watch
         )
         self._entities.add(publisher)
         return publisher
@@ -94,7 +94,6 @@ class NodeTopics:
             callback,
             self._entities.adopt(callback_group),
             qos,
-            context.loop,
             self._entities,
             watch,
             raw=raw,

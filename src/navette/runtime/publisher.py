@@ -5,9 +5,9 @@ from typing import Any, Generic, TypeVar, cast
 
 from navette.errors import DecodeError
 from navette.msgs import deserialize
-from navette.runtime.destroyable import Destroyable, EntityOwner
+from navette.runtime.destroyable import Destroyable
 from navette.runtime.exceptions import InvalidHandle
-from navette.runtime.loop import EventLoop
+from navette.runtime.node_entities import NodeEntities
 from navette.runtime.qos import QoSProfile
 from navette.runtime.qos_events import EventHandler
 from navette.runtime.qos_watch import EndpointWatch
@@ -24,8 +24,8 @@ class Publisher(Destroyable, Generic[MsgT]):
     """Sends messages to a topic. Created by :meth:`Node.create_publisher`."""
 
     __slots__ = (
+        "_entities",
         "_loop",
-        "_owner",
         "_send",
         "_sequence",
         "_watch",
@@ -42,18 +42,17 @@ class Publisher(Destroyable, Generic[MsgT]):
         endpoint: Endpoint,
         qos_profile: QoSProfile,
         ports: list[PublisherPort],
-        loop: EventLoop,
-        owner: EntityOwner,
+        entities: NodeEntities,
         watch: EndpointWatch,
     ) -> None:
         self.msg_type = msg_type
         self.endpoint = endpoint
         self.qos_profile = qos_profile
         self.ports = ports
-        self._loop = loop
+        self._loop = entities.context.loop
         self._sequence = max((port.initial_sequence for port in ports), default=0)
         self.event_handlers: list[EventHandler] = watch.event_handlers
-        self._owner = owner
+        self._entities = entities
         self._watch = watch
         send = ports[0].send if len(ports) == 1 else self._send_to_all
         self._send = watch.observe(send)
@@ -107,7 +106,7 @@ class Publisher(Destroyable, Generic[MsgT]):
             port.close()
         self._send = self._refuse_to_send
         self._watch.stop()
-        self._owner.forget(self)
+        self._entities.forget(self)
 
     def _send_to_all(self, message: Any, source_ns: int, sequence: int) -> None:
         for port in self.ports:

@@ -1,8 +1,7 @@
 """Rate: run a loop at a fixed frequency."""
 
-from navette.runtime.context import Context
-from navette.runtime.destroyable import EntityOwner
 from navette.runtime.exceptions import ROSInterruptException
+from navette.runtime.node_entities import NodeEntities
 from navette.runtime.ros_clock import Clock
 
 
@@ -13,15 +12,13 @@ class Rate:
     (``while ok(): …; rate.sleep()``), whether or not another thread spins.
     """
 
-    def __init__(
-        self, period_ns: int, clock: Clock, context: Context, owner: EntityOwner
-    ) -> None:
+    def __init__(self, period_ns: int, clock: Clock, entities: NodeEntities) -> None:
         self._period_ns = period_ns
         self._clock = clock
-        self._context = context
+        self._context = entities.context
         self._next_ns = clock.now_ns + period_ns
         self._destroyed = False
-        self._owner = owner
+        self._entities = entities
 
     def sleep(self) -> None:
         """Return at the end of the period, or immediately if that has passed.
@@ -44,4 +41,4 @@ class Rate:
 
     def destroy(self) -> None:
         self._destroyed = True
-        self._owner.forget(self)
+        self._entities.forget(self)

@@ -8,9 +8,8 @@ from navette.errors import MessageError
 from navette.msgs import type_name
 from navette.msgs.service_msgs.msg import ServiceEventInfo
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.destroyable import EntityOwner
 from navette.runtime.events import Entity
-from navette.runtime.loop import EventLoop
+from navette.runtime.node_entities import NodeEntities
 from navette.runtime.qos import QoSProfile
 from navette.runtime.service_endpoint import ServiceEndpoint
 from navette.runtime.service_introspection import ServiceEvents
@@ -32,9 +31,9 @@ class Service(ServiceEndpoint, Entity):
 
     __slots__ = (
         "_deferred",
+        "_entities",
         "_events",
         "_loop",
-        "_owner",
         "_queue",
         "callback",
         "endpoint",
@@ -48,9 +47,8 @@ class Service(ServiceEndpoint, Entity):
         callback: Callable[[Any, Any], Any],
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
-        loop: EventLoop,
         events: ServiceEvents,
-        owner: EntityOwner,
+        entities: NodeEntities,
         *,
         deferred: bool = False,
     ) -> None:
@@ -60,11 +58,11 @@ class Service(ServiceEndpoint, Entity):
         self.qos_profile = qos_profile
         self.ports: list[ServicePort] = []
         self._deferred = deferred
-        self._loop = loop
+        self._loop = entities.context.loop
         self._events = events
         # Unbounded: the client of a dropped request would wait indefinitely.
         self._queue: deque[Request] = deque()
-        self._owner = owner
+        self._entities = entities
 
     def receive(self, request: Request) -> None:
         """Queue a request (the transport's sink)."""
@@ -115,7 +113,7 @@ class Service(ServiceEndpoint, Entity):
         for port in self.ports:
             port.close()
         self._queue.clear()
-        self._owner.forget(self)
+        self._entities.forget(self)
 
     def _call(self, request: Request) -> Any:
         if self._deferred:

@@ -7,10 +7,10 @@ from typing import Any, Generic, NamedTuple, TypedDict, TypeVar
 
 from navette.msgs import serialize
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.destroyable import Destroyable, EntityOwner
+from navette.runtime.destroyable import Destroyable
 from navette.runtime.events import Entity
 from navette.runtime.handles import Handle
-from navette.runtime.loop import EventLoop
+from navette.runtime.node_entities import NodeEntities
 from navette.runtime.qos import QoSProfile
 from navette.runtime.qos_events import EventHandler
 from navette.runtime.qos_watch import EndpointWatch
@@ -70,10 +70,10 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
     __slots__ = (
         "_callback",
         "_direct_limit",
+        "_entities",
         "_filter",
         "_filter_options",
         "_loop",
-        "_owner",
         "_plain",
         "_queue",
         "_ready",
@@ -97,8 +97,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         callback: Callable[..., Any],
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
-        loop: EventLoop,
-        owner: EntityOwner,
+        entities: NodeEntities,
         watch: EndpointWatch,
         *,
         raw: bool = False,
@@ -118,10 +117,10 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         self._filter: Callable[[Any], bool] | None = None
         self._filter_options = ContentFilterOptions("", [])
         self._queue: deque[Item] = deque(maxlen=endpoint.qos.queue_length)
-        self._loop = loop
-        self._ready = loop.ready
+        self._loop = entities.context.loop
+        self._ready = self._loop.ready
         self._received = 0
-        self._owner = owner
+        self._entities = entities
         self._watch = watch
         self.callback = callback
 
@@ -253,7 +252,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
             port.close()
         self._queue.clear()
         self._watch.stop()
-        self._owner.forget(self)
+        self._entities.forget(self)
 
     def _unwrapped(self, message: Any) -> Any:
         """Return the message; None if it expired or cannot be decoded."""

@@ -5,8 +5,9 @@ from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.runtime.callback_groups import CallbackGroup
-from navette.runtime.destroyable import Destroyable, EntityOwner
+from navette.runtime.destroyable import Destroyable
 from navette.runtime.events import Entity
+from navette.runtime.node_entities import NodeEntities
 from navette.runtime.ros_clock import Clock, ClockChange, JumpThreshold, TimeJump
 from navette.runtime.signatures import takes_arguments
 from navette.runtime.time import ClockType, Duration, Time
@@ -39,11 +40,10 @@ class Timer(Destroyable, Entity):
     __slots__ = (
         "_callback",
         "_clock",
+        "_entities",
         "_jump_handle",
         "_last_ns",
         "_next_ns",
-        "_node_name",
-        "_owner",
         "_period_ns",
         "_takes_info",
         "token",
@@ -55,17 +55,15 @@ class Timer(Destroyable, Entity):
         callback_group: CallbackGroup,
         timer_period_ns: int,
         clock: Clock,
+        entities: NodeEntities,
         *,
-        node_name: str = "",
-        owner: EntityOwner | None = None,
         autostart: bool = True,
     ) -> None:
         self._callback = callback
         self._takes_info = callback is not None and takes_arguments(callback, 1)
         self.group = callback_group
         self._clock = clock
-        self._node_name = node_name
-        self._owner = owner
+        self._entities = entities
         self._period_ns = _checked_period(timer_period_ns)
         self._last_ns = clock.now_ns
         self._next_ns = self._last_ns + self._period_ns
@@ -134,11 +132,10 @@ class Timer(Destroyable, Entity):
         """Stop the timer and remove it from its node."""
         self.token = -1
         self._jump_handle.unregister()
-        if self._owner is not None:
-            self._owner.forget(self)
+        self._entities.forget(self)
 
     def origin(self) -> tuple[str, str]:
-        return self._node_name, f"timer of {self._period_ns / 1e9:g} s"
+        return self._entities.full_name, f"timer of {self._period_ns / 1e9:g} s"
 
     def run(self) -> Any:
         if self.token == -1:  # cancelled while the event was queued
