@@ -5,7 +5,6 @@ recording's time: their timers run, a message and all that follows from it is do
 before the next, and no wall clock is asked. So two replays write the same bytes.
 """
 
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -27,7 +26,7 @@ from navette.runtime import (
     VirtualClock,
 )
 from navette.runtime.context import Scope, current_scope
-from navette.runtime.overrides import OverrideSet, ParameterOverrides
+from navette.runtime.overrides import ParameterOverrides
 from navette.topics import TF, TF_STATIC
 from navette.transports import EndpointKind
 
@@ -94,7 +93,9 @@ class Replay:
             self.context.init(list(arguments), console_level=LoggingSeverity.WARN)
             with _default_context(self.context):
                 self.nodes = [make(self.context) for make in makers]
-            _check_reached(self.context.overrides.sets[given:], self.nodes)
+            by_user = ParameterOverrides()
+            by_user.sets = self.context.overrides.sets[given:]
+            by_user.check_used_by(self.nodes)
             self.outputs = self._topics_of(EndpointKind.PUBLISHER)
             self.inputs = self._choose_inputs(source, also)
             self.recorder = None if record is None else self._record(record)
@@ -193,23 +194,6 @@ class Replay:
         )
         self._stack.callback(recorder.close)
         return recorder
-
-
-def _check_reached(sets: Sequence[OverrideSet], nodes: Sequence[Node]) -> None:
-    """Raise for values that reach no node.
-
-    A file is often that of a whole stack: entries for others are theirs, but a file
-    without any entry for one of these was given in vain.
-    """
-    names = [node.get_fully_qualified_name() for node in nodes]
-    by_origin: dict[str, list[OverrideSet]] = defaultdict(list)
-    for each in sets:
-        by_origin[each.origin].append(each)
-    checked = ParameterOverrides()
-    for group in by_origin.values():
-        own = [each for each in group if any(map(each.matches, names))]
-        checked.sets += own or group
-    checked.check(nodes)
 
 
 @contextmanager
