@@ -132,9 +132,6 @@ def test_error_names_file_and_line(tmp_path: Path) -> None:
         read_parameter_file(tmp_path / "missing.yaml")
 
 
-# -- which nodes ---------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("pattern", "node", "fits"),
     [
@@ -227,9 +224,6 @@ def test_a_node_with_undeclared_parameters_passes() -> None:
     make_node(
         ["-p", "x:=1"], allow_undeclared_parameters=True
     ).context.check_overrides()
-
-
-# -- the command line ----------------------------------------------------------
 
 
 def test_arguments() -> None:

@@ -31,9 +31,6 @@ def node() -> Node:
     return Node("n", context=Context(clock=VirtualClock()))
 
 
-# -- the value types -----------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("value", "kind"),
     [
@@ -71,9 +68,6 @@ def test_type_and_value_must_agree() -> None:
         Parameter("p", T.INTEGER, True)
     with pytest.raises(TypeError, match=r"Parameter\.Type"):
         Parameter("p", "INTEGER", 1)  # type: ignore[arg-type]
-
-
-# -- declaring -----------------------------------------------------------------
 
 
 def test_declare_and_get(node: Node) -> None:
@@ -191,9 +185,6 @@ def test_declared_automatically_from_overrides() -> None:
         automatically_declare_parameters_from_overrides=True,
     )
     assert node.get_parameter("x").value == 5
-
-
-# -- types and ranges ----------------------------------------------------------
 
 
 def test_an_int_is_converted_to_a_double(node: Node) -> None:
@@ -315,9 +306,6 @@ def test_list_parameters(node: Node) -> None:
     assert node.list_parameters(["b"], 0).prefixes == ["b", "b.d", "b.d.f"]
     with pytest.raises(ValueError, match="depth"):
         node.list_parameters([], -1)
-
-
-# -- setting -------------------------------------------------------------------
 
 
 def test_one_by_one_or_all_or_none(node: Node) -> None:

@@ -164,9 +164,6 @@ def test_an_exception_in_a_callback_names_the_stage_and_the_topic() -> None:
         graph.run_for(0)
 
 
-# -- parameters ----------------------------------------------------------------
-
-
 def test_given_parameters_become_the_dataclass() -> None:
     _, node = harness("-p", "echo:gain:=2", "-p", "echo:corners:=[1, 2.5]")
     assert node.params == EchoParams(gain=2.0, corners=(1.0, 2.5))
@@ -239,9 +236,6 @@ def test_declare_params_on_any_node() -> None:
     graph = GraphHarness(args=["--ros-args", "-p", "times:=4"])
     node = Node("plain", context=graph.context)
     assert declare_params(node, EchoParams) == EchoParams(times=4)
-
-
-# -- status --------------------------------------------------------------------
 
 
 def test_status_on_change_and_then_twice_a_second() -> None:

@@ -196,9 +196,6 @@ def test_a_leading_slash_is_ignored(core: BufferCore) -> None:
     assert core.lookup("/map", "/base", 2 * S) == core.lookup("map", "base", 2 * S)
 
 
-# -- the message side ----------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "time_of",
     [

@@ -24,7 +24,7 @@ _IGNORE_FILES = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "NAVETTE_IGNO
 _OUTPUT_FOLDERS = ("build", "install", "log", "node_modules", "__pycache__")
 _DEPTH = 4  # workspace/src/repository/group/package
 _DEPTH_BESIDE = 1  # in a folder that is not a workspace, such as the home folder
-_SRC_ABOVE = 3  # greatest number of folders between a package and the workspace's src
+_SRC_ABOVE = 3  # maximum depth of a package below the workspace's src
 
 
 class PackageNotFoundError(UnknownNameError, KeyError):

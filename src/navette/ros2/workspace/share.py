@@ -87,9 +87,8 @@ def _place(view: Path, place: PurePosixPath, file: Path) -> None:
 def _link(target: Path, place: Path) -> None:
     try:
         place.symlink_to(target.resolve(), target_is_directory=target.is_dir())
-    except (
-        OSError
-    ):  # without the right to create links on Windows; copies do not follow changes
+    except OSError:
+        # Links require a privilege on Windows. Copies do not follow later changes.
         if target.is_dir():
             shutil.copytree(target, place)
         else:

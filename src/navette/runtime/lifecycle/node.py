@@ -60,8 +60,6 @@ class LifecycleNodeMixin(ManagedEntity):
         if enable_communication_interface:
             self._open_interface(callback_group)
 
-    # -- what a program does ---------------------------------------------------
-
     def trigger_configure(self) -> TransitionCallbackReturn:
         return self._change_state(Transition.TRANSITION_CONFIGURE)
 
@@ -113,8 +111,6 @@ class LifecycleNodeMixin(ManagedEntity):
         self._managed_entities.remove(publisher)
         return self._node.destroy_publisher(publisher)
 
-    # -- what a subclass may override ------------------------------------------
-
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         return self._call_entities("on_configure", state)
 
@@ -132,8 +128,6 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         return self._call_entities("on_error", state)
-
-    # -- transitions -----------------------------------------------------------
 
     def _call_entities(
         self, name: str, state: LifecycleState
@@ -186,8 +180,6 @@ class LifecycleNodeMixin(ManagedEntity):
         except Exception:
             self._node.get_logger().error(f"{name} raised:\n{traceback.format_exc()}")
             return TransitionCallbackReturn.ERROR
-
-    # -- services --------------------------------------------------------------
 
     def _open_interface(self, group: CallbackGroup | None) -> None:
         for type_name, name, callback in (

@@ -50,8 +50,6 @@ class Buffer(MessageCore, BufferInterface):
         """Clear the moving transforms after the clock jumped backward."""
         self.clear()
 
-    # -- lookup ----------------------------------------------------------------
-
     def lookup(self, target_frame: str, source_frame: str, stamp_ns: int) -> Transform3:
         """Return target_T_source as :meth:`lookup_transform`, but not as a message."""
         return self.core.lookup(target_frame, source_frame, stamp_ns)[0]
@@ -138,8 +136,6 @@ class Buffer(MessageCore, BufferInterface):
         result = self.can_transform_full_core(*query)
         return result if return_debug_tuple else result[0]
 
-    # -- await --------------------------------------------------------------
-
     async def lookup_transform_async(
         self, target_frame: str, source_frame: str, time: Any
     ) -> TransformStamped:
@@ -178,8 +174,6 @@ class Buffer(MessageCore, BufferInterface):
         """Return a future of the transform through ``fixed_frame``."""
         query = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._future_of(lambda: self.lookup_transform_full_core(*query))
-
-    # -- inside ----------------------------------------------------------------
 
     def _serve_frames(self, request: Any, response: Any) -> Any:
         response.frame_yaml = self.all_frames_as_yaml()

@@ -24,8 +24,6 @@ class MessageCore:
         self.core = BufferCore((cache_time or _DEFAULT_CACHE).nanoseconds)
         self._authorities: dict[str, str] = {}
 
-    # -- input ---------------------------------------------------------------
-
     def set_transform(self, transform: TransformStamped, authority: str = "") -> None:
         """Add a moving transform; ``authority`` is the name of its publisher."""
         self._set(transform, authority, is_static=False)
@@ -39,8 +37,6 @@ class MessageCore:
     def clear(self) -> None:
         """Delete the moving transforms."""
         self.core.drop_moving()
-
-    # -- lookup ----------------------------------------------------------------
 
     def lookup_transform_core(
         self, target_frame: str, source_frame: str, time: Any
@@ -101,8 +97,6 @@ class MessageCore:
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
         """Return the newest time at which the chain between the frames is known."""
         return Time(nanoseconds=self.core.newest_common_ns(target_frame, source_frame))
-
-    # -- the whole tree --------------------------------------------------------
 
     def all_frames_as_yaml(self) -> str:
         """Return parent, publisher, rate (Hz) and times (s) of each frame as YAML."""

@@ -49,9 +49,6 @@ class Sets:
         self.seen.append(tuple(stamp_ms_of(m) for m in messages))
 
 
-# -- filters and subscribers ---------------------------------------------------
-
-
 def test_callbacks_receive_their_arguments() -> None:
     source, seen = SimpleFilter(), []
     assert source.registerCallback(lambda *args: seen.append(args), "a", 1) == 0
@@ -72,9 +69,6 @@ def test_a_subscriber_is_a_subscription(graph: GraphHarness) -> None:
     assert subscriber.qos_profile.depth == 3
     with pytest.raises(AttributeError, match="no_such"):
         subscriber.no_such  # noqa: B018
-
-
-# -- cache ---------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -133,9 +127,6 @@ def test_messages_without_header(
     assert len(warnings) == 1
 
 
-# -- exact ---------------------------------------------------------------------
-
-
 def test_messages_with_equal_stamps(graph: GraphHarness) -> None:
     inputs = [Subscriber(graph.node, PointStamped, name) for name in ("a", "b", "c")]
     sets = Sets(TimeSynchronizer(inputs, 10))
@@ -160,9 +151,6 @@ def test_the_exact_synchronizer_requires_stamps(graph: GraphHarness) -> None:
     graph.publish("/text", String())
     with pytest.raises(CallbackError, match="String has no header"):
         graph.run_for(0.0)
-
-
-# -- approximate ---------------------------------------------------------------
 
 
 def test_messages_with_close_stamps() -> None:

@@ -223,9 +223,6 @@ def test_any_layout_is_read_as_it_was_written(
     assert [list(p) for p in point_cloud2.read_points_list(cloud)] == rows
 
 
-# -- tf2_sensor_msgs -----------------------------------------------------------
-
-
 def lidar_in_map() -> TransformStamped:
     transform = TransformStamped(child_frame_id="lidar")
     transform.header.frame_id = "map"

@@ -189,9 +189,6 @@ def test_a_text_is_not_a_bool() -> None:
     assert number.data == 0.5
 
 
-# -- interfaces by name --------------------------------------------------------
-
-
 def test_classes_by_name() -> None:
     assert utilities.get_message("std_msgs/msg/String") is String
     assert utilities.get_message("std_msgs/String") is String

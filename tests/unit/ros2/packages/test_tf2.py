@@ -223,9 +223,6 @@ def test_interface_alone_has_no_transforms() -> None:
         Half().can_transform_full("a", Time(), "b", Time(), "c")
 
 
-# -- tf2_geometry_msgs ---------------------------------------------------------
-
-
 def test_the_function_module_has_the_same_names() -> None:
     assert tf2_geometry_msgs.__all__ == functions.__all__
 

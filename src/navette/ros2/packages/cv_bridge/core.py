@@ -39,8 +39,6 @@ class CvBridge:
             for channels in (1, 2, 3, 4)
         }
 
-    # -- messages → images -----------------------------------------------------
-
     def imgmsg_to_cv2(
         self, img_msg: Image, desired_encoding: str = "passthrough"
     ) -> NDArray[Any]:
@@ -77,8 +75,6 @@ class CvBridge:
         channels = image.shape[2] if image.ndim == 3 else 1
         encoding = f"{_COLOURS[channels]}{8 * image.dtype.itemsize}"
         return converted(image, encoding, desired_encoding)
-
-    # -- images → messages -----------------------------------------------------
 
     def cv2_to_imgmsg(
         self,
@@ -128,8 +124,6 @@ class CvBridge:
         except cv2.error as error:
             raise CvBridgeError(f"{kind} image as {dst_format!r}: {error}") from error
         return CompressedImage(format=dst_format, data=data.tobytes())
-
-    # -- types -----------------------------------------------------------------
 
     def dtype_with_channels_to_cvtype2(self, dtype: Any, n_channels: int) -> str:
         """Return ``8UC3`` for three channels of uint8."""

@@ -72,8 +72,6 @@ class PinholeCameraModel:
         cropped[1, [1, 2]] /= self.binning_y
         return cropped
 
-    # -- rectifying ------------------------------------------------------------
-
     def rectifyImage(self, raw: Any, rectified: Any) -> None:
         """Write the rectified image into ``rectified``, which has the same size."""
         import cv2
@@ -92,8 +90,6 @@ class PinholeCameraModel:
         self._check()
         raw = np.array(uv_raw, dtype=np.float64).reshape(1, 1, 2)
         return cv2.undistortPoints(raw, self.K, self.D, R=self.R, P=self.P)[0, 0]
-
-    # -- pixels of the rectified image and points ------------------------------
 
     def project3dToPixel(self, point: Sequence[float]) -> Pixel:
         """Return the pixel of a point; nan in the camera's plane."""
@@ -123,8 +119,6 @@ class PinholeCameraModel:
     def getDeltaY(self, deltaV: float, Z: float) -> float:
         """Return the vertical distance in m of ``deltaV`` pixels at depth ``Z`` m."""
         return Z * deltaV / self.fy()
-
-    # -- parameters ------------------------------------------------------------
 
     def fullResolution(self) -> tuple[int, int]:
         """Return width and height of the whole sensor in pixels."""

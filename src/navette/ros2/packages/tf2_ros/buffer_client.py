@@ -117,8 +117,6 @@ class BufferClient(BufferInterface):
     def destroy(self) -> None:
         self.action_client.destroy()
 
-    # -- inside ----------------------------------------------------------------
-
     def _request(self, timeout: Duration | None, **goal: Any) -> TransformStamped:
         if not self.action_client.server_is_ready():
             raise TimeoutException(
