@@ -187,7 +187,7 @@ def _cases(cases: list[dict[str, Any]]) -> list[str]:
 
 
 def _notes(cases: list[dict[str, Any]]) -> list[str]:
-    """What was checked; said once where it holds for every case."""
+    """Notes of the cases; one line if all have the same note."""
     names: dict[str, list[str]] = {}
     for case in cases:
         if case["note"]:
