@@ -1,4 +1,4 @@
-"""The command line: ``navette demo``, ``navette sim``."""
+"""The command line: the ``navette`` command and its verbs."""
 
 from navette.cli.gc_tuning import uncollected
 from navette.cli.interruption import default_signal_action
@@ -7,7 +7,7 @@ __all__ = ["main"]
 
 
 def main() -> None:
-    """Entry point of the ``navette`` command; quiet at Ctrl-C from here on."""
+    """Entry point of the ``navette`` command, with the fastest possible import."""
     with default_signal_action(), uncollected():
         from navette.cli.app import main as run
 

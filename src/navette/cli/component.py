@@ -1,4 +1,4 @@
-"""``navette component``: nodes loaded into containers that run."""
+"""``navette component``: load nodes into running containers."""
 
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -25,21 +25,21 @@ if TYPE_CHECKING:
 
 component = Group(
     name="component",
-    help="Load nodes into containers that run, and take them out.",
+    help="Load nodes into running containers and unload them.",
 )
 
 Container = Annotated[
     str,
     Argument(
         metavar="CONTAINER",
-        help="As /component_container.",
+        help="Container name, such as /component_container.",
         complete=complete_nodes,
     ),
 ]
 Quiet = Annotated[
-    bool, Option("--quiet", "-q", help="Only ids and names of components.")
+    bool, Option("--quiet", "-q", help="Print only ids and names of components.")
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON, for programs.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 _SERVICES = {
     "list_nodes": "composition_interfaces/srv/ListNodes",
@@ -54,15 +54,17 @@ def list_(
     container: Annotated[
         str | None,
         Argument(
-            metavar="[CONTAINER]", help="By default all.", complete=complete_nodes
+            metavar="[CONTAINER]",
+            help="Container name. Default: all containers.",
+            complete=complete_nodes,
         ),
     ] = None,
     containers_only: Annotated[
-        bool, Option("--containers-only", help="Without what is in them.")
+        bool, Option("--containers-only", help="Print only the containers.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """List containers and the components in them."""
+    """List containers and their components."""
     with connect() as here:
         names = [_chosen(here, container)] if container else containers(here)
         requests = [_request(name, "list_nodes") for name in names]
@@ -95,31 +97,41 @@ def load(
         str,
         Argument(
             metavar="PACKAGE",
-            help="Where the class is.",
+            help="Package of the component.",
             complete=complete_packages,
         ),
     ],
     plugin: Annotated[
         str,
-        Argument(metavar="PLUGIN", help="As package::Class, or module:Class."),
+        Argument(metavar="PLUGIN", help="package::Class or module:Class."),
     ],
     node_name: Annotated[
-        str, Option("--node-name", "-n", metavar="NAME", help="Its name.")
+        str, Option("--node-name", "-n", metavar="NAME", help="Name of the node.")
     ] = "",
     node_namespace: Annotated[
         str,
-        Option("--node-namespace", metavar="NAMESPACE", help="Its namespace."),
+        Option("--node-namespace", metavar="NAMESPACE", help="Namespace of the node."),
     ] = "",
     log_level: Annotated[
-        str, Option("--log-level", metavar="LEVEL", help="As debug, info, warn.")
+        str, Option("--log-level", metavar="LEVEL", help="debug, info, warn, …")
     ] = "",
     remap_rule: Annotated[
         list[str] | None,
-        Option("--remap-rule", "-r", metavar="FROM:=TO", help="May be repeated."),
+        Option(
+            "--remap-rule",
+            "-r",
+            metavar="FROM:=TO",
+            help="Remap a name; repeatable.",
+        ),
     ] = None,
     parameter: Annotated[
         list[str] | None,
-        Option("--parameter", "-p", metavar="NAME:=VALUE", help="Likewise."),
+        Option(
+            "--parameter",
+            "-p",
+            metavar="NAME:=VALUE",
+            help="Set a parameter; repeatable.",
+        ),
     ] = None,
     quiet: Quiet = False,
 ) -> None:
@@ -148,11 +160,11 @@ def load(
 def unload(
     container: Container,
     component_uid: Annotated[
-        list[int], Argument(metavar="ID...", help="As list prints them.")
+        list[int], Argument(metavar="ID...", help="Ids, as printed by list.")
     ],
     quiet: Quiet = False,
 ) -> None:
-    """Take nodes out of a container."""
+    """Unload nodes from a container."""
     with connect() as here:
         name = _chosen(here, container)
         for number in component_uid:
@@ -165,7 +177,7 @@ def unload(
 
 @component.command()
 def types(as_json: Json = False) -> None:
-    """List the components that installed packages have registered."""
+    """List the components of installed packages."""
     from importlib.metadata import entry_points
 
     from navette.ros2.launch.components import GROUP
@@ -184,7 +196,7 @@ def types(as_json: Json = False) -> None:
 
 
 def containers(here: "Node") -> list[str]:
-    """Full names of the nodes that can load others, sorted."""
+    """Return the sorted full names of nodes that can load components."""
     serving = {
         end.topic.removesuffix("/_container/load_node")
         for end in service_endpoints(here)
@@ -197,7 +209,9 @@ def _chosen(here: "Node", name: str) -> str:
     full = chosen_node(here, name)
     known = containers(here)
     if full not in known:
-        fail(f"node {full} is no container; containers: {', '.join(known) or 'none'}")
+        fail(
+            f"node {full} is not a container; containers: {', '.join(known) or 'none'}"
+        )
     return full
 
 
@@ -207,7 +221,7 @@ def _request(container: str, service: str, **fields: Any) -> ServiceRequest:
 
 
 def _succeeded(answer: ServiceResponse, otherwise: str) -> Any:
-    """The response; ends the command if there is none, or one of failure."""
+    """Return the response; the command fails without one or if it reports a failure."""
     if answer.response is None:
         fail(f"{otherwise}: {answer.reason}")
     if not answer.response.success:
@@ -220,16 +234,18 @@ def _level(name: str) -> int:
 
     known = {each.name.lower(): int(each) for each in LoggingSeverity}
     if name and name.lower() not in known:
-        raise InvalidValueError(f"--log-level {name!r}: known: {', '.join(known)}")
+        raise InvalidValueError(
+            f"--log-level {name!r} is unknown; known: {', '.join(known)}"
+        )
     return known[name.lower()] if name else 0
 
 
 def _parameter(text: str) -> Any:
-    """A message of ``name:=value``."""
+    """Parse ``name:=value`` to a Parameter message."""
     from navette.msgs.rcl_interfaces.msg import Parameter
     from navette.runtime.parameter import get_parameter_value
 
     name, assigned, value = text.partition(":=")
     if not (name and assigned):
-        raise InvalidValueError(f"--parameter {text!r}: wanted NAME:=VALUE")
+        raise InvalidValueError(f"--parameter {text!r} is not NAME:=VALUE")
     return Parameter(name=name, value=get_parameter_value(value))

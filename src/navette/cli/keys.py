@@ -16,11 +16,14 @@ keys = Group(
 
 @keys.command()
 def create(
-    folder: Annotated[Path, Argument(help="Where the authority's keys are kept.")],
+    folder: Annotated[Path, Argument(help="Folder of the certificate authority.")],
     names: Annotated[
-        list[str], Argument(metavar="NAME...", help="robot, laptop, anna, …")
+        list[str],
+        Argument(metavar="NAME...", help="Names of machines: robot, laptop, …"),
     ],
-    days: Annotated[int, Option(min=1, max=3650, help="Valid for so long.")] = 365,
+    days: Annotated[
+        int, Option(min=1, max=3650, help="Validity of the certificates, in days.")
+    ] = 365,
 ) -> None:
     """Create a folder of keys for each NAME, and the authority if there is none.
 
@@ -34,14 +37,14 @@ def create(
     now = datetime.datetime.fromtimestamp(SystemClock().now_ns / 1e9, datetime.UTC)
     for made in create_keys(folder, names, now=now, days=days):
         click.echo(f"made {made}: NAVETTE_SECURITY={made}")
-    click.echo(f"{folder / 'ca.key'} signs further ones: leave it where it is")
+    click.echo(f"{folder / 'ca.key'} signs further certificates: keep it secret")
 
 
 @keys.command()
 def show(
-    folder: Annotated[Path, Argument(help="What NAVETTE_SECURITY would be.")],
+    folder: Annotated[Path, Argument(help="Folder for NAVETTE_SECURITY.")],
 ) -> None:
-    """Say what a folder asks of links, and check its files."""
+    """Show the requirements of a security folder and check its files."""
     from navette.transports.zenoh.security import Security
 
     for line in Security(folder).describe():

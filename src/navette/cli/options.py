@@ -122,7 +122,7 @@ def _click_parameter(parameter: inspect.Parameter) -> click.Parameter:
         panel=declaration.panel,
         multiple=is_list,
         is_flag=True if kind is bool else None,  # False: the value is optional
-        show_default=True,
+        show_default=kind is not bool and parameter.default not in (None, ""),
         **attributes,
     )
 

@@ -20,7 +20,7 @@ pkg = Group(
 Name = Annotated[str, Argument(metavar="NAME", help="Package name.")]
 Found = Annotated[
     str,
-    Argument(metavar="NAME", help="The package's name.", complete=complete_packages),
+    Argument(metavar="NAME", help="Package name.", complete=complete_packages),
 ]
 
 
@@ -30,28 +30,29 @@ def create(
     msgs: Annotated[
         bool,
         Option(
-            "--msgs", help="Also make NAME_msgs: own messages, services and actions."
+            "--msgs", help="Also create NAME_msgs for messages, services and actions."
         ),
     ] = False,
     node: Annotated[
         str | None,
-        Option(metavar="NODE", help="The node's name; by default the package's."),
+        Option(metavar="NODE", help="Name of the node. Default: that of the package."),
     ] = None,
     dependencies: Annotated[
         list[str] | None,
-        Option(metavar="PACKAGE...", help="Further packages it needs."),
+        Option(metavar="PACKAGE...", help="Additional dependencies."),
     ] = None,
     destination_directory: Annotated[
         Path | None,
         Option(
-            metavar="FOLDER", help="Where to; by default src/ if that is here, or here."
+            metavar="FOLDER",
+            help="Parent folder. Default: src/ if it exists, else the current folder.",
         ),
     ] = None,
 ) -> None:
-    """Make a package: a node, its method apart, parameters, launch file and tests.
+    """Create a package with a node, its algorithm, parameters, launch file and tests.
 
-    Its tests pass at once (pytest), colcon builds it on ROS 2, and Navette runs it
-    from its folder. A name that ends in _msgs makes a package of interfaces.
+    The tests pass (pytest), colcon builds the package on ROS 2, and Navette runs it
+    from its folder. A name that ends with _msgs creates a package of interfaces.
     """
     from navette.ros2.workspace import create_package
 
@@ -70,9 +71,11 @@ def create(
 
 @pkg.command("list")
 def list_(
-    paths: Annotated[bool, Option("--paths", help="With origin and folder.")] = False,
+    paths: Annotated[
+        bool, Option("--paths", help="Also print origin and folder.")
+    ] = False,
 ) -> None:
-    """List all packages: the workspace's, installed ones and Navette's own."""
+    """List all packages: of the workspace, installed, and Navette's."""
     from navette.ros2.workspace import find_packages
 
     for package in find_packages().values():
@@ -84,10 +87,10 @@ def list_(
 def prefix(
     name: Found,
     share: Annotated[
-        bool, Option("--share", help="The folder of its files instead.")
+        bool, Option("--share", help="Print the share folder instead.")
     ] = False,
 ) -> None:
-    """Print where a package is."""
+    """Print the folder of a package."""
     from navette.ros2.workspace import find_package
 
     package = find_package(name)
@@ -100,15 +103,15 @@ def executables(
         str | None,
         Argument(
             metavar="[NAME]",
-            help="Only of this package.",
+            help="Package name. Default: all packages.",
             complete=complete_packages,
         ),
     ] = None,
     full_path: Annotated[
-        bool, Option("--full-path", help="Say what each of them runs.")
+        bool, Option("--full-path", help="Also print the path or function.")
     ] = False,
 ) -> None:
-    """List the programs that navette run PACKAGE EXECUTABLE can run."""
+    """List the executables for navette run PACKAGE EXECUTABLE."""
     from navette.ros2.workspace import find_package, find_packages
 
     packages = [find_package(name)] if name else list(find_packages().values())

@@ -88,7 +88,7 @@ VERBS = (
     LazyCommand(
         "component",
         "navette.cli.component:component",
-        "Load nodes into containers that run, and take them out.",
+        "Load nodes into running containers and unload them.",
         read_only=True,
     ),
     LazyCommand(

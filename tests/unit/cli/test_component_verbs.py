@@ -59,7 +59,7 @@ def test_load_list_unload(here: World) -> None:
     [
         (["load", "/box", "lamps", "lamps::Lump"], "'Lump'"),
         (["unload", "/box", "7"], "Failed to unload component 7 from '/box'"),
-        (["list", "plain"], "node /plain is no container; containers: /box, /shelf"),
+        (["list", "plain"], "node /plain is not a container; containers: /box, /shelf"),
         (["list", "bax"], "no node /bax; did you mean /box?"),
     ],
 )

@@ -31,7 +31,9 @@ Loop = Annotated[bool, Option("-l", "--loop", help="Restart at the end.")]
 Paused = Annotated[
     bool, Option("-p", "--pause", "--start-paused", help="Start paused.")
 ]
-Rate = Annotated[float, Option("-r", "--rate", metavar="X", help="Playback rate.")]
+Rate = Annotated[
+    float, Option("-r", "--rate", metavar="X", help="Factor of real time.")
+]
 Start = Annotated[
     float,
     Option("-s", "--start-offset", metavar="S", help="Skip the first S seconds."),

@@ -13,7 +13,9 @@ NodeName = Annotated[
 ]
 AnyNode = Annotated[
     str | None,
-    Argument(metavar="[NODE]", help="Default: all nodes.", complete=complete_nodes),
+    Argument(
+        metavar="[NODE]", help="Node name. Default: all nodes.", complete=complete_nodes
+    ),
 ]
 Name = Annotated[
     str,

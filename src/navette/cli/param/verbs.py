@@ -188,8 +188,7 @@ def dump(
 ) -> None:
     """Print the parameters of a node, or of all nodes, as a parameter file.
 
-    The file works with --params-file, with params: in a project file, and with navette
-    param load.
+    The file works with --params-file, in launch files and with navette param load.
     """
     with connect() as here, response_timeout(timeout_s):
         every = node_names(here, hidden=include_hidden_nodes)

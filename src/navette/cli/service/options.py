@@ -27,7 +27,8 @@ Hidden = Annotated[
     Option(
         "--include-hidden-services",
         "-a",
-        help="Include hidden services: a part of the name begins with _.",
+        help="Include hidden services (a part of the name begins with _) and, on a"
+        " terminal, those of every node.",
     ),
 ]
 Json = Annotated[bool, Option("--json", help="Print JSON.")]

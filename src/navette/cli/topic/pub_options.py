@@ -22,8 +22,8 @@ class PublishOptions:
         Argument(
             metavar="YAML",
             help="Fields that differ from their defaults, as in"
-            " '{linear: {x: 0.5}}'. The time of publishing is written auto for a header"
-            " and now for a time.",
+            " '{linear: {x: 0.5}}'. A header auto and a time now are set to the time of"
+            " publishing.",
             complete=complete_message_values,
         ),
     ] = "{}"
