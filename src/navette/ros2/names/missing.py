@@ -12,8 +12,8 @@ _ROS_2 = {
     "ament_copyright": "leave the linters' tests out",
     "ament_flake8": "leave the linters' tests out",
     "ament_pep257": "leave the linters' tests out",
-    "launch_testing": "start programs with navette.ros2.packages or subprocess in a "
-    "test of pytest",
+    "launch_testing": "start programs with launch.LaunchService or subprocess in a "
+    "pytest test",
     "nav2_simple_commander": "navette.navigation.missions drives to goals",
     "ros2cli": "navette's commands do the same: navette --help",
     "rosbag2_py": "navette.bags reads and writes recordings",
