@@ -89,6 +89,14 @@ def test_files_and_folders_of_the_design_exist() -> None:
     )
 
 
+@pytest.mark.parametrize("script", ["picture.py", "gallery.py", "screenshot.py"])
+def test_scripts_that_make_pictures_load(
+    script: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(DOCS)
+    assert runpy.run_path(str(DOCS / script), run_name="loaded")
+
+
 def test_names_in_the_idioms_page_exist() -> None:
     page = (DOCS / "reference" / "idioms.md").read_text(encoding="utf-8")
     names = set(re.findall(r"navette\.([A-Za-z_]+)", page)) - {"msgs"}
