@@ -64,8 +64,6 @@ ALLOWED = (
 PENDING: tuple[str, ...] = (
     "docs/reference",
     "src/navette/cli",
-    "src/navette/navigation/localization/distance",
-    "src/navette/navigation/localization/ekf",
     "src/navette/navigation/missions",
     "src/navette/navigation/stack",
     "src/navette/ros2/packages/launch",
@@ -96,14 +94,11 @@ PENDING_NAMES: frozenset[str] = frozenset(
         "Finding",
         "Graph",
         "Heartbeat",
-        "ImuSensor",
         "Level",
         "Link",
         "Listed",
         "Playback",
         "Progress",
-        "Sensor",
-        "Snapshot",
         "Topic",
     }
 )

@@ -1,4 +1,4 @@
-"""Where the robot is, and how far it has come."""
+"""Localization: pose estimate (EKF) and distance travelled."""
 
 from navette.navigation.localization.distance import DistanceParams, Odometer, Step
 from navette.navigation.localization.ekf import (
@@ -11,11 +11,9 @@ from navette.navigation.localization.ekf import (
 )
 
 __all__ = [
-    # how far
     "DistanceParams",
     "Odometer",
     "Step",
-    # where
     "EkfParams",
     "Estimate",
     "Fused",

@@ -30,7 +30,7 @@ def started(graph: GraphHarness, **values) -> tuple[OdomIntegratorNode, Probe]:
     return graph.add(node), graph.collect(DISTANCE, "std_msgs/msg/Float64")
 
 
-def test_zero_ten_times_a_second_before_anything_came() -> None:
+def test_zero_is_published_ten_times_a_second_before_the_first_message() -> None:
     with GraphHarness() as graph:
         _, distances = started(graph)
         graph.run_for(1.05)
@@ -57,7 +57,7 @@ def test_another_odom_type_is_an_error_that_lists_them() -> None:
         started(graph, odom_type="speed")
 
 
-def test_a_type_without_what_is_summed_is_an_error() -> None:
+def test_a_type_without_the_summed_quantity_is_an_error() -> None:
     with GraphHarness() as graph:
         with pytest.raises(ParameterError, match="NavSatFix has no velocity"):
             started(graph, odom_type="vel", topic_type="sensor_msgs/msg/NavSatFix")
@@ -72,7 +72,7 @@ def fix(stamp_ns: int, latitude: float, status: int = 0) -> NavSatFix:
     return msg
 
 
-def test_fixes_are_summed_by_the_geodesic_and_no_fix_is_left_out() -> None:
+def test_fixes_are_summed_by_the_geodesic_and_no_fix_is_skipped() -> None:
     with GraphHarness() as graph:
         kind = "sensor_msgs/msg/NavSatFix"
         _, distances = started(graph, topic="/fix", topic_type=kind)
@@ -104,7 +104,7 @@ def test_other_types_that_carry_a_velocity(kind: type) -> None:
         assert distances.last.data == pytest.approx(3.0)
 
 
-def test_parameters_change_while_running_except_where_it_listens() -> None:
+def test_parameters_change_while_running_except_the_topic() -> None:
     with GraphHarness() as graph:
         node, _ = started(graph)
         for stamp, x in ((0, 0.0), (SECOND, 1.0)):
@@ -118,7 +118,7 @@ def test_parameters_change_while_running_except_where_it_listens() -> None:
         assert "cannot change after the start" in refused.reason
 
 
-def test_jumps_are_told_and_add_nothing() -> None:
+def test_jumps_are_logged_and_add_nothing() -> None:
     with GraphHarness() as graph:
         node, _ = started(graph)
         logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
@@ -129,8 +129,8 @@ def test_jumps_are_told_and_add_nothing() -> None:
         assert node.distance == 1.0
         texts = [log.msg for log in logs.messages]
         assert texts == [
-            "time went back: counting goes on from 5.000 s",
-            "gap in time: counting goes on from 60.000 s",
+            "time went back: counting continues from 5.000 s",
+            "gap in time: counting continues from 60.000 s",
             "message at 61.000 s not used: no fix, or not a number",
         ]
 

@@ -34,13 +34,13 @@ def seen(index: int, value: float, stamp_ns: int = 0, variance: float = 0.01, **
     return Measurement(source, stamp_ns, (index,), values, covariance, **more)
 
 
-def test_nothing_is_known_before_the_first_measurement() -> None:
+def test_no_estimate_before_the_first_measurement() -> None:
     ekf = new_filter()
     assert ekf.stamp_ns is None
     assert ekf.estimate_at(0) is None
 
 
-def test_what_is_seen_for_the_first_time_replaces_what_was_assumed() -> None:
+def test_the_first_measurement_of_an_entry_replaces_its_initial_value() -> None:
     ekf = new_filter()
     ekf.step(seen(X, 5.0, variance=0.25))
     estimate = ekf.estimate_at(0)
@@ -49,7 +49,7 @@ def test_what_is_seen_for_the_first_time_replaces_what_was_assumed() -> None:
     assert estimate.covariance[Y, Y] == 1e-9
 
 
-def test_two_measurements_meet_where_their_variances_say() -> None:
+def test_two_measurements_are_weighted_by_their_variances() -> None:
     ekf = new_filter(noise=0.0)
     ekf.step(seen(X, 0.0, variance=1.0))
     ekf.step(seen(X, 10.0, variance=0.25))
@@ -58,14 +58,14 @@ def test_two_measurements_meet_where_their_variances_say() -> None:
     assert estimate.covariance[X, X] == pytest.approx(0.2, rel=1e-4)
 
 
-def test_headings_meet_the_short_way_round() -> None:
+def test_headings_are_fused_across_the_wrap() -> None:
     ekf = new_filter(noise=0.0)
     for degrees in (170.0, -170.0):
         ekf.step(seen(YAW, math.radians(degrees)))
     assert abs(ekf.snapshot.state[YAW]) == pytest.approx(math.pi, abs=1e-5)
 
 
-def test_the_estimate_goes_on_by_the_model_and_grows_less_sure() -> None:
+def test_prediction_follows_the_model_and_increases_the_variance() -> None:
     ekf = new_filter()
     ekf.step(seen(VX, 2.0, variance=1e-6))
     later = ekf.estimate_at(3 * SECOND)
@@ -75,7 +75,7 @@ def test_the_estimate_goes_on_by_the_model_and_grows_less_sure() -> None:
     assert ekf.estimate_at(-SECOND).stamp_ns == 0
 
 
-def test_what_is_too_far_off_is_rejected_and_changes_nothing() -> None:
+def test_an_outlier_is_rejected_without_effect() -> None:
     ekf = new_filter(noise=0.0)
     ekf.step(seen(X, 0.0))
     before = ekf.snapshot.state
@@ -96,29 +96,29 @@ def test_a_measurement_older_than_the_history_is_refused() -> None:
     old = seen(X, 9.0, stamp_ns=4 * SECOND - 1, source="gps0")
     assert ekf.step(old) is Fused.TOO_OLD
     assert ekf.ekf.snapshot is before
-    assert not ekf.begins_anew("gps0", 4 * SECOND - 1)
+    assert not ekf.is_new_run("gps0", 4 * SECOND - 1)
 
 
-def test_the_history_does_not_grow_without_end() -> None:
+def test_the_history_is_bounded() -> None:
     ekf = ordered(history_s=0.5)
     for tick in range(1000):
         ekf.step(seen(X, 0.0, stamp_ns=tick * SECOND // 100))
     assert len(ekf._entries) <= 51
 
 
-def test_a_jump_of_a_sensors_time_is_another_run() -> None:
+def test_a_jump_of_a_sensors_time_means_a_new_run() -> None:
     ekf = ordered()
     ekf.step(seen(X, 1.0, stamp_ns=100 * SECOND))
-    assert not ekf.begins_anew("odom0", 99 * SECOND)
-    assert ekf.begins_anew("odom0", 99 * SECOND - 1)
-    assert not ekf.begins_anew("imu0", 50 * SECOND)  # late, but nobody's jump
-    assert not ekf.begins_anew("imu0", 110 * SECOND)
-    assert ekf.begins_anew("imu0", 110 * SECOND + 1)
+    assert not ekf.is_new_run("odom0", 99 * SECOND)
+    assert ekf.is_new_run("odom0", 99 * SECOND - 1)
+    assert not ekf.is_new_run("imu0", 50 * SECOND)  # late, but not a jump
+    assert not ekf.is_new_run("imu0", 110 * SECOND)
+    assert ekf.is_new_run("imu0", 110 * SECOND + 1)
     ekf.reset()
-    assert not ekf.begins_anew("odom0", 0)
+    assert not ekf.is_new_run("odom0", 0)
 
 
-def test_noise_is_given_as_15_variances_or_the_whole_matrix() -> None:
+def test_noise_is_15_variances_or_the_full_matrix() -> None:
     variances = tuple(float(i) for i in range(1, 16))
     expected = np.diag([1.0, 2.0, 6.0, 7.0, 8.0, 12.0, 13.0, 14.0])
     np.testing.assert_array_equal(planar_covariance(variances, "noise"), expected)
@@ -140,10 +140,10 @@ def config(*names: str) -> tuple[bool, ...]:
     [
         ({"two_d_mode": False}, "wanted true"),
         ({"world_frame": "earth"}, "'earth'; wanted the odom_frame 'odom'"),
-        ({"odom0": "/odom"}, "nothing is taken from /odom"),
+        ({"odom0": "/odom"}, "no entry is used of /odom"),
         ({"odom0": "/odom", "odom0_config": (True,)}, "1 booleans; wanted 15"),
         ({"odom0": "/odom", "odom0_config": config("x", "z")}, "z is chosen.*planar"),
-        ({"imu0": "/imu", "imu0_config": config("x")}, "x is chosen.*not give it"),
+        ({"imu0": "/imu", "imu0_config": config("x")}, "x is chosen.*not provide it"),
         ({"process_noise_covariance": (1.0,)}, "1 numbers; wanted 15"),
         ({"gps0": "/fix", "gps0_datum_deg": (91.0, 0.0)}, "wanted latitude"),
         ({"odom0_pose_rejection_threshold": 0.0}, "rejection_threshold"),

@@ -60,7 +60,9 @@ def pose_of(msg: Odometry) -> tuple[float, float, float]:
     return msg.pose.pose.position.x, msg.pose.pose.position.y, 2 * math.atan2(q.z, q.w)
 
 
-def test_an_input_is_needed_and_nothing_comes_before_its_first_message() -> None:
+def test_an_input_is_required_and_nothing_is_published_before_its_first_message() -> (
+    None
+):
     with GraphHarness() as graph:
         with pytest.raises(ParameterError, match="at least one of odom0, odom1, pose0"):
             started(graph)
@@ -69,7 +71,7 @@ def test_an_input_is_needed_and_nothing_comes_before_its_first_message() -> None
         assert estimates.count == 0
 
 
-def test_velocities_add_up_to_a_pose_in_odometry_and_tf() -> None:
+def test_velocities_are_integrated_to_a_pose_in_odometry_and_tf() -> None:
     with GraphHarness() as graph:
         _, estimates = started(graph, **WHEELS)
         transforms = graph.collect("/tf", "tf2_msgs/msg/TFMessage")
@@ -88,7 +90,7 @@ def test_velocities_add_up_to_a_pose_in_odometry_and_tf() -> None:
         assert transform.transform.translation.x == x
 
 
-def test_it_goes_on_by_prediction_then_falls_silent_and_says_so() -> None:
+def test_prediction_ends_after_the_sensor_timeout_with_a_warning() -> None:
     with GraphHarness() as graph:
         _, estimates = started(graph, **WHEELS, sensor_timeout_s=0.5)
         logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
@@ -98,8 +100,10 @@ def test_it_goes_on_by_prediction_then_falls_silent_and_says_so() -> None:
         assert pose_of(estimates.last)[0] == pytest.approx(1.0, abs=0.05)
         stamps = [stamp_of(m) for m in estimates.messages]
         assert stamps == sorted(set(stamps))
-        told = [log.msg for log in logs.messages]
-        assert told == ["nothing published: no sensor says anything"]
+        warnings = [log.msg for log in logs.messages]
+        assert warnings == [
+            "nothing is published: no measurement within sensor_timeout_s"
+        ]
         graph.publish("/wheels", wheels(103.5, 2.0))
         graph.run_for(0.04)
         assert stamp_of(estimates.last) == 103 * SECOND + SECOND // 2
@@ -109,7 +113,7 @@ def stamp_of(msg: Odometry) -> int:
     return msg.header.stamp.sec * SECOND + msg.header.stamp.nanosec
 
 
-def test_a_bag_that_begins_again_begins_the_filter_anew() -> None:
+def test_a_bag_that_loops_resets_the_filter() -> None:
     with GraphHarness() as graph:
         _, estimates = started(graph, **WHEELS)
         logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
@@ -124,7 +128,7 @@ def test_a_bag_that_begins_again_begins_the_filter_anew() -> None:
         assert any("jumped to 3.000 s" in log.msg for log in logs.messages)
 
 
-def test_the_sensors_place_on_the_robot_counts() -> None:
+def test_the_mounting_pose_of_a_sensor_is_applied() -> None:
     """A scanner 1 m ahead of the base that faces left, on a robot that turns."""
     with GraphHarness() as graph:
         placed(
@@ -143,7 +147,7 @@ def test_the_sensors_place_on_the_robot_counts() -> None:
         assert (linear.x, linear.y) == pytest.approx((2.0, 0.0), abs=1e-6)
 
 
-def test_an_upside_down_imu_gives_heading_rate_and_level_acceleration() -> None:
+def test_an_upside_down_imu_provides_heading_rate_and_level_acceleration() -> None:
     with GraphHarness() as graph:
         upside_down = quaternion_from_rpy(math.pi, 0.0, 0.0)
         placed(graph, "imu", Transform3((0.0, 0.0, 0.0), upside_down))
@@ -164,7 +168,7 @@ def test_an_upside_down_imu_gives_heading_rate_and_level_acceleration() -> None:
         graph.run_for(0.04)
         assert pose_of(estimates.last)[2] == pytest.approx(0.7, abs=1e-3)
         assert estimates.last.twist.twist.angular.z == pytest.approx(0.3, abs=1e-3)
-        graph.run_for(0.4)  # goes on by the acceleration it felt
+        graph.run_for(0.4)  # predicted with the measured acceleration
         elapsed = (stamp_of(estimates.last) - SECOND) / 1e9
         vx = estimates.last.twist.twist.linear.x
         assert vx == pytest.approx(0.4 * elapsed, abs=1e-3)
@@ -177,7 +181,7 @@ def fix(stamp_s: float, latitude: float, longitude: float, status: int = 0):
     return msg
 
 
-def test_a_fix_is_where_the_antenna_is() -> None:
+def test_a_fix_is_the_position_of_the_antenna() -> None:
     with GraphHarness() as graph:
         placed(graph, "antenna", Transform3((0.5, 0.0, 2.0), (0.0, 0.0, 0.0, 1.0)))
         datum = {"gps0": "/fix", "gps0_datum_deg": [48.0, 11.0]}
@@ -207,7 +211,7 @@ POSE = {"pose0": "/pose", "pose0_config": config("x", "y", "yaw")}
     ("option", "expected"),
     [({}, (2.0, 3.0)), ({"pose0_relative": True}, (0.0, 2.0))],
 )
-def test_poses_are_taken_as_they_are_or_from_the_first(option, expected) -> None:
+def test_poses_are_absolute_or_relative_to_the_first(option, expected) -> None:
     with GraphHarness() as graph:
         _, estimates = started(graph, **POSE, **option)
         graph.publish("/pose", pose(1.0, 4.0, 3.0, math.pi / 2))
@@ -216,7 +220,7 @@ def test_poses_are_taken_as_they_are_or_from_the_first(option, expected) -> None
         assert pose_of(estimates.last)[:2] == pytest.approx(expected, abs=0.01)
 
 
-def test_a_heading_that_is_no_rotation_is_refused_where_it_is_asked_for() -> None:
+def test_an_invalid_quaternion_is_refused_if_the_heading_is_used() -> None:
     message = pose(1.0, 4.0, 3.0, 0.0)
     message.pose.pose.orientation = Quaternion(w=0.0)
     for names, used in ((("x", "y"), True), (("x", "y", "yaw"), False)):
@@ -226,7 +230,10 @@ def test_a_heading_that_is_no_rotation_is_refused_where_it_is_asked_for() -> Non
             graph.publish("/pose", message)
             graph.run_for(0.05)
             assert (estimates.count > 0) is used
-            assert any("no rotation" in log.msg for log in logs.messages) is not used
+            assert (
+                any("not a unit quaternion" in log.msg for log in logs.messages)
+                is not used
+            )
 
 
 def test_differential_poses_are_velocities() -> None:
@@ -241,7 +248,7 @@ def test_differential_poses_are_velocities() -> None:
         assert pose_of(estimates.last)[1] == pytest.approx(0.0, abs=0.1)
 
 
-def test_what_cannot_be_used_is_told_and_does_no_harm() -> None:
+def test_unusable_messages_are_logged_without_effect() -> None:
     with GraphHarness() as graph:
         _, estimates = started(graph, **POSE)
         logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
@@ -260,7 +267,7 @@ def test_what_cannot_be_used_is_told_and_does_no_harm() -> None:
             assert reason in text
 
 
-def test_on_the_map_the_transform_is_that_of_odometry() -> None:
+def test_in_the_map_frame_the_transform_to_odom_is_published() -> None:
     with GraphHarness() as graph:
         _, estimates = started(graph, **POSE, world_frame="map")
         at = Transform3((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
@@ -277,7 +284,7 @@ def test_on_the_map_the_transform_is_that_of_odometry() -> None:
         assert (translation.x, translation.y) == pytest.approx((4.0, 2.0), abs=1e-3)
 
 
-def test_a_missing_variance_is_told_once() -> None:
+def test_a_missing_variance_is_logged_once() -> None:
     with GraphHarness() as graph:
         started(graph, **WHEELS)
         logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
@@ -286,8 +293,8 @@ def test_a_missing_variance_is_told_once() -> None:
             msg.twist.covariance = np.zeros(36)
             graph.publish("/wheels", msg)
             graph.run_for(0.05)
-        told = [log.msg for log in logs.messages if "variance" in log.msg]
-        assert told == ["odom0: it gives no variance of vx, vy, vyaw; 1e-09 is taken"]
+        warnings = [log.msg for log in logs.messages if "variance" in log.msg]
+        assert warnings == ["odom0: no variance of vx, vy, vyaw; 1e-09 is used"]
 
 
 def test_parameters_may_change_while_it_runs() -> None:

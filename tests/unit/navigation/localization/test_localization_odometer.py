@@ -27,14 +27,14 @@ def test_positions_are_summed_in_three_dimensions() -> None:
     assert odometer.distance == 5.0
 
 
-def test_velocity_is_that_of_the_time_since_the_message_before() -> None:
+def test_velocity_applies_to_the_time_since_the_previous_message() -> None:
     odometer = counting()
     odometer.step_velocity((100.0, 0.0, 0.0), 0)
     assert odometer.step_velocity((3.0, 0.0, 4.0), SECOND // 2) is Step.ADDED
     assert odometer.distance == pytest.approx(2.5)
 
 
-def test_places_are_apart_by_the_geodesic_and_the_height() -> None:
+def test_geographic_positions_use_the_geodesic_and_the_height() -> None:
     odometer = counting()
     # One degree of the meridian from the equator: 110574.3886 m (WGS 84).
     odometer.step_place(GeoPoint(0.0, 11.0, 0.0), 0)
@@ -42,7 +42,7 @@ def test_places_are_apart_by_the_geodesic_and_the_height() -> None:
     assert odometer.distance == pytest.approx(math.hypot(110574.3886, 1000.0), abs=1e-3)
 
 
-def test_without_an_altitude_the_geodesic_alone_counts() -> None:
+def test_without_altitude_only_the_geodesic_counts() -> None:
     odometer = counting()
     odometer.step_place(GeoPoint(0.0, 179.5, 20.0), 0)
     odometer.step_place(GeoPoint(0.0, -179.5), 1)  # over the date line
@@ -51,7 +51,7 @@ def test_without_an_altitude_the_geodesic_alone_counts() -> None:
 
 @pytest.mark.parametrize("kind", ["position", "velocity", "place"])
 @pytest.mark.parametrize("jump_ns", [-1, -400 * SECOND, 2 * SECOND + 1, 400 * SECOND])
-def test_a_jump_in_time_adds_nothing_and_counting_goes_on(kind, jump_ns) -> None:
+def test_a_jump_in_time_adds_nothing_and_counting_continues(kind, jump_ns) -> None:
     odometer = counting()
     step = getattr(odometer, f"step_{kind}")
     stamp_ns, here = 500 * SECOND, np.array([48.0, 11.0, 500.0])
@@ -70,7 +70,7 @@ def test_a_jump_in_time_adds_nothing_and_counting_goes_on(kind, jump_ns) -> None
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_changes_nothing(bad: float) -> None:
+def test_values_that_are_not_finite_have_no_effect(bad: float) -> None:
     odometer = counting()
     odometer.step_position((0.0, 0.0, 0.0), 0)
     assert odometer.step_position((bad, 0.0, 0.0), 1) is Step.REFUSED
@@ -81,7 +81,7 @@ def test_what_is_no_number_changes_nothing(bad: float) -> None:
     assert odometer.distance == 5.0
 
 
-def test_a_way_without_end_is_refused() -> None:
+def test_an_overflow_of_the_distance_is_refused() -> None:
     odometer = counting()
     odometer.step_position((1.7e308, 0.0, 0.0), 0)
     assert odometer.step_position((-1.7e308, 0.0, 0.0), 1) is Step.REFUSED
@@ -89,11 +89,11 @@ def test_a_way_without_end_is_refused() -> None:
     assert odometer.distance == 0.0
 
 
-def test_a_latitude_beyond_the_pole_is_no_place() -> None:
+def test_a_latitude_beyond_the_pole_is_refused() -> None:
     assert counting().step_place(GeoPoint(90.1, 0.0, 0.0), 0) is Step.REFUSED
 
 
-def test_reset_starts_over_and_pause_keeps_the_distance() -> None:
+def test_reset_clears_and_pause_keeps_the_distance() -> None:
     odometer = counting()
     for stamp, x in enumerate([0.0, 2.0]):
         odometer.step_position((x, 0.0, 0.0), stamp)

@@ -1,4 +1,4 @@
-"""Distance travelled: positions or velocities in, metres out."""
+"""Distance travelled, from positions or velocities."""
 
 from navette.navigation.localization.distance.odometer import Odometer, Step
 from navette.navigation.localization.distance.params import DistanceParams

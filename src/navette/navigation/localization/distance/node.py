@@ -1,7 +1,7 @@
-"""The distance node: positions or velocities → distance travelled.
+"""The distance node: positions or velocities in, distance travelled out.
 
-Publishes 0.0 until the first message came, and the distance so far ten times a second
-from then on, also while nothing comes.
+The node publishes 0.0 before the first message, then the distance so far, ten times a
+second, also without new messages.
 """
 
 from dataclasses import replace
@@ -22,7 +22,7 @@ _PERIOD_S = 0.1
 
 
 class OdomIntegratorNode(StageNode):
-    """Sums the distance travelled, by position or by velocity."""
+    """Sum the distance travelled, by position or by velocity."""
 
     PARAMS = DistanceParams
     FIXED_AT_START = ("topic", "topic_type", "queue_size")
@@ -30,7 +30,7 @@ class OdomIntegratorNode(StageNode):
         Input(
             topic=topics.GNSS.name,
             type=topics.GNSS.type,
-            role="where the robot is and how fast; parameters name other topics",
+            role="position and velocity; parameters select topic and type",
             rate_hz=100.0,
             depth=1,
             callback="on_message",
@@ -59,11 +59,11 @@ class OdomIntegratorNode(StageNode):
 
     @property
     def distance(self) -> float:
-        """Metres so far."""
+        """Distance so far, metres."""
         return self._odometer.distance
 
     def on_message(self, msg: "Gps | NavSatFix | TwistStamped | Odometry") -> None:
-        """Add the way since the message before."""
+        """Add the distance since the previous message."""
         stamp_ns = stamp_to_ns(msg.header.stamp)
         if self.params.by_velocity:
             step = self._odometer.step_velocity(_velocity(msg), stamp_ns)
@@ -71,14 +71,14 @@ class OdomIntegratorNode(StageNode):
             step = self._step_fix(msg, stamp_ns)
         else:
             step = self._odometer.step_position(_position(msg), stamp_ns)
-        self._tell(step, stamp_ns)
+        self._log(step, stamp_ns)
 
     def on_timer(self) -> None:
         """Publish the distance so far."""
         self.publish(topics.DISTANCE.name, Float64(data=self.distance))
 
     def on_params_changed(self, old: DistanceParams) -> None:
-        """The distance stays; the next message is where counting goes on."""
+        """Keep the distance; continue counting from the next message."""
         self._odometer.max_gap_ns = self.params.max_gap_ns
         self._odometer.pause()
 
@@ -88,7 +88,7 @@ class OdomIntegratorNode(StageNode):
         place = GeoPoint(fix.latitude, fix.longitude, fix.altitude)
         return self._odometer.step_place(place, stamp_ns)
 
-    def _tell(self, step: Step, stamp_ns: int) -> None:
+    def _log(self, step: Step, stamp_ns: int) -> None:
         if step is Step.REFUSED:
             self.get_logger().warning(
                 f"message at {stamp_ns / 1e9:.3f} s not used: no fix, or not a number",
@@ -96,7 +96,7 @@ class OdomIntegratorNode(StageNode):
             )
         elif step in (Step.GAP, Step.WENT_BACK):
             self.get_logger().info(
-                f"{step.value}: counting goes on from {stamp_ns / 1e9:.3f} s"
+                f"{step.value}: counting continues from {stamp_ns / 1e9:.3f} s"
             )
 
 

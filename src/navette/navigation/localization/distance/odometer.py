@@ -1,4 +1,4 @@
-"""The distance travelled, summed from what a receiver or an odometry says."""
+"""Distance travelled, summed from positions or velocities."""
 
 import math
 from collections.abc import Sequence
@@ -9,25 +9,25 @@ from navette.geometry.geodesy import GeoPoint, geodesic_distance
 
 
 class Step(Enum):
-    """What a message did to the distance."""
+    """Effect of a message on the distance."""
 
-    STARTED = "started"  # the first one: from here on it is counted
+    STARTED = "started"  # first message: counting starts
     ADDED = "added"
-    WENT_BACK = "time went back"  # a bag began anew, or was set back
-    GAP = "gap in time"  # a bag was set forward, or nothing came for long
-    REFUSED = "not a number"  # changes nothing
+    WENT_BACK = "time went back"  # a bag started again, or was set back
+    GAP = "gap in time"  # a bag was set forward, or messages were missing
+    REFUSED = "not a number"  # no effect
 
 
 class Odometer:
-    """Sums ‖Δposition‖, or Δt·‖velocity‖: one of the two, as it is asked.
+    """Sum ‖Δposition‖ or Δt·‖velocity‖.
 
-    A message is added only if it follows the one before it: after a stamp that jumps
-    back, or ahead by more than ``max_gap_ns``, it is where counting goes on, and the
-    way in between adds nothing. So a bag that loops, or is set forward or back while
-    it plays, adds what it played and no jump.
+    A message adds distance only if it follows the previous one. After a stamp that
+    jumps back, or ahead by more than ``max_gap_ns``, counting continues from that
+    message and the interval adds nothing. So a bag that loops, or is set forward or
+    back while it plays, adds no jump.
 
     Args:
-        max_gap_ns: longest time between two messages of one way.
+        max_gap_ns: longest time between two consecutive messages.
 
     Raises:
         InvalidValueError: ``max_gap_ns`` is not positive.
@@ -40,17 +40,17 @@ class Odometer:
         self.reset()
 
     def reset(self) -> None:
-        """Back to 0 m; the next message is the first."""
+        """Reset to 0 m; the next message is the first."""
         self.distance = 0.0
         self.pause()
 
     def pause(self) -> None:
-        """Keep the distance; the next message is where counting goes on."""
+        """Keep the distance; continue counting from the next message."""
         self._last_ns: int | None = None
         self._last: Sequence[float] = ()
 
     def step_position(self, position: Sequence[float], stamp_ns: int) -> Step:
-        """A position (x, y, z), m, in a frame that stays."""
+        """Add a position (x, y, z), m, in a fixed frame."""
         if not all(map(math.isfinite, position)):
             return Step.REFUSED
         step = self._follow(stamp_ns)
@@ -59,7 +59,7 @@ class Odometer:
         return self._add(metres, step)
 
     def step_place(self, place: GeoPoint, stamp_ns: int) -> Step:
-        """A place on the Earth; see :func:`geodesic_distance`."""
+        """Add a geographic position; see :func:`geodesic_distance`."""
         if not place.is_valid:
             return Step.REFUSED
         step = self._follow(stamp_ns)
@@ -69,7 +69,7 @@ class Odometer:
         return self._add(metres, step)
 
     def step_velocity(self, velocity: Sequence[float], stamp_ns: int) -> Step:
-        """A velocity (x, y, z), m/s: that of the time since the message before it."""
+        """Add a velocity (x, y, z), m/s, of the time since the previous message."""
         if not all(map(math.isfinite, velocity)):
             return Step.REFUSED
         before_ns = self._last_ns
@@ -79,14 +79,14 @@ class Odometer:
         return self._add((stamp_ns - before_ns) * 1e-9 * math.hypot(*velocity), step)
 
     def _add(self, metres: float, step: Step) -> Step:
-        """Sum up, but for a way without end (numbers near the largest there are)."""
+        """Add to the distance, unless the sum overflows."""
         if not math.isfinite(self.distance + metres):
             return Step.REFUSED
         self.distance += metres
         return step
 
     def _follow(self, stamp_ns: int) -> Step:
-        """How a message of this stamp follows the one before it, which it replaces."""
+        """Compare a stamp with the previous one, and store it."""
         before_ns, self._last_ns = self._last_ns, stamp_ns
         if before_ns is None:
             return Step.STARTED

@@ -17,37 +17,37 @@ _HAVE_VELOCITY = (GPS, TWIST, ODOMETRY)
 
 @dataclass(frozen=True, kw_only=True)
 class DistanceParams(Params):
-    """What the distance is summed from."""
+    """Source of the distance."""
 
     odom_type: str = param(
         "pos",
-        "what is summed: changes of position (pos, or gps: the same), or velocity "
+        "quantity to sum: changes of position (pos; gps is a synonym), or velocity "
         "times time (vel)",
         choices=("pos", "gps", "vel"),
     )
-    topic: str = param(topics.GNSS.name, "where the messages come from")
+    topic: str = param(topics.GNSS.name, "topic of the input")
     topic_type: str = param(
         GPS,
-        "their type; NavSatFix has no velocity and TwistStamped no position",
+        "type of the input; NavSatFix has no velocity and TwistStamped no position",
         choices=(GPS, FIX, TWIST, ODOMETRY),
     )
     queue_size: int = param(
         1,
-        "how many messages may wait; of more the oldest are lost, and with them bends "
-        "of the way: take more where a bag is played fast",
+        "queue size of the subscription; a full queue drops its oldest message, and "
+        "bends of the track with it: use more if a bag is played fast",
         at_least=1,
     )
     max_gap_s: float = param(
         2.0,
-        "longest time between two messages of one way; after a longer one (a bag was "
-        "set forward) counting goes on from there",
+        "longest time between two consecutive messages; after a longer gap (a bag was "
+        "set forward) counting continues from the new message",
         unit="s",
         above=0.0,
     )
 
     @property
     def by_velocity(self) -> bool:
-        """Whether velocity is summed, not position."""
+        """Whether velocity is summed instead of position."""
         return self.odom_type == "vel"
 
     @property

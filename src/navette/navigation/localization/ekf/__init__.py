@@ -1,4 +1,4 @@
-"""Where the robot is: an extended Kalman filter over what its sensors say."""
+"""Pose estimate: an extended Kalman filter over odometry, IMU and GNSS."""
 
 from navette.navigation.localization.ekf.filter import Estimate, Fused, PlanarEkf
 from navette.navigation.localization.ekf.history import OrderedEkf

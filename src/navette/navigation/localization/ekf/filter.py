@@ -1,8 +1,8 @@
 """An extended Kalman filter in the plane.
 
 Thrun, Burgard, Fox, "Probabilistic Robotics" (2005), table 3.3, with the covariance
-updated in Joseph's form (Bucy and Joseph 1968): it stays symmetric and positive
-whatever the gain's rounding.
+updated in Joseph's form (Bucy and Joseph 1968), which keeps it symmetric and positive
+for any rounding of the gain.
 """
 
 from dataclasses import dataclass
@@ -25,32 +25,32 @@ from navette.navigation.localization.ekf.state import (
     wrapped,
 )
 
-# Variance of an entry that nothing was known of: far more than any sensor's.
+# Variance of an unmeasured entry: far above that of any sensor.
 _UNKNOWN = 1e6
 
 
 class Fused(Enum):
-    """What became of a measurement."""
+    """Result of a measurement."""
 
     USED = "used"
     REJECTED = "farther from the estimate than the rejection threshold"
     TOO_OLD = "older than the history"
-    UNSOUND = "there is no finite estimate with it"
+    UNSOUND = "the estimate with it is not finite"
 
 
 class Estimate(NamedTuple):
-    """Where the robot is taken to be."""
+    """Estimated pose and motion at a stamp."""
 
     stamp_ns: int
     state: Array
-    """(8,) as :mod:`~navette.navigation.localization.ekf.state` says"""
+    """(8,); see :mod:`~navette.navigation.localization.ekf.state`"""
     covariance: Array
     """(8, 8)"""
 
 
 @dataclass(frozen=True, eq=False)
-class Snapshot:
-    """All that the filter remembers; its arrays are never written to."""
+class FilterSnapshot:
+    """Complete state of the filter; its arrays are never modified."""
 
     stamp_ns: int | None
     state: Array
@@ -65,15 +65,15 @@ class Snapshot:
 
 
 class PlanarEkf:
-    """Estimate and covariance, brought forward in time and corrected.
+    """Filter with prediction and correction.
 
-    An entry that was never measured starts at its initial value and variance and is
-    carried along by the motion model; the first measurement of it replaces it.
+    An entry without measurement has its initial value and variance and is predicted by
+    the motion model; its first measurement replaces it.
 
     Args:
         process_noise: (8, 8) added to the covariance per second.
         initial_covariance: (8, 8) before the first measurement.
-        initial_state: (8,) likewise; all 0 if not given.
+        initial_state: (8,) before the first measurement; default 0.
     """
 
     def __init__(
@@ -88,21 +88,21 @@ class PlanarEkf:
         self.reset()
 
     def reset(self) -> None:
-        """Forget everything."""
-        self.snapshot = Snapshot(
+        """Return to the initial state."""
+        self.snapshot = FilterSnapshot(
             None, self.initial_state, self.initial_covariance, frozenset(range(SIZE))
         )
 
     @property
     def stamp_ns(self) -> int | None:
-        """The time of the estimate; None before the first measurement."""
+        """Stamp of the estimate; None before the first measurement."""
         return self.snapshot.stamp_ns
 
     def estimate_at(self, stamp_ns: int) -> Estimate | None:
-        """The estimate brought forward to a time; the filter stays as it is.
+        """Return the estimate predicted to a time, without changing the filter.
 
-        None before the first measurement, and where the model runs off to infinity; an
-        earlier time gives the newest estimate.
+        None before the first measurement, and if the prediction is not finite. For an
+        earlier time, return the newest estimate.
         """
         now = self.snapshot
         if now.stamp_ns is None:
@@ -114,14 +114,14 @@ class PlanarEkf:
         return Estimate(max(stamp_ns, now.stamp_ns), later.state, later.covariance)
 
     def step(self, measurement: Measurement) -> Fused:
-        """Bring the estimate to the measurement's time and correct it.
+        """Predict to the measurement's time and correct the estimate.
 
-        One that is rejected has no effect but that time, an unsound one none at all.
-        Must not be older than the estimate: see
+        A rejected measurement advances the time only; an unsound one has no effect. A
+        measurement must not be older than the estimate: see
         :class:`~navette.navigation.localization.ekf.history.OrderedEkf`.
         """
         before = self.snapshot
-        with np.errstate(all="ignore"):  # what comes of it is looked at
+        with np.errstate(all="ignore"):  # the result is checked below
             try:
                 self.snapshot = self._predicted_to(measurement.stamp_ns)
                 result = self._correct(measurement)
@@ -149,7 +149,7 @@ class PlanarEkf:
         state[YAW] = wrapped(state[YAW])
         kept = np.eye(SIZE) - K @ H
         covariance = kept @ prior @ kept.T + K @ measurement.covariance @ K.T
-        self.snapshot = Snapshot(
+        self.snapshot = FilterSnapshot(
             measurement.stamp_ns,
             state,
             0.5 * (covariance + covariance.T),
@@ -158,7 +158,7 @@ class PlanarEkf:
         return Fused.USED
 
     def _prior(self, first_seen: frozenset[int]) -> Array:
-        """The covariance, with nothing known of entries now seen for the first time."""
+        """Return the covariance, with first-measured entries set to unknown."""
         covariance = self.snapshot.covariance
         if not first_seen:
             return covariance
@@ -167,16 +167,18 @@ class PlanarEkf:
         covariance[rows, rows] = _UNKNOWN
         return covariance
 
-    def _predicted_to(self, stamp_ns: int) -> Snapshot:
+    def _predicted_to(self, stamp_ns: int) -> FilterSnapshot:
         before = self.snapshot
         if before.stamp_ns is None:
-            return Snapshot(stamp_ns, before.state, before.covariance, before.unseen)
+            return FilterSnapshot(
+                stamp_ns, before.state, before.covariance, before.unseen
+            )
         dt = (stamp_ns - before.stamp_ns) * 1e-9
         if dt <= 0.0:
             return before
         F = predicted_jacobian(before.state, dt)
         covariance = F @ before.covariance @ F.T + dt * self.process_noise
-        return Snapshot(
+        return FilterSnapshot(
             stamp_ns,
             predicted(before.state, dt),
             0.5 * (covariance + covariance.T),

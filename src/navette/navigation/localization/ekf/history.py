@@ -1,32 +1,32 @@
-"""Measurements that arrive late are put in their place in time."""
+"""Apply late measurements in the order of their stamps."""
 
 from dataclasses import dataclass
 
-from navette.navigation.localization.ekf.filter import Fused, PlanarEkf, Snapshot
+from navette.navigation.localization.ekf.filter import FilterSnapshot, Fused, PlanarEkf
 from navette.navigation.localization.ekf.measurement import Measurement
 
-# A sensor whose own stamps go back by more began anew: a bag that starts over or was
-# set back, a simulation that was reset.
+# A larger step back of a sensor's stamps means a new run: a bag that starts again or
+# was set back, or a reset simulation.
 _NEW_RUN_NS = 1_000_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class _Entry:
     measurement: Measurement
-    before: Snapshot
+    before: FilterSnapshot
 
 
 class OrderedEkf:
-    """A filter that takes measurements in any order, within a window of time.
+    """Filter that accepts measurements in any order, within a window of time.
 
-    One that is older than the estimate takes the filter back to just before its stamp;
-    the later ones are then taken again. So the result is that of the measurements in
-    the order of their stamps, whatever order they came in (equal stamps: as they came).
+    A measurement older than the estimate rolls the filter back to just before its
+    stamp, and the later ones are applied again. The result is that of the measurements
+    in the order of their stamps (equal stamps: in the order of arrival).
 
     Args:
         ekf: the filter.
-        history_ns: how much older than the newest a measurement may be.
-        max_gap_ns: when nothing came for longer, the filter begins anew.
+        history_ns: largest age of a measurement relative to the newest.
+        max_gap_ns: a longer gap in the stamps means a new run.
     """
 
     def __init__(self, ekf: PlanarEkf, history_ns: int, max_gap_ns: int) -> None:
@@ -37,13 +37,13 @@ class OrderedEkf:
         self._newest_of: dict[str, int] = {}
 
     def reset(self) -> None:
-        """Forget everything."""
+        """Reset the filter and the history."""
         self.ekf.reset()
         self._entries.clear()
         self._newest_of.clear()
 
-    def begins_anew(self, source: str, stamp_ns: int) -> bool:
-        """Whether this stamp is of another run: time went back, or far ahead."""
+    def is_new_run(self, source: str, stamp_ns: int) -> bool:
+        """Return whether time went back, or ahead by more than the gap: a new run."""
         last_ns = self._newest_of.get(source)
         if last_ns is not None and stamp_ns < last_ns - _NEW_RUN_NS:
             return True
@@ -51,21 +51,21 @@ class OrderedEkf:
         return newest_ns is not None and stamp_ns > newest_ns + self.max_gap_ns
 
     def step(self, measurement: Measurement) -> Fused:
-        """Take a measurement; after :meth:`begins_anew`, :meth:`reset` comes first."""
+        """Apply a measurement; call :meth:`reset` first if :meth:`is_new_run`."""
         source, stamp_ns = measurement.source, measurement.stamp_ns
         newest_ns = self.ekf.stamp_ns
         if newest_ns is not None and stamp_ns < newest_ns - self.history_ns:
             return Fused.TOO_OLD
         self._newest_of[source] = max(stamp_ns, self._newest_of.get(source, stamp_ns))
-        later = self._take_back_to(stamp_ns)
+        later = self._roll_back_to(stamp_ns)
         result = self._apply(measurement)
         for entry in later:
             self._apply(entry.measurement)
-        self._forget_old()
+        self._drop_old()
         return result
 
-    def _take_back_to(self, stamp_ns: int) -> list[_Entry]:
-        """Undo what is later than a stamp; gives the entries undone, in order."""
+    def _roll_back_to(self, stamp_ns: int) -> list[_Entry]:
+        """Roll back to a stamp; return the undone entries in order."""
         entries = self._entries
         at = len(entries)
         while at and entries[at - 1].measurement.stamp_ns > stamp_ns:
@@ -80,7 +80,7 @@ class OrderedEkf:
         self._entries.append(_Entry(measurement, self.ekf.snapshot))
         return self.ekf.step(measurement)
 
-    def _forget_old(self) -> None:
+    def _drop_old(self) -> None:
         entries, newest_ns = self._entries, self.ekf.stamp_ns or 0
         keep = 0
         while entries[keep].measurement.stamp_ns < newest_ns - self.history_ns:

@@ -1,4 +1,4 @@
-"""What a sensor says about some entries of the state."""
+"""Measurements of some entries of the state, and their model."""
 
 import math
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ from navette.navigation.localization.ekf.state import SIZE, YAW, Array, X, Y, wr
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """Some of the state's entries as a sensor saw them.
+    """Measured values of some entries of the state.
 
-    Where a lever arm is given, x and y are those of that point of the robot.
+    With a lever arm, x and y are those of that point of the robot.
     """
 
     source: str
-    """the sensor's name; its stamps come in order"""
+    """name of the input"""
     stamp_ns: int
     indices: tuple[int, ...]
     """(n,) entries of the state, ascending"""
@@ -25,13 +25,13 @@ class Measurement:
     covariance: Array
     """(n, n)"""
     threshold: float = math.inf
-    """largest Mahalanobis distance from what is expected"""
+    """largest Mahalanobis distance from the expected values"""
     lever: tuple[float, float] = (0.0, 0.0)
     """(x, y), m, in the base frame"""
 
 
 def expected(measurement: Measurement, state: Array) -> Array:
-    """(n,) what the sensor would say in this state, without noise."""
+    """Return the noise-free measurement (n,) in this state."""
     full = state.copy()
     lx, ly = measurement.lever
     c, s = math.cos(state[YAW]), math.sin(state[YAW])
@@ -42,7 +42,7 @@ def expected(measurement: Measurement, state: Array) -> Array:
 
 
 def expected_jacobian(measurement: Measurement, state: Array) -> Array:
-    """(n, 8) ∂expected / ∂state."""
+    """Return ∂expected / ∂state (n, 8)."""
     full = np.eye(SIZE)
     lx, ly = measurement.lever
     c, s = math.cos(state[YAW]), math.sin(state[YAW])
@@ -53,7 +53,7 @@ def expected_jacobian(measurement: Measurement, state: Array) -> Array:
 
 
 def innovation(measurement: Measurement, state: Array) -> Array:
-    """(n,) measured minus expected, headings the short way round."""
+    """Return measured minus expected (n,), headings in [−π, π]."""
     difference = measurement.values - expected(measurement, state)
     if YAW in measurement.indices:
         at = measurement.indices.index(YAW)

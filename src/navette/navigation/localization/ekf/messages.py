@@ -1,4 +1,4 @@
-"""The filter's estimate as messages."""
+"""Conversion of the estimate to messages."""
 
 import numpy as np
 
@@ -24,9 +24,9 @@ _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])
 
 
 def odometry_message(estimate: Estimate, world: str, base: str) -> Odometry:
-    """Pose in the world frame, velocity along the base's axes, with covariances.
+    """Return pose in the world frame and velocity along the base's axes.
 
-    The variances of height, roll and pitch are 0: the robot is taken to stay level.
+    The variances of height, roll and pitch are 0: the robot is assumed to stay level.
     """
     state = estimate.state
     qx, qy, qz, qw = quaternion_from_yaw(state[YAW])
@@ -51,7 +51,7 @@ def odometry_message(estimate: Estimate, world: str, base: str) -> Odometry:
 
 
 def pose_of(estimate: Estimate) -> Pose2:
-    """world_T_base."""
+    """Return world_T_base."""
     x, y, yaw = estimate.state[[X, Y, YAW]].tolist()
     return Pose2(x, y, yaw)
 
@@ -76,7 +76,7 @@ def _header(stamp_ns: int, frame: str) -> Header:
 
 
 def _spatial(covariance: Array, rows: list[int]) -> Array:
-    """(36,) of x, y, z and turning about them, from three of the state's entries."""
+    """Return the covariance (36,) of a spatial pose or twist from three entries."""
     spatial = np.zeros((6, 6))
     spatial[_PLANAR] = covariance[np.ix_(rows, rows)]
     return spatial.ravel()

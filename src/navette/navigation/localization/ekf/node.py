@@ -1,9 +1,9 @@
-"""The filter's node: odometry, IMU, GNSS, … → where the robot is.
+"""The filter's node: odometry, IMU, GNSS in, pose estimate out.
 
-Before the first measurement it publishes nothing. Without measurements it
-predicts for ``sensor_timeout_s``, then publishes nothing until a measurement arrives,
-so that the controller stops. Stamps are those of the measurements, and only go ahead;
-after a jump of the measurements' time (a bag that loops) it begins anew.
+Before the first measurement the node publishes nothing. Without measurements it
+predicts for ``sensor_timeout_s``, then stops publishing until a measurement arrives, so
+that the controller stops. Stamps are those of the measurements and never decrease; after
+a jump in the measurements' time (a bag that loops) the filter resets.
 """
 
 from dataclasses import replace
@@ -27,7 +27,7 @@ from navette.navigation.localization.ekf.params import (
     SOURCES,
     EkfParams,
 )
-from navette.navigation.localization.ekf.sensors import KINDS, Sensor
+from navette.navigation.localization.ekf.sensors import KINDS, FilterInput
 from navette.navigation.localization.ekf.state import PLANAR, planar_covariance
 from navette.runtime import (
     Buffer,
@@ -38,32 +38,32 @@ from navette.runtime import (
     stamp_to_ns,
 )
 
-_COMPLAINT_NS = 5_000_000_000
+_WARNING_PERIOD_NS = 5_000_000_000
 
 
 def _input(source: str, type_name: str, role: str) -> Input:
-    role = f"{role}; the parameter of that name says which topic"
+    role = f"{role}; the parameter of that name sets the topic"
     return Input(topic=source, type=type_name, role=role, callback=f"on_{source}")
 
 
 class EkfNode(StageNode):
-    """Extended Kalman filter in the plane, in robot_localization's words."""
+    """Planar extended Kalman filter with robot_localization's parameters."""
 
     PARAMS = EkfParams
     FIXED_AT_START = FIXED_AT_START
     INPUTS: ClassVar = (
         _input("odom0", "nav_msgs/msg/Odometry", "wheel odometry"),
         _input("odom1", "nav_msgs/msg/Odometry", "other odometry"),
-        _input("pose0", "geometry_msgs/msg/PoseWithCovarianceStamped", "a pose"),
+        _input("pose0", "geometry_msgs/msg/PoseWithCovarianceStamped", "pose"),
         _input("twist0", "geometry_msgs/msg/TwistWithCovarianceStamped", "velocity"),
         _input("imu0", "sensor_msgs/msg/Imu", "heading, turn rate, acceleration"),
-        _input("gps0", "sensor_msgs/msg/NavSatFix", "the antenna's place"),
+        _input("gps0", "sensor_msgs/msg/NavSatFix", "position of the antenna"),
     )
     OUTPUTS: ClassVar = (
         Output(
             topic=topics.ODOMETRY.name,
             type=topics.ODOMETRY.type,
-            role="where the robot takes itself to be",
+            role="estimated pose and velocity",
             rate_hz=30.0,
         ),
         Output(
@@ -72,16 +72,16 @@ class EkfNode(StageNode):
     )
 
     params: EkfParams
-    _is_fresh: bool  # since the last publication, a sensor said something
-    _arrived_ns: int  # when one last did
+    _is_fresh: bool  # a measurement was used since the last publication
+    _arrived_ns: int  # arrival of the last measurement
     _published_ns: int  # stamp of the last publication
-    _is_silent: bool  # for want of measurements
+    _is_paused: bool  # no measurements for the sensor timeout
 
     def __init__(self, node_name: str = "ekf", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        self._complained_ns: dict[str, int] = {}
+        self._warned_ns: dict[str, int] = {}
         self._buffer = Buffer(node=self)
-        # A filter on the map asks where odometry has the robot: the moving frames.
+        # A filter in the map frame needs odom → base, which moves.
         self._listener = TransformListener(
             self._buffer, self, static_only=not self._is_on_map
         )
@@ -91,7 +91,7 @@ class EkfNode(StageNode):
     def inputs(self) -> tuple[Input, ...]:
         if not self.params.used:
             raise ParameterError(
-                f"node {self.get_fully_qualified_name()}: no input; wanted the topic "
+                f"node {self.get_fully_qualified_name()}: no input; set the topic "
                 f"of at least one of {', '.join(SOURCES)}"
             )
         return tuple(
@@ -123,13 +123,13 @@ class EkfNode(StageNode):
         self._take("gps0", msg)
 
     def on_timer(self) -> None:
-        """Publish the estimate: the newest, or one predicted from it."""
+        """Publish the newest estimate, or a prediction from it."""
         newest_ns = self._filter.ekf.stamp_ns
         if newest_ns is None:
             return
         waited_ns = 0 if self._is_fresh else self._now_ns() - self._arrived_ns
         if waited_ns > round(self.params.sensor_timeout_s * 1e9):
-            self._fall_silent()
+            self._pause()
             return
         self._is_fresh = False
         estimate = self._filter.ekf.estimate_at(newest_ns + waited_ns)
@@ -138,7 +138,7 @@ class EkfNode(StageNode):
             self._publish(estimate)
 
     def on_params_changed(self, old: EkfParams) -> None:
-        """Another rate applies at once; anything else begins anew."""
+        """Apply a new rate at once; reset for any other change."""
         if self.params.frequency_hz != old.frequency_hz:
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(
@@ -148,11 +148,11 @@ class EkfNode(StageNode):
             self._start()
 
     def base_in(self, child: str) -> Transform3:
-        """child_T_base of a frame fixed to the robot."""
+        """Return child_T_base of a frame fixed to the robot."""
         return self._lookup(child, self.params.base_link_frame)
 
     def in_world(self, frame: str) -> Transform3:
-        """world_T_frame of a frame that poses are given in."""
+        """Return world_T_frame of a frame in which poses are given."""
         return self._lookup(self.params.world_frame, frame)
 
     @property
@@ -171,7 +171,7 @@ class EkfNode(StageNode):
             round(params.history_length_s * 1e9),
             round(params.max_gap_s * 1e9),
         )
-        self._sensors: dict[str, Sensor] = {
+        self._sensors: dict[str, FilterInput] = {
             source: KINDS[source](source, params, self) for source in params.used
         }
         self._reset()
@@ -183,30 +183,29 @@ class EkfNode(StageNode):
         self._is_fresh = False
         self._arrived_ns = 0
         self._published_ns = -1
-        self._is_silent = False
+        self._is_paused = False
 
     def _take(self, source: str, msg: Any) -> None:
         stamp_ns = stamp_to_ns(msg.header.stamp)
-        if self._filter.begins_anew(source, stamp_ns):
+        if self._filter.is_new_run(source, stamp_ns):
             self.get_logger().info(
-                f"{source}: time jumped to {stamp_ns / 1e9:.3f} s, the filter begins "
-                "anew"
+                f"{source}: time jumped to {stamp_ns / 1e9:.3f} s, the filter resets"
             )
             self._reset()
         try:
             for measurement in self._sensors[source].measurements(msg, stamp_ns):
                 self._fused(source, stamp_ns, self._filter.step(measurement))
         except NavetteError as error:
-            self._complain(source, f"{source} not used: {error}")
+            self._warn(source, f"{source} not used: {error}")
 
     def _fused(self, source: str, stamp_ns: int, fused: Fused) -> None:
         if fused is not Fused.USED:
             at = f"{source} at {stamp_ns / 1e9:.3f} s"
-            self._complain(source, f"{at} not used: {fused.value}")
+            self._warn(source, f"{at} not used: {fused.value}")
         if fused in (Fused.USED, Fused.REJECTED):
             self._is_fresh = True
             self._arrived_ns = self._now_ns()
-            self._is_silent = False
+            self._is_paused = False
 
     def _publish(self, estimate: Estimate) -> None:
         params = self.params
@@ -224,7 +223,7 @@ class EkfNode(StageNode):
             try:
                 base_T_odom = self._lookup(params.base_link_frame, child)
             except TransformError as error:
-                self._complain("tf", f"/tf not published: {error}")
+                self._warn("tf", f"/tf not published: {error}")
                 return
             transform = transform @ base_T_odom
         stamped = transform_message(
@@ -240,16 +239,21 @@ class EkfNode(StageNode):
         except TransformError as error:
             raise TransformError(f"no transform {target} → {source}: {error}") from None
 
-    def _fall_silent(self) -> None:
-        if not self._is_silent:
-            self._is_silent = True
-            self.get_logger().warning("nothing published: no sensor says anything")
+    def _pause(self) -> None:
+        if not self._is_paused:
+            self._is_paused = True
+            self.get_logger().warning(
+                "nothing is published: no measurement within sensor_timeout_s"
+            )
 
-    def _complain(self, about: str, text: str) -> None:
-        """Log a warning, for each thing at most one in five seconds."""
+    def _warn(self, about: str, text: str) -> None:
+        """Log a warning at most every five seconds for each subject."""
         now_ns = self._now_ns()
-        if now_ns - self._complained_ns.get(about, -_COMPLAINT_NS) >= _COMPLAINT_NS:
-            self._complained_ns[about] = now_ns
+        if (
+            now_ns - self._warned_ns.get(about, -_WARNING_PERIOD_NS)
+            >= _WARNING_PERIOD_NS
+        ):
+            self._warned_ns[about] = now_ns
             self.get_logger().warning(text)
 
     def _now_ns(self) -> int:

@@ -1,4 +1,4 @@
-"""Parameters of the extended Kalman filter, in robot_localization's words."""
+"""Parameters of the extended Kalman filter, named as in robot_localization."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,9 +9,9 @@ from navette.navigation.localization.ekf.state import NAMES, SPATIAL, planar_cov
 from navette.params import Params, param
 
 _NOTHING = (False,) * len(SPATIAL)
-_ANY_DISTANCE = 1e9
+_NO_LIMIT = 1e9
 
-#: The entries that each kind of input can give.
+#: The entries that each kind of input provides.
 _POSE = ("x", "y", "yaw")
 _TWIST = ("vx", "vy", "vyaw")
 GIVEN = {
@@ -40,77 +40,78 @@ def _topic(kind: str) -> Any:
 
 
 def _config() -> Any:
-    return param(_NOTHING, f"which of {' '.join(SPATIAL)} are taken from it")
+    return param(_NOTHING, f"which of {' '.join(SPATIAL)} to use")
 
 
 def _threshold(part: str) -> Any:
     return param(
-        _ANY_DISTANCE,
-        f"largest Mahalanobis distance of its {part} from the estimate; what is "
-        "farther is left out",
+        _NO_LIMIT,
+        f"largest Mahalanobis distance of its {part} from the estimate; farther "
+        "measurements are rejected",
         above=0.0,
     )
 
 
 def _queue() -> Any:
-    return param(10, "how many of its messages may wait", at_least=1)
+    return param(10, "queue size of the subscription", at_least=1)
 
 
-_DIFFERENTIAL = "take its changes of pose as velocity, not its poses"
-_RELATIVE = "take its poses as seen from its first"
+_DIFFERENTIAL = "use changes of its pose as velocity instead of its poses"
+_RELATIVE = "use its poses relative to the first one"
 
 
 @dataclass(frozen=True, kw_only=True)
 class EkfParams(Params):
-    """Which sensors there are, what they tell, and how much the model is trusted."""
+    """Inputs of the filter, their use, and the noise of the motion model."""
 
-    frequency_hz: float = param(30.0, "estimates published", unit="Hz", above=0.0)
+    frequency_hz: float = param(
+        30.0, "rate of published estimates", unit="Hz", above=0.0
+    )
     sensor_timeout_s: float = param(
         0.5,
-        "so long it goes on by prediction when no sensor says anything; then it "
-        "publishes nothing",
+        "how long the filter predicts without a measurement; then it publishes nothing",
         unit="s",
         above=0.0,
     )
-    two_d_mode: bool = param(True, "always: the filter is planar")
-    publish_tf: bool = param(True, "whether the estimate goes to /tf, too")
+    two_d_mode: bool = param(True, "always true: the filter is planar")
+    publish_tf: bool = param(True, "also publish the estimate on /tf")
     map_frame: str = param("map", "frame of estimates that may jump")
-    odom_frame: str = param("odom", "frame of estimates that go on smoothly")
+    odom_frame: str = param("odom", "frame of continuous estimates")
     base_link_frame: str = param("base_link", "frame of the robot's base")
     world_frame: str = param(
         "odom",
-        "frame of the estimate: odom_frame (to /tf goes odom → base), or map_frame (to "
-        "/tf goes map → odom, while something else gives odom → base)",
+        "frame of the estimate: odom_frame (publishes odom → base on /tf), or "
+        "map_frame (publishes map → odom; another node publishes odom → base)",
     )
     process_noise_covariance: tuple[float, ...] = param(
         _PROCESS_NOISE,
-        "added per second: 15 variances or 15 × 15, for " + " ".join(SPATIAL),
+        "covariance added per second: 15 variances or 15 × 15, for "
+        + " ".join(SPATIAL),
     )
     initial_estimate_covariance: tuple[float, ...] = param(
         (1e-9,) * len(SPATIAL),
-        "before the first measurement: 15 variances or 15 × 15",
+        "covariance before the first measurement: 15 variances or 15 × 15",
     )
     initial_state: tuple[float, ...] = param(
         (0.0,) * len(SPATIAL),
-        "before the first measurement: " + " ".join(SPATIAL) + ", m and rad",
+        "state before the first measurement: " + " ".join(SPATIAL) + ", m and rad",
     )
     history_length_s: float = param(
         1.0,
-        "a measurement so much older than the newest is put in its place in time; an "
-        "older one is left out",
+        "largest age of a late measurement relative to the newest; an older one is "
+        "dropped",
         unit="s",
         at_least=0.0,
         at_most=60.0,
     )
     max_gap_s: float = param(
         10.0,
-        "when nothing came for longer by the stamps (a bag was set forward), the "
-        "filter begins anew",
+        "a longer gap in the stamps (a bag was set forward) resets the filter",
         unit="s",
         above=0.0,
     )
     gravitational_acceleration_mps2: float = param(
-        9.80665, "what an accelerometer at rest shows", unit="m/s²"
+        9.80665, "reading of an accelerometer at rest", unit="m/s²"
     )
 
     odom0: str = _topic("nav_msgs/msg/Odometry")
@@ -143,13 +144,13 @@ class EkfParams(Params):
 
     imu0: str = _topic("sensor_msgs/msg/Imu")
     imu0_config: tuple[bool, ...] = _config()
-    imu0_relative: bool = param(False, "take its heading as seen from its first")
+    imu0_relative: bool = param(False, "use its heading relative to the first one")
     imu0_queue_size: int = _queue()
     imu0_pose_rejection_threshold: float = _threshold("heading")
     imu0_twist_rejection_threshold: float = _threshold("turn rate")
     imu0_linear_acceleration_rejection_threshold: float = _threshold("acceleration")
     imu0_remove_gravitational_acceleration: bool = param(
-        False, "take gravity off its acceleration, by its own orientation"
+        False, "subtract gravity from its acceleration, using its orientation"
     )
 
     gps0: str = _topic("sensor_msgs/msg/NavSatFix")
@@ -164,11 +165,11 @@ class EkfParams(Params):
 
     @property
     def used(self) -> tuple[str, ...]:
-        """The inputs that have a topic."""
+        """The inputs with a topic."""
         return tuple(source for source in SOURCES if getattr(self, source))
 
     def config_of(self, source: str) -> tuple[bool, ...]:
-        """(15,) as in the parameter; a GNSS gives x and y."""
+        """Return (15,) as in the parameter; GNSS provides x and y."""
         if source == "gps0":
             return tuple(name in ("x", "y") for name in SPATIAL)
         config: tuple[bool, ...] = getattr(self, f"{source}_config")
@@ -180,7 +181,9 @@ class EkfParams(Params):
 
     def check(self) -> None:
         if not self.two_d_mode:
-            raise ParameterError("parameter 'two_d_mode': wanted true, it is planar")
+            raise ParameterError(
+                "parameter 'two_d_mode': wanted true, the filter is planar"
+            )
         if self.world_frame not in (self.odom_frame, self.map_frame):
             raise ParameterError(
                 f"parameter 'world_frame': {self.world_frame!r}; wanted the odom_frame "
@@ -216,13 +219,13 @@ class EkfParams(Params):
         chosen = [name for name, on in zip(SPATIAL, config, strict=True) if on]
         for name in chosen:
             if name not in given:
-                why = "does not give it" if name in NAMES else "is planar"
+                why = "does not provide it" if name in NAMES else "is planar"
                 raise ParameterError(
                     f"parameter '{source}_config': {name} is chosen; the input {why}; "
                     f"wanted some of {' '.join(given)}"
                 )
         if not chosen:
             raise ParameterError(
-                f"parameter '{source}_config': nothing is taken from "
+                f"parameter '{source}_config': no entry is used of "
                 f"{getattr(self, source)}; wanted some of {' '.join(given)}"
             )

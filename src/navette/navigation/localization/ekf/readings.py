@@ -1,4 +1,4 @@
-"""Poses, velocities and accelerations in the plane, as sensors give them."""
+"""Planar poses, velocities and accelerations from sensors."""
 
 import math
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ from navette.navigation.localization.ekf.state import (
     is_covariance,
 )
 
-# Of a value that comes without: a sensor that knows better than this says so.
+# Used for a value without variance.
 LEAST_VARIANCE = 1e-9
 
 
 class Reading(NamedTuple):
-    """Three values (or two) and how sure the sensor is of them."""
+    """Up to three values and their covariance."""
 
     stamp_ns: int
     values: Array
@@ -32,13 +32,13 @@ class Reading(NamedTuple):
 
     @property
     def is_valid(self) -> bool:
-        """All finite, the covariance one."""
+        """Whether all values are finite and the covariance is valid."""
         return bool(np.all(np.isfinite(self.values))) and is_covariance(self.covariance)
 
 
 @dataclass(frozen=True)
 class Selection:
-    """Which entries of the state a sensor's message is used for."""
+    """Entries of the state for which an input is used."""
 
     pose: tuple[int, ...]
     twist: tuple[int, ...]
@@ -46,7 +46,7 @@ class Selection:
 
     @classmethod
     def from_config(cls, config: tuple[bool, ...]) -> "Selection":
-        """From robot_localization's 15 booleans."""
+        """Create from robot_localization's 15 booleans."""
         chosen = [
             NAMES.index(name)
             for name, wanted in zip(SPATIAL, config, strict=True)
@@ -62,7 +62,7 @@ class Selection:
 def pose_reading(
     stamp_ns: int, world_T_child: Pose2, covariance: Array, child_T_base: Pose2
 ) -> Reading:
-    """The base's pose from that of another frame of the robot.
+    """Return the base's pose from that of another frame of the robot.
 
     Args:
         covariance: (3, 3) of x, y, yaw of ``world_T_child``.
@@ -75,7 +75,7 @@ def pose_reading(
 
 
 def turned(reading: Reading, outer_T_inner: Pose2) -> Reading:
-    """A pose given in an inner frame, in the outer one."""
+    """Transform a pose from an inner to the outer frame."""
     pose = outer_T_inner @ Pose2(*reading.values)
     R = _rotation(outer_T_inner.yaw)
     return Reading(reading.stamp_ns, np.array(pose), R @ reading.covariance @ R.T)
@@ -84,7 +84,7 @@ def turned(reading: Reading, outer_T_inner: Pose2) -> Reading:
 def twist_reading(
     stamp_ns: int, twist: Array, covariance: Array, child_T_base: Pose2
 ) -> Reading:
-    """The base's velocity along its axes from that of another frame of the robot.
+    """Return the base's velocity along its axes from that of another frame.
 
     v_base = v_child + ω × p, turned into the base's axes (rigid body).
 
@@ -105,7 +105,7 @@ def measured(
     chosen: tuple[int, ...],
     threshold: float,
 ) -> Measurement:
-    """A reading's chosen entries; ``first`` is the state's entry of its first value."""
+    """Return the chosen entries; ``first`` is the state entry of the first value."""
     rows = [index - first for index in chosen]
     covariance = reading.covariance[np.ix_(rows, rows)].copy()
     diagonal = np.einsum("ii->i", covariance)
@@ -116,7 +116,7 @@ def measured(
 
 
 def without_variance(reading: Reading, first: int, chosen: tuple[int, ...]) -> str:
-    """Names of chosen entries whose variance was left at zero."""
+    """Return the names of chosen entries with zero variance."""
     return ", ".join(
         NAMES[index]
         for index in chosen
@@ -125,17 +125,17 @@ def without_variance(reading: Reading, first: int, chosen: tuple[int, ...]) -> s
 
 
 class PoseChanges:
-    """Velocities from poses that follow one another (``differential``)."""
+    """Velocities from consecutive poses (``differential``)."""
 
     def __init__(self, max_gap_ns: int) -> None:
         self.max_gap_ns = max_gap_ns
         self._last: Reading | None = None
 
     def step(self, reading: Reading) -> Reading | None:
-        """The velocity since the pose before; None if none came shortly before.
+        """Return the velocity since the previous pose; None without a recent one.
 
-        Along the base's axes at the heading half way; the covariances of both poses
-        count, as if independent.
+        Along the base's axes at the mean heading; the covariances of both poses are
+        added as if independent.
         """
         last, self._last = self._last, reading
         if last is None or not 0 < reading.stamp_ns - last.stamp_ns <= self.max_gap_ns:
@@ -150,19 +150,19 @@ class PoseChanges:
 
 
 class FirstPoseIsZero:
-    """Poses seen from the first one (``relative``)."""
+    """Poses relative to the first one (``relative``)."""
 
     def __init__(self) -> None:
         self._first_inverse: Pose2 | None = None
 
     def step(self, reading: Reading) -> Reading:
-        """The pose in the frame of the first one."""
+        """Return the pose in the frame of the first one."""
         if self._first_inverse is None:
             self._first_inverse = Pose2(*reading.values).inverse()
         return turned(reading, self._first_inverse)
 
 
 def _rotation(yaw: float) -> Array:
-    """(3, 3) that turns x and y, and leaves the third value."""
+    """Return (3, 3) that rotates x and y and keeps the third value."""
     c, s = math.cos(yaw), math.sin(yaw)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -1,4 +1,4 @@
-"""Messages → measurements, one object per input of the filter."""
+"""Conversion of messages to measurements, one object per input of the filter."""
 
 import logging
 import math
@@ -36,19 +36,19 @@ _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])  # x, y, and turning about z, of six
 
 
 class Frames(Protocol):
-    """How frames lie; a TransformError where that is not known."""
+    """Transforms between frames; raises TransformError if not connected."""
 
     def base_in(self, child: str) -> Transform3: ...  # child_T_base
     def in_world(self, frame: str) -> Transform3: ...  # world_T_frame
 
 
-class Sensor(ABC):
+class FilterInput(ABC):
     """One input of the filter.
 
     Args:
-        source: its parameter's name, ``odom0`` and so on.
-        params: the filter's.
-        frames: where its frames lie.
+        source: name of its topic parameter, such as ``odom0``.
+        params: parameters of the filter.
+        frames: transforms of its frames.
     """
 
     def __init__(self, source: str, params: EkfParams, frames: Frames) -> None:
@@ -56,20 +56,20 @@ class Sensor(ABC):
         self.params = params
         self.frames = frames
         self.selection = Selection.from_config(params.config_of(source))
-        self._missing: set[str] = set()  # what was complained about
+        self._missing: set[str] = set()  # entries already warned about
         self.reset()
 
     def reset(self) -> None:
-        """Forget the messages so far."""
+        """Drop the state of earlier messages."""
         self._changes = PoseChanges(round(self.params.max_gap_s * 1e9))
         self._first = FirstPoseIsZero()
 
     @abstractmethod
     def measurements(self, msg: Any, stamp_ns: int) -> Iterator[Measurement]:
-        """What a message says.
+        """Convert a message to measurements.
 
         Raises:
-            InvalidValueError: it is not finite, or its covariance is none.
+            InvalidValueError: not finite, or an invalid covariance.
             TransformError: its frame is not connected.
         """
 
@@ -79,7 +79,7 @@ class Sensor(ABC):
     def _pose(
         self, msg: Any, child: str, stamp_ns: int, threshold: float
     ) -> Iterator[Measurement]:
-        """From a PoseWithCovariance in the frame of the message's header."""
+        """Convert a PoseWithCovariance in the frame of the message's header."""
         if not self.selection.pose:
             return
         reading = pose_reading(
@@ -102,14 +102,14 @@ class Sensor(ABC):
         yield self._measured(reading, X, self.selection.pose, threshold)
 
     def _pose_of(self, pose: Pose) -> Pose2:
-        """The heading as 0 where it is not asked for: many senders leave it out."""
+        """Return the pose; an unused heading is 0, as it may be invalid."""
         yaw = yaw_of(_quaternion(pose.orientation)) if YAW in self.selection.pose else 0
         return Pose2(pose.position.x, pose.position.y, yaw)
 
     def _twist(
         self, twist: Any, child: str, stamp_ns: int, threshold: float
     ) -> Iterator[Measurement]:
-        """From a TwistWithCovariance in the frame ``child``."""
+        """Convert a TwistWithCovariance in the frame ``child``."""
         if not self.selection.twist:
             return
         linear, angular = twist.twist.linear, twist.twist.angular
@@ -132,7 +132,7 @@ class Sensor(ABC):
         if missing and missing not in self._missing:
             self._missing.add(missing)
             _LOG.warning(
-                "%s: it gives no variance of %s; %g is taken",
+                "%s: no variance of %s; %g is used",
                 self.source,
                 missing,
                 LEAST_VARIANCE,
@@ -140,7 +140,7 @@ class Sensor(ABC):
         return measured(self.source, reading, first, chosen, threshold)
 
 
-class OdometrySensor(Sensor):
+class OdometryInput(FilterInput):
     """nav_msgs/msg/Odometry: pose and velocity."""
 
     def measurements(self, msg: Any, stamp_ns: int) -> Iterator[Measurement]:
@@ -151,7 +151,7 @@ class OdometrySensor(Sensor):
         yield from self._twist(msg.twist, child, stamp_ns, limit)
 
 
-class PoseSensor(Sensor):
+class PoseInput(FilterInput):
     """geometry_msgs/msg/PoseWithCovarianceStamped: the base's pose."""
 
     def measurements(self, msg: Any, stamp_ns: int) -> Iterator[Measurement]:
@@ -159,7 +159,7 @@ class PoseSensor(Sensor):
         yield from self._pose(msg, child, stamp_ns, limit)
 
 
-class TwistSensor(Sensor):
+class TwistInput(FilterInput):
     """geometry_msgs/msg/TwistWithCovarianceStamped: velocity in its own frame."""
 
     def measurements(self, msg: Any, stamp_ns: int) -> Iterator[Measurement]:
@@ -168,11 +168,11 @@ class TwistSensor(Sensor):
         yield from self._twist(msg.twist, child, stamp_ns, limit)
 
 
-class ImuSensor(Sensor):
+class ImuInput(FilterInput):
     """sensor_msgs/msg/Imu: heading, turn rate, acceleration.
 
-    Mounted in any attitude; that its acceleration is not the base's own while the
-    robot turns is left out of account.
+    Any mounting attitude is supported. The difference between its acceleration and that
+    of the base while the robot turns is ignored.
     """
 
     def measurements(self, msg: Imu, stamp_ns: int) -> Iterator[Measurement]:
@@ -193,7 +193,9 @@ class ImuSensor(Sensor):
     def _heading(self, msg: Imu, stamp_ns: int, imu_R_base: Any) -> Measurement:
         covariance = np.asarray(msg.orientation_covariance, float).reshape(3, 3)
         if covariance[0, 0] == -1.0:
-            raise InvalidValueError("it says that it measures no orientation")
+            raise InvalidValueError(
+                "orientation_covariance[0] is -1: it measures no orientation"
+            )
         yaw = yaw_of(multiply(_quaternion(msg.orientation), imu_R_base))
         reading = Reading(stamp_ns, np.array([0.0, 0.0, yaw]), np.zeros((3, 3)))
         reading.covariance[2, 2] = covariance[2, 2]
@@ -218,8 +220,8 @@ class ImuSensor(Sensor):
         return self._measured(reading, AX, self.selection.acceleration, limit)
 
 
-class GpsSensor(Sensor):
-    """sensor_msgs/msg/NavSatFix: where its antenna is, east and north of the datum."""
+class GnssInput(FilterInput):
+    """sensor_msgs/msg/NavSatFix: antenna position east and north of the datum."""
 
     def reset(self) -> None:
         super().reset()
@@ -231,7 +233,9 @@ class GpsSensor(Sensor):
             raise InvalidValueError("it has no fix")
         place = GeoPoint(msg.latitude, msg.longitude, msg.altitude)
         if not place.is_valid:
-            raise InvalidValueError(f"{place}: no place")
+            raise InvalidValueError(
+                f"{place}: wanted a latitude and a longitude in range"
+            )
         antenna = self.frames.base_in(msg.header.frame_id).inverse().translation
         if self._plane is None:
             self._plane = LocalPlane(place)
@@ -243,13 +247,13 @@ class GpsSensor(Sensor):
         yield replace(seen, lever=(antenna[0], antenna[1]))
 
 
-KINDS: dict[str, type[Sensor]] = {
-    "odom0": OdometrySensor,
-    "odom1": OdometrySensor,
-    "pose0": PoseSensor,
-    "twist0": TwistSensor,
-    "imu0": ImuSensor,
-    "gps0": GpsSensor,
+KINDS: dict[str, type[FilterInput]] = {
+    "odom0": OdometryInput,
+    "odom1": OdometryInput,
+    "pose0": PoseInput,
+    "twist0": TwistInput,
+    "imu0": ImuInput,
+    "gps0": GnssInput,
 }
 
 
@@ -264,7 +268,7 @@ def _check(reading: Reading) -> None:
 
 
 def _planar(covariance: Any) -> Array:
-    """(3, 3) of x, y and turning about z, from a message's (36,)."""
+    """Return (3, 3) of x, y and rotation about z, from a message's (36,)."""
     planar: Array = np.asarray(covariance, float).reshape(6, 6)[_PLANAR]
     return planar
 
@@ -272,7 +276,7 @@ def _planar(covariance: Any) -> Array:
 def _quaternion(q: Any) -> tuple[float, float, float, float]:
     if not 0.9 < math.hypot(q.x, q.y, q.z, q.w) < 1.1:
         values = [q.x, q.y, q.z, q.w]
-        raise InvalidValueError(f"its orientation {values} is no rotation")
+        raise InvalidValueError(f"its orientation {values} is not a unit quaternion")
     return (q.x, q.y, q.z, q.w)
 
 
@@ -281,7 +285,7 @@ def _inverse(q: tuple[float, float, float, float]) -> Any:
 
 
 def _in_base(imu_R_base: Any, vector: Any, covariance: Any) -> tuple[Array, Array]:
-    """A vector (3,) and its covariance (3, 3) along the base's axes."""
+    """Return a vector (3,) and its covariance (3, 3) along the base's axes."""
     base_R_imu = _inverse(imu_R_base)
     columns = [rotate(base_R_imu, axis) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
     R = np.array(columns, dtype=float).T

@@ -1,4 +1,4 @@
-"""The state of a robot in the plane, and how it goes on by itself.
+"""State of a robot in the plane, and its motion model.
 
 State (8,): x, y (m) and yaw (rad) of the base in the world frame; vx, vy (m/s), vyaw
 (rad/s), ax, ay (m/s²) of the base along its own axes.
@@ -19,15 +19,15 @@ SIZE = 8
 
 #: The order of robot_localization's lists of 15.
 SPATIAL = tuple("x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split())
-#: Where the state's entries stand in that order.
+#: Indices of the state's entries in that order.
 PLANAR = [SPATIAL.index(name) for name in NAMES]
 
 
 def planar_covariance(values: tuple[float, ...], name: str) -> Array:
-    """(8, 8) from 15 variances or a 15 × 15 matrix, row by row.
+    """Return (8, 8) from 15 variances or a 15 × 15 matrix, row by row.
 
     Raises:
-        InvalidValueError: another length, not symmetric, or not positive semidefinite.
+        InvalidValueError: wrong length, not symmetric, or not positive semidefinite.
     """
     spatial = len(SPATIAL)
     if len(values) not in (spatial, spatial**2):
@@ -46,7 +46,7 @@ def planar_covariance(values: tuple[float, ...], name: str) -> Array:
 
 
 def is_covariance(matrix: Array) -> bool:
-    """Finite, symmetric and positive semidefinite, up to rounding."""
+    """Return whether a matrix is finite, symmetric and positive semidefinite."""
     if not np.all(np.isfinite(matrix)):
         return False
     scale = float(np.abs(matrix).max(initial=0.0))
@@ -56,15 +56,15 @@ def is_covariance(matrix: Array) -> bool:
 
 
 def wrapped(angle: float) -> float:
-    """The same angle in [−π, π]; NaN for an infinite one."""
+    """Return the angle in [−π, π]; NaN for an infinite one."""
     return math.remainder(angle, math.tau) if math.isfinite(angle) else math.nan
 
 
 def predicted(state: Array, dt: float) -> Array:
-    """The state ``dt`` seconds later: accelerations and turn rate as they are.
+    """Return the state ``dt`` seconds later at constant acceleration and turn rate.
 
-    The displacement along the base's axes, v dt + a dt²/2, turned by the heading at the
-    start (robot_localization's motion model, without height, roll and pitch).
+    The displacement along the base's axes, v dt + a dt²/2, rotated by the initial
+    heading (robot_localization's motion model, without height, roll and pitch).
     """
     c, s = math.cos(state[YAW]), math.sin(state[YAW])
     forward = state[VX] * dt + 0.5 * state[AX] * dt * dt
@@ -79,7 +79,7 @@ def predicted(state: Array, dt: float) -> Array:
 
 
 def predicted_jacobian(state: Array, dt: float) -> Array:
-    """(8, 8) ∂predicted / ∂state."""
+    """Return ∂predicted / ∂state (8, 8)."""
     c, s = math.cos(state[YAW]), math.sin(state[YAW])
     forward = state[VX] * dt + 0.5 * state[AX] * dt * dt
     left = state[VY] * dt + 0.5 * state[AY] * dt * dt
