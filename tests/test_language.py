@@ -70,7 +70,6 @@ PENDING: tuple[str, ...] = (
     "src/navette/supervisor",
     "tests/scenarios",
     "tests/unit/cli",
-    "tests/unit/navigation",
     "tests/unit/ros2",
     "tests/unit/supervisor",
 )
@@ -97,8 +96,6 @@ PENDING_NAMES: frozenset[str] = frozenset(
         "Level",
         "Link",
         "Listed",
-        "Playback",
-        "Progress",
         "Topic",
     }
 )

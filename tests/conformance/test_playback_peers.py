@@ -17,7 +17,7 @@ from navette.bags import BagWriter
 from navette.bags.play import PlayOptions
 from navette.msgs import definition_text, serialize
 from navette.msgs.std_msgs.msg import String
-from navette.navigation.stack.playback import Playback
+from navette.navigation.stack.playback import BagPlayback
 from navette.viewer.playback import PlaybackState, PlaybackStatus
 from navette.viewer.replies import playback_state, server_info
 
@@ -69,7 +69,7 @@ def test_frames_are_those_of_the_sdk() -> None:
 
 
 @pytest.fixture
-def playing(tmp_path: Path) -> Iterator[Playback]:
+def playing(tmp_path: Path) -> Iterator[BagPlayback]:
     """A bag of 20 s, paused at its start, under a live view."""
     path = tmp_path / "talk.mcap"
     writer = BagWriter(path)
@@ -78,7 +78,7 @@ def playing(tmp_path: Path) -> Iterator[Playback]:
     for tick in range(201):
         writer.write(channel, 50 * S + tick * S // 10, serialize(String(data="x")))
     writer.close()
-    playback = Playback([path], PlayOptions(paused=True), view_port=0)
+    playback = BagPlayback([path], PlayOptions(paused=True), view_port=0)
     thread = threading.Thread(target=playback.run)
     thread.start()
     yield playback
@@ -88,7 +88,7 @@ def playing(tmp_path: Path) -> Iterator[Playback]:
 
 
 @pytest.mark.slow
-def test_the_page_controls_a_recording(playing: Playback) -> None:
+def test_the_page_controls_a_recording(playing: BagPlayback) -> None:
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if chromium is None:
         pytest.skip("Chromium is not installed")

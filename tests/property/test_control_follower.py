@@ -1,4 +1,4 @@
-"""Whatever comes in, commands are finite and within the limits."""
+"""For any input, commands are finite and within the limits."""
 
 import math
 
@@ -62,7 +62,7 @@ def test_commands_are_finite_and_within_limits(
 
 
 @given(st.lists(st.tuples(any_float, any_float, any_float), min_size=1, max_size=5))
-def test_a_path_is_taken_or_refused_loudly(
+def test_a_path_is_accepted_or_refused_with_an_error(
     path: list[tuple[float, float, float]],
 ) -> None:
     follower = PathFollower(ControlParams())

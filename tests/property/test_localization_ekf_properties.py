@@ -47,13 +47,13 @@ def numeric_jacobian(function, state):
 
 
 @given(states, st.floats(0.0, 2.0))
-def test_the_models_jacobian_is_its_slope(state, dt) -> None:
+def test_the_models_jacobian_matches_finite_differences(state, dt) -> None:
     slope = numeric_jacobian(lambda s: predicted(s, dt), state)
     np.testing.assert_allclose(predicted_jacobian(state, dt), slope, atol=1e-6)
 
 
 @given(states, small, small)
-def test_a_measurements_jacobian_is_its_slope(state, lx, ly) -> None:
+def test_a_measurements_jacobian_matches_finite_differences(state, lx, ly) -> None:
     seen = Measurement(
         "gps0", 0, (X, Y, YAW, VX), np.zeros(4), np.eye(4), lever=(lx, ly)
     )
@@ -154,7 +154,7 @@ def drive(rng: np.random.Generator) -> tuple[PlanarEkf, np.ndarray, list[float]]
 
 
 @pytest.mark.slow
-def test_the_filter_is_as_wrong_as_it_says() -> None:
+def test_the_filters_error_matches_its_covariance() -> None:
     """Normalised estimation error squared (Bar-Shalom et al. 2001, section 5.4).
 
     Its mean over runs is χ² with 8 degrees of freedom: 8 ± 3·√(16 / 20) at each time

@@ -1,4 +1,4 @@
-"""Whatever the world, the body keeps its margin along every path."""
+"""In any world the body keeps its margin along every path."""
 
 import math
 
@@ -65,7 +65,7 @@ def pose_in_grid(u: float, v: float, turn: float) -> Pose2:
 def check_margin(poses: np.ndarray, occupancy: np.ndarray, begin: Pose2) -> None:
     """No obstacle nearer than the margin, once the body is that far from all."""
     points = SPEC.centers_of(np.argwhere(occupancy == 100))
-    # What lies inside the body at the start is not there.
+    # Obstacles inside the body at the start are ignored.
     points = points[signed_distances(points, begin) > 0]
     clearance = np.array(
         [

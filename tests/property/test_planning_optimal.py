@@ -1,4 +1,4 @@
-"""On any small grid the searches find the cheapest way, and a legal one."""
+"""On any small grid the searches find the cheapest valid path."""
 
 import heapq
 
@@ -51,7 +51,7 @@ def brute_force(cost: np.ndarray, start: Cell, goal: Cell, weight: float) -> int
 
 
 @given(GRIDS, st.data(), WEIGHTS)
-def test_astar_and_dijkstra_find_the_cheapest_way(
+def test_astar_and_dijkstra_find_the_cheapest_path(
     cost: np.ndarray, data: st.DataObject, weight: float
 ) -> None:
     start, goal = (ends(data, cost.shape) for _ in range(2))
@@ -82,7 +82,7 @@ def test_breadth_first_finds_the_fewest_moves(
 
 
 @given(GRIDS, st.data(), WEIGHTS)
-def test_pulled_lines_are_legal_and_not_dearer(
+def test_pulled_lines_are_valid_and_not_more_expensive(
     cost: np.ndarray, data: st.DataObject, weight: float
 ) -> None:
     start, goal = (ends(data, cost.shape) for _ in range(2))

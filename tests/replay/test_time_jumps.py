@@ -41,20 +41,20 @@ class HostClock(VirtualClock):
     is_virtual = False
 
 
-def passes(stage: Stage, count: int, *, tell_time: bool) -> list[dict[str, list[Any]]]:
+def passes(stage: Stage, count: int, *, with_clock: bool) -> list[dict[str, list[Any]]]:
     """Return the outputs of the stage in each pass of its bag, by topic."""
     outputs = []
     with GraphHarness(clock=HostClock(10**18)) as graph, open_bag(stage.bag) as bag:
         overrides = graph.context.overrides
         give_recorded_parameters(overrides, bag)
-        overrides.add("/**", {"use_sim_time": tell_time}, "test")
+        overrides.add("/**", {"use_sim_time": with_clock}, "test")
         inputs = tuple(t.name for t in bag.topics if t.name in stage.inputs)
         player = graph.add(
             PlayerNode(
                 bag,
                 PlayOptions(loop=True, topics=inputs),
                 context=graph.context,
-                clock_rate_hz=100.0 if tell_time else None,
+                clock_rate_hz=100.0 if with_clock else None,
             )
         )
         probes = [graph.collect(t.name, t.type_name) for t in bag.topics
@@ -73,8 +73,8 @@ def passes(stage: Stage, count: int, *, tell_time: bool) -> list[dict[str, list[
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stage", STAGES, ids=lambda stage: stage.name)
-def test_every_pass_of_a_loop_gives_the_same(stage: Stage) -> None:
-    second, third = passes(stage, 2, tell_time=True)
+def test_every_pass_of_a_loop_gives_the_same_results(stage: Stage) -> None:
+    second, third = passes(stage, 2, with_clock=True)
     assert set(second) == set(stage.outputs)
     for topic, messages in second.items():
         assert messages
@@ -89,7 +89,7 @@ def test_every_pass_of_a_loop_gives_the_same(stage: Stage) -> None:
 @pytest.mark.parametrize("stage", STAGES, ids=lambda stage: stage.name)
 def test_a_loop_without_a_clock_gives_as_many_messages(stage: Stage) -> None:
     """Stamps jump back while the nodes' time advances."""
-    second, third = passes(stage, 2, tell_time=False)
+    second, third = passes(stage, 2, with_clock=False)
     for topic, messages in second.items():
         assert messages
         assert len(messages) == len(third[topic])
@@ -125,7 +125,7 @@ def test_a_jump_back_of_transforms_clears_the_buffer() -> None:
         assert not buffer.can_transform("odom", "arm", Time())
 
 
-def test_a_late_transform_is_no_jump() -> None:
+def test_a_late_transform_is_not_a_jump() -> None:
     with GraphHarness() as graph:
         buffer = Buffer()
         TransformListener(buffer, graph.node)
@@ -149,7 +149,7 @@ def test_message_filters_reset() -> None:
         both.registerCallback(lambda a, b: together.append(float(a.header.stamp.sec)))
         cache = Cache(inputs[0], 10)
         for stamp_s in (100.0, 101.0, 102.0):
-            graph.publish("/a", point(stamp_s))  # their partners never come
+            graph.publish("/a", point(stamp_s))  # without partner messages
         graph.run_for(0.1)
         for stamp_s in (10.0, 11.0, 12.0, 13.0):
             graph.publish("/a", point(stamp_s))

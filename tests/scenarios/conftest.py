@@ -1,4 +1,4 @@
-"""A run without a window, as fast as it goes; closed when the test ends."""
+"""Headless runs as fast as possible, closed at the end of the test."""
 
 import math
 from collections.abc import Callable, Iterator

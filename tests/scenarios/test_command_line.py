@@ -1,4 +1,4 @@
-"""The command as a person types it: real processes, real sockets."""
+"""The command line in real processes with real sockets."""
 
 import json
 import os
@@ -36,13 +36,13 @@ Refusal = Callable[..., str]
 def refusal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Refusal:
-    """What the command says of its words; in this process, which has all imported."""
+    """Return the error output of a command, run in this process."""
 
     def refuse(*arguments: str) -> str:
         monkeypatch.setattr(sys, "argv", ["navette", *arguments])
         monkeypatch.setattr(
             app, "_exit_without_waiting", lambda code: None
-        )  # it goes on
+        )  # this process continues
         with pytest.raises(SystemExit) as ended:
             app.main()
         assert ended.value.code == 2
@@ -68,7 +68,7 @@ def test_version_and_help() -> None:
 
 
 @pytest.mark.slow
-def test_time_that_is_up_before_the_goals_is_no_success() -> None:
+def test_a_time_limit_before_the_last_goal_is_a_failure() -> None:
     done = navette(
         "sim", "course", "--goal", "6", "-12", "--goal", "12", "0", "--max-time", "2",
         "--headless", "--json",
@@ -87,7 +87,7 @@ def test_a_drive_prints_one_json_object_and_exits_with_zero() -> None:
         "--goal", "-10", "-2", "--headless", "--json",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert done.stderr.count("reached") == 3  # each goal when it is, and the total
+    assert done.stderr.count("reached") == 3  # each goal, and the total
     summary = json.loads(done.stdout)
     assert set(summary) == SUMMARY_KEYS
     assert [goal["goal"] for goal in summary["goals"]] == [[-6.0, -3.5], [-10.0, -2.0]]
@@ -120,9 +120,9 @@ def test_a_goal_that_is_not_reached_gives_another_exit_code() -> None:
 def test_a_wrong_argument_is_named_with_what_is_allowed(
     arguments: list[str], words: list[str], refusal: Refusal
 ) -> None:
-    said = refusal(*arguments)
+    errors = refusal(*arguments)
     for word in words:
-        assert word in said
+        assert word in errors
 
 
 @pytest.mark.slow
@@ -135,7 +135,7 @@ def test_a_broken_world_is_named_with_its_line(
 
 
 @pytest.mark.slow
-def test_a_refusal_is_all_that_a_process_says() -> None:
+def test_a_refusal_is_the_only_output() -> None:
     done = navette("sim", "nowhere")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("navette: ")

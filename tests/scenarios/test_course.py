@@ -1,4 +1,4 @@
-"""The reference world: the ten hard runs, the seven-goal course, and drives unseen."""
+"""The reference world: ten hard runs, the seven-goal course, random drives."""
 
 import math
 
@@ -72,6 +72,6 @@ def clearance_of(x: float, y: float) -> float:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
-def test_drives_that_nobody_chose(simulate: MakeSimulation, seed: int) -> None:
+def test_random_drives(simulate: MakeSimulation, seed: int) -> None:
     run = random_drive(seed)
     assert_driven_well(drive(simulate, run), run)

@@ -1,4 +1,4 @@
-"""The stack drives by the filter, not by the simulator's knowledge."""
+"""The stack drives with the filter's pose instead of the simulator's."""
 
 import math
 
@@ -14,7 +14,7 @@ from navette.sim.node import SimNode
 
 GOAL = (12.0, 0.0)
 ORDER = "x y z roll pitch yaw vx vy vz vroll vpitch vyaw ax ay az".split()
-# The wheels' odometry is an input of the filter now, and its transform nobody's.
+# Wheel odometry is an input of the filter; its transform is not used.
 REMAP = "--ros-args -r /odom/filtered:=/wheels/odometry -r /tf:=/tf_of_wheels".split()
 
 
@@ -42,7 +42,7 @@ def filter_for(sim: SimNode, context: Context) -> EkfNode:
 
 @pytest.mark.slow
 def test_the_robot_drives_by_filtered_wheels_and_imu() -> None:
-    """22 m round an obstacle, with wheels whose slip adds up."""
+    """22 m around an obstacle, with wheels whose slip accumulates."""
     resolved = resolve_scene(RunOptions(world="course"))
     context = Context(clock=VirtualClock())
     with context:
@@ -66,7 +66,7 @@ def test_the_robot_drives_by_filtered_wheels_and_imu() -> None:
             executor.add_node(node)
         stack.missions.on_done = executor.stop
         executor.spin_until(90_000_000_000)
-        results = [goal.result for goal in stack.missions.standing]
+        results = [goal.result for goal in stack.missions.all_outcomes]
         assert results == ["reached"]
         assert sim.simulator.contacts.count == 0
         assert len(off) > 300

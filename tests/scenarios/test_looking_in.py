@@ -51,7 +51,7 @@ navette.spin(node)
 
 
 class Terminals:
-    """A program that runs, and a second terminal beside it."""
+    """A running program and a second terminal."""
 
     def __init__(self, folder: Path) -> None:
         self.environment = {
@@ -85,7 +85,7 @@ class Terminals:
     def navette(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [*NAVETTE, *arguments],
-            cwd=self.folder,  # where nobody has the program's messages
+            cwd=self.folder,  # without the program's message definitions
             env=self.environment,
             capture_output=True,
             text=True,
@@ -127,7 +127,7 @@ def terminals(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Terminals]:
 
 
 @pytest.mark.slow
-def test_topics_are_seen_at_once(terminals: Terminals) -> None:
+def test_topics_are_listed_at_once(terminals: Terminals) -> None:
     shown = terminals.navette("topic", "list", "-t")
     assert (shown.returncode, shown.stderr) == (0, "")
     assert shown.stdout.splitlines() == [
@@ -161,7 +161,7 @@ def test_a_latched_message_is_shown_at_once(terminals: Terminals) -> None:
 
 
 @pytest.mark.slow
-def test_a_type_that_only_the_program_has_is_asked_of_it(terminals: Terminals) -> None:
+def test_an_unknown_type_is_requested_from_the_program(terminals: Terminals) -> None:
     shown = terminals.navette(
         "topic", "echo", "/reading", "--field", "values", "--flow-style", "-n", "2",
         "--timeout", "20", "--filter", "m.values[0] > m.GOOD",
@@ -188,15 +188,15 @@ def test_a_type_that_only_the_program_has_is_asked_of_it(terminals: Terminals) -
 @pytest.mark.slow
 def test_rates_and_delays_are_measured(terminals: Terminals) -> None:
     shown = terminals.navette("topic", "hz", "/reading", "--count", "1", "--json")
-    # Of a busy machine it is not known how many come in that second; the figures
-    # themselves are tested with a clock that is told (test_topic_measuring.py).
+    # The number of messages in that second depends on the load; the values are tested
+    # with a virtual clock (test_topic_measuring.py).
     assert json.loads(shown.stdout)["rate_hz"] > 0
     shown = terminals.navette("topic", "delay", "/reading", "--count", "1", "--json")
     assert 0 <= json.loads(shown.stdout)["min"] < LIMIT_S
 
 
 @pytest.mark.slow
-def test_what_is_published_once_is_heard(terminals: Terminals) -> None:
+def test_a_single_message_is_received(terminals: Terminals) -> None:
     shown = terminals.navette(
         "topic", "pub", "--once", "/command", "std_msgs/msg/String", "{data: go}"
     )
@@ -208,7 +208,7 @@ def test_what_is_published_once_is_heard(terminals: Terminals) -> None:
 @pytest.mark.parametrize(
     ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)]
 )
-def test_a_signal_ends_a_verb_without_a_word(
+def test_a_signal_ends_a_verb_silently(
     terminals: Terminals, number: int, code: int
 ) -> None:
     verb = terminals.start("topic", "echo", "/reading", "--csv")
@@ -220,7 +220,7 @@ def test_a_signal_ends_a_verb_without_a_word(
 
 
 @pytest.mark.slow
-def test_a_reader_that_goes_away_ends_a_verb_without_a_word(
+def test_a_closed_pipe_ends_a_verb_silently(
     terminals: Terminals,
 ) -> None:
     verb = terminals.start("topic", "echo", "/reading", "--csv")

@@ -1,4 +1,4 @@
-"""Every method that can be chosen drives: none is there for show."""
+"""Every selectable method drives the robot."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ CHOICES = [
 @pytest.mark.slow
 @pytest.mark.parametrize("robot", ["course", "jackal"])
 @pytest.mark.parametrize(("node", "parameter", "value"), CHOICES)
-def test_a_choice_of_method_drives_without_contact(
+def test_every_method_drives_without_contact(
     simulate: MakeSimulation,
     tmp_path: Path,
     robot: str,

@@ -1,4 +1,4 @@
-"""Goals that cannot be: named within a second, robot at rest, program alive."""
+"""Invalid goals: named within a second, robot stopped, program running."""
 
 import math
 
@@ -40,7 +40,7 @@ def speed(simulation: Simulation) -> float:
         (1.0, 1.0, "nowhere", "unknown_frame"),
     ],
 )
-def test_a_goal_that_cannot_be_is_named_and_the_next_one_driven(
+def test_an_invalid_goal_is_named_and_the_next_one_driven(
     simulate: MakeSimulation, x: float, y: float, frame: str, result: str
 ) -> None:
     simulation = simulate(world="course")
@@ -72,7 +72,9 @@ def test_a_goal_beyond_closed_walls_has_no_path(simulate: MakeSimulation) -> Non
 
 
 @pytest.mark.slow
-def test_a_bad_goal_on_the_way_stops_the_robot(simulate: MakeSimulation) -> None:
+def test_an_invalid_goal_while_driving_stops_the_robot(
+    simulate: MakeSimulation,
+) -> None:
     simulation = simulate(world="course")
     simulation.executor.spin_until(2 * SECOND)
     send_goal(simulation, 6.0, -12.0, "sim_world")

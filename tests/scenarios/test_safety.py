@@ -1,4 +1,4 @@
-"""What fails must stop the robot: lost sensors, nodes that raise."""
+"""Failures stop the robot: lost sensors, nodes that raise."""
 
 import math
 from typing import NoReturn
@@ -21,7 +21,7 @@ GOALS_X = {"course": 12.0, "jackal": 8.0, "husky": 12.0, "turtlebot3_burger": 3.
 
 
 def driving(simulate: MakeSimulation, robot: str) -> Simulation:
-    """A robot at speed, in the open."""
+    """A robot at speed in free space."""
     simulation = simulate(world="empty", robot=robot, goals=((GOALS_X[robot], 0.0),))
     simulation.executor.spin_until(WHEN_FAST)
     assert speed(simulation) > 0.15
@@ -36,7 +36,7 @@ def speed(simulation: Simulation) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("robot", GOALS_X)
 @pytest.mark.parametrize("topic", ["/lidar", "/odom/filtered"])
-def test_a_sensor_that_stops_stops_the_robot_within_half_a_second(
+def test_a_lost_sensor_stops_the_robot_within_half_a_second(
     simulate: MakeSimulation, monkeypatch: pytest.MonkeyPatch, robot: str, topic: str
 ) -> None:
     simulation = driving(simulate, robot)
@@ -71,7 +71,7 @@ def test_a_node_that_raises_is_named_and_the_robot_stopped(
 
 
 @pytest.mark.slow
-def test_the_map_is_there_before_the_robot_moves_and_for_who_comes_late(
+def test_the_map_is_published_before_the_robot_moves_and_for_late_subscribers(
     simulate: MakeSimulation,
 ) -> None:
     simulation = simulate(world="arena")

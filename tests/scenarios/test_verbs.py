@@ -88,7 +88,7 @@ complete -p navette
 
 
 class Child:
-    """A program that says ``ready``; killed at the end."""
+    """A program that prints ``ready``; killed at the end."""
 
     def __init__(self, *words: str) -> None:
         self.process = subprocess.Popen(
@@ -100,7 +100,7 @@ class Child:
         self._reader.start()
 
     def wait_for(self, text: str) -> None:
-        """Until it has printed a line with this in it."""
+        """Wait for a line that contains a text."""
         watch = Stopwatch()
         with self._news:
             while not any(text in line for line in self.lines):
@@ -125,7 +125,7 @@ class Child:
 
 @pytest.fixture(scope="module")
 def environment() -> Iterator[None]:
-    """A network of its own, for children and verbs alike."""
+    """A separate network for child processes and verbs."""
     with pytest.MonkeyPatch.context() as patched:
         patched.setenv("NAVETTE_ROUTER", free_endpoint())
         patched.setenv("ROS_DOMAIN_ID", DOMAIN)
@@ -144,7 +144,7 @@ def talker(environment: None) -> Iterator[Child]:
 
 @pytest.fixture(scope="module")
 def server(talker: Child) -> Iterator[Child]:
-    """Beside the talker, which is the router."""
+    """A second program; the talker is the router."""
     with ExitStack() as stack:
         child = Child("-c", SERVER)
         stack.callback(child.end)
@@ -152,31 +152,36 @@ def server(talker: Child) -> Iterator[Child]:
         yield child
 
 
-def said(*words: str, code: int = 0) -> str:
+def output_of(*words: str, code: int = 0) -> str:
     done = CliRunner().invoke(app, list(words))
     assert done.exit_code == code, done.output
     return done.stdout
 
 
 @pytest.mark.slow
-def test_looking_and_changing(talker: Child, server: Child) -> None:
-    assert said("node", "list") == "/server\n/talker\n"
-    assert "    /chatter: std_msgs/msg/String\n" in said("node", "info", "talker")
-    assert said("param", "get", "talker", "speed") == "Double value is: 1.5\n"
-    assert said("param", "set", "talker", "speed", "3") == "Set parameter successful\n"
-    assert "    speed: 3.0\n" in said("param", "dump")
-    assert "/add [example_interfaces/srv/AddTwoInts]\n" in said("service", "list", "-t")
-    called = said("service", "call", "/add", "{a: 2, b: 3}", "--json")
+def test_verbs_query_and_change_nodes(talker: Child, server: Child) -> None:
+    assert output_of("node", "list") == "/server\n/talker\n"
+    assert "    /chatter: std_msgs/msg/String\n" in output_of("node", "info", "talker")
+    assert output_of("param", "get", "talker", "speed") == "Double value is: 1.5\n"
+    assert (
+        output_of("param", "set", "talker", "speed", "3")
+        == "Set parameter successful\n"
+    )
+    assert "    speed: 3.0\n" in output_of("param", "dump")
+    assert "/add [example_interfaces/srv/AddTwoInts]\n" in output_of(
+        "service", "list", "-t"
+    )
+    called = output_of("service", "call", "/add", "{a: 2, b: 3}", "--json")
     assert json.loads(called) == {"sum": 5}
-    assert said("action", "info", "/count", "-c").endswith("Action servers: 1\n")
-    goal = said("action", "send_goal", "/count", "{order: 3}", "--json", "-f")
+    assert output_of("action", "info", "/count", "-c").endswith("Action servers: 1\n")
+    goal = output_of("action", "send_goal", "/count", "{order: 3}", "--json", "-f")
     assert json.loads(goal.splitlines()[-1]) == {
         "status": "SUCCEEDED",
         "result": {"sequence": [0, 1, 1, 2]},
     }
-    assert said("lifecycle", "get", "server") == "unconfigured [1]\n"
-    assert said("lifecycle", "set", "server", "configure")
-    assert said("lifecycle", "get") == "/server: inactive [2]\n"
+    assert output_of("lifecycle", "get", "server") == "unconfigured [1]\n"
+    assert output_of("lifecycle", "set", "server", "configure")
+    assert output_of("lifecycle", "get") == "/server: inactive [2]\n"
 
 
 @pytest.mark.slow
@@ -217,14 +222,14 @@ def test_bash_completes(talker: Child) -> None:
 
 @pytest.mark.slow
 def test_doctor_of_a_program_that_is_stopped(talker: Child, server: Child) -> None:
-    """One that can be asked no more, and then the router itself."""
+    """A stopped program, then the stopped router."""
     seen = _doctor()
     assert seen["router"]["data"]["pid"] in (talker.process.pid, None)
     assert seen["nodes"]["level"] == "good"
     with _stopped(server):
         assert _doctor(code=1)["/server"]["level"] == "problem"
     if sys.platform != "linux":
-        return  # who has a port, and whether it runs, is known from /proc
+        return  # the owner of a port and its state are read from /proc
     with _stopped(talker):
         router = _doctor(code=1)["router"]
         assert router["level"] == "problem"
@@ -232,7 +237,7 @@ def test_doctor_of_a_program_that_is_stopped(talker: Child, server: Child) -> No
 
 
 def _doctor(code: int = 0) -> dict[str, dict[str, object]]:
-    report = json.loads(said("doctor", "--json", code=code))
+    report = json.loads(output_of("doctor", "--json", code=code))
     return {each["what"]: each for each in report["findings"]}
 
 

@@ -13,7 +13,7 @@ from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.summary import RunSummary
 
 if TYPE_CHECKING:
-    from navette.navigation.stack.monitor import Progress
+    from navette.navigation.stack.monitor import RunProgress
     from navette.navigation.stack.simulation import Simulation
 
 _REFRESH_HZ = 8
@@ -54,7 +54,7 @@ class StatusScreen:
         ):
             yield
 
-    def on_change(self, progress: "Progress") -> None:
+    def on_change(self, progress: "RunProgress") -> None:
         """Print a line when a goal starts, ends or fails."""
         text = self._event(progress)
         if text is not None and text.plain != self._reported:
@@ -106,7 +106,7 @@ class StatusScreen:
                 soft_wrap=True,
             )
 
-    def _event(self, progress: "Progress") -> Text | None:
+    def _event(self, progress: "RunProgress") -> Text | None:
         if progress.goal is None:
             return None
         where = f"goal {_point(progress.goal)}"
@@ -133,7 +133,7 @@ class StatusScreen:
         )
         return line
 
-    def _bar(self, progress: "Progress") -> Text:
+    def _bar(self, progress: "RunProgress") -> Text:
         left = progress.distance_left_m
         width = max(0, min(_WIDTH, self._console.width - _BESIDE_BAR))
         if progress.goal is None or left is None:
@@ -144,7 +144,7 @@ class StatusScreen:
         return Text.assemble(("━" * done, "green"), ("─" * (width - done), "dim"))
 
 
-def _left(progress: "Progress") -> str:
+def _left(progress: "RunProgress") -> str:
     if progress.goal is None:
         return "waiting for a goal"
     to = f"to {_point(progress.goal)}"

@@ -1,1 +1,1 @@
-"""The robot's stages, in the order data flows, and the stack that wires them."""
+"""Stages of the navigation stack in data-flow order, and the stack that wires them."""

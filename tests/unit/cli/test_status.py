@@ -8,7 +8,7 @@ from rich.console import Console
 
 from navette.cli.status import StatusScreen
 from navette.navigation.stack import RunOptions
-from navette.navigation.stack.monitor import Progress
+from navette.navigation.stack.monitor import RunProgress
 
 
 @pytest.mark.parametrize("columns", [30, 60, 80, 200])
@@ -16,7 +16,7 @@ def test_the_live_line_stays_one_line(columns: int) -> None:
     screen = StatusScreen(RunOptions(goals=((-12.5, 3.0),)))
     shown = io.StringIO()
     screen._console = Console(file=shown, width=columns, force_terminal=False)
-    progress = Progress(
+    progress = RunProgress(
         goal=(-12.5, 3.0),
         goal_id="1",
         state="following",

@@ -15,7 +15,7 @@ from navette.cli.session import FAILED
 if TYPE_CHECKING:
     from navette.bags.play import PlayOptions
     from navette.bags.play.node import PlayerNode
-    from navette.navigation.stack.playback import Playback
+    from navette.navigation.stack.playback import BagPlayback
 
 _BACK_NS = 5_000_000_000
 _FASTER = 1.1
@@ -133,11 +133,11 @@ def _play(
     from navette.cli.bag.play_screen import PlayScreen
     from navette.cli.keyboard import listening_to_keys
     from navette.errors import CallbackError
-    from navette.navigation.stack.playback import Playback
+    from navette.navigation.stack.playback import BagPlayback
 
     with ExitStack() as stack:
         stack.enter_context(sigterm_as_interrupt())
-        playback = Playback(
+        playback = BagPlayback(
             files, options, remap=remap, clock_rate_hz=clock_rate_hz, view_port=port
         )
         stack.callback(playback.close)
@@ -157,7 +157,7 @@ def _play(
     return INTERRUPTED if word == "interrupted" else 0
 
 
-def _keyboard(playback: "Playback") -> Callable[[str], None]:
+def _keyboard(playback: "BagPlayback") -> Callable[[str], None]:
     def on_key(key: str) -> None:
         if key == "q":
             playback.stop()

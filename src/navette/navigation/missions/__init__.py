@@ -1,4 +1,4 @@
-"""What to do next: goals in order, and what became of each."""
+"""Missions: goals in order, and their results."""
 
 from navette.navigation.missions.params import MissionParams
 from navette.navigation.missions.sequence import (

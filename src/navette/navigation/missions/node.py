@@ -1,7 +1,7 @@
-"""The node ``missions``: sends goals to the planner, one after the other.
+"""The node ``missions``: send goals to the planner, one after another.
 
-It waits with the first goal until somebody reads /goal_point, the planner was heard
-and (unless switched off) a map was seen; then it publishes each goal once.
+The node publishes its first goal when /goal_point has a subscriber, a planner status
+has arrived and, with ``wait_for_map``, a map. Each goal is published once.
 """
 
 from collections.abc import Callable
@@ -24,14 +24,14 @@ from navette.runtime.time import ns_to_stamp
 
 
 class MissionNode(StageNode):
-    """Drives a list of goals; more can be added at any time."""
+    """Send a list of goals; more can be added at any time."""
 
     PARAMS = MissionParams
     INPUTS = (
         Input(
             topic=topics.PLANNER_STATUS.name,
             type=topics.PLANNER_STATUS.type,
-            role="what becomes of the goal",
+            role="progress and result of the goal",
             rate_hz=2.0,
             depth=1,
             latched=True,
@@ -40,14 +40,14 @@ class MissionNode(StageNode):
         Input(
             topic=topics.ODOMETRY.name,
             type=topics.ODOMETRY.type,
-            role="path length and distance left",
+            role="position, for path length and distance left",
             rate_hz=10.0,
             callback="on_odometry",
         ),
         Input(
             topic=topics.MAP.name,
             type=topics.MAP.type,
-            role="sign that planning can begin",
+            role="availability of a map",
             depth=1,
             latched=True,
             callback="on_map",
@@ -65,9 +65,9 @@ class MissionNode(StageNode):
         super().__init__("missions", **kwargs)
         params: MissionParams = self.params
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
-        self._odometry: Odometry | None = None  # newest, not counted yet
-        self._map_seen = self._planner_heard = False
-        #: Called when the last goal has its outcome.
+        self._odometry: Odometry | None = None  # newest, not used yet
+        self._map_arrived = self._planner_ready = False
+        #: Called when every goal has a result.
         self.on_done: Callable[[], None] | None = None
         self._sequence = GoalSequence(
             params.goal_points(),
@@ -78,27 +78,27 @@ class MissionNode(StageNode):
 
     @property
     def done(self) -> bool:
-        """Whether every goal has its outcome."""
+        """Whether every goal has a result."""
         return self._sequence.done
 
     @property
     def active_goal(self) -> Point | None:
-        """The goal under way (x, y; m, map), if any."""
+        """The active goal (x, y; m, map), if any."""
         return self._sequence.active
 
     @property
     def outcomes(self) -> list[GoalOutcome]:
-        """What became of the goals that have ended, in order."""
+        """Outcomes of the ended goals, in order."""
         return list(self._sequence.outcomes)
 
     @property
-    def standing(self) -> list[GoalOutcome]:
-        """Every goal in order; what has not ended yet is ``unfinished``."""
-        self._count_way()
+    def all_outcomes(self) -> list[GoalOutcome]:
+        """Outcomes of all goals, in order; ``unfinished`` for those not ended."""
+        self._update_position()
         return self.outcomes + self._sequence.unfinished(self._now_ns)
 
     def add_goal(self, x: float, y: float) -> None:
-        """One more goal (m, map) after the others.
+        """Append a goal (m, map).
 
         Raises:
             InvalidValueError: not finite.
@@ -106,26 +106,26 @@ class MissionNode(StageNode):
         self._sequence.add(x, y)
 
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
-        """The planner says how it goes; perhaps the goal is done."""
-        self._planner_heard = True
-        self._count_way()
+        """Forward the planner's status; it may end the active goal."""
+        self._planner_ready = True
+        self._update_position()
         values = {pair.key: pair.value for pair in msg.values}
         report = PlannerReport(
             values.get("goal_id", ""), msg.message, values.get("result")
         )
-        self._sequence.hear(report, self._now_ns)
-        self._go_on()
+        self._sequence.on_report(report, self._now_ns)
+        self._send_next()
 
     def on_odometry(self, msg: Odometry) -> None:
-        """Keep the newest; a few a second are enough to count the way driven."""
+        """Store the newest message; the path length is updated a few times a second."""
         self._odometry = msg
 
     def on_map(self, msg: OccupancyGrid) -> None:
-        """The planner can have its map by now."""
-        self._map_seen = True
+        """Note that the planner has a map."""
+        self._map_arrived = True
 
     def on_params_changed(self, old: MissionParams) -> None:
-        """New goals are added; times and failure rule hold from the next goal on."""
+        """Append new goals; timeout and failure rule apply from the next goal on."""
         params: MissionParams = self.params
         if params.goals_m != old.goals_m:
             for goal in params.goal_points():
@@ -138,28 +138,28 @@ class MissionNode(StageNode):
         return self.get_clock().now_ns
 
     def _check(self) -> None:
-        self._count_way()
+        self._update_position()
         self._sequence.check(self._now_ns)
-        self._go_on()
+        self._send_next()
 
-    def _count_way(self) -> None:
+    def _update_position(self) -> None:
         odometry, self._odometry = self._odometry, None
         if odometry is None or not self._tracker.update(odometry):
             return
-        place = self._tracker.latest
-        assert place is not None, "the tracker took the odometry"
-        self._sequence.move(place.x, place.y)
+        pose = self._tracker.latest
+        assert pose is not None, "the tracker accepted the odometry"
+        self._sequence.move(pose.x, pose.y)
 
-    def _go_on(self) -> None:
-        """Publish the next goal if it is its turn and the planner can take it."""
+    def _send_next(self) -> None:
+        """Publish the next goal if no goal is active and the planner is ready."""
         if self._sequence.done:
             if self._sequence.total and self.on_done is not None:
                 self.on_done()
             return
-        map_ready = self._map_seen or not self.params.wait_for_map
+        map_ready = self._map_arrived or not self.params.wait_for_map
         if not (
             map_ready
-            and self._planner_heard
+            and self._planner_ready
             and self.has_listeners(topics.GOAL_POINT.name)
         ):
             return

@@ -9,20 +9,20 @@ from navette.params import Params, param
 
 @dataclass(frozen=True, kw_only=True)
 class MissionParams(Params):
-    """Which goals to send and how long to wait for each."""
+    """Goals, timeout and failure rule."""
 
-    map_frame: str = param("map", "frame of the goals sent and of the pose")
+    map_frame: str = param("map", "frame of the goals and of the pose")
     base_frame: str = param("base_link", "frame whose path length is measured")
-    goals_m: tuple[float, ...] = param((), "goals to start with: x1, y1, …", unit="m")
+    goals_m: tuple[float, ...] = param((), "initial goals: x1, y1, …", unit="m")
     goal_timeout_s: float = param(
-        300.0, "a goal not reached by then has timed out; 0: never", unit="s",
+        300.0, "time after which a goal fails (timed_out); 0: no limit", unit="s",
         at_least=0.0,
     )  # fmt: skip
     on_failure: str = param(
-        "continue", "after a failed goal", choices=("continue", "stop")
+        "continue", "what to do after a failed goal", choices=("continue", "stop")
     )
-    wait_for_map: bool = param(True, "send the first goal only once /map was seen")
-    rate_hz: float = param(10.0, "checks per second", unit="Hz", at_least=1.0)
+    wait_for_map: bool = param(True, "send the first goal after a map has arrived")
+    rate_hz: float = param(10.0, "rate of checks", unit="Hz", at_least=1.0)
 
     def check(self) -> None:
         if len(self.goals_m) % 2:
@@ -35,5 +35,5 @@ class MissionParams(Params):
             )
 
     def goal_points(self) -> list[tuple[float, float]]:
-        """The goals as points (x, y), metres."""
+        """Return the goals as points (x, y), metres."""
         return list(zip(self.goals_m[0::2], self.goals_m[1::2], strict=True))

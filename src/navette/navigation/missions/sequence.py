@@ -1,4 +1,4 @@
-"""Goals one after the other, and what became of each."""
+"""Goals one after another, and their results."""
 
 import math
 from collections import deque
@@ -26,16 +26,16 @@ FAILURES = frozenset(
         TIMED_OUT,
     }
 )
-"""Messages of a planner that has given the goal up."""
+"""Status messages of a planner that ended a goal without reaching it."""
 
 Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class GoalOutcome:
-    """One goal (x, y; m, map): result, seconds, metres driven and metres to go.
+    """Result of one goal (x, y; m, map).
 
-    ``distance_left_m`` is infinite as long as the robot's place was never known.
+    ``distance_left_m`` is infinite without a pose of the robot.
     """
 
     goal: Point
@@ -47,10 +47,13 @@ class GoalOutcome:
 
 @dataclass(frozen=True)
 class PlannerReport:
-    """What the planner says.
+    """Status of the planner.
 
-    ``goal_id`` tells its goals apart, "" if it does not. ``result`` says how the goal
-    ended, "" while under way; None from a planner that says it by message only.
+    Attributes:
+        goal_id: identifies the goal; "" from a planner without ids.
+        message: activity or failure.
+        result: how the goal ended, "" until then; None from a planner that reports
+            it by message only.
     """
 
     goal_id: str
@@ -59,7 +62,7 @@ class PlannerReport:
 
     @property
     def end(self) -> str:
-        """How the goal ended, or "" if it has not."""
+        """How the goal ended; "" until then."""
         if self.result is not None:
             return self.result
         is_end = self.message == REACHED or self.message in FAILURES
@@ -67,12 +70,12 @@ class PlannerReport:
 
 
 class GoalSequence:
-    """Decides which goal is next and when one has ended; knows no clock, no topic.
+    """State machine of the goals, without clock or topics.
 
     Args:
-        goals: what to begin with, (x, y) in metres.
-        timeout_ns: time for each goal, 0 for ever.
-        stop_on_failure: skip what is left after a goal that was not reached.
+        goals: initial goals (x, y), metres.
+        timeout_ns: time for each goal; 0: no limit.
+        stop_on_failure: skip the remaining goals after a failed one.
     """
 
     def __init__(
@@ -85,11 +88,11 @@ class GoalSequence:
         self._pending: deque[Point] = deque()
         self.timeout_ns = timeout_ns
         self.stop_on_failure = stop_on_failure
-        self._heard = PlannerReport("", "")
-        self._before_goal = self._heard
-        self._place: Point | None = None
+        self._last_report = PlannerReport("", "")
+        self._before_goal = self._last_report
+        self._position: Point | None = None
         self._active: Point | None = None
-        self._began_ns = 0
+        self._started_ns = 0
         self._path_length = 0.0
         self.outcomes: list[GoalOutcome] = []
         for goal in goals:
@@ -97,21 +100,21 @@ class GoalSequence:
 
     @property
     def active(self) -> Point | None:
-        """The goal under way, if any."""
+        """The active goal, if any."""
         return self._active
 
     @property
     def done(self) -> bool:
-        """Whether every goal has its outcome."""
+        """Whether every goal has a result."""
         return self._active is None and not self._pending
 
     @property
     def total(self) -> int:
-        """How many goals there are, ended ones included."""
+        """Number of goals, ended ones included."""
         return len(self.outcomes) + len(self._pending) + (self._active is not None)
 
     def add(self, x: float, y: float) -> None:
-        """One more goal after the others.
+        """Append a goal.
 
         Raises:
             InvalidValueError: not finite.
@@ -121,28 +124,28 @@ class GoalSequence:
         self._pending.append((float(x), float(y)))
 
     def start_next(self, now_ns: int) -> Point | None:
-        """Begin the next goal and return it; None while one is under way or none is."""
+        """Start the next goal and return it; None if one is active or none is left."""
         if self._active is not None or not self._pending:
             return None
         self._active = self._pending.popleft()
-        self._before_goal = self._heard
-        self._began_ns = now_ns
+        self._before_goal = self._last_report
+        self._started_ns = now_ns
         self._path_length = 0.0
         return self._active
 
     def move(self, x: float, y: float) -> None:
-        """The robot is now at (x, y), metres, map."""
-        if self._place is not None:
-            self._path_length += math.dist(self._place, (x, y))
-        self._place = (x, y)
+        """Update the position of the robot (x, y), metres, map."""
+        if self._position is not None:
+            self._path_length += math.dist(self._position, (x, y))
+        self._position = (x, y)
 
-    def hear(self, report: PlannerReport, now_ns: int) -> None:
-        """The planner reports; ends the active goal if it is the last word on it.
+    def on_report(self, report: PlannerReport, now_ns: int) -> None:
+        """Process a planner report; a final one ends the active goal.
 
-        What was said last before the goal was sent, and is repeated, concerns an
-        earlier goal: a report counts from the first that differs.
+        A report that repeats the last one before the goal was sent concerns an earlier
+        goal: reports count from the first different one.
         """
-        self._heard = report
+        self._last_report = report
         if self._active is None or self._is_old(report):
             return
         self._before_goal = PlannerReport("", "")
@@ -150,21 +153,21 @@ class GoalSequence:
             self._end(report.end, now_ns)
 
     def check(self, now_ns: int) -> None:
-        """End the active goal if its time is over."""
+        """End the active goal if its timeout has expired."""
         if self._active is None or not self.timeout_ns:
             return
-        if now_ns - self._began_ns >= self.timeout_ns:
+        if now_ns - self._started_ns >= self.timeout_ns:
             self._end(TIMED_OUT, now_ns)
 
     def unfinished(self, now_ns: int) -> list[GoalOutcome]:
-        """How the goals stand that have not ended: the one under way, then the rest."""
-        standing = [
+        """Return outcomes of the goals that have not ended, the active one first."""
+        outcomes = [
             GoalOutcome(goal, UNFINISHED, 0.0, 0.0, self._distance_to(goal))
             for goal in self._pending
         ]
         if self._active is not None:
-            standing.insert(0, self._outcome(self._active, UNFINISHED, now_ns))
-        return standing
+            outcomes.insert(0, self._outcome(self._active, UNFINISHED, now_ns))
+        return outcomes
 
     def _is_old(self, report: PlannerReport) -> bool:
         before = self._before_goal
@@ -183,9 +186,9 @@ class GoalSequence:
                 self.outcomes.append(GoalOutcome(skipped, SKIPPED, 0.0, 0.0, math.inf))
 
     def _outcome(self, goal: Point, result: str, now_ns: int) -> GoalOutcome:
-        seconds = (now_ns - self._began_ns) / 1e9
+        seconds = (now_ns - self._started_ns) / 1e9
         left = self._distance_to(goal)
         return GoalOutcome(goal, result, seconds, self._path_length, left)
 
     def _distance_to(self, goal: Point) -> float:
-        return math.dist(self._place, goal) if self._place else math.inf
+        return math.dist(self._position, goal) if self._position else math.inf

@@ -1,4 +1,4 @@
-"""Puts it together: the nodes of a run, wired in flow order."""
+"""The stack: the nodes of a run, wired in data-flow order."""
 
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.summary import RunSummary
@@ -7,5 +7,5 @@ __all__ = ["RunOptions", "RunSummary", "demo_goals"]
 
 
 def demo_goals() -> tuple[tuple[float, float], ...]:
-    """Where ``navette demo`` drives at once: a tour of the built-in arena."""
+    """Return the goals of ``navette demo``: a tour of the built-in arena."""
     return ((6.2, -3.4), (8.2, 7.8), (-5.0, 8.3), (-7.5, -2.0))

@@ -1,4 +1,4 @@
-"""What happens in a run, as a person wants to read it: the goal and how it goes."""
+"""Progress of a run for display: the goal and its state."""
 
 import math
 from collections.abc import Callable
@@ -12,8 +12,8 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @dataclass(frozen=True)
-class Progress:
-    """A moment of a run. Metres and simulated seconds."""
+class RunProgress:
+    """Progress of a run. Metres and simulated seconds."""
 
     goal: tuple[float, float] | None = None
     goal_id: str = ""
@@ -25,18 +25,18 @@ class Progress:
 
 
 class MonitorNode(Node):
-    """Listens to what planner and control say of themselves.
+    """Follow the status of planner and controller.
 
     Args:
-        on_change: called whenever the planner's state or goal changes.
+        on_change: called when the planner's state or goal changes.
     """
 
     def __init__(
-        self, *, context: Context, on_change: Callable[[Progress], None]
+        self, *, context: Context, on_change: Callable[[RunProgress], None]
     ) -> None:
         super().__init__("monitor", context=context)
         self._on_change = on_change
-        self.progress = Progress()
+        self.progress = RunProgress()
         for topic, callback in (
             (topics.PLANNER_STATUS.name, self._on_planner),
             (topics.CONTROL_STATUS.name, self._on_control),
@@ -67,5 +67,5 @@ class MonitorNode(Node):
 
 
 def _number(values: dict[str, str], key: str) -> float:
-    """A figure of a status; NaN where there is none."""
+    """Return a number of a status; NaN if missing."""
     return float(values.get(key) or math.nan)

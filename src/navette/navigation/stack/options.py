@@ -1,4 +1,4 @@
-"""What a person asks of a run."""
+"""Options of a simulation run."""
 
 import math
 from dataclasses import dataclass, field
@@ -10,10 +10,10 @@ from navette.geometry import Pose2
 
 @dataclass(frozen=True, kw_only=True)
 class RunOptions:
-    """One run of the simulated robot.
+    """Options of one run of the simulated robot.
 
     ``world`` and ``robot`` are built-in names or files. ``speed`` is a factor of real
-    time; infinity means as fast as the machine can. ``port`` None means no live view.
+    time; infinity means as fast as possible.
     """
 
     world: str = "arena"
@@ -43,5 +43,5 @@ class RunOptions:
 
     @property
     def ends_with_goals(self) -> bool:
-        """Whether the run is over once its goals are."""
+        """Whether the run ends with its last goal."""
         return self.headless and bool(self.goals)

@@ -1,4 +1,4 @@
-"""Bags played to whoever listens: in this process, in others, in a browser."""
+"""Playback of bags to nodes in this process, other processes, or a browser."""
 
 import logging
 from collections.abc import Callable, Sequence
@@ -20,19 +20,19 @@ from navette.viewer.playback import PlaybackState, PlaybackStatus
 _log = logging.getLogger(__name__)
 
 
-class Playback:
+class BagPlayback:
     """One or several bags, merged by their stamps, under one player.
 
     Args:
         paths: bag files or folders.
-        options: what to play of them.
+        options: topics and time range to play.
         remap: rules ``FROM:=TO``.
-        clock_rate_hz: tell the recording's time on ``/clock`` so often.
-        view_port: serve the live view there; then the end of the bag is not the end.
-        context: where; by default one of its own, joined to the network.
+        clock_rate_hz: rate of the recording's time on ``/clock``; None: not published.
+        view_port: port of the live view; with it, playback does not stop at the end.
+        context: context of the player; by default a new one, joined to the network.
 
     Raises:
-        NavetteError: a file or an option is wrong; says which.
+        NavetteError: invalid file or option, named in the text.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Playback:
             self._stack.callback(self.player.destroy_node)
             self.executor = Executor(context=self.context)
             self.executor.add_node(self.player)
-            #: Where to look at it in a browser.
+            #: Address of the live view.
             self.url = None if view_port is None else self._open_view(view_port)
             opening.pop_all()
 
@@ -71,19 +71,19 @@ class Playback:
         self.executor.spin()
 
     def stop(self) -> None:
-        """End :meth:`run`; from any thread."""
+        """Stop :meth:`run`; callable from any thread."""
         self.executor.stop()
 
     def progress(self) -> PlayProgress:
-        """How it goes now; from any thread."""
+        """Return the present progress; callable from any thread."""
         return self.player.progress()
 
     def do(self, action: Callable[[PlayerNode], object]) -> None:
-        """Have something done with the player; from any thread."""
+        """Run an action on the player's loop; callable from any thread."""
         self.player.run_soon(lambda: action(self.player))
 
     def close(self) -> None:
-        """Leave the graph and close the files; twice is harmless."""
+        """Destroy the nodes and close the files; idempotent."""
         self._stack.close()
 
     def _open(self, paths: Sequence[Path]) -> Source:
@@ -102,7 +102,7 @@ class Playback:
         return context
 
     def _open_view(self, port: int) -> str:
-        # Only here: who plays without a view need not wait for a web server to load.
+        # Imported here: playback without a view does not load the web server.
         from navette.viewer.node import ViewerNode
 
         viewer = ViewerNode(
@@ -120,7 +120,7 @@ class Playback:
 
 
 class _Shown:
-    """The player as the live view sees it."""
+    """Adapter from the player to the live view's playback protocol."""
 
     def __init__(self, player: PlayerNode) -> None:
         self._player = player
@@ -133,7 +133,7 @@ class _Shown:
         return PlaybackState(status, progress.position_ns, progress.rate)
 
     def control(self, *, play: bool, speed: float, seek_ns: int | None) -> None:
-        # A 32-bit number on the wire: 0.1 was meant.
+        # A 32-bit float in the protocol: round to its precision (0.1).
         rate = float(f"{speed:.6g}")
         self._player.control(play=play, rate=rate, seek_ns=seek_ns)
 

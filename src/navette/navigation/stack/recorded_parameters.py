@@ -1,4 +1,4 @@
-"""The parameters that nodes had when they were recorded, as they said themselves."""
+"""Parameters of nodes in a recording, from /parameter_events."""
 
 from dataclasses import fields
 from typing import Any
@@ -11,13 +11,13 @@ from navette.runtime import Parameter
 from navette.runtime.overrides import ParameterOverrides
 
 _TOPIC = "/parameter_events"
-_OF_THE_RUN = ("use_sim_time",)  # not of the node's work
+_OF_THE_RUN = ("use_sim_time",)  # set by the run, not by the node
 
 
 def recorded_parameters(source: Source) -> dict[str, dict[str, Any]]:
-    """Full name of each node → name and first value of its parameters.
+    """Return the first parameter values of each node, by its full name.
 
-    Empty where ``/parameter_events`` was not recorded, or only from later on.
+    Empty if ``/parameter_events`` was not recorded from the start.
     """
     found: dict[str, dict[str, Any]] = {}
     for message in source.messages([_TOPIC]):
@@ -31,9 +31,9 @@ def recorded_parameters(source: Source) -> dict[str, dict[str, Any]]:
 
 
 def give_recorded_parameters(overrides: ParameterOverrides, source: Source) -> None:
-    """Let nodes have the values of the recording, where nothing else is said.
+    """Add the recorded values as overrides of lowest priority.
 
-    Of Navette's own stages only parameters that they still have.
+    For Navette's own stages, only parameters that still exist.
     """
     if _TOPIC not in (topic.name for topic in source.topics):
         return
@@ -44,4 +44,4 @@ def give_recorded_parameters(overrides: ParameterOverrides, source: Source) -> N
     for node, values in recorded_parameters(source).items():
         wanted = known.get(node, values.keys())
         kept = {name: value for name, value in values.items() if name in wanted}
-        overrides.add(node, kept, f"recorded of {node}")
+        overrides.add(node, kept, f"recorded from {node}")

@@ -1,8 +1,8 @@
-"""Recorded inputs through nodes in lock-step: what would they have said?
+"""Replay of recorded inputs through nodes under virtual time.
 
-The nodes are fed from the bag by the player, under a virtual clock that starts at the
-recording's time: their timers run, a message and all that follows from it is done
-before the next, and no wall clock is asked. So two replays write the same bytes.
+The player publishes the bag's messages to the nodes under a virtual clock that starts
+at the recording's time. Timers run, each message is processed completely before the
+next, and the wall clock is not used: two replays write the same bytes.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -32,15 +32,15 @@ from navette.transports import EndpointKind
 
 MakeNode = Callable[[Context], Node]
 
-# Said by every node about itself: no result of its work.
-_OWN_AFFAIRS = ("/rosout", "/parameter_events")
-# Listened to when it is needed, maybe late.
+# Published by every node, independent of its function.
+_OF_EVERY_NODE = ("/rosout", "/parameter_events")
+# Subscribed on demand, possibly late.
 _TRANSFORMS = (TF.name, TF_STATIC.name)
 
 
 @dataclass(frozen=True)
 class ReplaySummary:
-    """What came of a replay."""
+    """Result of a replay."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -52,21 +52,21 @@ class ReplaySummary:
 
 
 class Replay:
-    """Nodes that are fed from a recording.
+    """Nodes with inputs from a recording.
 
     Args:
-        source: an open bag; stays the caller's to close.
-        makers: make the nodes, each in the context that it is given (which is also
-            the default one while they are made).
-        record: where the nodes' outputs go.
-        overrides: gives parameters that need not reach a node (a robot's). Without
-            any, nodes have those with which they were recorded, if that is known.
+        source: an open bag; the caller closes it.
+        makers: create the nodes, each in the given context (which is also the default
+            context meanwhile).
+        record: file for the nodes' outputs.
+        overrides: adds parameters that need not apply to any node (a robot's). Without
+            them, nodes use the recorded values, if available.
         arguments: ROS arguments, such as ``["--ros-args", "-p", "a:=1"]``.
-        also: topics to feed although a node says them itself, or asks for them late.
-        options: the part of the recording; its topics are chosen here.
+        also: topics to replay although a node publishes or subscribes to them late.
+        options: time range of the recording; the topics are chosen here.
 
     Raises:
-        NavetteError: a parameter or a topic is wrong, or no input was recorded.
+        NavetteError: invalid parameter or topic, or no input was recorded.
     """
 
     def __init__(
@@ -113,20 +113,20 @@ class Replay:
 
     @property
     def begin_ns(self) -> int:
-        """First stamp of the part."""
+        """First stamp of the range."""
         return self.player.player.begin_ns
 
     @property
     def end_ns(self) -> int:
-        """Last stamp of the part."""
+        """Last stamp of the range."""
         return self.player.player.end_ns
 
     def run(self) -> ReplaySummary:
-        """From the first to the last stamp of the part.
+        """Replay from the first to the last stamp of the range.
 
         Raises:
             CallbackError: a node raised; names node, topic and stamp.
-            FileFormatError: the disk refused the recording.
+            FileFormatError: the recording could not be written.
         """
         watch = Stopwatch()
         self.player.start()
@@ -148,40 +148,38 @@ class Replay:
         )
 
     def close(self) -> None:
-        """End nodes and files; twice is harmless."""
+        """Destroy the nodes and close the files; idempotent."""
         self._stack.close()
-
-    # -- who says and hears what -----------------------------------------------
 
     def _topics_of(self, kind: EndpointKind) -> tuple[str, ...]:
         own = {node.get_fully_qualified_name() for node in self.nodes}
         found = {
             endpoint.topic
             for endpoint in self.context.graph.endpoints(kind=kind)
-            if endpoint.node_full_name in own and endpoint.topic not in _OWN_AFFAIRS
+            if endpoint.node_full_name in own and endpoint.topic not in _OF_EVERY_NODE
         }
         return tuple(sorted(found))
 
     def _choose_inputs(self, source: Source, also: Sequence[str]) -> tuple[str, ...]:
-        heard = set(self._topics_of(EndpointKind.SUBSCRIPTION))
-        wanted = (heard.union(_TRANSFORMS) - set(self.outputs)) | set(also)
+        subscribed = set(self._topics_of(EndpointKind.SUBSCRIPTION))
+        wanted = (subscribed.union(_TRANSFORMS) - set(self.outputs)) | set(also)
         recorded = dict.fromkeys(_full(topic.name) for topic in source.topics)
         chosen = tuple(name for name in recorded if name in wanted)
-        if not heard.union(also).intersection(chosen):
+        if not subscribed.union(also).intersection(chosen):
             raise InvalidValueError(
                 "no input was recorded: the nodes read "
-                f"{', '.join(sorted(heard)) or 'nothing'}; "
+                f"{', '.join(sorted(subscribed)) or 'nothing'}; "
                 f"the bag has {', '.join(recorded) or 'nothing'}"
             )
         return chosen
 
     def _check_late_inputs(self) -> None:
-        """What was recorded and asked for later on was not fed: say so."""
+        """Warn of recorded topics that were subscribed to after the start."""
         late = set(self._topics_of(EndpointKind.SUBSCRIPTION)) & self._recorded
         for topic in sorted(late - set(self.inputs) - set(self.outputs)):
             self.player.get_logger().warning(
-                f"{topic} was subscribed to after the start and not fed; "
-                f"--input {topic} feeds it"
+                f"{topic} was subscribed to after the start and not replayed; "
+                f"add --input {topic}"
             )
 
     def _record(self, path: Path) -> RecorderNode:
@@ -198,7 +196,7 @@ class Replay:
 
 @contextmanager
 def _default_context(context: Context) -> Iterator[None]:
-    """Nodes of programs take the default context: let it be this one."""
+    """Make a context the default one, for nodes of programs."""
     token = current_scope.set(Scope(context.graph, default=context))
     try:
         yield

@@ -1,4 +1,4 @@
-"""The simulated robot alone, for programs that drive it themselves."""
+"""The simulated robot without navigation, for programs that drive it."""
 
 from pathlib import Path
 
@@ -17,13 +17,13 @@ def simulate_robot(
     start: Pose2 | None = None,
     context: Context | None = None,
 ) -> SimNode:
-    """One robot in one world as a node, without navigation; spin it with your own.
+    """Return one robot in one world as a node, to spin with your own nodes.
 
-    It takes /cmd_vel and gives /lidar, /odom/filtered, /tf, … at the context's time;
-    what ``world``, ``robot`` and ``start`` mean is as in ``navette sim``.
+    The node subscribes to /cmd_vel and publishes /lidar, /odom/filtered, /tf, … at the
+    context's time. ``world``, ``robot`` and ``start`` are as in ``navette sim``.
 
     Raises:
-        NavetteError: a name or a file is wrong; says which.
+        NavetteError: invalid name or file, named in the text.
     """
     context = context or get_default_context()
     made = world if isinstance(world, Scene) else None

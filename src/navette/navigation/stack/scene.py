@@ -1,4 +1,4 @@
-"""Which world, which robot, and which parameters come with the robot."""
+"""World, robot, and the robot's parameters of a run."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +20,7 @@ DEFAULT_ROBOT = "jackal"
 
 @dataclass(frozen=True)
 class ResolvedScene:
-    """A world with its robot; its parameters derived, and from a file that wins."""
+    """A world with its robot and its parameters: derived ones, then those of a file."""
 
     scene: Scene
     robot_name: str
@@ -28,7 +28,7 @@ class ResolvedScene:
     derived: dict[str, dict[str, object]]
 
     def override_parameters(self, overrides: ParameterOverrides) -> None:
-        """Give every node of the stack what the robot asks of it."""
+        """Add the robot's parameters for every node of the stack."""
         for node, values in self.derived.items():
             overrides.add(node, values, f"derived from robot {self.robot_name}")
         if self.params_file is not None:
@@ -36,16 +36,16 @@ class ResolvedScene:
 
 
 def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedScene:
-    """Load what the options name; a ``scene`` made in Python replaces their world.
+    """Load the world and robot of the options; ``scene`` replaces the world.
 
-    The robot is, in this order: the one asked for, the world's own, the built-in one
-    of the same name as the built-in world, the default.
-    A world's own robot that is a copy of a built-in one gets its parameters. What no
-    file says is derived from the robot's shape and drive.
+    The robot is the first of: the one in the options, the world's own, the built-in one
+    with the name of the built-in world, the default. A world's own robot that equals a
+    built-in one gets its parameters. Parameters without a file are derived from the
+    robot's shape and drive.
 
     Raises:
-        UnknownNameError: no such world or robot; the text lists those there are.
-        FileFormatError: a file is broken; names file and line.
+        UnknownNameError: unknown world or robot; the text lists the known ones.
+        FileFormatError: invalid file; names file and line.
     """
     if scene is None:
         scene = load_world(options.world)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError
-from navette.navigation.stack.monitor import MonitorNode, Progress
+from navette.navigation.stack.monitor import MonitorNode, RunProgress
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.scene import ResolvedScene, resolve_scene
 from navette.navigation.stack.stack import NavigationStack
@@ -25,26 +25,26 @@ from navette.sim.node import SimNode
 from navette.viewer.node import ViewerNode
 
 HALT_NS = 1_000_000_000
-"""Simulated time that a robot is given to brake after a node raised."""
+"""Simulated time for the robot to brake after a node raised."""
 
 
 class Simulation:
     """One robot in one world with the whole stack, in this process.
 
     Args:
-        options: what to run.
+        options: world, robot, goals, recording, speed.
         on_change: called when the planner's goal or state changes.
-        scene: a world made in Python (:class:`navette.sim.World`) instead of the
-            one that the options name.
+        scene: a world made in Python (:class:`navette.sim.World`) instead of that of
+            the options.
 
     Raises:
-        NavetteError: a name, file, parameter or option is wrong; says which.
+        NavetteError: invalid name, file, parameter or option, named in the text.
     """
 
     def __init__(
         self,
         options: RunOptions,
-        on_change: Callable[[Progress], None] = lambda progress: None,
+        on_change: Callable[[RunProgress], None] = lambda progress: None,
         *,
         scene: Scene | None = None,
     ) -> None:
@@ -61,7 +61,7 @@ class Simulation:
             raise
 
     def _override_parameters(self, resolved: ResolvedScene) -> None:
-        """The robot's defaults, then the options, then the user's files: last wins."""
+        """Add the robot's parameters, the options, then the user's files: last wins."""
         overrides = self.context.overrides
         resolved.override_parameters(overrides)
         goals = [value for goal in self.options.goals for value in goal]
@@ -76,7 +76,7 @@ class Simulation:
         for path in self.options.params_files:
             overrides.add_file(path)
 
-    def _create_nodes(self, on_change: Callable[[Progress], None]) -> None:
+    def _create_nodes(self, on_change: Callable[[RunProgress], None]) -> None:
         options, context = self.options, self.context
         self.recorder = (
             None
@@ -84,7 +84,7 @@ class Simulation:
             else RecorderNode(options.record, context=context)
         )
         self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
-        # Before the missions: it has told of the last goal when they end the run.
+        # Before the missions, so that it reports the last goal before they end the run.
         self.monitor = MonitorNode(context=context, on_change=on_change)
         self.stack = NavigationStack.create(context)
         self.viewer = None if options.headless else ViewerNode(context=context)
@@ -96,7 +96,7 @@ class Simulation:
             self.stack.missions.on_done = self.stop
 
     def run(self) -> None:
-        """Run until the goals are done (headless), the time is up or :meth:`stop`.
+        """Run until the goals are done (headless), the time limit, or :meth:`stop`.
 
         Raises:
             CallbackError: a node raised; names node, topic and stamp. The robot was
@@ -114,9 +114,10 @@ class Simulation:
             raise
 
     def _halt(self, error: CallbackError) -> None:
-        """Bring the robot to rest: a zero command, and time for it to brake.
+        """Stop the robot: a zero command, and time to brake.
 
-        Only simulator and watchers go on; the others may depend on what failed.
+        Only simulator, recorder and viewer continue; other nodes may depend on the
+        failed one.
         """
         self.stack.control.destroy_node()
         watchers = (self.sim, self.recorder, self.viewer)
@@ -127,25 +128,25 @@ class Simulation:
             self.executor.spin_for(HALT_NS)
 
     def stop(self) -> None:
-        """End :meth:`run` after the present callback; from any thread."""
+        """Stop :meth:`run` after the present callback; callable from any thread."""
         self.executor.stop()
 
-    def progress(self) -> Progress:
-        """How it goes now."""
+    def progress(self) -> RunProgress:
+        """Return the present progress."""
         return replace(
             self.monitor.progress, sim_time_s=self.context.clock.now_ns / 1e9
         )
 
     def real_time_factor(self) -> float:
-        """Simulated seconds per second, over the run so far."""
+        """Return the simulated seconds per second of the run so far."""
         wall_s = self._stopwatch.elapsed_s
         return self.context.clock.now_ns / 1e9 / wall_s if wall_s > 0 else 0.0
 
     def summary(self) -> RunSummary:
-        """What came of the run so far; goals not ended count as ``unfinished``."""
+        """Return the result so far; goals that have not ended are ``unfinished``."""
         clearance = self.sim.simulator.min_clearance.distance
         return RunSummary(
-            goals=tuple(self.stack.missions.standing),
+            goals=tuple(self.stack.missions.all_outcomes),
             contacts=self.sim.simulator.contacts.count,
             min_clearance_m=clearance if math.isfinite(clearance) else None,
             sim_time_s=self.context.clock.now_ns / 1e9,
@@ -155,7 +156,7 @@ class Simulation:
         )
 
     def close(self) -> None:
-        """End all nodes, threads and files; twice is harmless."""
+        """Stop all nodes and threads and close the files; idempotent."""
         self.context.try_shutdown()
 
 

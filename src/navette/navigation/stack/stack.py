@@ -1,4 +1,4 @@
-"""The nodes of a driving robot, in the order data flows."""
+"""The nodes of the stack in data-flow order."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from navette.runtime import Context, StageNode
 from navette.sim.node import SimNode
 
 FLOW = ("sim", "localization", "costmap", "mapping", "planning", "control", "missions")
-"""The stages, in the order data flows through them."""
+"""The stages in data-flow order."""
 
 NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("sim", SimNode),
@@ -29,10 +29,10 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
 
 
 def node_class(name: str) -> type[StageNode]:
-    """The class of a stage that lives on topics alone, by its node's name.
+    """Return the class of a stage that needs topics only, by its node's name.
 
     Raises:
-        UnknownNameError: there is none; lists those there are.
+        UnknownNameError: unknown stage; the text lists the known ones.
     """
     known = {each: kind for each, kind in NODE_CLASSES if kind is not SimNode}
     if name not in known:
@@ -42,10 +42,10 @@ def node_class(name: str) -> type[StageNode]:
 
 @dataclass(frozen=True)
 class NavigationStack:
-    """The nodes between sensors and wheels; they meet on topics only.
+    """The nodes between sensors and wheels; they communicate on topics only.
 
-    Those of localization are not among them: the simulator says where its robot is, on
-    the same topic as they do. They are started by name beside what needs them.
+    Localization is not included: the simulator publishes the pose on the same topic.
+    Start localization nodes by name where required.
     """
 
     costmap: CostmapNode
@@ -56,7 +56,7 @@ class NavigationStack:
 
     @classmethod
     def create(cls, context: Context) -> "NavigationStack":
-        """All nodes, with the parameters that the context's overrides give."""
+        """Create all nodes, with the context's parameter overrides."""
         return cls(
             costmap=CostmapNode(context=context),
             map_memory=MapMemoryNode(context=context),

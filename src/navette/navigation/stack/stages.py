@@ -1,8 +1,8 @@
-"""Each stage as a program of its own: ``navette run navette planner``, and so on.
+"""Each stage as a program: ``navette run navette planner``, and so on.
 
-Several of them, each a process, are the stack that ``navette sim`` runs in one: every
-program finds out by itself which robot it is for, takes that robot's parameters, then
-those of its command line. A program imports what its own stage needs, no more.
+Together these processes form the stack that ``navette sim`` runs in one process. Every
+program loads the parameters of its robot, then those of its command line. A program
+imports only the modules of its own stage.
 """
 
 import argparse
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 
 def _program(main: Callable[[], None]) -> Callable[[], None]:
-    """What a person got wrong ends the program with one line, not a traceback."""
+    """Report user errors in one line instead of a traceback."""
 
     @functools.wraps(main)
     def run() -> None:
         try:
             main()
         except CallbackError:
-            raise  # a fault in a program: where it is, matters
+            raise  # a fault in the program: show its traceback
         except NavetteError as error:
             raise SystemExit(f"navette: {error}") from error
 
@@ -40,14 +40,16 @@ def _program(main: Callable[[], None]) -> Callable[[], None]:
 
 @_program
 def sim() -> None:
-    """The simulated robot; at real time, unless told otherwise."""
-    parser = _parser("sim", "A robot in a world: takes /cmd_vel, gives sensors.")
+    """Run the simulated robot, in real time by default."""
+    parser = _parser(
+        "sim", "A robot in a world: subscribes to /cmd_vel, publishes sensors."
+    )
     _add_robot(parser)
     parser.add_argument("--start", nargs=3, type=float, metavar=("X", "Y", "YAW_DEG"))
     parser.add_argument(
-        "--speed", type=float, metavar="FACTOR", help="times real time, at most"
+        "--speed", type=float, metavar="FACTOR", help="limit as a multiple of real time"
     )
-    _add_conducting(parser)
+    _add_lockstep(parser)
     given = _parse(parser)
     from navette.geometry import Pose2
     from navette.sim.node import SimNode
@@ -64,7 +66,7 @@ def sim() -> None:
 
 @_program
 def odom_integrator() -> None:
-    """The distance travelled."""
+    """Run the odom_integrator node."""
     from navette.navigation.localization.distance.node import OdomIntegratorNode
 
     text = "positions or velocities → /odom_integrator/distance"
@@ -81,17 +83,17 @@ def odom_integrator() -> None:
 
 @_program
 def ekf() -> None:
-    """Where the robot is, by what its sensors say."""
+    """Run the extended Kalman filter."""
     from navette.navigation.localization.ekf.node import EkfNode
 
-    text = "odometry, IMU, GNSS, as parameters say → /odom/filtered, /tf"
+    text = "odometry, IMU, GNSS (topics are parameters) → /odom/filtered, /tf"
     _parse(_parser("ekf", text))
     _run(lambda context: EkfNode(context=context), ParameterOverrides())
 
 
 @_program
 def costmap() -> None:
-    """What is dangerous around the robot."""
+    """Run the costmap."""
     from navette.navigation.costmap.node import CostmapNode
 
     _run_stage("costmap", CostmapNode, "/lidar → /costmap")
@@ -99,7 +101,7 @@ def costmap() -> None:
 
 @_program
 def map_memory() -> None:
-    """What the robot has seen so far."""
+    """Run the map memory."""
     from navette.navigation.mapping.node import MapMemoryNode
 
     _run_stage("map_memory", MapMemoryNode, "/costmap, /odom/filtered → /map")
@@ -107,7 +109,7 @@ def map_memory() -> None:
 
 @_program
 def planner() -> None:
-    """The way to a goal."""
+    """Run the planner."""
     from navette.navigation.planning.node import PlannerNode
 
     _run_stage("planner", PlannerNode, "/map, /goal_point → /path")
@@ -115,7 +117,7 @@ def planner() -> None:
 
 @_program
 def control() -> None:
-    """Follows the way; the last stage before the wheels."""
+    """Run the controller."""
     from navette.navigation.control.node import ControlNode
 
     _run_stage("control", ControlNode, "/path, /odom/filtered → /cmd_vel")
@@ -123,8 +125,8 @@ def control() -> None:
 
 @_program
 def missions() -> None:
-    """Sends goals, one after the other; ends with the last of those it was given."""
-    parser = _parser("missions", "Goals, one after the other → /goal_point")
+    """Send goals, one after another; with --goal, end after the last."""
+    parser = _parser("missions", "Goals, one after another → /goal_point")
     _add_robot(parser)
     parser.add_argument(
         "--goal", nargs=2, type=float, action="append", metavar=("X", "Y")
@@ -142,14 +144,14 @@ def missions() -> None:
     def make(context: Context) -> Node:
         node = MissionNode(context=context)
         made.append(node)
-        # In lock-step nobody leaves before the simulator does.
+        # In lock-step all participants run until the simulator ends.
         if given.goal and not context.loop.clock.is_shared:
             node.on_done = context.try_shutdown
         return node
 
     _run(make, profile)
     if made[0].on_done is not None:
-        missed = [each for each in made[0].standing if each.result != REACHED]
+        missed = [each for each in made[0].all_outcomes if each.result != REACHED]
         for goal in missed:
             x, y = goal.goal
             sys.stderr.write(f"navette: goal ({x:g}, {y:g}): {goal.result}\n")
@@ -158,13 +160,13 @@ def missions() -> None:
 
 @_program
 def viewer() -> None:
-    """The live view."""
+    """Run the live view."""
     parser = _parser("viewer", "The live view on one port (parameter port).")
     _add_robot(parser)
     parser.set_defaults(world=None)
     given = _parse(parser)
     own = ParameterOverrides()
-    if given.world or given.robot:  # else its frames are ROS 2's usual ones
+    if given.world or given.robot:  # otherwise its frames are ROS 2's usual ones
         given.world = given.world or "arena"
         of_planner = _profile(_resolve(given), "planner").for_node("/planner")
         for name in ("map_frame", "base_frame"):
@@ -175,7 +177,7 @@ def viewer() -> None:
 
 @_program
 def recorder() -> None:
-    """Every topic into a bag."""
+    """Record every topic in a bag."""
     parser = _parser("recorder", "Records the topics into a bag.")
     parser.add_argument("file", type=Path, metavar="FILE.mcap")
     given = _parse(parser)
@@ -201,9 +203,6 @@ def _run_stage(name: str, node_class: Callable[..., Node], text: str) -> None:
     _run(lambda context: node_class(context=context), _profile(resolved, name))
 
 
-# -- command lines -----------------------------------------------------------------
-
-
 def _parser(name: str, text: str) -> argparse.ArgumentParser:
     return argparse.ArgumentParser(
         f"navette run navette {name}",
@@ -217,26 +216,26 @@ def _add_robot(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--world",
         default="arena",
-        help="a built-in world (default: arena) or a file; it may bring a robot",
+        help="a built-in world (default: arena) or a file; it may contain a robot",
     )
     parser.add_argument(
         "--robot",
-        help="a built-in robot or a model file, whose parameters count; "
-        "by default the world's own",
+        help="a built-in robot or a model file, whose parameters are used "
+        "(default: the world's own robot)",
     )
 
 
-def _add_conducting(parser: argparse.ArgumentParser) -> None:
+def _add_lockstep(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--lockstep",
         metavar="NODE,…",
         help="wait in each step for these nodes of other processes, which run with "
-        "NAVETTE_LOCKSTEP=follow; as fast as they can, unless --speed is given",
+        "NAVETTE_LOCKSTEP=follow; as fast as possible unless --speed is given",
     )
     for name, default, text in (
         ("step", 0.01, "length of a step"),
         ("until", None, "simulated time at which the run ends for all"),
-        ("limit", 30.0, "time that a node may take for a step"),
+        ("limit", 30.0, "longest time of a node for a step"),
     ):
         parser.add_argument(
             f"--lockstep-{name}",
@@ -263,9 +262,6 @@ def _parse(parser: argparse.ArgumentParser) -> Any:
     return parser.parse_args(runtime.remove_ros_args(sys.argv[1:]))
 
 
-# -- the robot ---------------------------------------------------------------------
-
-
 def _resolve(given: Any) -> "ResolvedScene":
     from navette.navigation.stack.options import RunOptions
     from navette.navigation.stack.scene import resolve_scene
@@ -274,14 +270,14 @@ def _resolve(given: Any) -> "ResolvedScene":
 
 
 def _profile(resolved: "ResolvedScene", name: str) -> ParameterOverrides:
-    """What the robot asks of this node."""
+    """Return the robot's parameters of this node."""
     of_all = ParameterOverrides()
     resolved.override_parameters(of_all)
     return _under_any_name(of_all, name)
 
 
 def _under_any_name(of_all: ParameterOverrides, name: str) -> ParameterOverrides:
-    """What is there for this node, whatever name it is given in the end."""
+    """Return the parameters of this node for any name it may be given."""
     own = ParameterOverrides()
     for parameter, override in of_all.for_node(f"/{name}").items():
         own.add("/**", {parameter: override.value}, override.origin)
@@ -293,7 +289,7 @@ def _run(
     profile: ParameterOverrides,
     clock: ContextClock | None = None,
 ) -> None:
-    """Make the node and spin it until Ctrl-C or a shutdown."""
+    """Create the node and spin it until Ctrl-C or a shutdown."""
     context = Context(clock=clock)
     context.overrides.sets += profile.sets
     try:
@@ -302,6 +298,6 @@ def _run(
         context.overrides.check_used_by([node])
         runtime.spin(node)
     except KeyboardInterrupt:
-        pass  # the way to end it
+        pass  # the usual end
     finally:
         context.try_shutdown()

@@ -1,4 +1,4 @@
-"""What came of a run, as ``--json`` prints it."""
+"""Summary of a run, as printed by ``--json``."""
 
 import json
 import math
@@ -9,7 +9,7 @@ from navette.navigation.missions import GoalOutcome
 
 @dataclass(frozen=True)
 class RunSummary:
-    """A whole run; ``min_clearance_m`` is from the body to the nearest obstacle.
+    """Summary of a run; ``min_clearance_m`` is from the body to the nearest obstacle.
 
     Seconds are simulated unless named otherwise.
     """
@@ -24,11 +24,11 @@ class RunSummary:
 
     @property
     def succeeded(self) -> bool:
-        """All goals reached and nothing touched."""
+        """Whether all goals were reached without contact."""
         return self.contacts == 0 and all(g.result == "reached" for g in self.goals)
 
     def to_json(self) -> str:
-        """One JSON object; numbers to four places, NaN and infinity as null."""
+        """Return one JSON object; numbers to four places, NaN and infinity as null."""
         return json.dumps(_plain(asdict(self)))
 
 

@@ -20,7 +20,7 @@ SUBSTEPS = 10
 
 @dataclass
 class Plant:
-    """First-order answer to commands; turns at ``turning`` of what it is told."""
+    """First-order response to commands; turns at ``turning`` of the commanded rate."""
 
     pose: Pose2
     lag_s: float = 0.12

@@ -62,7 +62,7 @@ def test_speed_and_turn_rate_change_within_the_limits(method: str) -> None:
     assert np.abs(omega).max() <= 1.0
 
 
-def test_the_end_is_neither_overrun_nor_crept_to() -> None:
+def test_the_robot_neither_overshoots_the_end_nor_creeps_to_it() -> None:
     result, _ = drive_path(tangent_path(PATHS["straight"]), big_robot())
     assert max(p.x for p in result.poses) < 10.01
     slow = [v for v in result.speeds if v < 0.1]
@@ -84,7 +84,7 @@ def test_a_turn_in_place_does_not_overshoot(turning: float, angle: float) -> Non
     assert result.time_s < abs(angle) / turning + 1.6
 
 
-def test_a_turn_planned_the_long_way_is_turned_that_way() -> None:
+def test_a_turn_planned_in_the_longer_direction_keeps_it() -> None:
     follower = PathFollower(big_robot())
     yaws = np.linspace(0, -1.5 * math.pi, 10)
     follower.set_path(np.stack((0 * yaws, 0 * yaws, yaws), axis=1))
@@ -95,7 +95,7 @@ def test_a_turn_planned_the_long_way_is_turned_that_way() -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_out_of_a_corner_backwards_then_turn_then_away(method: str) -> None:
+def test_reverse_out_of_a_corner_then_turn_then_forward(method: str) -> None:
     yaw = -0.75 * math.pi
     back = tangent_path(np.array([[-13.2, -13.2], [-12, -12.0]]), reverse=True)
     turn = [(-12, -12, a) for a in np.linspace(yaw, -1.5 * math.pi, 6)]
@@ -115,7 +115,7 @@ def test_out_of_a_corner_backwards_then_turn_then_away(method: str) -> None:
     assert closest(result, walls) > 0.0
 
 
-def test_a_cusp_is_stopped_at_and_left_the_other_way() -> None:
+def test_the_robot_stops_at_a_cusp_and_reverses() -> None:
     back = tangent_path(np.array([[0, 0], [-2, 0.0]]), reverse=True)
     ahead = tangent_path(np.array([[-2, 0], [1, 0.5]]))
     result, plant = drive_path(np.concatenate((back, ahead)), big_robot())
@@ -124,7 +124,7 @@ def test_a_cusp_is_stopped_at_and_left_the_other_way() -> None:
     assert plant.pose.x == pytest.approx(1.0, abs=0.05)
 
 
-def test_a_path_that_crosses_itself_is_driven_whole() -> None:
+def test_a_path_that_crosses_itself_is_driven_completely() -> None:
     t = np.linspace(0, math.tau, 300)
     eight = np.stack((5 * np.sin(t), 3 * np.sin(2 * t)), axis=1)
     result, _ = drive_path(tangent_path(eight), big_robot())
@@ -135,7 +135,7 @@ def test_a_path_that_crosses_itself_is_driven_whole() -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_new_path_on_the_way_does_not_stop_the_robot(method: str) -> None:
+def test_a_new_path_while_driving_does_not_stop_the_robot(method: str) -> None:
     line = PATHS["s_curve"]
     poses = tangent_path(line)
     follower = PathFollower(big_robot(method=method))
@@ -153,7 +153,7 @@ def test_a_new_path_on_the_way_does_not_stop_the_robot(method: str) -> None:
         assert more.off(line) < 0.1
 
 
-def test_a_new_path_the_other_way_makes_the_robot_stop_and_turn() -> None:
+def test_a_new_path_in_the_opposite_direction_stops_and_turns_the_robot() -> None:
     follower = PathFollower(big_robot())
     follower.set_path(tangent_path(PATHS["straight"]))
     plant = Plant(Pose2(0, 0, 0))
@@ -194,7 +194,7 @@ def test_the_robot_stops_before_a_wall_across_its_path(cruise: float) -> None:
     assert run(follower, plant, 20.0).final.state == "reached"
 
 
-def test_a_turn_goes_the_way_that_is_free() -> None:
+def test_a_turn_uses_the_free_direction() -> None:
     post = np.array([[1.0, 1.0]])
     follower = PathFollower(big_robot())
     follower.set_obstacles(post, 0.05)
@@ -206,7 +206,7 @@ def test_a_turn_goes_the_way_that_is_free() -> None:
     assert min(o.command.turn_rate for o in result.outputs) == pytest.approx(-1.0)
 
 
-def test_a_turn_that_is_free_neither_way_is_blocked() -> None:
+def test_a_turn_blocked_in_both_directions_is_reported() -> None:
     posts = np.array([[1.0, 1.0], [1.0, -1.0]])
     follower = PathFollower(big_robot())
     follower.set_obstacles(posts, 0.05)
@@ -228,7 +228,7 @@ def test_a_small_turn_that_is_not_free_is_steered_instead() -> None:
     assert closest(result, post) > 0.0
 
 
-def test_a_narrow_corridor_is_passed_slowly() -> None:
+def test_a_narrow_corridor_is_driven_slowly() -> None:
     walls = np.concatenate((seg((-3, 0.83), (14, 0.83)), seg((-3, -0.83), (14, -0.83))))
     follower = PathFollower(big_robot())
     follower.set_obstacles(walls, 0.05)
@@ -246,7 +246,7 @@ def test_a_narrow_corridor_is_passed_slowly() -> None:
         (InputAges(planner_s=3.0), "stale_path"),
     ],
 )
-def test_stale_inputs_stop_at_once_and_fresh_ones_go_on(
+def test_stale_inputs_stop_at_once_and_fresh_ones_continue(
     ages: InputAges, state: str
 ) -> None:
     follower = PathFollower(big_robot())
@@ -277,7 +277,7 @@ def test_far_from_its_path_the_robot_stops() -> None:
     assert (output.command, output.state) == ((0.0, 0.0), "off_path")
 
 
-def test_a_goal_that_was_passed_beside_it_is_missed() -> None:
+def test_a_goal_passed_at_a_distance_is_missed() -> None:
     follower = PathFollower(ControlParams())
     follower.set_path(tangent_path(PATHS["straight"]))
     for x in np.arange(0.0, 10.2, 0.2):

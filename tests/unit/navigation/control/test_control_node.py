@@ -28,7 +28,7 @@ class World:
         self.odometry = self.lidar = self.planner = True
         self.planner_says = "following"
         self.wall_x: float | None = None  # across the x axis of the map
-        self.resolution = 0.1  # of the costmap, as it is told
+        self.resolution = 0.1  # published resolution of the costmap
         self.node = graph.add(
             ControlNode(
                 context=graph.context,
@@ -122,12 +122,12 @@ def world(graph: GraphHarness) -> World:
     return made
 
 
-def test_before_a_path_there_is_silence_and_a_state(world: World) -> None:
+def test_before_a_path_only_the_state_is_published(world: World) -> None:
     assert world.commands.count == 0
     assert world.state == "idle"
 
 
-def test_a_path_is_driven_to_its_end_then_zeros_then_silence(world: World) -> None:
+def test_at_the_end_of_the_path_zeros_are_published_then_nothing(world: World) -> None:
     world.send_path(STRAIGHT)
     assert world.graph.run_until(lambda: world.state == "reached", 15.0)
     assert math.dist((world.plant.pose.x, world.plant.pose.y), (3.0, 0.0)) < 0.1
@@ -140,7 +140,7 @@ def test_a_path_is_driven_to_its_end_then_zeros_then_silence(world: World) -> No
     assert world.commands.count == count
 
 
-def test_commands_come_at_the_rate(world: World) -> None:
+def test_commands_are_published_at_the_rate(world: World) -> None:
     world.send_path(STRAIGHT)
     world.graph.run_for(2.0)
     assert np.diff(world.commands.stamps_ns).tolist() == [50_000_000] * 39
@@ -173,7 +173,7 @@ def test_the_robot_stops_within_half_a_second_of_a_lost_input(
     assert world.graph.run_until(lambda: world.state == "reached", 15.0)
 
 
-def test_a_dead_planner_stops_the_robot(world: World) -> None:
+def test_a_missing_planner_stops_the_robot(world: World) -> None:
     world.send_path(tangent_path(np.array([[0, 0], [9, 0.0]])))
     world.planner = False
     world.graph.run_for(1.9)
@@ -183,7 +183,7 @@ def test_a_dead_planner_stops_the_robot(world: World) -> None:
     assert world.commands.last == Twist()
 
 
-def test_a_planner_that_begins_anew_knows_nothing_of_the_path(world: World) -> None:
+def test_a_restarted_planner_drops_the_path(world: World) -> None:
     world.send_path(tangent_path(np.array([[0, 0], [9, 0.0]])))
     world.graph.run_for(2.0)
     world.planner = False
@@ -194,7 +194,7 @@ def test_a_planner_that_begins_anew_knows_nothing_of_the_path(world: World) -> N
     assert (world.state, world.plant.speed) == ("idle", pytest.approx(0.0, abs=0.01))
 
 
-def test_a_path_of_somebody_else_is_followed_beside_an_idle_planner(
+def test_a_path_of_another_node_is_followed_beside_an_idle_planner(
     graph: GraphHarness,
 ) -> None:
     world = World(graph)
@@ -214,7 +214,7 @@ def test_a_path_from_a_user_without_planner_can_be_followed(
     assert graph.run_until(lambda: world.state == "reached", 15.0)
 
 
-def test_a_costmap_in_the_robots_frame_blocks_where_it_belongs(world: World) -> None:
+def test_a_costmap_in_the_robots_frame_is_placed_on_the_map(world: World) -> None:
     world.wall_x = 2.5
     world.send_path(STRAIGHT)
     assert world.graph.run_until(lambda: world.state == "blocked", 15.0)
@@ -227,7 +227,7 @@ def test_a_costmap_in_the_robots_frame_blocks_where_it_belongs(world: World) -> 
 
 
 @pytest.mark.parametrize("resolution", [0.0, math.nan, -0.1, 1e30])
-def test_costmaps_that_are_no_grids_stop_the_robot_like_none(
+def test_invalid_costmaps_stop_the_robot_as_missing_ones(
     world: World, resolution: float
 ) -> None:
     world.send_path(STRAIGHT)
@@ -267,7 +267,7 @@ def test_a_path_that_cannot_be_followed_stops_with_a_reason(
     assert world.graph.run_until(lambda: world.state == "reached", 15.0)
 
 
-def test_a_node_that_ends_stops_the_robot(world: World) -> None:
+def test_destroying_the_node_stops_the_robot(world: World) -> None:
     world.send_path(STRAIGHT)
     world.graph.run_for(2.0)
     assert world.commands.last.linear.x > 0.4
@@ -276,7 +276,7 @@ def test_a_node_that_ends_stops_the_robot(world: World) -> None:
     assert world.commands.last == Twist()
 
 
-def test_parameters_can_change_on_the_way(world: World) -> None:
+def test_parameters_can_change_while_driving(world: World) -> None:
     world.send_path(STRAIGHT)
     world.graph.run_for(2.0)
     [result] = world.node.set_parameters([Parameter("cruise_speed_mps", value=0.2)])

@@ -55,7 +55,7 @@ def test_a_cusp_separates_reverse_from_forward() -> None:
     assert kinds(split(np.concatenate((back, ahead)))) == ["reverse", "forward"]
 
 
-def test_poses_at_one_place_are_a_turn_with_its_way_round() -> None:
+def test_poses_at_one_position_are_a_turn_with_a_direction() -> None:
     ahead = tangent_path(np.array([[0, 0], [2, 0.0]]))
     turn = np.array([(2.0, 0.0, yaw) for yaw in np.linspace(0, -1.5 * math.pi, 12)])
     away = tangent_path(np.array([[2, 0], [2, 2.0]]))
@@ -87,14 +87,14 @@ def test_a_gentle_corner_is_rounded_within_the_tolerance() -> None:
     assert max(piece.curvature) == pytest.approx(1 / 1.11, rel=0.15)
 
 
-def test_headings_that_were_left_out_mean_forward() -> None:
+def test_missing_headings_mean_forward() -> None:
     path = tangent_path(np.array([[0, 0], [0, 3], [-2, 6.0]]))
     path[:, 2] = 0.0
     assert set(kinds(split(path))) == {"forward"}
 
 
 @pytest.mark.parametrize("diagonal", [False, True])
-def test_a_stair_of_cells_is_one_smooth_piece(diagonal: bool) -> None:
+def test_a_staircase_of_cells_is_one_smooth_piece(diagonal: bool) -> None:
     cells = [(0.0, 0.0)]
     for k in range(60):
         x, y = cells[-1]
@@ -107,7 +107,7 @@ def test_a_stair_of_cells_is_one_smooth_piece(diagonal: bool) -> None:
     assert max(map(abs, piece.curvature)) < 0.1
 
 
-def test_one_pose_or_the_same_pose_again_is_nothing_to_drive() -> None:
+def test_one_repeated_pose_has_no_pieces() -> None:
     assert split(np.array([[1.0, 2.0, 0.5]])) == []
     assert split(np.array([[1.0, 2.0, 0.5]] * 3)) == []
 
@@ -127,7 +127,7 @@ def test_a_malformed_path_is_refused(poses: np.ndarray) -> None:
         split(poses)
 
 
-def test_simplify_keeps_what_carries_the_shape() -> None:
+def test_simplify_keeps_the_shape() -> None:
     line = np.array([[0, 0], [1, 0.005], [2, 0], [3, 0], [3, 1], [3, 2.0]])
     assert simplify(line, 0.01).tolist() == [[0, 0], [3, 0], [3, 2]]
 

@@ -36,7 +36,7 @@ def test_progress_gives_signed_errors() -> None:
     assert at.heading_error == pytest.approx(0.2)
 
 
-def test_progress_in_reverse_looks_at_the_travel() -> None:
+def test_progress_in_reverse_uses_the_direction_of_travel() -> None:
     at = PieceProgress(straight(-1), 2.0).update(Pose2(1.0, -0.1, math.pi + 0.1))
     assert at.cross_track == pytest.approx(-0.1)
     assert at.heading_error == pytest.approx(0.1)

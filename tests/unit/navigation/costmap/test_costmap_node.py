@@ -75,7 +75,7 @@ def test_wrong_parameters_are_refused() -> None:
         assert node.params.size_m == 30.0
 
 
-def test_a_scan_without_sense_gives_no_costmap_and_the_next_one_works() -> None:
+def test_an_invalid_scan_gives_no_costmap_and_the_next_one_works() -> None:
     with GraphHarness() as graph:
         _, costmaps = started(graph)
         graph.publish("/lidar", LaserScan())

@@ -20,7 +20,7 @@ def arc(distance: float) -> np.ndarray:
     return np.full(21, distance)
 
 
-def test_sensor_sits_in_the_middle_of_the_middle_cell() -> None:
+def test_the_sensor_is_at_the_centre_of_the_middle_cell() -> None:
     for size, resolution in ((10.0, 0.1), (3.0, 0.05), (0.25, 0.1), (0.1, 0.1)):
         params = CostmapParams(
             size_m=size, resolution_m=resolution, inflation_radius_m=0.1
@@ -33,7 +33,7 @@ def test_sensor_sits_in_the_middle_of_the_middle_cell() -> None:
 
 
 def test_free_up_to_the_hit_lethal_there_unknown_beyond() -> None:
-    """The fault to avoid: calling everything in range free."""
+    """Cells beyond the hit must not be marked free."""
     maker = ScanCostmap(PARAMS)
     cost = maker.build(scan(arc(3.0), angle_min=-0.1))
     middle = maker.spec.width // 2
@@ -64,7 +64,7 @@ def test_exponential_inflation() -> None:
     assert cost[50, 76:81].tolist() == [*expected, 100]
 
 
-def test_what_a_scan_does_not_see_stays_unknown_beside_obstacles() -> None:
+def test_unmeasured_cells_beside_obstacles_stay_unknown() -> None:
     maker = ScanCostmap(PARAMS)
     cost = maker.build(scan(arc(2.0), angle_min=-0.1))
     shadow = cost[50, 72:76]
@@ -82,7 +82,7 @@ def test_no_return_is_free_to_the_border_at_most() -> None:
 
 
 @pytest.mark.parametrize("reading", [math.nan, 0.0, 0.05, -1.0, -math.inf])
-def test_invalid_readings_say_nothing(reading) -> None:
+def test_invalid_readings_are_ignored(reading) -> None:
     assert (ScanCostmap(PARAMS).build(scan([reading] * 9)) == -1).all()
 
 
@@ -95,12 +95,12 @@ def test_hits_outside_the_grid_leave_no_mark() -> None:
     assert (cost[50, 50:] == 0).all()
 
 
-def test_unlimited_range_is_taken() -> None:
+def test_an_unlimited_range_is_accepted() -> None:
     cost = ScanCostmap(PARAMS).build(scan([3.0, 3.0], range_max=math.inf))
     assert cost[50, 80] == 100
 
 
-def test_beam_along_a_wall_does_not_free_the_cells_the_wall_is_in() -> None:
+def test_a_beam_along_a_wall_does_not_free_its_cells() -> None:
     # A wall along y = 0.52, seen sideways: the cells in row 55 hold it.
     increment = math.tau / 256
     angles = 0.11 + increment * np.arange(20)
@@ -117,7 +117,7 @@ def test_beam_along_a_wall_does_not_free_the_cells_the_wall_is_in() -> None:
     ).sum()
 
 
-def test_same_scan_same_costmap_also_with_other_scans_between() -> None:
+def test_the_same_scan_gives_the_same_costmap() -> None:
     maker = ScanCostmap(PARAMS)
     first = maker.build(scan(arc(3.0)))
     maker.build(scan(np.full(300, 2.0), increment=0.02))

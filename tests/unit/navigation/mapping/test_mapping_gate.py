@@ -37,7 +37,7 @@ def fused_once(first: PlacedCostmap, **values) -> tuple[FusionGate, MapMemory]:
     return gate, memory
 
 
-def test_the_first_costmap_joins_at_once() -> None:
+def test_the_first_costmap_is_fused_at_once() -> None:
     gate, memory = gate_and_memory()
     assert gate.on_arrival(costmap(), memory, 0)
     assert gate.on_timer(costmap())
@@ -47,8 +47,8 @@ def test_the_first_costmap_joins_at_once() -> None:
     ("x", "yaw", "expected"),
     [(0.5, 0.0, False), (1.6, 0.0, True), (0.0, 0.4, False), (0.0, -0.6, True)],
 )
-def test_timer_waits_for_way_or_turn(x, yaw, expected) -> None:
-    """The fault to avoid: gating by distance alone never fuses in a turn."""
+def test_the_timer_waits_for_distance_or_turn(x, yaw, expected) -> None:
+    """Gating by distance alone would never fuse during a turn."""
     gate, _ = fused_once(costmap())
     assert gate.on_timer(costmap(x, yaw)) is expected
 
@@ -79,7 +79,7 @@ def test_nothing_is_fused_while_falling_or_tilted(motion) -> None:
     assert gate.on_arrival(costmap(vertical_speed=-0.1, tilt=0.05), memory, 0)
 
 
-def test_a_robot_that_stands_still_sees_what_changed() -> None:
+def test_a_stationary_robot_fuses_changes() -> None:
     gate, memory = fused_once(costmap())
     assert not gate.on_arrival(costmap(), memory, SECOND)
     assert gate.on_arrival(costmap(obstacle=True), memory, SECOND)
@@ -102,7 +102,7 @@ def test_few_changed_cells_are_noise() -> None:
     assert not gate.on_arrival(costmap(obstacle=True), memory, SECOND)
 
 
-def test_reset_makes_the_next_one_the_first() -> None:
+def test_after_reset_the_next_costmap_is_the_first() -> None:
     gate, memory = fused_once(costmap())
     gate.reset()
     assert gate.on_arrival(costmap(), memory, 0)

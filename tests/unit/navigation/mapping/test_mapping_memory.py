@@ -33,7 +33,7 @@ def at(mem: MapMemory, x: float, y: float) -> int:
     return int(mem.occupancy()[mem.spec.cell_of(x, y)])
 
 
-def test_starts_unknown_and_centred_as_told() -> None:
+def test_the_initial_map_is_unknown_and_centred_at_the_parameters() -> None:
     mem = memory(center_x_m=3.0, center_y_m=-1.0)
     assert (mem.occupancy() == -1).all()
     assert mem.spec.shape == (100, 100)
@@ -68,7 +68,7 @@ def test_max_never_lowers() -> None:
     assert at(mem, *SPEC.center_of(20, 30)) == 100
 
 
-def test_log_odds_need_evidence_to_change_their_mind() -> None:
+def test_log_odds_change_only_with_enough_evidence() -> None:
     mem, hit = memory(fusion="log_odds", erase_range_m=0.0), free()
     hit[20, 30] = 100
     post = SPEC.center_of(20, 30)
@@ -109,7 +109,7 @@ def test_thin_posts_survive_every_heading() -> None:
         assert math.dist(mem.spec.center_of(*lethal[0]), post) < 0.15
 
 
-def test_far_beams_do_not_erase_what_near_ones_saw() -> None:
+def test_distant_beams_do_not_erase_near_measurements() -> None:
     post, mem = (1.0, 0.0), memory(erase_range_m=1.5)
     near = free()
     near[SPEC.cell_of(*post)] = 100
@@ -120,7 +120,7 @@ def test_far_beams_do_not_erase_what_near_ones_saw() -> None:
     assert at(mem, *post) == 0
 
 
-def test_grows_to_hold_what_is_known_and_keeps_its_cells_in_place() -> None:
+def test_the_map_grows_to_hold_known_cells_and_keeps_their_position() -> None:
     mem, first = memory(), free()
     first[20, 30] = 100
     mem.fuse(costmap(first))
@@ -179,7 +179,7 @@ def test_cells_under_the_body_are_free() -> None:
         assert at(mem, *SPEC.center_of(20, 40)) == 100
 
 
-def test_reset_forgets() -> None:
+def test_reset_clears_the_map() -> None:
     mem = memory()
     mem.fuse(costmap(free(), Pose2(8.0, 0.0, 0.0)))
     mem.reset()
@@ -187,7 +187,7 @@ def test_reset_forgets() -> None:
     assert (mem.occupancy() == -1).all()
 
 
-def test_what_is_handed_out_is_a_copy() -> None:
+def test_occupancy_returns_a_copy() -> None:
     mem = memory()
     mem.occupancy()[:] = 100
     assert (mem.occupancy() == -1).all()

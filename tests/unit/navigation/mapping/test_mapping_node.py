@@ -103,7 +103,7 @@ class Rig:
         return [spec.center_of(*cell) for cell in np.argwhere(cells == 100)]
 
 
-def test_a_map_is_there_at_the_start_for_late_subscribers_too() -> None:
+def test_a_map_is_published_at_the_start_also_for_late_subscribers() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph, map_frame="world")
         rig.run_ms(500)
@@ -130,7 +130,7 @@ def test_an_empty_first_scan_does_not_become_the_map() -> None:
         assert rig.maps.last.header.stamp == ns_to_stamp(20 * MS)
 
 
-def test_cells_lie_where_the_sensor_saw_them() -> None:
+def test_cells_are_placed_at_the_measured_positions() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
         rig.odometry(2.0, math.pi / 2, 0)
@@ -142,8 +142,8 @@ def test_cells_lie_where_the_sensor_saw_them() -> None:
         assert rig.cell(-4.0, 0.0) == -1
 
 
-def test_a_costmap_is_placed_at_its_own_stamp_not_with_what_is_newest() -> None:
-    """The fault to avoid: stale odometry leaves phantom cells."""
+def test_a_costmap_is_placed_with_the_pose_at_its_stamp() -> None:
+    """Stale odometry would leave phantom cells."""
     with GraphHarness() as graph:
         rig = Rig(graph)
         rig.odometry(0.0, 0.0, 0)
@@ -168,7 +168,7 @@ def test_without_odometry_costmaps_are_dropped() -> None:
         assert rig.maps.count == 1
 
 
-def test_an_unknown_frame_places_nothing() -> None:
+def test_a_costmap_in_an_unknown_frame_is_dropped() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
         rig.odometry(0.0, 0.0, 0)
@@ -177,7 +177,7 @@ def test_an_unknown_frame_places_nothing() -> None:
         assert rig.maps.count == 1
 
 
-def test_odometry_from_beyond_the_earth_places_nothing() -> None:
+def test_odometry_with_huge_coordinates_is_ignored() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
         rig.odometry(1e300, 0.0, 0)
@@ -186,7 +186,7 @@ def test_odometry_from_beyond_the_earth_places_nothing() -> None:
         assert rig.maps.count == 1
 
 
-def test_standing_still_nothing_is_published_again() -> None:
+def test_a_stationary_robot_publishes_no_new_map() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
         for k in range(30):
@@ -196,7 +196,7 @@ def test_standing_still_nothing_is_published_again() -> None:
         assert rig.maps.count == 2
 
 
-def test_a_new_obstacle_joins_the_map_though_the_robot_stands() -> None:
+def test_a_new_obstacle_is_fused_while_the_robot_is_stationary() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
         appears_ms = 1500
@@ -213,7 +213,7 @@ def test_a_new_obstacle_joins_the_map_though_the_robot_stands() -> None:
 
 
 @pytest.mark.parametrize("yaw_rate", [0.6, 3.0])
-def test_turning_on_the_spot_fuses_unless_it_spins(yaw_rate) -> None:
+def test_turning_in_place_fuses_unless_too_fast(yaw_rate) -> None:
     with GraphHarness() as graph:
         rig = Rig(graph, fuse_on_change=False)
         rig.odometry(0.0, 0.0, 0)
@@ -238,8 +238,8 @@ def test_moving_fuses_on_the_timer() -> None:
 
 
 @pytest.mark.parametrize("motion", [{"fall": 3.0}, {"roll": -0.3}])
-def test_what_was_seen_while_falling_does_not_become_the_map(motion) -> None:
-    """The course robot spawns 1 m up: its first scans look over every obstacle."""
+def test_scans_while_falling_are_not_fused(motion) -> None:
+    """The course robot spawns at 1 m: its first scans pass over every obstacle."""
     with GraphHarness() as graph:
         rig = Rig(graph)
         rig.odometry(0.0, 0.0, 0, **motion)
@@ -252,7 +252,7 @@ def test_what_was_seen_while_falling_does_not_become_the_map(motion) -> None:
         assert rig.maps.count == 2
 
 
-def test_time_that_goes_back_starts_the_map_anew() -> None:
+def test_a_jump_back_in_time_resets_the_map() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
         rig.odometry(0.0, 0.0, 5000 * MS)
@@ -265,7 +265,7 @@ def test_time_that_goes_back_starts_the_map_anew() -> None:
         assert post == pytest.approx((AHEAD + 2.0, 0.0), abs=0.11)
 
 
-def test_parameters_that_shape_the_map_start_it_anew_others_do_not() -> None:
+def test_only_shape_parameters_reset_the_map() -> None:
     with GraphHarness() as graph:
         rig = Rig(graph)
         rig.odometry(0.0, 0.0, 0)

@@ -15,7 +15,7 @@ from navette.testing import GraphHarness
 
 
 class FakePlanner:
-    """Reaches each goal two seconds after it came, or fails as scripted."""
+    """Reaches each goal after two seconds, or fails as scripted."""
 
     def __init__(self, graph: GraphHarness, results: list[str]) -> None:
         self._graph = graph
@@ -95,7 +95,9 @@ def test_path_length_and_distance_left_are_measured(graph: GraphHarness) -> None
     assert outcome.distance_left_m == pytest.approx(0.5)
 
 
-def test_nothing_is_sent_before_map_and_planner_are_there(graph: GraphHarness) -> None:
+def test_no_goal_is_sent_before_map_and_planner_are_available(
+    graph: GraphHarness,
+) -> None:
     node = mission(graph, goals_m=[1.0, 0.0])
     graph.run_for(1.0)
     planner = FakePlanner(graph, ["reached"])
@@ -113,7 +115,7 @@ def test_nothing_is_sent_before_map_and_planner_are_there(graph: GraphHarness) -
         ("stop", ["reached", "no_path", "skipped"]),
     ],
 )
-def test_after_a_failure_it_goes_on_or_stops(
+def test_after_a_failure_the_mission_continues_or_stops(
     graph: GraphHarness, on_failure: str, results: list[str]
 ) -> None:
     FakePlanner(graph, ["reached", "no_path", "reached"])
@@ -141,7 +143,7 @@ def test_wrong_goals_are_refused(graph: GraphHarness) -> None:
     assert node.done
 
 
-def test_goals_can_be_given_while_it_runs(graph: GraphHarness) -> None:
+def test_goals_can_be_added_while_running(graph: GraphHarness) -> None:
     planner = FakePlanner(graph, ["reached"])
     send_map(graph)
     node = mission(graph)

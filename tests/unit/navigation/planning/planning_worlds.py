@@ -129,7 +129,7 @@ def cheapest(
     goal: tuple[int, int],
     table: EdgeTable,
 ) -> int | None:
-    """Cost in units of the cheapest way, by Dijkstra with a heap and no tricks."""
+    """Cost in units of the cheapest path, by plain Dijkstra with a heap."""
     free = {tuple(cell) for cell in np.argwhere(cost < table.lethal_from).tolist()}
     best, waiting = {start: 0}, [(0, start)]
     if not {start, goal} <= free:

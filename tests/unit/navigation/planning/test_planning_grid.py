@@ -1,4 +1,4 @@
-"""The map as the planner sees it, and paths as shapes on it."""
+"""The planning grid, and the shape of paths on it."""
 
 import math
 
@@ -45,7 +45,7 @@ def test_cost_is_closed_near_falls_with_distance_and_ends() -> None:
     assert between[between > 0][-1] > 40, "a step: paths stay where turning is free"
 
 
-def test_inflation_in_the_map_is_not_taken_for_obstacles() -> None:
+def test_inflation_in_the_map_is_not_an_obstacle() -> None:
     occupancy, spec = empty_map(12, 8)
     fill(occupancy, spec, (3, 6), (2, 5), 99)
     assert planning_grid(occupancy, spec, BODY, PARAMS).cost.max() == 0
@@ -65,7 +65,7 @@ def test_unknown_cells_cost_more_or_are_closed() -> None:
     assert planning_grid(occupancy, spec, BODY, shy).cost[30, 40] == LETHAL
 
 
-def test_phantoms_inside_the_body_are_not_there_for_it() -> None:
+def test_obstacles_inside_the_body_are_ignored() -> None:
     occupancy, grid, params = walled()
     spec = grid.spec
     fill(occupancy, spec, (6.3, 6.5), (4, 4.2))
@@ -85,8 +85,10 @@ def test_a_start_inside_inflation_is_opened_away_from_the_obstacle_only() -> Non
     opened = open_at(grid, start, BODY)
     row, column = start
     assert opened.cost[row, column] != LETHAL
-    assert (opened.cost[row, column:] != LETHAL).all(), "a way out"
-    assert (opened.cost[row, : column - 1] == LETHAL).all(), "no way closer in"
+    assert (opened.cost[row, column:] != LETHAL).all(), "a path out"
+    assert (opened.cost[row, : column - 1] == LETHAL).all(), (
+        "no path towards the obstacle"
+    )
     free = grid.spec.cell_of(6, 4)
     assert open_at(grid, free, BODY) is grid
 
@@ -136,20 +138,20 @@ def test_corners_are_rounded_where_there_is_room_and_kept_where_not() -> None:
     assert np.hypot(*(kept - post).T).min() >= nearest - 0.05
 
 
-def test_directions_tell_forwards_backwards_and_turns() -> None:
+def test_directions_are_forward_reverse_or_turn() -> None:
     poses = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1.0], [0.5, -0.8, 1.0]])
     assert path_shape.directions(poses).tolist() == [1, 0, -1]
     assert path_shape.turns(poses).tolist() == [0, 1.0, 0]
 
 
-def test_a_turn_takes_the_short_way_in_small_steps() -> None:
+def test_a_turn_uses_the_shorter_direction_in_small_steps() -> None:
     poses = path_shape.turn_in_place(1.0, 2.0, 3.0, -3.0)
     assert len(poses) == 3
     np.testing.assert_allclose(poses[[0, -1], 2], [3.0, -3.0])
     assert abs(poses[1, 2]) == pytest.approx(math.pi)
 
 
-def test_path_cost_counts_length_turns_reverse_and_price() -> None:
+def test_path_cost_includes_length_turns_reverse_and_cell_cost() -> None:
     _, grid, _ = walled()
     out = np.array([[6.0, 4, 0], [7, 4, 0], [7, 4, math.pi], [6.5, 4, math.pi]])
     rates = {"turn_cost_m_per_rad": 0.5, "reverse_factor": 2.0}
@@ -171,7 +173,7 @@ def test_a_path_is_bad_from_its_first_pose_without_margin() -> None:
     assert nose - 0.3 == pytest.approx(params.clearance_margin_m, abs=0.15)
 
 
-def test_a_start_without_margin_may_be_left_but_not_worsened() -> None:
+def test_from_a_start_without_margin_the_clearance_must_not_decrease() -> None:
     _, grid, _ = walled()
     out = np.array([[1.95 + 0.1 * i, 4.0, math.pi] for i in range(20)])
     assert check_path(out, grid, BODY).clearance_m[0] < grid.margin_m

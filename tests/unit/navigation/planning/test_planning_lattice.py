@@ -1,4 +1,4 @@
-"""The search with headings: where a body fits barely."""
+"""The search with headings, in tight places."""
 
 import math
 
@@ -60,7 +60,7 @@ def plan(
     return search(world, start, goal, MOTIONS, max_expansions=max_expansions)
 
 
-def test_free_space_is_driven_straight_and_forwards() -> None:
+def test_in_free_space_the_path_is_straight_and_forward() -> None:
     found = plan(
         *empty_map(12, 6), Pose2(2, 3, 0), LatticeGoal(9.5, 3, tolerance_m=0.4)
     )
@@ -93,13 +93,13 @@ def test_the_body_keeps_its_margin_in_a_slalom() -> None:
         assert distance_to_cells(COURSE, Pose2(*pose), occupancy, spec) >= MARGIN
 
 
-def test_a_goal_heading_is_met() -> None:
+def test_a_goal_heading_is_reached() -> None:
     goal = LatticeGoal(7, 3, tolerance_m=0.3, yaw=math.pi / 2, yaw_tolerance=0.15)
     found = plan(*empty_map(12, 8), Pose2(2, 3, 0), goal)
     assert abs(found.poses[-1, 2] - math.pi / 2) <= 0.15
 
 
-def test_no_way_and_no_budget_are_told_apart() -> None:
+def test_no_path_and_an_exhausted_budget_are_distinguished() -> None:
     occupancy, spec = empty_map(12, 6)
     fill(occupancy, spec, (6, 6.3), (0, 6))
     walled = plan(occupancy, spec, Pose2(2, 3, 0), LatticeGoal(10, 3, tolerance_m=0.3))
@@ -116,7 +116,7 @@ def test_no_way_and_no_budget_are_told_apart() -> None:
     assert hasty.expansions == 3
 
 
-def test_same_question_same_answer() -> None:
+def test_the_same_input_gives_the_same_result() -> None:
     start, goal = Pose2(-3, 6, math.pi), LatticeGoal(-5.3, 6, tolerance_m=0.4)
     first, again = (plan(*course_map(), start, goal) for _ in range(2))
     np.testing.assert_array_equal(first.poses, again.poses)
@@ -133,7 +133,7 @@ def test_start_outside_is_refused() -> None:
         search(world, Pose2(9, 9, 0), LatticeGoal(2, 2, 0.3), MOTIONS)
 
 
-def test_arcs_end_where_their_radius_says() -> None:
+def test_arcs_end_on_their_circle() -> None:
     radius = MOTIONS.step_m / MOTIONS.heading_step
     for m, (direction, turn) in enumerate(MOVES):
         end = MOTIONS.offsets[m, MOTIONS.sample_counts[m] - 1]

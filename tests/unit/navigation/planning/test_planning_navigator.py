@@ -91,7 +91,7 @@ def test_a_goal_is_driven_to_on_one_path_and_reached() -> None:
     assert len(drive.published) == 2
 
 
-def test_standing_near_the_goal_is_reached_after_a_moment() -> None:
+def test_rest_near_the_goal_counts_as_reached() -> None:
     drive = Drive(path_end_tolerance_m=0.05)
     drive.pose, drive.moving = Pose2(7.7, 4, 0), False
     drive.send(8, 4)
@@ -101,7 +101,7 @@ def test_standing_near_the_goal_is_reached_after_a_moment() -> None:
     assert drive.message == Phase.REACHED
 
 
-def test_a_goal_heading_must_be_met_too() -> None:
+def test_a_goal_heading_must_be_reached_too() -> None:
     drive = Drive()
     drive.pose, drive.moving = Pose2(8, 4, 0), False
     drive.send(8, 4, math.pi / 2)
@@ -112,7 +112,7 @@ def test_a_goal_heading_must_be_met_too() -> None:
     assert drive.message == Phase.REACHED
 
 
-def test_goals_wait_for_map_and_odometry_and_say_so() -> None:
+def test_goals_wait_for_map_and_odometry_with_a_status() -> None:
     navigator = Navigator(PlannerParams())
     navigator.set_goal(Goal(3, 3), 0)
     navigator.step(None, 1, stale=True)
@@ -125,7 +125,7 @@ def test_goals_wait_for_map_and_odometry_and_say_so() -> None:
     assert navigator.report.message == Phase.FOLLOWING
 
 
-def test_stale_odometry_stops_and_fresh_odometry_goes_on() -> None:
+def test_stale_odometry_stops_and_fresh_odometry_continues() -> None:
     drive = Drive()
     drive.send(8, 4)
     drive.steps(3)
@@ -161,7 +161,7 @@ def test_a_refused_goal_stops_the_robot_and_counts(goal, outcome: Outcome) -> No
     assert drive.message == Phase.REACHED, "alive"
 
 
-def test_a_failure_without_any_path_before_still_says_stop() -> None:
+def test_a_failure_publishes_an_empty_path_in_any_case() -> None:
     drive = Drive()
     drive.send(50, 1)
     drive.step()
@@ -190,7 +190,7 @@ def test_a_path_that_becomes_blocked_is_replaced() -> None:
     assert drive.message == Phase.REACHED
 
 
-def test_changes_beside_the_path_leave_it_alone() -> None:
+def test_map_changes_beside_the_path_keep_it() -> None:
     drive = Drive()
     drive.send(9, 4)
     drive.steps(2)
@@ -203,7 +203,7 @@ def test_changes_beside_the_path_leave_it_alone() -> None:
     assert len(drive.published) == 2, "the path and the stop at its end"
 
 
-def test_until_the_robot_sets_out_the_newest_map_decides() -> None:
+def test_before_the_robot_starts_a_new_map_replans() -> None:
     drive = Drive()
     drive.moving = False
     drive.change_map((4.5, 4.7), (0, 5))
@@ -215,7 +215,7 @@ def test_until_the_robot_sets_out_the_newest_map_decides() -> None:
     assert drive.path[:, 1].max() < 5
 
 
-def test_two_equal_ways_do_not_make_the_robot_waver() -> None:
+def test_the_robot_does_not_oscillate_between_equal_paths() -> None:
     drive = Drive()
     drive.change_map((4.5, 5.5), (2.5, 5.5))
     drive.send(9, 4)
@@ -231,7 +231,7 @@ def test_two_equal_ways_do_not_make_the_robot_waver() -> None:
     assert all(side * (p[np.abs(p[:, 1] - 4).argmax(), 1] - 4) > 0 for p in paths)
 
 
-def test_a_much_better_way_is_taken_when_it_opens() -> None:
+def test_a_much_cheaper_path_replaces_a_valid_one() -> None:
     drive = Drive()
     drive.change_map((4.5, 4.7), (0, 7))
     drive.send(9, 2)
@@ -243,13 +243,13 @@ def test_a_much_better_way_is_taken_when_it_opens() -> None:
     assert drive.navigator.report.replans == 1
 
 
-def test_no_progress_replans_and_is_stuck_in_the_end() -> None:
+def test_without_progress_the_planner_replans_and_ends_stuck() -> None:
     drive = Drive(progress_timeout_s=2.0, max_stuck_replans=2)
     drive.moving = False
     drive.send(9, 4)
     drive.steps(6)
     assert drive.navigator.report.replans == 0
-    assert len(drive.published) == 2, "the same path once more: perhaps nobody heard"
+    assert len(drive.published) == 2, "the same path is published again"
     drive.steps(6)
     assert drive.message == Outcome.STUCK
     assert drive.navigator.report.result == "stuck"
@@ -268,7 +268,7 @@ def test_driving_away_from_the_goal_around_a_wall_is_progress() -> None:
     assert drive.navigator.report.replans == 0
 
 
-def test_a_goal_has_its_time() -> None:
+def test_a_goal_times_out() -> None:
     drive = Drive(goal_timeout_s=2.0)
     drive.send(9, 4)
     drive.steps(3)
@@ -277,7 +277,7 @@ def test_a_goal_has_its_time() -> None:
     assert drive.message == Outcome.TIMED_OUT
 
 
-def test_a_way_that_closes_is_waited_for_then_given_up() -> None:
+def test_a_closed_path_is_retried_then_fails() -> None:
     drive = Drive(max_stuck_replans=3)
     drive.send(9, 4)
     drive.steps(3)
@@ -307,7 +307,7 @@ def test_a_robot_far_off_its_path_gets_a_new_one() -> None:
     np.testing.assert_allclose(drive.published[-1][0, :2], drive.pose[:2])
 
 
-def test_new_parameters_plan_anew() -> None:
+def test_new_parameters_replan() -> None:
     drive = Drive()
     drive.send(9, 4)
     drive.step()

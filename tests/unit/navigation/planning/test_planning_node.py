@@ -25,7 +25,7 @@ from navette.testing import GraphHarness
 
 
 class World:
-    """A standing robot, a map, and ears on /path and /planner/status."""
+    """A stationary robot, a map, and probes on /path and /planner/status."""
 
     def __init__(self, graph: GraphHarness, **params: object) -> None:
         self.graph = graph
@@ -120,7 +120,7 @@ def test_a_goal_becomes_a_path_in_the_map_frame(graph: GraphHarness) -> None:
     assert values["phase"] == "waiting_for_robot_to_reach_goal"
 
 
-def test_an_unchanged_world_brings_no_second_path(graph: GraphHarness) -> None:
+def test_an_unchanged_world_publishes_one_path(graph: GraphHarness) -> None:
     world = World(graph).ready()
     world.send(8, 4)
     for _ in range(4):
@@ -129,7 +129,7 @@ def test_an_unchanged_world_brings_no_second_path(graph: GraphHarness) -> None:
     assert world.paths.count == 1
 
 
-def test_arriving_is_seen_with_the_next_odometry(graph: GraphHarness) -> None:
+def test_arrival_is_detected_with_the_next_odometry(graph: GraphHarness) -> None:
     world = World(graph).ready()
     world.send(8, 4)
     graph.run_for(0.5)
@@ -190,7 +190,7 @@ def test_bad_goals_have_named_results_within_a_second(
     assert world.message == "following", "alive"
 
 
-def test_a_goal_without_a_frame_is_on_the_map(graph: GraphHarness) -> None:
+def test_a_goal_without_a_frame_is_in_the_map_frame(graph: GraphHarness) -> None:
     world = World(graph).ready()
     world.send(3, 4, frame="")
     graph.run_for(0.1)
@@ -223,7 +223,7 @@ def test_a_goal_pose_ends_with_its_heading(graph: GraphHarness) -> None:
     np.testing.assert_allclose(world.last_path()[-1], (6, 4, -math.pi / 2))
 
 
-def test_odometry_that_stops_stops_the_robot(graph: GraphHarness) -> None:
+def test_missing_odometry_stops_the_robot(graph: GraphHarness) -> None:
     world = World(graph).ready()
     world.send(8, 4)
     graph.run_for(0.5)
@@ -249,7 +249,7 @@ def test_a_map_that_blocks_the_path_replaces_it_at_once(graph: GraphHarness) -> 
     assert np.abs(world.last_path()[:, 1] - 4).max() > 1
 
 
-def test_a_map_in_another_frame_is_not_taken(graph: GraphHarness) -> None:
+def test_a_map_in_another_frame_is_ignored(graph: GraphHarness) -> None:
     world = World(graph)
     world.send_map(frame="odom")
     graph.run_for(0.3)

@@ -1,4 +1,4 @@
-"""From map, pose and goal to a path, or the named reason why not."""
+"""Planning from map, pose and goal: paths and named failures."""
 
 import math
 from collections.abc import Callable
@@ -47,7 +47,7 @@ def turn_total(plan: Plan) -> float:
     return float(np.abs(np.diff(yaw)).sum())
 
 
-def test_path_runs_from_the_robot_to_the_very_goal() -> None:
+def test_a_path_runs_from_the_robot_to_the_exact_goal() -> None:
     plan = planner(*empty_map(6, 6)).plan(Pose2(1.03, 1.08, 0.6), Goal(4.97, 5.01))
     assert plan.outcome is Outcome.OK
     np.testing.assert_allclose(plan.poses[0, :2], (1.03, 1.08))
@@ -58,7 +58,7 @@ def test_path_runs_from_the_robot_to_the_very_goal() -> None:
 
 
 @pytest.mark.parametrize("method", ["a_star", "dijkstra", "breadth_first"])
-def test_every_method_leads_around_a_wall(method: str) -> None:
+def test_every_method_plans_around_a_wall(method: str) -> None:
     occupancy, spec = empty_map(8, 6)
     fill(occupancy, spec, (4, 4.2), (0, 4.5))
     params = PlannerParams(method=method)
@@ -68,7 +68,7 @@ def test_every_method_leads_around_a_wall(method: str) -> None:
     assert path_shape.lengths(plan.poses).sum() < 11.5
 
 
-def test_a_path_in_the_open_does_not_zigzag() -> None:
+def test_a_path_in_free_space_does_not_zigzag() -> None:
     plan = planner(*empty_map(12, 12)).plan(Pose2(1, 1, 0.4), Goal(11, 5.3))
     assert turn_total(plan) < 0.01
     occupancy, spec = empty_map(12, 12)
@@ -77,20 +77,20 @@ def test_a_path_in_the_open_does_not_zigzag() -> None:
     assert turn_total(around) < 3.5, "one bend around the block"
 
 
-def test_a_robot_that_looks_away_turns_first() -> None:
+def test_a_large_heading_error_starts_with_a_turn_in_place() -> None:
     plan = planner(*empty_map(6, 6)).plan(Pose2(3, 3, math.pi), Goal(5, 3))
     spun = path_shape.turns(plan.poses)
     assert spun.sum() == pytest.approx(math.pi)
     assert (np.flatnonzero(spun) == np.arange(np.count_nonzero(spun))).all()
 
 
-def test_a_goal_heading_is_turned_to_at_the_end() -> None:
+def test_a_goal_heading_ends_with_a_turn_in_place() -> None:
     plan = planner(*empty_map(6, 6)).plan(Pose2(1, 3, 0), Goal(5, 3, math.pi / 2))
     assert plan.outcome is Outcome.OK
     np.testing.assert_allclose(plan.poses[-1], (5, 3, math.pi / 2))
 
 
-def test_goal_in_an_obstacle_is_moved_to_the_nearest_place_that_fits() -> None:
+def test_a_goal_in_an_obstacle_is_moved_to_the_nearest_free_pose() -> None:
     occupancy, spec = empty_map(8, 6)
     fill(occupancy, spec, (6, 6.4), (2.8, 3.2))
     params = PlannerParams(
@@ -135,7 +135,7 @@ def test_a_walled_in_start_is_blocked() -> None:
         (Pose2(1, 1, 0), Goal(1, 1, math.nan), Outcome.GOAL_NOT_FINITE),
     ],
 )
-def test_what_cannot_be_planned_is_refused_by_name(
+def test_invalid_goals_and_starts_have_named_outcomes(
     start: Pose2, goal: Goal, outcome: Outcome
 ) -> None:
     assert planner(*empty_map(6, 6)).plan(start, goal).outcome is outcome
@@ -172,7 +172,7 @@ def test_a_gap_too_tight_for_the_margin_is_taken_with_the_tight_one() -> None:
     assert plan.outcome is Outcome.NO_PATH
 
 
-def test_a_squeeze_is_weighed_against_a_long_way_round() -> None:
+def test_the_tight_margin_is_weighed_against_a_long_detour() -> None:
     occupancy, spec = empty_map(30, 8)
     fill(occupancy, spec, (0, 26), (4, 4.2))
     fill(occupancy, spec, (3, 3.7), (4, 4.2), 0)
@@ -228,7 +228,7 @@ def test_random_starts_and_goals_in_the_course_have_drivable_paths(
         assert clearance >= min(0.15, room - 0.03), (start, goal)
 
 
-def test_the_same_question_has_the_same_answer() -> None:
+def test_the_same_input_gives_the_same_plan() -> None:
     def asked() -> Callable[[], np.ndarray]:
         made = planner(*course_map(), COURSE)
         made.plan(Pose2(6, -12.8, 1.57), Goal(2.8, -6.5))
@@ -237,7 +237,7 @@ def test_the_same_question_has_the_same_answer() -> None:
     np.testing.assert_array_equal(asked(), asked())
 
 
-def test_an_about_turn_goes_the_roomier_way_round() -> None:
+def test_a_turn_of_180_degrees_uses_the_direction_with_more_room() -> None:
     outline = (0.9, 0.2, -0.2, 0.2, -0.2, -0.2, 0.9, -0.2)
     occupancy, spec = empty_map(10, 8)
     fill(occupancy, spec, (4.5, 5.5), (5.05, 5.25))  # a shelf on the left

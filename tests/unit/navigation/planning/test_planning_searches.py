@@ -26,7 +26,7 @@ def room(text: str) -> np.ndarray:
 
 
 @EVERY
-def test_straight_and_diagonal_ways_have_exact_costs(search) -> None:
+def test_straight_and_diagonal_paths_have_exact_costs(search) -> None:
     cost = np.zeros((8, 12), np.uint8)
     cells, units = search(cost, (1, 1), (1, 9))
     assert units == 80_000
@@ -47,7 +47,7 @@ def test_diagonals_need_both_orthogonal_neighbours_free(search) -> None:
 
 
 @EVERY
-def test_no_way_and_closed_ends_give_none(search) -> None:
+def test_no_path_and_closed_ends_give_none(search) -> None:
     cost = room("..#.. ..#.. ..#..")
     assert search(cost, (0, 0), (0, 4)) is None
     assert search(cost, (0, 0), (0, 2)) is None, "closed goal"
@@ -70,7 +70,7 @@ def test_cells_outside_are_refused_by_name(search) -> None:
 
 
 @pytest.mark.parametrize("name", ["a_star", "dijkstra"])
-def test_a_dear_field_is_driven_around(name: str) -> None:
+def test_an_expensive_field_is_avoided(name: str) -> None:
     cost = np.zeros((9, 15), np.uint8)
     cost[2:7, 5:10] = 252
     table = EdgeTable(weight=3.0)
@@ -80,7 +80,7 @@ def test_a_dear_field_is_driven_around(name: str) -> None:
     assert cost[cells[:, 0], cells[:, 1]].max() == 0
 
 
-def test_breadth_first_counts_moves_and_minds_no_cost() -> None:
+def test_breadth_first_counts_moves_and_ignores_cost() -> None:
     cost = np.zeros((9, 15), np.uint8)
     cost[:, 5:10] = 200
     cells, units = breadth_first.search(
@@ -106,7 +106,7 @@ def test_results_do_not_depend_on_earlier_queries() -> None:
             np.testing.assert_array_equal(first[0], again[0])
 
 
-def test_stamps_run_out_without_harm(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exhausted_stamps_are_reset(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("navette.navigation.planning.astar._FIRST_STAMP", 2)
     search = AStar()
     cost = np.zeros((5, 5), np.uint8)
@@ -129,7 +129,7 @@ def test_field_holds_the_cost_to_the_cheapest_goal() -> None:
             assert field[row, column] == expected
 
 
-def test_edge_table_refuses_what_makes_no_sense() -> None:
+def test_the_edge_table_refuses_invalid_values() -> None:
     with pytest.raises(InvalidValueError, match="weight"):
         EdgeTable(weight=-1.0)
     with pytest.raises(InvalidValueError, match="lethal_from"):

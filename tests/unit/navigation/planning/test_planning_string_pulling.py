@@ -1,4 +1,4 @@
-"""String pulling: short, legal, not dearer; as good as Theta*."""
+"""String pulling: short, valid, not more expensive; as good as Theta*."""
 
 import heapq
 import math
@@ -41,7 +41,7 @@ def far_apart(cost: np.ndarray, seed: int, count: int) -> list[tuple[Cell, Cell]
 
 
 def theta_star(cost: np.ndarray, start: Cell, goal: Cell) -> float:
-    """Length of Theta*'s way (Nash et al. 2007), plainly."""
+    """Length of the path of Theta* (Nash et al. 2007), in plain Python."""
 
     def sees(a: Cell, b: Cell) -> bool:
         return math.isfinite(line_cost(cost, centers(np.array([a, b]))))
@@ -69,7 +69,7 @@ def theta_star(cost: np.ndarray, start: Cell, goal: Cell) -> float:
                 if g < best.get(to, math.inf):
                     best[to], parent[to] = g, via
                     heapq.heappush(waiting, (g + math.dist(to, goal), to))
-    raise AssertionError("no way")
+    raise AssertionError("no path")
 
 
 def test_free_space_gives_the_straight_line() -> None:
@@ -79,7 +79,7 @@ def test_free_space_gives_the_straight_line() -> None:
     np.testing.assert_allclose(line, [[3.5, 2.5], [26.5, 17.5]])
 
 
-def test_ends_stay_where_they_are() -> None:
+def test_the_ends_are_kept() -> None:
     cost = rectangles(1)
     start, goal = far_apart(cost, 2, 1)[0]
     points = centers(AStar().search(cost, start, goal)[0])
@@ -89,7 +89,7 @@ def test_ends_stay_where_they_are() -> None:
     np.testing.assert_allclose(line[[0, -1]], points[[0, -1]])
 
 
-def test_no_segment_squeezes_through_a_corner() -> None:
+def test_no_segment_cuts_a_corner() -> None:
     cost = np.zeros((10, 10), np.uint8)
     cost[4, 4] = cost[5, 5] = LETHAL  # the diagonal gap between them is closed
     assert math.isinf(line_cost(cost, np.array([[3.5, 6.5], [6.5, 3.5]])))
@@ -108,7 +108,7 @@ def test_cost_is_integrated_through_the_cells_crossed() -> None:
     assert line_cost(cost, bent, table=table) == pytest.approx(expected)
 
 
-def test_a_dear_field_is_not_cut_through() -> None:
+def test_an_expensive_field_is_not_crossed() -> None:
     cost = np.zeros((30, 60), np.uint8)
     cost[5:25, 20:40] = 252
     table = EdgeTable(weight=5.0)

@@ -1,4 +1,4 @@
-"""Recorded inputs through nodes: which, when, in which time."""
+"""Replay of recorded inputs: topics, order and time."""
 
 import json
 import sys
@@ -42,14 +42,14 @@ class Summer(Node):
     def __init__(self):
         super().__init__("summer")
         self.total = self.declare_parameter("start", 0.0).value
-        self.create_subscription(Float64, "number", self.hear, 10)
+        self.create_subscription(Float64, "number", self.on_message, 10)
         self.publisher = self.create_publisher(Float64, "total", 10)
-        self.create_timer(0.5, self.say)
+        self.create_timer(0.5, self.on_timer)
 
-    def hear(self, msg):
+    def on_message(self, msg):
         self.total += msg.data
 
-    def say(self):
+    def on_timer(self):
         self.publisher.publish(Float64(data=self.total))
 
 
@@ -58,10 +58,12 @@ class Nothing:
 """
 
 
-def write(path: Path, said: list[tuple[str, float, Any]], latched: str = "") -> Path:
+def write(
+    path: Path, messages: list[tuple[str, float, Any]], latched: str = ""
+) -> Path:
     writer = BagWriter(path)
     numbers: dict[str, int] = {}
-    for topic, after_s, message in said:
+    for topic, after_s, message in messages:
         kind = type_name(type(message))
         if topic not in numbers:
             durability = "transient_local" if topic == latched else "volatile"
@@ -79,10 +81,10 @@ def write(path: Path, said: list[tuple[str, float, Any]], latched: str = "") -> 
 
 @pytest.fixture
 def bag(tmp_path: Path) -> Path:
-    """A number every 0.2 s for 2 s, and totals that somebody said then."""
-    said = [("/number", i / 5, Float64(data=1.0)) for i in range(11)]
-    said += [("/total", 2.0, Float64(data=-1.0))]
-    return write(tmp_path / "in.mcap", said)
+    """A number every 0.2 s for 2 s, and a recorded total."""
+    messages = [("/number", i / 5, Float64(data=1.0)) for i in range(11)]
+    messages += [("/total", 2.0, Float64(data=-1.0))]
+    return write(tmp_path / "in.mcap", messages)
 
 
 @pytest.fixture
@@ -96,14 +98,14 @@ def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 
 @pytest.fixture(autouse=True)
 def without_traces() -> Iterator[None]:
-    """Programs bring ROS 2's module names with them, and leave them."""
+    """Remove the ROS 2 module names that programs install."""
     was_installed = is_installed()
     yield
     if not was_installed:
         uninstall()
 
 
-def said_in(path: Path) -> dict[str, list[tuple[float, Any]]]:
+def recorded_in(path: Path) -> dict[str, list[tuple[float, Any]]]:
     found: dict[str, list[tuple[float, Any]]] = {}
     with open_bag(path) as source:
         for message in source.messages():
@@ -122,7 +124,7 @@ def replay(path: Path, make: Any, **more: Any) -> ReplaySummary:
             replayed.close()
 
 
-def test_a_program_of_rclpy_is_fed_in_the_time_of_the_recording(
+def test_an_rclpy_program_runs_in_the_time_of_the_recording(
     bag: Path, program: str, tmp_path: Path
 ) -> None:
     kind: Any = load_node_class(program)
@@ -131,15 +133,17 @@ def test_a_program_of_rclpy_is_fed_in_the_time_of_the_recording(
     assert summary.inputs == ("/number",)
     assert summary.outputs == ("/total",)
     assert summary.fed == 11
-    assert said_in(out) == {"/total": [(0.5, 3.0), (1.0, 5.0), (1.5, 8.0), (2.0, 10.0)]}
+    assert recorded_in(out) == {
+        "/total": [(0.5, 3.0), (1.0, 5.0), (1.5, 8.0), (2.0, 10.0)]
+    }
 
 
-def test_a_part_is_replayed(bag: Path, program: str, tmp_path: Path) -> None:
+def test_a_time_range_is_replayed(bag: Path, program: str, tmp_path: Path) -> None:
     kind: Any = load_node_class(program)
     out = tmp_path / "out.mcap"
     options = PlayOptions(start_offset_s=1.0, duration_s=0.6)
     assert replay(bag, lambda c: kind(), record=out, options=options).fed == 4
-    assert said_in(out) == {"/total": [(1.5, 3.0)]}
+    assert recorded_in(out) == {"/total": [(1.5, 3.0)]}
 
 
 def test_parameters_reach_the_nodes(bag: Path, program: str, tmp_path: Path) -> None:
@@ -147,17 +151,17 @@ def test_parameters_reach_the_nodes(bag: Path, program: str, tmp_path: Path) -> 
     out = tmp_path / "out.mcap"
     words = ["--ros-args", "-p", "summer:start:=100.0"]
     replay(bag, lambda c: kind(), record=out, arguments=words)
-    assert said_in(out)["/total"][0] == (0.5, 103.0)
+    assert recorded_in(out)["/total"][0] == (0.5, 103.0)
     with pytest.raises(ParameterError, match="no node matches 'planner'"):
         replay(bag, lambda c: kind(), arguments=["--ros-args", "-p", "planner:a:=1"])
 
 
 class Listener(Node):
-    """Writes down what it hears, and when."""
+    """Stores the received messages and their times."""
 
     def __init__(self, context: Context, *topics: str, late: str = "") -> None:
         super().__init__("listener", context=context)
-        self.heard: list[tuple[int, str, str]] = []
+        self.received: list[tuple[int, str, str]] = []
         for topic in topics:
             self.listen(topic)
         if late:
@@ -165,32 +169,32 @@ class Listener(Node):
 
     def listen(self, topic: str) -> None:
         self.create_subscription(
-            String, topic, lambda m: self.hear(topic, m.data), LATCHED
+            String, topic, lambda m: self.on_message(topic, m.data), LATCHED
         )
 
-    def hear(self, topic: str, text: str) -> None:
-        self.heard.append((self.get_clock().now().nanoseconds - START, topic, text))
+    def on_message(self, topic: str, text: str) -> None:
+        self.received.append((self.get_clock().now().nanoseconds - START, topic, text))
 
 
 def test_latched_inputs_come_before_a_later_start(tmp_path: Path) -> None:
-    said: list[tuple[str, float, Any]] = [("/map", 0.0, String(data="map"))]
-    said += [("/chatter", float(i), Float64()) for i in range(5)]
-    path = write(tmp_path / "in.mcap", said, latched="/map")
-    heard: list[Listener] = []
+    messages: list[tuple[str, float, Any]] = [("/map", 0.0, String(data="map"))]
+    messages += [("/chatter", float(i), Float64()) for i in range(5)]
+    path = write(tmp_path / "in.mcap", messages, latched="/map")
+    listeners: list[Listener] = []
 
     def make(context: Context) -> Node:
-        heard.append(Listener(context, "/map"))
-        return heard[-1]
+        listeners.append(Listener(context, "/map"))
+        return listeners[-1]
 
     replay(path, make, options=PlayOptions(start_offset_s=3.0))
-    assert heard[0].heard == [(3 * S, "/map", "map")]
+    assert listeners[0].received == [(3 * S, "/map", "map")]
 
 
-def test_what_is_asked_for_late_is_named(
+def test_late_subscriptions_are_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    said = [(t, i / 5, String(data="x")) for i in range(9) for t in ("/a", "/b")]
-    path = write(tmp_path / "in.mcap", said)
+    messages = [(t, i / 5, String(data="x")) for i in range(9) for t in ("/a", "/b")]
+    path = write(tmp_path / "in.mcap", messages)
     nodes: list[Listener] = []
 
     def make(context: Context) -> Node:
@@ -198,11 +202,11 @@ def test_what_is_asked_for_late_is_named(
         return nodes[-1]
 
     assert replay(path, make).inputs == ("/a",)
-    assert "--input /b feeds it" in capsys.readouterr().err
+    assert "add --input /b" in capsys.readouterr().err
     assert set(replay(path, make, also=["/b"]).inputs) == {"/a", "/b"}
 
 
-def test_what_makes_no_sense_is_named(bag: Path, tmp_path: Path) -> None:
+def test_invalid_combinations_are_named(bag: Path, tmp_path: Path) -> None:
     with pytest.raises(
         InvalidValueError, match="no input was recorded: the nodes read"
     ):
@@ -226,9 +230,7 @@ def test_what_makes_no_sense_is_named(bag: Path, tmp_path: Path) -> None:
         ("{file}:Nothing", "known: Summer"),
     ],
 )
-def test_programs_that_are_not_there_are_named(
-    target: str, reason: str, program: str
-) -> None:
+def test_missing_programs_are_named(target: str, reason: str, program: str) -> None:
     with pytest.raises(UnknownNameError, match=reason):
         load_node_class(target.format(file=program.rpartition(":")[0]))
 
@@ -264,7 +266,7 @@ def test_the_command_compares(bag: Path, program: str, tmp_path: Path) -> None:
     assert command(*words, "--tolerance", "/total=0.3").exit_code == 0
 
 
-def test_the_command_speaks_json(bag: Path, program: str, tmp_path: Path) -> None:
+def test_the_command_prints_json(bag: Path, program: str, tmp_path: Path) -> None:
     golden = tmp_path / "golden.mcap"
     command(bag, "--node", program, "--record", golden)
     words = (bag, "--node", program, "--compare", golden, "-p", "start:=1.0", "--json")
@@ -275,7 +277,7 @@ def test_the_command_speaks_json(bag: Path, program: str, tmp_path: Path) -> Non
     assert topic["fields"][0]["largest"] == 1.0
 
 
-def test_the_command_does_not_replace_what_it_reads(bag: Path, program: str) -> None:
+def test_the_command_does_not_overwrite_its_input(bag: Path, program: str) -> None:
     before = bag.read_bytes()
     refused = command(bag, "--node", program, "--record", bag)
     assert isinstance(refused.exception, InvalidValueError)

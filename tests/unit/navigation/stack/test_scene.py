@@ -1,4 +1,4 @@
-"""Which robot, and where its parameters come from."""
+"""The robot of a run and the source of its parameters."""
 
 import shutil
 from pathlib import Path
@@ -13,7 +13,7 @@ from navette.navigation.stack.scene import resolve_scene
 JACKAL = Path(navette.sim.__file__).parent / "data" / "robots" / "jackal" / "model.sdf"
 
 
-def test_a_model_file_brings_the_parameters_that_lie_beside_it(tmp_path: Path) -> None:
+def test_a_model_file_uses_the_parameters_beside_it(tmp_path: Path) -> None:
     model = Path(shutil.copy(JACKAL, tmp_path / "mine.sdf"))
     alone = resolve_scene(RunOptions(world="empty", robot=str(model)))
     assert alone.params_file is None
@@ -34,12 +34,12 @@ def test_a_model_file_brings_the_parameters_that_lie_beside_it(tmp_path: Path) -
         ("course", "husky", "husky"),
     ],
 )
-def test_the_robot_asked_for_else_the_worlds_else_the_default(
+def test_the_robot_is_the_option_or_the_worlds_or_the_default(
     world: str, robot: str | None, expected: str
 ) -> None:
     assert resolve_scene(RunOptions(world=world, robot=robot)).robot_name == expected
 
 
-def test_an_unknown_robot_lists_those_there_are() -> None:
+def test_an_unknown_robot_lists_the_known_ones() -> None:
     with pytest.raises(UnknownNameError, match="husky"):
         resolve_scene(RunOptions(world="empty", robot="r2d2"))

@@ -10,13 +10,13 @@ def summary(*results: str, contacts: int = 0) -> RunSummary:
     return RunSummary(goals, contacts, math.inf, 3.0, 0.1, 30.0, 7)
 
 
-def test_success_means_all_reached_and_nothing_touched() -> None:
+def test_success_means_all_goals_reached_without_contact() -> None:
     assert summary("reached", "reached").succeeded
     assert not summary("reached", "no_path").succeeded
     assert not summary("reached", contacts=1).succeeded
 
 
-def test_json_has_the_promised_keys_and_only_finite_numbers() -> None:
+def test_json_has_the_documented_keys_and_only_finite_numbers() -> None:
     read = json.loads(summary("reached").to_json())
     assert set(read) == {
         "goals",

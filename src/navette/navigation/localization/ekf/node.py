@@ -2,8 +2,8 @@
 
 Before the first measurement the node publishes nothing. Without measurements it
 predicts for ``sensor_timeout_s``, then stops publishing until a measurement arrives, so
-that the controller stops. Stamps are those of the measurements and never decrease; after
-a jump in the measurements' time (a bag that loops) the filter resets.
+that the controller stops. Stamps are those of the measurements and never decrease.
+After a jump in the measurements' time (a bag that loops) the filter resets.
 """
 
 from dataclasses import replace
