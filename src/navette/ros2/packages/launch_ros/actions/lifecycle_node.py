@@ -60,7 +60,7 @@ class LifecycleNode(Node):
             lambda msg: context.emit_event(StateTransition(action=self, msg=msg)),
         )
         context.register_event_handler(
-            CallbackHandler(matcher=self._is_target, callback=self._change)
+            CallbackHandler(matcher=self._is_transition_request, callback=self._change)
         )
         if not perform_bool(context, self._autostart):
             return None
@@ -78,7 +78,7 @@ class LifecycleNode(Node):
             )
         ]
 
-    def _is_target(self, event: Event) -> bool:
+    def _is_transition_request(self, event: Event) -> bool:
         return isinstance(event, ChangeState) and event.lifecycle_node_matcher(self)
 
     def _change(self, event: Any, context: LaunchContext) -> None:
