@@ -6,8 +6,6 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
-    optional_parts,
 )
 from navette.ros2.packages.launch.typed import parse_bool
 
@@ -40,7 +38,7 @@ class IfCondition(Condition):
     """True if the text is true."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
-        self._expression = normalize_to_list_of_substitutions(predicate_expression)
+        self._expression = Parts.of(predicate_expression)
         super().__init__(predicate=self._is_true)
 
     def _is_true(self, context: LaunchContext) -> bool:
@@ -63,7 +61,7 @@ class LaunchConfigurationEquals(Condition):
         expected_value: SomeSubstitutionsType | None,
     ) -> None:
         self._name = launch_configuration_name
-        self._expected = optional_parts(expected_value)
+        self._expected = Parts.optional(expected_value)
         super().__init__(predicate=self._equals)
 
     def _equals(self, context: LaunchContext) -> bool:

@@ -13,7 +13,6 @@ from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
     normalize_to_list_of_substitutions,
-    optional_parts,
 )
 
 __all__ = ["Executable"]
@@ -52,10 +51,10 @@ class Executable:
         words = [*cmd, *(arguments or ())]
         if not words:
             raise InvalidLaunchValueError("cmd is empty")
-        self.cmd = [normalize_to_list_of_substitutions(word) for word in words]
-        self.prefix = optional_parts(prefix)
-        self.name = optional_parts(name)
-        self.cwd = optional_parts(cwd)
+        self.cmd = [Parts.of(word) for word in words]
+        self.prefix = Parts.optional(prefix)
+        self.name = Parts.optional(name)
+        self.cwd = Parts.optional(cwd)
         self.env = _variables(env)
         self.additional_env = _variables(additional_env)
 

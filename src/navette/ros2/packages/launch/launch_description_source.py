@@ -9,7 +9,6 @@ from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.substitution import (
     Parts,
     TextSubstitution,
-    normalize_to_list_of_substitutions,
 )
 
 
@@ -29,7 +28,7 @@ class LaunchDescriptionSource:
         method: str = "unspecified mechanism from a script",
     ) -> None:
         self._description = launch_description
-        self._location: Parts = normalize_to_list_of_substitutions(location)
+        self._location: Parts = Parts.of(location)
         self.method = method
         self.path: Path | None = None
 

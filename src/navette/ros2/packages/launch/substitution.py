@@ -29,6 +29,38 @@ SomeSubstitutionsType_types_tuple = (str, Path, Substitution, Iterable)
 class Parts(list[Substitution]):
     """Substitutions whose texts are joined."""
 
+    @classmethod
+    def of(cls, value: Any) -> "Parts":
+        """Convert text, a path, a substitution or several of them.
+
+        Raises:
+            InvalidLaunchValueError: any other value.
+        """
+        if isinstance(value, Substitution):
+            return cls([value])
+        if isinstance(value, (str, Path)):
+            return cls([TextSubstitution(text=str(value))])
+        if isinstance(value, Iterable) and not isinstance(value, (bytes, dict)):
+            return cls(part for item in value for part in cls._of_item(item))
+        raise InvalidLaunchValueError(
+            f"{value!r} ({type(value).__name__}): expected text, a path, a "
+            "substitution, or a list of these"
+        )
+
+    @classmethod
+    def _of_item(cls, item: Any) -> "Parts":
+        if isinstance(item, (str, Path, Substitution)):
+            return cls.of(item)
+        raise InvalidLaunchValueError(
+            f"{item!r} ({type(item).__name__}) in a list: expected text, a path or a "
+            "substitution"
+        )
+
+    @classmethod
+    def optional(cls, value: Any) -> "Parts | None":
+        """Convert a value as :meth:`of` does; None stays None."""
+        return None if value is None else cls.of(value)
+
     def perform(self, context: LaunchContext) -> str:
         return "".join(part.perform(context) for part in self)
 
@@ -54,42 +86,10 @@ class TextSubstitution(Substitution):
 
 
 def normalize_to_list_of_substitutions(value: Any) -> Parts:
-    """Convert text, a path, a substitution or several of them to a list.
-
-    Raises:
-        InvalidLaunchValueError: any other value.
-    """
-    if isinstance(value, Substitution):
-        return Parts([value])
-    if isinstance(value, (str, Path)):
-        return Parts([TextSubstitution(text=str(value))])
-    if isinstance(value, Iterable) and not isinstance(value, (bytes, dict)):
-        return Parts(part for item in value for part in _single(item))
-    raise InvalidLaunchValueError(
-        f"{value!r} ({type(value).__name__}): expected text, a path, a substitution, "
-        "or a list of these"
-    )
-
-
-def _single(item: Any) -> Parts:
-    if isinstance(item, (str, Path, Substitution)):
-        return normalize_to_list_of_substitutions(item)
-    raise InvalidLaunchValueError(
-        f"{item!r} ({type(item).__name__}) in a list: expected text, a path or a "
-        "substitution"
-    )
+    """Convert text, a path, a substitution or several of them to a list."""
+    return Parts.of(value)
 
 
 def perform_substitutions(context: LaunchContext, parts: Iterable[Substitution]) -> str:
     """Return the joined text of substitutions."""
     return Parts(parts).perform(context)
-
-
-def perform_value(context: LaunchContext, value: Any) -> str:
-    """Return the text of a value that may be text or substitutions."""
-    return normalize_to_list_of_substitutions(value).perform(context)
-
-
-def optional_parts(value: Any) -> Parts | None:
-    """Convert a value as above; None stays None."""
-    return None if value is None else normalize_to_list_of_substitutions(value)

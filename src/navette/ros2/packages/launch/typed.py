@@ -8,7 +8,7 @@ from navette.ros2.packages.launch.errors import (
     InvalidLaunchValueError,
 )
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.substitution import perform_value
+from navette.ros2.packages.launch.substitution import Parts
 
 TRUE = ("true", "1")
 FALSE = ("false", "0")
@@ -30,14 +30,14 @@ def perform_bool(context: LaunchContext, value: Any) -> bool:
     """Return a bool given as such or as text."""
     if isinstance(value, bool):
         return value
-    return parse_bool(perform_value(context, value))
+    return parse_bool(Parts.of(value).perform(context))
 
 
 def perform_seconds(context: LaunchContext, value: Any, what: str) -> float:
     """Return a finite duration, 0 s or more, given as a number or as text."""
     number = value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        text = perform_value(context, value)
+        text = Parts.of(value).perform(context)
         try:
             number = float(text)
         except ValueError:

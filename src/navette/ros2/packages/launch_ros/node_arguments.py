@@ -10,8 +10,8 @@ from navette.errors import ParameterError
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     Substitution,
-    perform_value,
 )
 from navette.ros2.packages.launch_ros.parameter_descriptions import (
     Parameter,
@@ -102,4 +102,4 @@ def parameter_text(name: str, value: Any) -> str:
 
 
 def _text(context: LaunchContext, value: Any) -> str:
-    return perform_value(context, value)
+    return Parts.of(value).perform(context)

@@ -11,9 +11,8 @@ from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.frontend import parse_substitution
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
+    Parts,
     perform_substitutions,
-    perform_value,
 )
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.runtime.parameter_files import parse_value
@@ -45,7 +44,7 @@ class ParameterValue:
         if isinstance(value, ParameterValue):
             value = value.evaluate(context)
         elif _has_substitutions(value):
-            text = perform_value(context, value)
+            text = Parts.of(value).perform(context)
             value = text if self.value_type is str else parse_value(text)
         elif isinstance(value, (list, tuple)):
             value = [_item(context, each) for each in value]
@@ -69,7 +68,7 @@ def _has_substitutions(value: Any) -> bool:
 
 def _item(context: LaunchContext, value: Any) -> Any:
     if isinstance(value, (Substitution, list, tuple)):
-        text = perform_value(context, value)
+        text = Parts.of(value).perform(context)
         return parse_value(text)
     return value
 
@@ -115,7 +114,7 @@ class Parameter:
     def __init__(
         self, name: SomeSubstitutionsType, value: Any, *, value_type: Any = None
     ) -> None:
-        self._name = normalize_to_list_of_substitutions(name)
+        self._name = Parts.of(name)
         self._value = ParameterValue(value, value_type=value_type)
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
@@ -134,7 +133,7 @@ class ParameterFile:
     def __init__(
         self, param_file: SomeSubstitutionsType, *, allow_substs: Any = False
     ) -> None:
-        self._path = normalize_to_list_of_substitutions(param_file)
+        self._path = Parts.of(param_file)
         self._allow_substs = allow_substs
 
     def evaluate(self, context: LaunchContext) -> Path:
@@ -167,7 +166,7 @@ def evaluate_dict(
         keys = (
             list(key) if isinstance(key, Iterable) and not isinstance(key, str) else key
         )
-        name = perform_value(context, keys)
+        name = Parts.of(keys).perform(context)
         name = f"{prefix}{name}"
         if isinstance(value, dict):
             found += evaluate_dict(context, value, f"{name}.")

@@ -7,9 +7,8 @@ from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
-    optional_parts,
 )
 
 
@@ -35,7 +34,7 @@ class DeclareLaunchArgument(Action):
                 f"DeclareLaunchArgument: name {name!r}: expected text"
             )
         self.name = name
-        self.default_value = optional_parts(default_value)
+        self.default_value = Parts.optional(default_value)
         self.description = description or ""
         self.choices = None if choices is None else list(choices)
         if self.choices is not None and not self.choices:
@@ -80,8 +79,8 @@ class SetLaunchConfiguration(Action):
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.name = normalize_to_list_of_substitutions(name)
-        self.value = normalize_to_list_of_substitutions(value)
+        self.name = Parts.of(name)
+        self.value = Parts.of(value)
 
     def describe(self) -> str:
         return f"SetLaunchConfiguration({self.name.describe()})"
@@ -98,7 +97,7 @@ class UnsetLaunchConfiguration(Action):
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.name = normalize_to_list_of_substitutions(name)
+        self.name = Parts.of(name)
 
     def execute(self, context: LaunchContext) -> None:
         name = self.name.perform(context)

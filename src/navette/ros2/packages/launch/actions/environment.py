@@ -6,8 +6,8 @@ from typing import Any
 from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
 )
 from navette.ros2.packages.launch.typed import perform_bool
 
@@ -22,8 +22,8 @@ class SetEnvironmentVariable(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self.name = normalize_to_list_of_substitutions(name)
-        self.value = normalize_to_list_of_substitutions(value)
+        self.name = Parts.of(name)
+        self.value = Parts.of(value)
 
     def describe(self) -> str:
         return f"{type(self).__name__}({self.name.describe()})"
@@ -46,7 +46,7 @@ class AppendEnvironmentVariable(SetEnvironmentVariable):
     ) -> None:
         super().__init__(name, value, **kwargs)
         self.prepend = prepend
-        self.separator = normalize_to_list_of_substitutions(separator)
+        self.separator = Parts.of(separator)
 
     def execute(self, context: LaunchContext) -> None:
         name = self.name.perform(context)
@@ -63,7 +63,7 @@ class UnsetEnvironmentVariable(Action):
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.name = normalize_to_list_of_substitutions(name)
+        self.name = Parts.of(name)
 
     def describe(self) -> str:
         return f"UnsetEnvironmentVariable({self.name.describe()})"

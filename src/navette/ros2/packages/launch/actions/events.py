@@ -13,8 +13,8 @@ from navette.ros2.packages.launch.launch_description_entity import (
 )
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
 )
 
 _log = get_logger("launch")
@@ -69,7 +69,7 @@ class Shutdown(Action):
         self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any
     ) -> None:
         super().__init__(**kwargs)
-        self.reason = normalize_to_list_of_substitutions(reason)
+        self.reason = Parts.of(reason)
 
     def execute(self, context: LaunchContext) -> None:
         reason = self.reason.perform(context)

@@ -26,8 +26,8 @@ from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.output import LabelledOutput, output_places
 from navette.ros2.packages.launch.running import LaunchCommand
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     Substitution,
-    normalize_to_list_of_substitutions,
 )
 from navette.ros2.packages.launch.substitutions import LaunchConfiguration
 from navette.ros2.packages.launch.typed import perform_bool, perform_seconds
@@ -133,7 +133,7 @@ class ExecuteLocal(Action):
         """Return where the output of the process goes."""
         output = self.output
         if isinstance(output, (str, Substitution, list, tuple)):
-            parts = normalize_to_list_of_substitutions(output)
+            parts = Parts.of(output)
             output = parts.perform(context)
         return LabelledOutput(label, output_places(output))
 

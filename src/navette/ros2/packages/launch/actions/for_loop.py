@@ -12,9 +12,7 @@ from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     normalize_to_list_of_entities,
 )
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-)
+from navette.ros2.packages.launch.substitution import Parts
 
 _MOST = 10_000
 
@@ -32,7 +30,7 @@ class ForEach(Action):
         self, input_values: Any, *, function: Callable[..., Any], **kwargs: Any
     ) -> None:
         super().__init__(**kwargs)
-        self._input_values = normalize_to_list_of_substitutions(input_values)
+        self._input_values = Parts.of(input_values)
         self._function = function
 
     @property
@@ -64,7 +62,7 @@ class ForLoop(Action):
     ) -> None:
         super().__init__(**kwargs)
         text = str(length) if isinstance(length, int) else length
-        self._length = normalize_to_list_of_substitutions(text)
+        self._length = Parts.of(text)
         self._function = function
 
     @property

@@ -20,9 +20,7 @@ from navette.ros2.packages.launch.launch_description_sources import (
     AnyLaunchDescriptionSource,
 )
 from navette.ros2.packages.launch.logging import get_logger
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-)
+from navette.ros2.packages.launch.substitution import Parts
 
 _LOCALS = ("current_launch_file_path", "current_launch_file_directory")
 MAX_DEPTH = 50
@@ -64,8 +62,8 @@ class IncludeLaunchDescription(Action):
             )
         self.launch_arguments = [
             (
-                normalize_to_list_of_substitutions(name),
-                normalize_to_list_of_substitutions(value),
+                Parts.of(name),
+                Parts.of(value),
             )
             for name, value in launch_arguments or ()
         ]

@@ -8,8 +8,8 @@ from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
 )
 
 _log = get_logger("launch.user")
@@ -23,8 +23,8 @@ class Log(Action):
         self, *, msg: SomeSubstitutionsType, level: SomeSubstitutionsType, **kwargs: Any
     ) -> None:
         super().__init__(**kwargs)
-        self.msg = normalize_to_list_of_substitutions(msg)
-        self.level = normalize_to_list_of_substitutions(level)
+        self.msg = Parts.of(msg)
+        self.level = Parts.of(level)
 
     def describe(self) -> str:
         return f"{type(self).__name__}({self.msg.describe()})"

@@ -15,7 +15,6 @@ from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
     Substitution,
-    normalize_to_list_of_substitutions,
 )
 
 
@@ -23,7 +22,7 @@ class LaunchConfiguration(Substitution):
     """Value of a launch configuration (``$(var name)``)."""
 
     def __init__(self, variable_name: SomeSubstitutionsType, *, default: Any = None):
-        self.variable_name = normalize_to_list_of_substitutions(variable_name)
+        self.variable_name = Parts.of(variable_name)
         self._default = None if default is None else _default_parts(default)
 
     def perform(self, context: LaunchContext) -> str:
@@ -42,12 +41,10 @@ class LaunchConfiguration(Substitution):
 
 def _default_parts(default: Any) -> Parts:
     if isinstance(default, (str, Path, Substitution)):
-        return normalize_to_list_of_substitutions(default)
+        return Parts.of(default)
     if isinstance(default, Iterable):
-        return normalize_to_list_of_substitutions(
-            [d if isinstance(d, Substitution) else str(d) for d in default]
-        )
-    return normalize_to_list_of_substitutions(str(default))
+        return Parts.of([d if isinstance(d, Substitution) else str(d) for d in default])
+    return Parts.of(str(default))
 
 
 class EnvironmentVariable(Substitution):
@@ -59,12 +56,8 @@ class EnvironmentVariable(Substitution):
         *,
         default_value: SomeSubstitutionsType | None = None,
     ) -> None:
-        self.name = normalize_to_list_of_substitutions(name)
-        self.default_value = (
-            None
-            if default_value is None
-            else normalize_to_list_of_substitutions(default_value)
-        )
+        self.name = Parts.of(name)
+        self.default_value = None if default_value is None else Parts.of(default_value)
 
     def perform(self, context: LaunchContext) -> str:
         name = self.name.perform(context)
@@ -141,7 +134,7 @@ class AnonName(Substitution):
     """Unique name, the same for the same base within a launch (``$(anon x)``)."""
 
     def __init__(self, name: SomeSubstitutionsType) -> None:
-        self.name = normalize_to_list_of_substitutions(name)
+        self.name = Parts.of(name)
 
     def perform(self, context: LaunchContext) -> str:
         base = self.name.perform(context)

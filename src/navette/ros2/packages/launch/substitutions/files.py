@@ -15,9 +15,9 @@ from navette.ros2.packages.launch.errors import (
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     SomeSubstitutionsType,
     Substitution,
-    normalize_to_list_of_substitutions,
 )
 
 _MAX_BYTES = 16 * 1024 * 1024
@@ -30,7 +30,7 @@ class PathJoinSubstitution(Substitution):
     def __init__(self, substitutions: Iterable[Any]) -> None:
         if isinstance(substitutions, (str, Path, Substitution)):
             substitutions = [substitutions]
-        self.parts = [normalize_to_list_of_substitutions(p) for p in substitutions]
+        self.parts = [Parts.of(p) for p in substitutions]
 
     def perform(self, context: LaunchContext) -> str:
         parts = [part.perform(context) for part in self.parts]
@@ -50,7 +50,7 @@ class FileContent(Substitution):
     """Content of a file (``$(file-content path)``)."""
 
     def __init__(self, path: SomeSubstitutionsType) -> None:
-        self.path = normalize_to_list_of_substitutions(path)
+        self.path = Parts.of(path)
 
     def perform(self, context: LaunchContext) -> str:
         path = Path(self.path.perform(context))
@@ -66,7 +66,7 @@ class FindExecutable(Substitution):
     """Path of a program on ``PATH`` (``$(find-exec name)``)."""
 
     def __init__(self, *, name: SomeSubstitutionsType) -> None:
-        self.name = normalize_to_list_of_substitutions(name)
+        self.name = Parts.of(name)
 
     def perform(self, context: LaunchContext) -> str:
         name = self.name.perform(context)
@@ -95,8 +95,8 @@ class Command(Substitution):
         *,
         on_stderr: SomeSubstitutionsType = "fail",
     ) -> None:
-        self.command = normalize_to_list_of_substitutions(command)
-        self.on_stderr = normalize_to_list_of_substitutions(on_stderr)
+        self.command = Parts.of(command)
+        self.on_stderr = Parts.of(on_stderr)
 
     def perform(self, context: LaunchContext) -> str:
         text = self.command.perform(context)

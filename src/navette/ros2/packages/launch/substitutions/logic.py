@@ -14,7 +14,6 @@ from navette.ros2.packages.launch.substitution import (
     Parts,
     SomeSubstitutionsType,
     Substitution,
-    normalize_to_list_of_substitutions,
     perform_substitutions,
 )
 from navette.ros2.packages.launch.typed import parse_bool
@@ -35,7 +34,7 @@ class NotSubstitution(Substitution):
     """Negation (``$(not x)``)."""
 
     def __init__(self, value: SomeSubstitutionsType) -> None:
-        self.value = normalize_to_list_of_substitutions(value)
+        self.value = Parts.of(value)
 
     def perform(self, context: LaunchContext) -> str:
         return _word(not _is_true(context, self.value, self.describe()))
@@ -54,7 +53,7 @@ class AnySubstitution(Substitution):
             raise InvalidLaunchValueError(
                 f"{type(self).__name__}: expected at least one value"
             )
-        self.values = [normalize_to_list_of_substitutions(value) for value in args]
+        self.values = [Parts.of(value) for value in args]
 
     def perform(self, context: LaunchContext) -> str:
         return _word(
@@ -134,7 +133,7 @@ def _side(value: Any) -> Parts:
         value = str(value)
     if isinstance(value, Iterable) and not isinstance(value, str):
         return Parts(part for item in value for part in _side(item))
-    return normalize_to_list_of_substitutions(value)
+    return Parts.of(value)
 
 
 class IfElseSubstitution(Substitution):
@@ -150,9 +149,9 @@ class IfElseSubstitution(Substitution):
             raise InvalidLaunchValueError(
                 "IfElseSubstitution: expected if_value or else_value"
             )
-        self.condition = normalize_to_list_of_substitutions(condition)
-        self.if_value = normalize_to_list_of_substitutions(if_value)
-        self.else_value = normalize_to_list_of_substitutions(else_value)
+        self.condition = Parts.of(condition)
+        self.if_value = Parts.of(if_value)
+        self.else_value = Parts.of(else_value)
 
     def perform(self, context: LaunchContext) -> str:
         holds = _is_true(context, self.condition, self.describe())

@@ -4,9 +4,9 @@ from navette.msgs.expressions import ExpressionError, evaluate
 from navette.ros2.packages.launch.errors import SubstitutionFailure
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.substitution import (
+    Parts,
     SomeSubstitutionsType,
     Substitution,
-    normalize_to_list_of_substitutions,
 )
 
 _MODULES = ("math",)
@@ -28,11 +28,11 @@ class PythonExpression(Substitution):
         expression: SomeSubstitutionsType,
         python_modules: SomeSubstitutionsType = ("math",),
     ) -> None:
-        self.expression = normalize_to_list_of_substitutions(expression)
+        self.expression = Parts.of(expression)
         modules = (
             [python_modules] if isinstance(python_modules, str) else python_modules
         )
-        self.python_modules = normalize_to_list_of_substitutions(modules)
+        self.python_modules = Parts.of(modules)
 
     def perform(self, context: LaunchContext) -> str:
         for part in self.python_modules:

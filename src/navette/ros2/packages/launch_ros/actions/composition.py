@@ -7,9 +7,7 @@ from navette.ros2.packages.launch import Action, LaunchDescriptionEntity
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.running import PythonProgram
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-)
+from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch_ros.actions.node import Node
 from navette.ros2.packages.launch_ros.descriptions import ComposableNode
 from navette.ros2.packages.launch_ros.scope import joined_namespace, pushed_namespace
@@ -84,7 +82,7 @@ class LoadComposableNodes(Action):
         self._target = (
             target_container
             if isinstance(target_container, ComposableNodeContainer)
-            else normalize_to_list_of_substitutions(target_container)
+            else Parts.of(target_container)
         )
 
     def describe(self) -> str:

@@ -9,9 +9,7 @@ from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.event_handler import CallbackHandler, EventHandler
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-)
+from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch_ros.events.lifecycle import (
     ChangeState,
     StateTransition,
@@ -50,13 +48,9 @@ class LifecycleTransition(Action):
             raise InvalidLaunchValueError(
                 "LifecycleTransition: expected lifecycle_node_names and transition_ids"
             )
-        self._names = [
-            normalize_to_list_of_substitutions(name) for name in lifecycle_node_names
-        ]
+        self._names = [Parts.of(name) for name in lifecycle_node_names]
         self._ids = [
-            normalize_to_list_of_substitutions(
-                str(given) if isinstance(given, int) else given
-            )
+            Parts.of(str(given) if isinstance(given, int) else given)
             for given in transition_ids
         ]
 

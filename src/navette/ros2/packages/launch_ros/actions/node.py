@@ -8,10 +8,7 @@ from navette.ros2.packages.launch.actions import ExecuteProcess
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.running import LaunchCommand, PythonProgram
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-    optional_parts,
-)
+from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.ros2.packages.launch_ros.node_arguments import (
     Evaluated,
@@ -61,18 +58,14 @@ class Node(ExecuteProcess):
                     f"Node: {what} {given!r}: expected a list, as in {what}=[…]"
                 )
         super().__init__(cmd=[executable], name=exec_name, **kwargs)
-        self._executable = normalize_to_list_of_substitutions(executable)
-        self._package = optional_parts(package)
-        self._node_name = optional_parts(name)
-        self._namespace = optional_parts(namespace)
+        self._executable = Parts.of(executable)
+        self._package = Parts.optional(package)
+        self._node_name = Parts.optional(name)
+        self._namespace = Parts.optional(namespace)
         self._parameters = list(parameters or ())
         self._remappings = list(remappings or ())
-        self._ros_arguments = [
-            normalize_to_list_of_substitutions(word) for word in ros_arguments or ()
-        ]
-        self._arguments = [
-            normalize_to_list_of_substitutions(word) for word in arguments or ()
-        ]
+        self._ros_arguments = [Parts.of(word) for word in ros_arguments or ()]
+        self._arguments = [Parts.of(word) for word in arguments or ()]
         self.expanded_node_name = "<node_name_unspecified>"
         self.expanded_node_namespace = ""
         self.expanded_remapping_rules: list[tuple[str, str]] = []

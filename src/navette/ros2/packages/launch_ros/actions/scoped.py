@@ -5,9 +5,7 @@ from typing import Any
 
 from navette.ros2.packages.launch import Action, SomeSubstitutionsType
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-)
+from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.ros2.packages.launch_ros.parameter_descriptions import (
     Parameter,
@@ -25,7 +23,7 @@ class PushRosNamespace(Action):
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.namespace = normalize_to_list_of_substitutions(namespace)
+        self.namespace = Parts.of(namespace)
 
     def describe(self) -> str:
         return f"PushRosNamespace({self.namespace.describe()})"
@@ -42,7 +40,7 @@ class SetParameter(Action):
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.name = normalize_to_list_of_substitutions(name)
+        self.name = Parts.of(name)
         self.value = value
         self._parameter = Parameter(self.name, value)
 
@@ -82,8 +80,8 @@ class SetRemap(Action):
         self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any
     ) -> None:
         super().__init__(**kwargs)
-        self.src = normalize_to_list_of_substitutions(src)
-        self.dst = normalize_to_list_of_substitutions(dst)
+        self.src = Parts.of(src)
+        self.dst = Parts.of(dst)
 
     def describe(self) -> str:
         return f"SetRemap({self.src.describe()}, {self.dst.describe()})"
@@ -101,7 +99,7 @@ class SetROSLogDir(Action):
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
+        self.log_dir = Parts.of(new_log_dir)
 
     def execute(self, context: LaunchContext) -> None:
         context.environment["ROS_LOG_DIR"] = self.log_dir.perform(context)

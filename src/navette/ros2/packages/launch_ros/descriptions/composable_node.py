@@ -6,10 +6,7 @@ from typing import Any
 
 from navette.ros2.packages.launch import Condition
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-    optional_parts,
-)
+from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch_ros.node_arguments import (
     evaluate_parameters,
     evaluate_remaps,
@@ -43,10 +40,10 @@ class ComposableNode:
         extra_arguments: Iterable[Any] | None = None,
         condition: Condition | None = None,
     ) -> None:
-        self.package = normalize_to_list_of_substitutions(package)
-        self.node_plugin = normalize_to_list_of_substitutions(plugin)
-        self.node_name = optional_parts(name)
-        self.node_namespace = optional_parts(namespace)
+        self.package = Parts.of(package)
+        self.node_plugin = Parts.of(plugin)
+        self.node_name = Parts.optional(name)
+        self.node_namespace = Parts.optional(namespace)
         self.parameters = list(parameters or ())
         self.remappings = list(remappings or ())
         self.extra_arguments = list(extra_arguments or ())

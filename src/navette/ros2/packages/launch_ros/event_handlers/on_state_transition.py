@@ -8,9 +8,7 @@ from navette.ros2.packages.launch.errors import InvalidLaunchValueError
 from navette.ros2.packages.launch.event_handler import CallbackHandler
 from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import caller_location
-from navette.ros2.packages.launch.substitution import (
-    perform_value,
-)
+from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch_ros.actions.lifecycle_node import LifecycleNode
 from navette.ros2.packages.launch_ros.events.lifecycle.state_transition import (
     StateTransition,
@@ -71,4 +69,4 @@ class OnStateTransition(CallbackHandler):
 
 
 def _text(context: LaunchContext, value: Any) -> str:
-    return perform_value(context, value)
+    return Parts.of(value).perform(context)

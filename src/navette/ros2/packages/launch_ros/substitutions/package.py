@@ -3,9 +3,7 @@
 from navette.ros2.packages.launch import SomeSubstitutionsType, Substitution
 from navette.ros2.packages.launch.errors import SubstitutionFailure
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-)
+from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch.substitutions import PathJoinSubstitution
 from navette.ros2.workspace import find_package
 
@@ -14,7 +12,7 @@ class FindPackagePrefix(Substitution):
     """Install prefix of a package (``$(find-pkg-prefix name)``)."""
 
     def __init__(self, package: SomeSubstitutionsType) -> None:
-        self.package = normalize_to_list_of_substitutions(package)
+        self.package = Parts.of(package)
 
     def find(self, package_name: str) -> str:
         """Return the folder of a package."""
@@ -46,8 +44,8 @@ class ExecutableInPackage(Substitution):
     def __init__(
         self, executable: SomeSubstitutionsType, package: SomeSubstitutionsType
     ) -> None:
-        self.executable = normalize_to_list_of_substitutions(executable)
-        self.package = normalize_to_list_of_substitutions(package)
+        self.executable = Parts.of(executable)
+        self.package = Parts.of(package)
 
     def perform(self, context: LaunchContext) -> str:
         package = self.package.perform(context)

@@ -5,10 +5,7 @@ from typing import Any
 from navette.ros2.packages.launch import SomeSubstitutionsType, Substitution
 from navette.ros2.packages.launch.errors import SubstitutionFailure
 from navette.ros2.packages.launch.launch_context import LaunchContext
-from navette.ros2.packages.launch.substitution import (
-    normalize_to_list_of_substitutions,
-    optional_parts,
-)
+from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch_ros.scope import global_parameters
 
 
@@ -16,8 +13,8 @@ class Parameter(Substitution):
     """Value set by SetParameter in this scope (``$(param name)``)."""
 
     def __init__(self, name: SomeSubstitutionsType, *, default: Any = None) -> None:
-        self.name = normalize_to_list_of_substitutions(name)
-        self.default = optional_parts(default)
+        self.name = Parts.of(name)
+        self.default = Parts.optional(default)
 
     def perform(self, context: LaunchContext) -> str:
         name = self.name.perform(context)
