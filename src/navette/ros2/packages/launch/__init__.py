@@ -24,7 +24,7 @@ from navette.ros2.packages.launch.launch_description_entity import (
     SomeEntitiesType,
     SomeEntitiesType_types_tuple,
 )
-from navette.ros2.packages.launch.launch_description_source import (
+from navette.ros2.packages.launch.launch_description_sources import (
     LaunchDescriptionSource,
 )
 from navette.ros2.packages.launch.launch_introspector import LaunchIntrospector

@@ -7,6 +7,7 @@ from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
     caller_location,
 )
+from navette.ros2.packages.launch.substitution import describe_first_parts
 
 
 class Action(LaunchDescriptionEntity):
@@ -20,6 +21,10 @@ class Action(LaunchDescriptionEntity):
             )
         self.condition = condition
         self.origin = caller_location()
+
+    def describe(self) -> str:
+        text = describe_first_parts(self)
+        return f"{type(self).__name__}({text})" if text else type(self).__name__
 
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         if self.condition is None or self.condition.evaluate(context):

@@ -17,7 +17,7 @@ class Substitution:
 
     def describe(self) -> str:
         """Describe the substitution in an error message or a listing."""
-        return f"{type(self).__name__}()"
+        return f"{type(self).__name__}({describe_first_parts(self)})"
 
 
 SomeSubstitutionsType: TypeAlias = (
@@ -66,6 +66,13 @@ class Parts(list[Substitution]):
 
     def describe(self) -> str:
         return " + ".join(part.describe() for part in self) or "''"
+
+
+def describe_first_parts(owner: object) -> str:
+    """Describe the first substitutions among the attributes of an object."""
+    values = vars(owner).values()
+    first = next((value for value in values if isinstance(value, Parts)), None)
+    return "" if first is None else first.describe()
 
 
 class TextSubstitution(Substitution):

@@ -82,9 +82,6 @@ class SetLaunchConfiguration(Action):
         self.name = Parts.of(name)
         self.value = Parts.of(value)
 
-    def describe(self) -> str:
-        return f"SetLaunchConfiguration({self.name.describe()})"
-
     def execute(self, context: LaunchContext) -> None:
         name = self.name.perform(context)
         context.known_arguments.add(name)

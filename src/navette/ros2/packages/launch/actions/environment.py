@@ -25,9 +25,6 @@ class SetEnvironmentVariable(Action):
         self.name = Parts.of(name)
         self.value = Parts.of(value)
 
-    def describe(self) -> str:
-        return f"{type(self).__name__}({self.name.describe()})"
-
     def execute(self, context: LaunchContext) -> None:
         name = self.name.perform(context)
         context.environment[name] = self.value.perform(context)
@@ -64,9 +61,6 @@ class UnsetEnvironmentVariable(Action):
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.name = Parts.of(name)
-
-    def describe(self) -> str:
-        return f"UnsetEnvironmentVariable({self.name.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
         context.environment.pop(self.name.perform(context), None)

@@ -13,11 +13,9 @@ from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
-from navette.ros2.packages.launch.launch_description_source import (
-    LaunchDescriptionSource,
-)
 from navette.ros2.packages.launch.launch_description_sources import (
     AnyLaunchDescriptionSource,
+    LaunchDescriptionSource,
 )
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import Parts

@@ -26,9 +26,6 @@ class Log(Action):
         self.msg = Parts.of(msg)
         self.level = Parts.of(level)
 
-    def describe(self) -> str:
-        return f"{type(self).__name__}({self.msg.describe()})"
-
     def execute(self, context: LaunchContext) -> None:
         level = self.level.perform(context).lower()
         level = "warning" if level == "warn" else level

@@ -35,9 +35,6 @@ class LaunchConfiguration(Substitution):
             raise UndeclaredConfigurationFailure(name, known)
         return self._default.perform(context)
 
-    def describe(self) -> str:
-        return f"LaunchConfiguration({self.variable_name.describe()})"
-
 
 def _default_parts(default: Any) -> Parts:
     if isinstance(default, (str, Path, Substitution)):
@@ -69,9 +66,6 @@ class EnvironmentVariable(Substitution):
                 f"environment variable {name!r} is not set, and there is no default"
             )
         return self.default_value.perform(context)
-
-    def describe(self) -> str:
-        return f"EnvironmentVariable({self.name.describe()})"
 
 
 class LocalSubstitution(Substitution):

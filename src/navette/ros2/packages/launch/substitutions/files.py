@@ -77,9 +77,6 @@ class FindExecutable(Substitution):
             )
         return found
 
-    def describe(self) -> str:
-        return f"FindExecutable({self.name.describe()})"
-
 
 class Command(Substitution):
     """Output of a command (``$(command 'xacro robot.xacro')``).
@@ -123,6 +120,3 @@ class Command(Substitution):
         if done.stderr and mode == "warn":
             get_logger("launch").warning("command %r: %s", text, done.stderr.strip())
         return done.stdout + (done.stderr if mode == "capture" else "")
-
-    def describe(self) -> str:
-        return f"Command({self.command.describe()})"

@@ -39,9 +39,6 @@ class NotSubstitution(Substitution):
     def perform(self, context: LaunchContext) -> str:
         return _word(not _is_true(context, self.value, self.describe()))
 
-    def describe(self) -> str:
-        return f"NotSubstitution({self.value.describe()})"
-
 
 class AnySubstitution(Substitution):
     """True if at least one value is true (``$(any a b …)``)."""
@@ -158,6 +155,3 @@ class IfElseSubstitution(Substitution):
         return perform_substitutions(
             context, self.if_value if holds else self.else_value
         )
-
-    def describe(self) -> str:
-        return f"IfElseSubstitution({self.condition.describe()})"

@@ -47,6 +47,3 @@ class PythonExpression(Substitution):
             return str(evaluate(text, _HINT))
         except ExpressionError as error:
             raise SubstitutionFailure(str(error)) from None
-
-    def describe(self) -> str:
-        return f"PythonExpression({self.expression.describe()})"

@@ -11,10 +11,10 @@ from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.typed import perform_bool
 from navette.ros2.packages.launch_ros.actions.node import Node
 from navette.ros2.packages.launch_ros.events.lifecycle import (
+    TRANSITIONS,
     ChangeState,
     StateTransition,
 )
-from navette.ros2.packages.launch_ros.events.lifecycle.change_state import TRANSITIONS
 from navette.ros2.packages.launch_ros.ros_node import launch_node
 
 _log = get_logger("launch")

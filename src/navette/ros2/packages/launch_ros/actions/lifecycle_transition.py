@@ -11,11 +11,11 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.logging import get_logger
 from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch_ros.events.lifecycle import (
+    TRANSITIONS,
     ChangeState,
     StateTransition,
     matches_node_name,
 )
-from navette.ros2.packages.launch_ros.events.lifecycle.change_state import TRANSITIONS
 
 _GOALS = {
     Transition.TRANSITION_CONFIGURE: ("configuring", "inactive"),

@@ -25,9 +25,6 @@ class PushRosNamespace(Action):
         super().__init__(**kwargs)
         self.namespace = Parts.of(namespace)
 
-    def describe(self) -> str:
-        return f"PushRosNamespace({self.namespace.describe()})"
-
     def execute(self, context: LaunchContext) -> None:
         push_namespace(context, self.namespace.perform(context))
 
@@ -43,9 +40,6 @@ class SetParameter(Action):
         self.name = Parts.of(name)
         self.value = value
         self._parameter = Parameter(self.name, value)
-
-    def describe(self) -> str:
-        return f"SetParameter({self.name.describe()})"
 
     def execute(self, context: LaunchContext) -> None:
         add_global_parameter(context, self._parameter.evaluate(context))

@@ -21,9 +21,6 @@ class FindPackagePrefix(Substitution):
     def perform(self, context: LaunchContext) -> str:
         return self.find(self.package.perform(context))
 
-    def describe(self) -> str:
-        return f"{type(self).__name__}({self.package.describe()})"
-
     def __truediv__(self, part: object) -> PathJoinSubstitution:
         return PathJoinSubstitution([self, part])
 

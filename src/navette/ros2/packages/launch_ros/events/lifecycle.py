@@ -1,4 +1,4 @@
-"""Event that requests a transition of lifecycle nodes."""
+"""Events of lifecycle nodes: requested and observed transitions."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,6 +6,9 @@ from typing import Any
 from navette.msgs.lifecycle_msgs.msg import Transition
 from navette.ros2.packages.launch import Event
 from navette.ros2.packages.launch.errors import InvalidLaunchValueError
+from navette.ros2.packages.launch_ros.events.matchers import matches_node_name
+
+__all__ = ["TRANSITIONS", "ChangeState", "StateTransition", "matches_node_name"]
 
 TRANSITIONS = {
     getattr(Transition, name): name
@@ -40,3 +43,32 @@ class ChangeState(Event):
             )
         self.lifecycle_node_matcher = lifecycle_node_matcher
         self.transition_id = transition_id
+
+
+class StateTransition(Event):
+    """A lifecycle node changed its state.
+
+    ``action`` is the LifecycleNode, ``msg`` its TransitionEvent.
+    """
+
+    name = "launch_ros.events.lifecycle.StateTransition"
+
+    def __init__(self, *, action: Any, msg: Any) -> None:
+        self.action = action
+        self.msg = msg
+
+    @property
+    def timestamp(self) -> int:
+        return int(self.msg.timestamp)
+
+    @property
+    def transition(self) -> str:
+        return str(self.msg.transition.label)
+
+    @property
+    def start_state(self) -> str:
+        return str(self.msg.start_state.label)
+
+    @property
+    def goal_state(self) -> str:
+        return str(self.msg.goal_state.label)

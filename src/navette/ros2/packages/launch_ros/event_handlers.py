@@ -10,9 +10,11 @@ from navette.ros2.packages.launch.launch_context import LaunchContext
 from navette.ros2.packages.launch.launch_description_entity import caller_location
 from navette.ros2.packages.launch.substitution import Parts
 from navette.ros2.packages.launch_ros.actions.lifecycle_node import LifecycleNode
-from navette.ros2.packages.launch_ros.events.lifecycle.state_transition import (
+from navette.ros2.packages.launch_ros.events.lifecycle import (
     StateTransition,
 )
+
+__all__ = ["OnStateTransition"]
 
 
 class OnStateTransition(CallbackHandler):

@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
+__all__ = ["ConsoleHandler", "console", "get_logger", "launch_config"]
+
 ROOT = "navette.launch"
 DATE_AND_NAME = "[%(levelname)s] [%(launch_name)s]: %(message)s"
 
