@@ -1,7 +1,9 @@
 """Tags of ``launch``."""
 
+from collections.abc import Callable
 from typing import Any
 
+from navette.ros2.packages.launch.action import Action
 from navette.ros2.packages.launch.actions import (
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
@@ -41,6 +43,24 @@ def condition_of(element: Element) -> dict[str, Any]:
     return {} if fails is None else {"condition": UnlessCondition(fails)}
 
 
+def expose_simple_action(
+    tag: str, action: Callable[..., Action], *attributes: str
+) -> None:
+    """Register an action whose arguments are required attributes, in order."""
+
+    @expose_action(tag)
+    def make(element: Element) -> LaunchDescriptionEntity:
+        values = [element.need_parts(name) for name in attributes]
+        return action(*values, **condition_of(element))
+
+
+expose_simple_action("let", SetLaunchConfiguration, "name", "value")
+expose_simple_action("unset", UnsetLaunchConfiguration, "name")
+expose_simple_action("set_env", SetEnvironmentVariable, "name", "value")
+expose_simple_action("unset_env", UnsetEnvironmentVariable, "name")
+expose_simple_action("reset_env", ResetEnvironment)
+
+
 @expose_action("arg")
 def argument(element: Element) -> LaunchDescriptionEntity:
     choices = [choice.need("value") for choice in element.elements("choice")]
@@ -50,25 +70,6 @@ def argument(element: Element) -> LaunchDescriptionEntity:
         description=element.text("description"),
         choices=choices or None,
         **condition_of(element),
-    )
-
-
-@expose_action("let")
-def let(element: Element) -> LaunchDescriptionEntity:
-    return SetLaunchConfiguration(
-        element.need_parts("name"), element.need_parts("value"), **condition_of(element)
-    )
-
-
-@expose_action("unset")
-def unset(element: Element) -> LaunchDescriptionEntity:
-    return UnsetLaunchConfiguration(element.need_parts("name"), **condition_of(element))
-
-
-@expose_action("set_env")
-def set_environment(element: Element) -> LaunchDescriptionEntity:
-    return SetEnvironmentVariable(
-        element.need_parts("name"), element.need_parts("value"), **condition_of(element)
     )
 
 
@@ -85,16 +86,6 @@ def append_environment(element: Element) -> LaunchDescriptionEntity:
         **options,
         **condition_of(element),
     )
-
-
-@expose_action("unset_env")
-def unset_environment(element: Element) -> LaunchDescriptionEntity:
-    return UnsetEnvironmentVariable(element.need_parts("name"), **condition_of(element))
-
-
-@expose_action("reset_env")
-def reset_environment(element: Element) -> LaunchDescriptionEntity:
-    return ResetEnvironment(**condition_of(element))
 
 
 @expose_action("reset")

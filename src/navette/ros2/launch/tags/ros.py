@@ -5,6 +5,7 @@ from typing import Any
 from navette.ros2.launch.tags.core import (
     condition_of,
     execution_options,
+    expose_simple_action,
     split_words,
 )
 from navette.ros2.packages.launch.frontend import (
@@ -65,6 +66,14 @@ _TYPES: dict[str, Any] = {
 }
 
 
+expose_simple_action("push_ros_namespace", PushRosNamespace, "namespace")
+expose_simple_action("push-ros-namespace", PushRosNamespace, "namespace")
+expose_simple_action("set_use_sim_time", SetUseSimTime, "value")
+expose_simple_action("set_parameters_from_file", SetParametersFromFile, "filename")
+expose_simple_action("set_remap", SetRemap, "from", "to")
+expose_simple_action("set_ros_log_dir", SetROSLogDir, "new_log_dir")
+
+
 @expose_action("node")
 def node(element: Element) -> LaunchDescriptionEntity:
     return Node(
@@ -118,41 +127,11 @@ def load_composable_node(element: Element) -> LaunchDescriptionEntity:
     )
 
 
-@expose_action("push_ros_namespace")
-@expose_action("push-ros-namespace")
-def push_ros_namespace(element: Element) -> LaunchDescriptionEntity:
-    return PushRosNamespace(element.need_parts("namespace"), **condition_of(element))
-
-
 @expose_action("set_parameter")
 def set_parameter(element: Element) -> LaunchDescriptionEntity:
     return SetParameter(
         element.need_parts("name"), _value(element), **condition_of(element)
     )
-
-
-@expose_action("set_use_sim_time")
-def set_use_sim_time(element: Element) -> LaunchDescriptionEntity:
-    return SetUseSimTime(element.need_parts("value"), **condition_of(element))
-
-
-@expose_action("set_parameters_from_file")
-def set_parameters_from_file(element: Element) -> LaunchDescriptionEntity:
-    return SetParametersFromFile(
-        element.need_parts("filename"), **condition_of(element)
-    )
-
-
-@expose_action("set_remap")
-def set_remap(element: Element) -> LaunchDescriptionEntity:
-    return SetRemap(
-        element.need_parts("from"), element.need_parts("to"), **condition_of(element)
-    )
-
-
-@expose_action("set_ros_log_dir")
-def set_ros_log_dir(element: Element) -> LaunchDescriptionEntity:
-    return SetROSLogDir(element.need_parts("new_log_dir"), **condition_of(element))
 
 
 def _namespace(element: Element) -> Any:
