@@ -132,7 +132,7 @@ _ORIGINS = {
 }
 
 #: rclpy's module → its names. A name with dots is given with its place in Navette,
-#: where it stands for something else than in the other modules.
+#: if that differs from its place in the other modules.
 _MODULES = {
     "rclpy": """
         Context, create_node, Executor, Future, get_available_rmw_implementations,
