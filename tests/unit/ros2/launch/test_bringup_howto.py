@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from navette.ros2 import names as interop
 from navette.ros2.launch import launch
+from navette.ros2.names import install, uninstall
 
 pytestmark = pytest.mark.slow
 PAGE = Path(__file__).parents[4] / "docs" / "howto" / "launch.md"
@@ -54,9 +54,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (tmp_path / "listener.py").write_text(LISTENER)
     (tmp_path / "voice.yaml").write_text("/**: {ros__parameters: {pitch: 2.5}}\n")
     monkeypatch.chdir(tmp_path)
-    interop.install()
+    install()
     yield tmp_path
-    interop.uninstall()
+    uninstall()
 
 
 @pytest.mark.parametrize(

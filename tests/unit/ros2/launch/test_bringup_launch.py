@@ -14,9 +14,9 @@ import pytest
 
 import navette
 from navette.errors import InvalidValueError, NavetteError
-from navette.ros2 import names as interop
 from navette.ros2.launch import launch, parse_launch_arguments, show_arguments
 from navette.ros2.launch.session import find_launch_file
+from navette.ros2.names import install, uninstall
 
 pytestmark = pytest.mark.slow
 NODES = '''
@@ -114,9 +114,9 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]
     )
     monkeypatch.chdir(tmp_path)
     path = list(sys.path)
-    interop.install()
+    install()
     yield package
-    interop.uninstall()
+    uninstall()
     sys.path[:] = path
     for name in [n for n in sys.modules if n.partition(".")[0] == "parlance"]:
         del sys.modules[name]
