@@ -25,7 +25,7 @@ from navette.supervisor.specs import (
     ProcessSpec,
     ProcessState,
     RestartPolicy,
-    ServiceSpec,
+    ServiceConfig,
 )
 from navette.supervisor.terminator import GracePeriods
 
@@ -44,7 +44,7 @@ __all__ = [
     "ProcessSpec",
     "ProcessState",
     "RestartPolicy",
-    "ServiceSpec",
+    "ServiceConfig",
     "StartOptions",
     "TERMINATE",
     "describe_exit",

@@ -21,7 +21,7 @@ from navette.supervisor.project import (
     socket_path,
     state_root,
 )
-from navette.supervisor.specs import ServiceSpec
+from navette.supervisor.specs import ServiceConfig
 
 _TIMEOUT_S = 15.0
 _START_TIMEOUT_S = 30.0
@@ -59,7 +59,7 @@ class SupervisorClient:
         return found
 
     def up(
-        self, services: Iterable[ServiceSpec], arguments: Mapping[str, str]
+        self, services: Iterable[ServiceConfig], arguments: Mapping[str, str]
     ) -> list[dict[str, Any]]:
         """Start services, and the supervisor if necessary.
 
@@ -69,7 +69,7 @@ class SupervisorClient:
         return self._send("up", services, arguments)
 
     def restart(
-        self, services: Iterable[ServiceSpec], arguments: Mapping[str, str]
+        self, services: Iterable[ServiceConfig], arguments: Mapping[str, str]
     ) -> list[dict[str, Any]]:
         """Stop services and start them again."""
         return self._send("restart", services, arguments)
@@ -93,7 +93,7 @@ class SupervisorClient:
     def _send(
         self,
         command: str,
-        services: Iterable[ServiceSpec],
+        services: Iterable[ServiceConfig],
         arguments: Mapping[str, str],
     ) -> list[dict[str, Any]]:
         request = {

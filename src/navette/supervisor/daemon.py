@@ -29,7 +29,7 @@ from navette.supervisor.project import (
     try_lock,
 )
 from navette.supervisor.server import RequestServer
-from navette.supervisor.specs import ServiceSpec
+from navette.supervisor.specs import ServiceConfig
 from navette.supervisor.supervisor import Supervisor
 
 # The guard of a killed supervisor holds the lock until it has ended all processes.
@@ -103,7 +103,7 @@ class _Daemon:
     def _handle(self, request: dict[str, Any]) -> dict[str, Any]:
         command = request.get("command")
         if command in ("up", "restart"):
-            specs = [ServiceSpec.from_json(each) for each in request["services"]]
+            specs = [ServiceConfig.from_json(each) for each in request["services"]]
             environ = _texts(request["environ"])
             self._arguments = _texts(request["arguments"])
             if command == "up":

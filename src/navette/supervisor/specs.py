@@ -87,7 +87,7 @@ def process_label(service: str, name: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ServiceSpec:
+class ServiceConfig:
     """Processes that are started and stopped together.
 
     Attributes:
@@ -104,7 +104,7 @@ class ServiceSpec:
         return asdict(self)
 
     @classmethod
-    def from_json(cls, data: dict[str, Any]) -> "ServiceSpec":
+    def from_json(cls, data: dict[str, Any]) -> "ServiceConfig":
         """Restore what :meth:`to_json` returned, after it was JSON."""
         processes = tuple(
             ProcessSpec(

@@ -8,7 +8,7 @@ from navette.runtime.loop import EventLoop
 from navette.supervisor.log_store import LogStore
 from navette.supervisor.process_manager import ProcessManager
 from navette.supervisor.service_process import ServiceProcess
-from navette.supervisor.specs import ProcessState, ServiceSpec
+from navette.supervisor.specs import ProcessState, ServiceConfig
 
 _OVER = (ProcessState.STOPPED, ProcessState.ENDED, ProcessState.FAILED)
 
@@ -16,7 +16,7 @@ _OVER = (ProcessState.STOPPED, ProcessState.ENDED, ProcessState.FAILED)
 class ManagedService:
     """A service that is up, starting or stopping."""
 
-    def __init__(self, spec: ServiceSpec, environ: Mapping[str, str]) -> None:
+    def __init__(self, spec: ServiceConfig, environ: Mapping[str, str]) -> None:
         self.spec = spec
         self.environ = environ
         self.should_run = True
@@ -57,7 +57,7 @@ class Supervisor:
     def is_idle(self) -> bool:
         return not self._services
 
-    def up(self, specs: Iterable[ServiceSpec], environ: Mapping[str, str]) -> None:
+    def up(self, specs: Iterable[ServiceConfig], environ: Mapping[str, str]) -> None:
         """Start services.
 
         Ended processes of a running service start again; a service whose spec has
@@ -73,7 +73,9 @@ class Supervisor:
                     process.start()
         self._reconcile()
 
-    def restart(self, specs: Iterable[ServiceSpec], environ: Mapping[str, str]) -> None:
+    def restart(
+        self, specs: Iterable[ServiceConfig], environ: Mapping[str, str]
+    ) -> None:
         """Stop services that run and start them with the given specs."""
         for spec in specs:
             self._replace(spec, environ)
@@ -106,7 +108,7 @@ class Supervisor:
                 process["reason"] = f"for {', '.join(missing)}"
         return {"service": service.spec.name, "processes": processes}
 
-    def _replace(self, spec: ServiceSpec, environ: Mapping[str, str]) -> None:
+    def _replace(self, spec: ServiceConfig, environ: Mapping[str, str]) -> None:
         """Set what a service is to run; its present processes stop."""
         service = self._services.get(spec.name)
         if service is None:

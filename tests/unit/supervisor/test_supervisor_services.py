@@ -10,7 +10,7 @@ import pytest
 from navette.errors import UnknownNameError
 from navette.runtime import VirtualClock
 from navette.runtime.loop import EventLoop
-from navette.supervisor import ProcessError, ProcessSpec, RestartPolicy, ServiceSpec
+from navette.supervisor import ProcessError, ProcessSpec, RestartPolicy, ServiceConfig
 from navette.supervisor.log_store import LogReader, LogStore
 from navette.supervisor.supervisor import Supervisor
 
@@ -99,7 +99,7 @@ def world(tmp_path: Path) -> Any:
 
 def service(
     name: str, *depends_on: str, word: str = "x", ready: bool = False, **options: Any
-) -> ServiceSpec:
+) -> ServiceConfig:
     process = ProcessSpec(
         service=name,
         name=name,
@@ -108,7 +108,7 @@ def service(
         reports_ready=ready,
         restart=RestartPolicy(**options),
     )
-    return ServiceSpec(name=name, depends_on=depends_on, processes=(process,))
+    return ServiceConfig(name=name, depends_on=depends_on, processes=(process,))
 
 
 def test_restarts_come_later_and_later_and_then_no_more(world: Any) -> None:

@@ -12,7 +12,7 @@ from navette.cli.up.process_specs import read_process
 from navette.cli.up.variables import Variables
 from navette.errors import FileFormatError, InvalidValueError, NavetteError
 from navette.supervisor.project import FILE_NAME, Project
-from navette.supervisor.specs import ProcessSpec, ServiceSpec
+from navette.supervisor.specs import ProcessSpec, ServiceConfig
 
 DEFAULT_FILE = Path(__file__).parent / "default.yaml"
 _TOP_KEYS = ("arguments", "environment", "services")
@@ -53,7 +53,7 @@ class ProjectConfig:
     def names(self) -> list[str]:
         return list(self.services)
 
-    def specs(self, names: Iterable[str]) -> list[ServiceSpec]:
+    def specs(self, names: Iterable[str]) -> list[ServiceConfig]:
         """Return the named services and their dependencies, dependencies first.
 
         Raises:
@@ -95,7 +95,7 @@ class ProjectConfig:
     def _depends_on(self, name: str) -> tuple[str, ...]:
         return tuple(map(str, self._list(name, "depends_on")))
 
-    def _spec(self, name: str) -> ServiceSpec:
+    def _spec(self, name: str) -> ServiceConfig:
         service = self.services[name]
         for key in service:
             if key not in _SERVICE_KEYS:
@@ -113,7 +113,7 @@ class ProjectConfig:
             raise self._error(reason, name)
         for each in self._list(name, "watch"):
             watched[str(self.folder / self.variables.expand(str(each)))] = None
-        return ServiceSpec(
+        return ServiceConfig(
             name=name,
             depends_on=self._depends_on(name),
             processes=tuple(processes),

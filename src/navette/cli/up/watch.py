@@ -12,7 +12,7 @@ from navette.cli.stderr import note
 from navette.cli.up.config import ProjectConfig
 from navette.errors import NavetteError
 from navette.supervisor.client import SupervisorClient
-from navette.supervisor.specs import ServiceSpec
+from navette.supervisor.specs import ServiceConfig
 
 _SUFFIXES = {".py", ".yaml", ".yml", ".xml", ".toml", ".cfg", ".msg", ".srv", ".action"}
 _SKIPPED = {"build", "install", "log", "node_modules", "__pycache__"}
@@ -92,7 +92,7 @@ class ServiceWatch:
         self._file_watch = FileWatch([self._file])
         self._watch(config.specs(names or config.names))
 
-    def _watch(self, specs: Sequence[ServiceSpec]) -> None:
+    def _watch(self, specs: Sequence[ServiceConfig]) -> None:
         self._specs = {spec.name: spec for spec in specs}
         self._watches = {spec.name: FileWatch(spec.watched) for spec in specs}
 

@@ -10,7 +10,7 @@ from navette.cli.up.config import DEFAULT_FILE, read_config
 from navette.errors import FileFormatError, InvalidValueError, NavetteError
 from navette.supervisor import RestartPolicy
 from navette.supervisor.project import Project, find_project
-from navette.supervisor.specs import ServiceSpec
+from navette.supervisor.specs import ServiceConfig
 
 RUN = (sys.executable, "-u", "-m", "navette", "run")
 
@@ -67,7 +67,7 @@ def test_a_node_with_everything(bench: Any) -> None:
     assert process.reports_ready
     files = ["node.py", "shared.yaml", "own.yaml", "extra"]
     assert set(service.watched) == {str(folder / name) for name in files}
-    assert ServiceSpec.from_json(service.to_json()) == service
+    assert ServiceConfig.from_json(service.to_json()) == service
 
 
 def test_names_come_from_what_runs(bench: Any) -> None:
