@@ -21,8 +21,8 @@ from navette.supervisor.process_manager import (
     ProcessManager,
     StartOptions,
 )
-from navette.supervisor.specs import (
-    ProcessSpec,
+from navette.supervisor.service_config import (
+    ProcessConfig,
     ProcessState,
     RestartPolicy,
     ServiceConfig,
@@ -41,7 +41,7 @@ __all__ = [
     "ProcessHandle",
     "ProcessListener",
     "ProcessManager",
-    "ProcessSpec",
+    "ProcessConfig",
     "ProcessState",
     "RestartPolicy",
     "ServiceConfig",

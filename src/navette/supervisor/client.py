@@ -21,7 +21,7 @@ from navette.supervisor.project import (
     socket_path,
     state_root,
 )
-from navette.supervisor.specs import ServiceConfig
+from navette.supervisor.service_config import ServiceConfig
 
 _TIMEOUT_S = 15.0
 _START_TIMEOUT_S = 30.0

@@ -29,7 +29,7 @@ from navette.supervisor.project import (
     try_lock,
 )
 from navette.supervisor.server import RequestServer
-from navette.supervisor.specs import ServiceConfig
+from navette.supervisor.service_config import ServiceConfig
 from navette.supervisor.supervisor import Supervisor
 
 # The guard of a killed supervisor holds the lock until it has ended all processes.

@@ -1,4 +1,4 @@
-"""Guard: ends child processes if this process dies before them."""
+"""Guard: ends child processes if this process ends before them."""
 
 import contextlib
 import os

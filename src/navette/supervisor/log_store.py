@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO
 
-from navette.supervisor.specs import process_label
+from navette.supervisor.service_config import process_label
 
 FILE_NAME = "log.jsonl"
 _OLD_NAME = "log.1.jsonl"

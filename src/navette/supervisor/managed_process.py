@@ -7,7 +7,7 @@ from navette.runtime.events import Call
 from navette.runtime.loop import EventLoop
 from navette.supervisor.child import ProcessHandle
 from navette.supervisor.exit_code import describe_exit
-from navette.supervisor.specs import ALIVE, ProcessState, RestartPolicy
+from navette.supervisor.service_config import ALIVE, ProcessState, RestartPolicy
 from navette.supervisor.terminator import GracePeriods, Terminator
 
 

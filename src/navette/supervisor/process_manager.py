@@ -41,7 +41,7 @@ class ProcessManager:
     """Starts processes in groups of their own, watched by a guard.
 
     A signal to a process reaches the whole group. The guard ends the groups if this
-    process dies without doing so (SIGKILL, out of memory), and also descendants that
+    process ends without doing so (SIGKILL, out of memory), and also descendants that
     left their group. Windows has neither groups nor the guard.
 
     Args:

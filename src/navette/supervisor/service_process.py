@@ -15,7 +15,7 @@ from navette.supervisor.process_manager import (
     ProcessManager,
     StartOptions,
 )
-from navette.supervisor.specs import ProcessSpec, ProcessState
+from navette.supervisor.service_config import ProcessConfig, ProcessState
 from navette.supervisor.terminator import GracePeriods
 
 READY_VARIABLE = "NAVETTE_READY_FD"
@@ -33,7 +33,7 @@ class ServiceProcess(ManagedProcess):
 
     def __init__(
         self,
-        spec: ProcessSpec,
+        spec: ProcessConfig,
         environ: Mapping[str, str],
         manager: ProcessManager,
         loop: EventLoop,

@@ -8,7 +8,7 @@ from typing import Any
 from navette.supervisor.client import SupervisorClient
 from navette.supervisor.log_store import LogLine, LogReader
 from navette.supervisor.project import Project
-from navette.supervisor.specs import ProcessState
+from navette.supervisor.service_config import ProcessState
 
 _POLL_S = 0.05
 _LAST_LINES = 12

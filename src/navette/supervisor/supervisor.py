@@ -7,8 +7,8 @@ from navette.errors import UnknownNameError
 from navette.runtime.loop import EventLoop
 from navette.supervisor.log_store import LogStore
 from navette.supervisor.process_manager import ProcessManager
+from navette.supervisor.service_config import ProcessState, ServiceConfig
 from navette.supervisor.service_process import ServiceProcess
-from navette.supervisor.specs import ProcessState, ServiceConfig
 
 _OVER = (ProcessState.STOPPED, ProcessState.ENDED, ProcessState.FAILED)
 
@@ -85,7 +85,7 @@ class Supervisor:
         """Stop services (all, if None), dependents first.
 
         Raises:
-            UnknownNameError: a service that is not up; lists those that are.
+            UnknownNameError: a service that is not up; lists the services that are.
         """
         chosen = list(self._services) if names is None else list(names)
         for name in chosen:

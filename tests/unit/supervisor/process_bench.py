@@ -1,4 +1,4 @@
-"""Real processes, and what is heard of them."""
+"""Processes for tests, and a recorder of their output."""
 
 import sys
 import threading
@@ -8,8 +8,8 @@ from navette.supervisor import ChildProcess, ProcessManager, StartOptions
 WAIT_S = 60.0
 
 
-class Heard:
-    """Collects what a process does."""
+class OutputRecorder:
+    """Records the output and exit of a process."""
 
     def __init__(self) -> None:
         self.text = {"stdout": b"", "stderr": b""}
@@ -27,7 +27,7 @@ class Heard:
         self.over.set()
 
     def wait_ready(self) -> list[str]:
-        """The words of its first line, which ends with ``ready``."""
+        """Return the words of the first line, which ends with ``ready``."""
         assert self.ready.wait(WAIT_S), self.text
         return self.text["stdout"].decode().split("\n")[0].split()
 
@@ -45,10 +45,10 @@ class Bench:
 
     def start(
         self, code: str, *args: str, **options: object
-    ) -> tuple[ChildProcess, Heard]:
-        heard = Heard()
+    ) -> tuple[ChildProcess, OutputRecorder]:
+        recorder = OutputRecorder()
         words = [sys.executable, "-u", "-c", code, *args]
         made = StartOptions(**options)  # type: ignore[arg-type]
         child = self.manager.start(words, made)
-        child.watch(heard)
-        return child, heard
+        child.watch(recorder)
+        return child, recorder

@@ -1,4 +1,4 @@
-"""Real processes: their output, input, end, and signals to their groups."""
+"""Child processes: output, input, exit, and signals to process groups."""
 
 import os
 import signal
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from process_bench import WAIT_S, Heard
+from process_bench import WAIT_S, OutputRecorder
 
 from navette.supervisor import ProcessError, ProcessManager, StartOptions, child
 
@@ -17,8 +17,8 @@ pytestmark = [
     pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's"),
 ]
 
-# A pipe that a process holds open ends when the process does, and no sooner: reading
-# it to its end is how these tests wait for one that is not their child.
+# A pipe that a process holds open ends with the process: the tests read it to its end
+# to wait for a process that is not their child.
 PARENT = """
 import os, subprocess, sys
 child = subprocess.Popen([sys.executable, '-c', 'import signal; signal.pause()'],
@@ -35,50 +35,50 @@ def test_output_code_environment_and_input(bench: Any, tmp_path: Path) -> None:
         "sys.stderr.write(input()); sys.exit(3)"
     )
     env = {**os.environ, "A": "b"}
-    running, heard = bench.start(code, env=env, cwd=str(tmp_path))
+    running, recorder = bench.start(code, env=env, cwd=str(tmp_path))
     running.write(b"hello\n")
-    assert heard.wait_over() == 3
-    assert heard.wait_ready() == ["b", str(tmp_path), "ready"]
-    assert heard.text["stderr"] == b"hello"
-    running.signal(signal.SIGINT)  # it is over: nothing happens
+    assert recorder.wait_over() == 3
+    assert recorder.wait_ready() == ["b", str(tmp_path), "ready"]
+    assert recorder.text["stderr"] == b"hello"
+    running.signal(signal.SIGINT)  # ignored after the exit
     running.write(b"too late")
 
 
-def test_errors_may_come_with_the_output(bench: Any) -> None:
+def test_error_output_may_be_merged(bench: Any) -> None:
     code = "import sys; print(1); sys.stderr.write('2\\n'); print('ready')"
-    _, heard = bench.start(code, merge_streams=True)
-    assert heard.wait_over() == 0
-    assert heard.text == {"stdout": b"1\n2\nready\n", "stderr": b""}
+    _, recorder = bench.start(code, merge_streams=True)
+    assert recorder.wait_over() == 0
+    assert recorder.text == {"stdout": b"1\n2\nready\n", "stderr": b""}
 
 
-def test_the_end_is_told_after_all_output_however_long_that_takes(
+def test_the_exit_is_reported_after_all_output(
     bench: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(child, "_LAST_OUTPUT_S", 0.0)
     go_on = threading.Event()
 
-    class Slow(Heard):
+    class Slow(OutputRecorder):
         def output(self, stream: str, data: bytes) -> None:
             assert go_on.wait(WAIT_S)
             super().output(stream, data)
 
-    heard = Slow()
+    recorder = Slow()
     words = [sys.executable, "-c", "print('ready')"]
     running = bench.manager.start(words, StartOptions())
-    running.watch(heard)
+    running.watch(recorder)
     assert running._process.wait() == 0
-    assert not heard.over.wait(0.1)
+    assert not recorder.over.wait(0.1)
     go_on.set()
-    assert heard.wait_over() == 0
-    assert heard.text["stdout"] == b"ready\n"
+    assert recorder.wait_over() == 0
+    assert recorder.text["stdout"] == b"ready\n"
 
 
-def test_a_shell_line(bench: Any) -> None:
-    heard = bench.start("")[1].__class__()
+def test_a_shell_command_line(bench: Any) -> None:
+    recorder = bench.start("")[1].__class__()
     words = ("echo", "ready", "&&", "exit", "2")
-    bench.manager.start(words, StartOptions(shell=True)).watch(heard)
-    assert heard.wait_over() == 2
-    assert heard.text["stdout"] == b"ready\n"
+    bench.manager.start(words, StartOptions(shell=True)).watch(recorder)
+    assert recorder.wait_over() == 2
+    assert recorder.text["stdout"] == b"ready\n"
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_a_shell_line(bench: Any) -> None:
         (["ls"], "/no/such", "cannot start 'ls' in '/no/such': no such folder"),
     ],
 )
-def test_what_cannot_be_started_says_why(
+def test_a_failed_start_reports_the_reason(
     words: list[str], cwd: str | None, reason: str
 ) -> None:
     manager = ProcessManager()
@@ -99,17 +99,17 @@ def test_what_cannot_be_started_says_why(
 
 
 @pytest.mark.parametrize("how", ["signal", "end"])
-def test_its_children_go_with_it(bench: Any, how: str) -> None:
+def test_children_end_with_the_process(bench: Any, how: str) -> None:
     reading, writing = os.pipe()
-    running, heard = bench.start(
+    running, recorder = bench.start(
         PARENT, str(writing), "stay" if how == "signal" else "go", pass_fds=(writing,)
     )
     os.close(writing)
-    heard.wait_ready()
+    recorder.wait_ready()
     if how == "signal":
         running.signal(signal.SIGTERM)
-        assert heard.wait_over() == -signal.SIGTERM
+        assert recorder.wait_over() == -signal.SIGTERM
     else:
-        assert heard.wait_over() == 0
+        assert recorder.wait_over() == 0
     with os.fdopen(reading, "rb") as pipe:
         assert pipe.read() == b""

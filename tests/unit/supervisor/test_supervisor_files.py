@@ -21,7 +21,7 @@ def texts(lines: list[LogLine]) -> list[str]:
     return [line.text for line in lines]
 
 
-def test_lines_are_read_in_their_order_and_as_they_come(tmp_path: Path) -> None:
+def test_the_log_is_read_in_order_while_it_is_written(tmp_path: Path) -> None:
     reader = LogReader(tmp_path, lambda line: line.service == "a")
     assert reader.last(None) == []
     book = LogStore(tmp_path, lambda: 7)
@@ -38,7 +38,7 @@ def test_lines_are_read_in_their_order_and_as_they_come(tmp_path: Path) -> None:
     assert LogLine(0, "b", "b", "").label == "b"
 
 
-def test_old_lines_are_let_go_and_none_is_missed(
+def test_rotation_loses_no_new_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(log_store, "_MAX_BYTES", 1000)
@@ -56,14 +56,14 @@ def test_old_lines_are_let_go_and_none_is_missed(
     book.close()
 
 
-def test_half_a_line_is_no_line(tmp_path: Path) -> None:
+def test_incomplete_lines_are_skipped(tmp_path: Path) -> None:
     (tmp_path / log_store.FILE_NAME).write_bytes(b'{"t": 1, "mod\n[1]\n\xff\n')
     reader = LogReader(tmp_path, everything)
     assert reader.last(None) == []
     reader.close()
 
 
-def test_a_full_disk_costs_lines_only(
+def test_a_full_disk_loses_lines_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     book = LogStore(tmp_path, lambda: 0)
@@ -83,22 +83,22 @@ def test_a_full_disk_costs_lines_only(
     book.close()
 
 
-def test_a_supervisor_that_hangs_is_not_waited_for_long(
+def test_a_hanging_supervisor_is_a_timeout(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NAVETTE_STATE_DIR", str(tmp_path))
     client = SupervisorClient(Project(tmp_path))
     monkeypatch.setattr("navette.supervisor.client._TIMEOUT_S", 0.05)
-    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as deaf:
-        deaf.bind(str(socket_path(client.project.state)))
-        deaf.listen()
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as silent:
+        silent.bind(str(socket_path(client.project.state)))
+        silent.listen()
         with pytest.raises(SupervisorError, match="does not respond"):
             client.down(None)
-        Path(deaf.getsockname()).unlink()
+        Path(silent.getsockname()).unlink()
 
 
 class FakeClient(SupervisorClient):
-    """What is up in a folder: a process in each of some domains."""
+    """A client of a project with a process in each domain."""
 
     def __init__(self, folder: str, *domains: str) -> None:
         super().__init__(Project(Path(folder)))
@@ -118,7 +118,7 @@ class FakeClient(SupervisorClient):
         return [{"service": "p", "processes": found}]
 
 
-def test_who_is_up_in_the_same_domain_is_a_neighbour() -> None:
+def test_projects_in_the_same_domain_are_found() -> None:
     own = FakeClient("/a", "0", "7")
     others = [own, FakeClient("/b", "7", "7", "8"), FakeClient("/c", "9")]
     assert projects_in_same_domain(own, others) == [("7", Project(Path("/b")))]

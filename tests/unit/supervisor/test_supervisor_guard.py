@@ -1,4 +1,4 @@
-"""What outlives a keeper that was killed: nothing."""
+"""Guard: no child outlives a parent that was killed."""
 
 import os
 import select
@@ -20,7 +20,7 @@ linux = pytest.mark.skipif(
 slow = pytest.mark.slow
 WAIT_S = 60.0
 
-# Each process of the tests holds the writing end of a pipe.
+# Each process holds the writing end of a pipe.
 STUBBORN = """
 import os, signal, sys
 signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -33,28 +33,28 @@ code = {STUBBORN!r}
 subprocess.Popen([sys.executable, '-c', code, sys.argv[1]], start_new_session=True,
                  pass_fds=[int(sys.argv[1])])
 """
-KEEPER = """
+PARENT = """
 import sys
 from navette.supervisor import ProcessManager, StartOptions
 
-class Deaf:
+class Ignore:
     def output(self, stream, data): sys.stderr.write(data.decode())
     def exited(self, code): pass
 
 manager = ProcessManager(grace_s=0.1)
 fd = int(sys.argv[2])
 manager.start([sys.executable, "-c", sys.argv[1], str(fd)],
-              StartOptions(pass_fds=(fd,))).watch(Deaf())
+              StartOptions(pass_fds=(fd,))).watch(Ignore())
 sys.stdin.read()
 """
 
 
-def start_keeper(program: str) -> tuple["subprocess.Popen[bytes]", int]:
-    """A process that keeps another; and a pipe's end that tells when that has ended."""
+def start_parent(program: str) -> tuple["subprocess.Popen[bytes]", int]:
+    """Start a process with a child; return it and a pipe that the child holds open."""
     reading, writing = os.pipe()
     source = str(Path(navette.__file__).parent.parent)
     process = subprocess.Popen(
-        [sys.executable, "-c", KEEPER, program, str(writing)],
+        [sys.executable, "-c", PARENT, program, str(writing)],
         stdin=subprocess.PIPE,
         pass_fds=(writing,),
         env={**os.environ, "PYTHONPATH": source},
@@ -64,9 +64,9 @@ def start_keeper(program: str) -> tuple["subprocess.Popen[bytes]", int]:
 
 
 def read(pipe: int) -> bytes:
-    """What comes next, or the end; bounded."""
+    """Return the next byte, or the end of the pipe; bounded."""
     ready, _, _ = select.select([pipe], [], [], WAIT_S)
-    assert ready, "nothing came, and it did not end"
+    assert ready, "neither data nor the end of the pipe arrived"
     return os.read(pipe, 1)
 
 
@@ -75,22 +75,22 @@ def read(pipe: int) -> bytes:
 @pytest.mark.parametrize(
     "program", [STUBBORN, pytest.param(RUNAWAY, marks=linux)], ids=["child", "runaway"]
 )
-def test_nothing_outlives_a_keeper_that_was_killed(program: str) -> None:
-    keeper, pipe = start_keeper(program)
-    with keeper:
+def test_no_child_outlives_a_killed_parent(program: str) -> None:
+    parent, pipe = start_parent(program)
+    with parent:
         assert read(pipe) == b"x"
-        keeper.kill()
+        parent.kill()
     assert read(pipe) == b""
     os.close(pipe)
 
 
 @slow
 @linux
-def test_what_left_its_group_ends_with_the_keeper(bench: Any) -> None:
+def test_a_descendant_outside_the_group_ends_with_the_manager(bench: Any) -> None:
     reading, writing = os.pipe()
-    _, heard = bench.start(RUNAWAY, str(writing), pass_fds=(writing,))
+    _, recorder = bench.start(RUNAWAY, str(writing), pass_fds=(writing,))
     os.close(writing)
-    assert heard.wait_over() == 0
+    assert recorder.wait_over() == 0
     assert read(reading) == b"x"
     bench.manager.close()
     assert read(reading) == b""
@@ -99,20 +99,20 @@ def test_what_left_its_group_ends_with_the_keeper(bench: Any) -> None:
 
 @slow
 @pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's")
-def test_a_guard_that_was_killed_is_replaced(bench: Any) -> None:
+def test_a_killed_guard_is_replaced(bench: Any) -> None:
     bench.start("import signal; print('ready'); signal.pause()")[1].wait_ready()
     guard = bench.manager.guard()
     first = guard.pid
     os.kill(first, signal.SIGKILL)
     waiting = select.poll()
-    # The new one is there when the old one's place is taken.
+    # Poll until the replacement runs.
     left = int(WAIT_S / 0.01)
     while guard.pid == first and left:
         waiting.poll(10)
         left -= 1
     assert guard.pid != first
-    _, heard = bench.start("print('ready')")
-    assert heard.wait_over() == 0
+    _, recorder = bench.start("print('ready')")
+    assert recorder.wait_over() == 0
 
 
 def test_tokens_nest_and_are_removed() -> None:
@@ -121,7 +121,7 @@ def test_tokens_nest_and_are_removed() -> None:
     assert without_tokens(inner) == {"A": "1"}
 
 
-def test_it_asks_thrice_and_no_more() -> None:
+def test_termination_ends_after_three_signals() -> None:
     looks: list[int] = []
 
     def find() -> list[int]:

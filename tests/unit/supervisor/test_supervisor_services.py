@@ -1,4 +1,4 @@
-"""The fate of services, on a virtual clock, with pretended processes."""
+"""Supervisor on a virtual clock with fake processes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ import pytest
 from navette.errors import UnknownNameError
 from navette.runtime import VirtualClock
 from navette.runtime.loop import EventLoop
-from navette.supervisor import ProcessError, ProcessSpec, RestartPolicy, ServiceConfig
+from navette.supervisor import ProcessConfig, ProcessError, RestartPolicy, ServiceConfig
 from navette.supervisor.log_store import LogReader, LogStore
 from navette.supervisor.supervisor import Supervisor
 
@@ -36,7 +36,7 @@ class FakeChild:
 
 
 class World:
-    """A supervisor whose keeper pretends."""
+    """A supervisor with a fake process manager."""
 
     def __init__(self, folder: Path) -> None:
         self.loop = EventLoop(VirtualClock())
@@ -83,7 +83,7 @@ class World:
         ]
 
     @property
-    def said(self) -> list[str]:
+    def log_lines(self) -> list[str]:
         reader = LogReader(self.folder, lambda line: True)
         lines = [f"{line.label}: {line.text}" for line in reader.last(None)]
         reader.close()
@@ -100,7 +100,7 @@ def world(tmp_path: Path) -> Any:
 def service(
     name: str, *depends_on: str, word: str = "x", ready: bool = False, **options: Any
 ) -> ServiceConfig:
-    process = ProcessSpec(
+    process = ProcessConfig(
         service=name,
         name=name,
         argv=(word,),
@@ -111,7 +111,7 @@ def service(
     return ServiceConfig(name=name, depends_on=depends_on, processes=(process,))
 
 
-def test_restarts_come_later_and_later_and_then_no_more(world: Any) -> None:
+def test_the_restart_delay_doubles_up_to_the_limit(world: Any) -> None:
     world.behaviour = lambda child: world.exit_after(child, 1.0, 3)
     world.supervisor.up([service("m", delay_s=0.5, max_attempts=3)], {})
     world.run(1.0)
@@ -120,10 +120,10 @@ def test_restarts_come_later_and_later_and_then_no_more(world: Any) -> None:
     assert [child.at_s for child in world.children] == [0.0, 1.5, 3.5, 6.5]
     assert world.states == {"m": "failed"}
     assert world.reasons == ["exit code 3; gave up after 3 restarts"]
-    assert "m: exit code 3; restart in 2 s" in world.said
+    assert "m: exit code 3; restart in 2 s" in world.log_lines
 
 
-def test_a_good_run_begins_anew(world: Any) -> None:
+def test_a_long_run_resets_the_restart_count(world: Any) -> None:
     world.behaviour = lambda child: world.exit_after(child, 20.0, 1)
     world.supervisor.up([service("m", delay_s=0.5, max_attempts=1)], {})
     world.run(100)
@@ -139,7 +139,9 @@ def test_a_good_run_begins_anew(world: Any) -> None:
         ("always", 0, "failed", 3),
     ],
 )
-def test_policies(world: Any, when: str, code: int, state: str, starts: int) -> None:
+def test_restart_conditions(
+    world: Any, when: str, code: int, state: str, starts: int
+) -> None:
     world.behaviour = lambda child: world.exit_after(child, 1.0, code)
     world.supervisor.up([service("m", condition=when, max_attempts=2)], {})
     world.run(100)
@@ -147,17 +149,17 @@ def test_policies(world: Any, when: str, code: int, state: str, starts: int) -> 
     assert len(world.children) == starts
 
 
-def test_what_is_needed_must_be_ready(world: Any) -> None:
+def test_a_service_waits_for_its_dependencies(world: Any) -> None:
     specs = [service("sim", ready=True), service("robot", "sim")]
     world.supervisor.up(specs, {})
     world.run(1.0)
     assert world.states == {"sim": "starting", "robot": "waiting"}
     assert world.reasons == ["", "for sim"]
-    world.run(10.0)  # it never says so, and is taken for ready at last
+    world.run(10.0)  # the readiness timeout
     assert world.states == {"sim": "running", "robot": "running"}
 
 
-def test_what_needs_others_ends_first(world: Any) -> None:
+def test_dependents_stop_first(world: Any) -> None:
     specs = [service("sim"), service("robot", "sim"), service("viewer")]
     world.supervisor.up(specs, {})
     world.run()
@@ -180,7 +182,7 @@ def test_what_needs_others_ends_first(world: Any) -> None:
     assert world.idle
 
 
-def test_a_stubborn_one_gets_each_signal(world: Any) -> None:
+def test_signals_escalate(world: Any) -> None:
     def stubborn(child: Any) -> None:
         child.stubborn = True
 
@@ -190,12 +192,12 @@ def test_a_stubborn_one_gets_each_signal(world: Any) -> None:
     world.supervisor.down(["m"])
     world.run(20)
     assert world.children[0].signals == [2, 15, 9]
-    assert "m: does not end; sending SIGKILL" in world.said
+    assert "m: does not end; sending SIGKILL" in world.log_lines
     with pytest.raises(UnknownNameError, match=r"'m' is not up \(up: nothing\)"):
         world.supervisor.down(["m"])
 
 
-def test_restart_makes_it_what_it_is_to_be_now(world: Any) -> None:
+def test_restart_uses_the_new_configuration(world: Any) -> None:
     world.supervisor.up([service("m", word="old")], {})
     world.run()
     world.supervisor.restart([service("m", word="new")], {})
@@ -204,7 +206,7 @@ def test_restart_makes_it_what_it_is_to_be_now(world: Any) -> None:
     assert world.states == {"m": "running"}
 
 
-def test_up_leaves_what_runs_and_starts_what_ended(world: Any) -> None:
+def test_up_starts_only_what_does_not_run(world: Any) -> None:
     spec = service("m", condition="no")
     world.supervisor.up([spec], {})
     world.run()
@@ -222,7 +224,7 @@ def test_up_leaves_what_runs_and_starts_what_ended(world: Any) -> None:
     assert world.children[-1].argv == ("other",)
 
 
-def test_down_ends_what_would_start_again(world: Any) -> None:
+def test_down_cancels_a_pending_restart(world: Any) -> None:
     world.behaviour = lambda child: world.exit_after(child, 1.0, 1)
     world.supervisor.up([service("m", delay_s=5.0)], {})
     world.run(2.0)
@@ -232,7 +234,7 @@ def test_down_ends_what_would_start_again(world: Any) -> None:
     assert world.states == {}
 
 
-def test_what_cannot_be_started_has_failed(world: Any) -> None:
+def test_a_failed_start_is_a_failure(world: Any) -> None:
     world.supervisor.up([service("m", word="missing")], {})
     world.run()
     assert world.states == {"m": "failed"}

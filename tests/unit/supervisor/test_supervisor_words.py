@@ -10,7 +10,7 @@ from navette.supervisor import GracePeriods, LineSplitter, describe_exit
 from navette.supervisor.terminator import Terminator
 
 
-def test_lines_are_cut_as_they_come() -> None:
+def test_lines_are_split_as_they_arrive() -> None:
     splitter = LineSplitter()
     assert splitter.feed(b"one\r\ntw") == ["one"]
     assert splitter.feed(b"o\n\n") == ["two", ""]
@@ -19,7 +19,7 @@ def test_lines_are_cut_as_they_come() -> None:
     assert splitter.finish() == ["th\N{REPLACEMENT CHARACTER}"]
 
 
-def test_an_endless_line_is_cut() -> None:
+def test_a_very_long_line_is_split() -> None:
     splitter = LineSplitter()
     assert splitter.feed(b"x" * (1 << 20)) == []
     assert len(splitter.feed(b"x")[0]) == (1 << 20) + 1
@@ -36,7 +36,7 @@ def test_an_endless_line_is_cut() -> None:
         (255, "exit code 255"),
     ],
 )
-def test_exits_in_words(code: int, words: str) -> None:
+def test_exit_codes_in_words(code: int, words: str) -> None:
     assert describe_exit(code) == words
 
 

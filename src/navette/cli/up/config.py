@@ -8,11 +8,11 @@ from typing import Any
 
 from navette.cli.up.document import Document, Place, read_document
 from navette.cli.up.entry import Entry, EntryError
-from navette.cli.up.process_specs import read_process
+from navette.cli.up.process_config import read_process
 from navette.cli.up.variables import Variables
 from navette.errors import FileFormatError, InvalidValueError, NavetteError
 from navette.supervisor.project import FILE_NAME, Project
-from navette.supervisor.specs import ProcessSpec, ServiceConfig
+from navette.supervisor.service_config import ProcessConfig, ServiceConfig
 
 DEFAULT_FILE = Path(__file__).parent / "default.yaml"
 _TOP_KEYS = ("arguments", "environment", "services")
@@ -122,7 +122,7 @@ class ProjectConfig:
 
     def _process(
         self, name: str, number: int, entry: Any, names_in_use: set[str]
-    ) -> tuple[ProcessSpec, list[str]]:
+    ) -> tuple[ProcessConfig, list[str]]:
         """Return the process of an entry and the files that it reads."""
         try:
             if not entry:

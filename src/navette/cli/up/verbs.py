@@ -294,7 +294,7 @@ def _warn_of_shared_domain(client: "SupervisorClient") -> None:
 
 def _stop(client: "SupervisorClient", names: Sequence[str] | None) -> None:
     from navette.cli.up.view import Progress
-    from navette.supervisor.specs import ProcessState
+    from navette.supervisor.service_config import ProcessState
     from navette.supervisor.status import process_statuses, until_down
 
     initial = [

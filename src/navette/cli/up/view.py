@@ -15,7 +15,7 @@ from rich.text import Text
 
 from navette.cli.output import aligned, is_terminal, show
 from navette.supervisor.log_store import LogLine
-from navette.supervisor.specs import ProcessState
+from navette.supervisor.service_config import ProcessState
 from navette.supervisor.status import ProcessStatus
 from navette.supervisor.usage import Usage
 

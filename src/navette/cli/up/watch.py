@@ -12,7 +12,7 @@ from navette.cli.stderr import note
 from navette.cli.up.config import ProjectConfig
 from navette.errors import NavetteError
 from navette.supervisor.client import SupervisorClient
-from navette.supervisor.specs import ServiceConfig
+from navette.supervisor.service_config import ServiceConfig
 
 _SUFFIXES = {".py", ".yaml", ".yml", ".xml", ".toml", ".cfg", ".msg", ".srv", ".action"}
 _SKIPPED = {"build", "install", "log", "node_modules", "__pycache__"}

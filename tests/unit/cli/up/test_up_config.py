@@ -10,7 +10,7 @@ from navette.cli.up.config import DEFAULT_FILE, read_config
 from navette.errors import FileFormatError, InvalidValueError, NavetteError
 from navette.supervisor import RestartPolicy
 from navette.supervisor.project import Project, find_project
-from navette.supervisor.specs import ServiceConfig
+from navette.supervisor.service_config import ServiceConfig
 
 RUN = (sys.executable, "-u", "-m", "navette", "run")
 

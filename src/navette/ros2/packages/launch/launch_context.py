@@ -1,7 +1,7 @@
 """State of a launch: configurations, environment, event handlers, time.
 
-The context is the lowest layer of this package. It knows substitutions, entities and
-event handlers only by the protocols below; their classes are built on the context.
+The context is the lowest layer of this package. It refers to substitutions, entities
+and event handlers by the protocols below; their classes import the context.
 """
 
 import os

@@ -51,7 +51,7 @@ class GroupAction(Action):
         return list(self.actions)
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Return the actions, enclosed by those that begin and end the scope."""
+        """Return the actions, enclosed by the actions that begin and end the scope."""
         given = self.launch_configurations
         settings: list[LaunchDescriptionEntity] = [
             SetLaunchConfiguration(name, value) for name, value in given.items()

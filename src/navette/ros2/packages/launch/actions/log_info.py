@@ -52,7 +52,7 @@ class LogWarning(Log):
 
 
 class LogError(Log):
-    """Logs an error; the launch goes on."""
+    """Logs an error; the launch continues."""
 
     def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(msg=msg, level="error", **kwargs)

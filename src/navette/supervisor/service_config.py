@@ -57,7 +57,7 @@ class RestartPolicy:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ProcessSpec:
+class ProcessConfig:
     """A process of a service.
 
     Attributes:
@@ -97,7 +97,7 @@ class ServiceConfig:
 
     name: str
     depends_on: tuple[str, ...] = ()
-    processes: tuple[ProcessSpec, ...] = ()
+    processes: tuple[ProcessConfig, ...] = ()
     watched: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
@@ -107,7 +107,7 @@ class ServiceConfig:
     def from_json(cls, data: dict[str, Any]) -> "ServiceConfig":
         """Restore what :meth:`to_json` returned, after it was JSON."""
         processes = tuple(
-            ProcessSpec(
+            ProcessConfig(
                 **{
                     **each,
                     "argv": tuple(each["argv"]),

@@ -9,12 +9,16 @@ from navette.cli.up.command_lines import command_line, read_words
 from navette.cli.up.entry import Entry, EntryError, errors_under
 from navette.cli.up.variables import Variables
 from navette.errors import InvalidValueError
-from navette.supervisor.specs import RESTART_CONDITIONS, ProcessSpec, RestartPolicy
+from navette.supervisor.service_config import (
+    RESTART_CONDITIONS,
+    ProcessConfig,
+    RestartPolicy,
+)
 
 
 def read_process(
     entry: Entry, variables: Variables, folder: Path, names_in_use: set[str]
-) -> tuple[ProcessSpec, list[str]]:
+) -> tuple[ProcessConfig, list[str]]:
     """Return the process and the files whose change requires a restart.
 
     Args:
@@ -29,7 +33,7 @@ def read_process(
         argv, files = command_line(entry, words, variables)
     with errors_under("restart"):
         restart = _restart_policy(entry.get("restart"))
-    spec = ProcessSpec(
+    spec = ProcessConfig(
         service=entry.service,
         name=_unique_name(entry, words, names_in_use),
         argv=tuple(argv),
