@@ -53,7 +53,7 @@ BANNED = {
 #: True uses: a banned phrase within one of these is no fault.
 ALLOWED = (
     r"letters,? (and )?digits",
-    r"(capital|lower-?case|upper-?case|small|drive|ASCII) letters?",
+    r"(capital|lower-?case|upper-?case|small|drive|ascii) letters?",
     r"letters, (numbers|underscores)",
     r"process has died",  # the message of ROS 2's launch
     r"letter-spacing",  # CSS
@@ -66,6 +66,18 @@ PENDING: tuple[str, ...] = (
     "src/navette/cli",
     "tests/unit/cli",
     "tests/unit/ros2",
+)
+
+#: Identifiers that contain a banned word and are right.
+ALLOWED_NAMES = (r"wants_\w+",)
+
+#: As PENDING, for the names of functions, classes, arguments and variables.
+PENDING_IDENTIFIERS: tuple[str, ...] = (
+    "src/navette/cli",
+    "tests/unit/cli",
+    "tests/unit/ros2",
+    "tests/unit/runtime",
+    "tests/unit/supervisor",
 )
 
 #: Class names that ROS 2's API needs twice, with the reason.
@@ -88,7 +100,6 @@ PENDING_NAMES: frozenset[str] = frozenset(
         "Graph",
         "Heartbeat",
         "Level",
-        "Link",
         "Listed",
         "Topic",
     }
@@ -133,33 +144,40 @@ def texts() -> Iterator[tuple[Path, str]]:
                 yield relative, path.read_text(encoding="utf-8")
 
 
-def is_pending(relative: Path) -> bool:
+def is_pending(relative: Path, places: tuple[str, ...] = PENDING) -> bool:
     name = relative.as_posix()
-    return any(name == each or name.startswith(f"{each}/") for each in PENDING)
+    return any(name == each or name.startswith(f"{each}/") for each in places)
+
+
+def identifiers(text: str) -> Iterator[str]:
+    """Names of functions, classes and arguments, and assigned names."""
+    for node in ast.walk(ast.parse(text)):
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                yield node.name
+            case ast.Name(id=name, ctx=ast.Store()):
+                yield name
+            case ast.Attribute(attr=name, ctx=ast.Store()):
+                yield name
+            case ast.arg(arg=name):
+                yield name
+
+
+ANY_BANNED = re.compile(rf"\b(?:{'|'.join(BANNED)})\b")
+EACH_BANNED = [(re.compile(phrase), advice) for phrase, advice in BANNED.items()]
+ANY_ALLOWED = re.compile("|".join(ALLOWED), re.IGNORECASE)
 
 
 def faults(relative: Path, text: str) -> Iterator[str]:
     """``file:line: phrase → what to write instead``."""
-    banned = re.compile(
-        "|".join(
-            rf"(?P<p{number}>\b(?:{phrase})\b)" for number, phrase in enumerate(BANNED)
-        ),
-        re.IGNORECASE,
-    )
-    allowed = [
-        span for each in ALLOWED for span in re.finditer(each, text, re.IGNORECASE)
-    ]
-    instead = list(BANNED.values())
-    for found in banned.finditer(text):
-        if any(a.start() <= found.start() and found.end() <= a.end() for a in allowed):
+    allowed = [(span.start(), span.end()) for span in ANY_ALLOWED.finditer(text)]
+    text = text.lower()  # ten times as fast as re.IGNORECASE
+    for found in ANY_BANNED.finditer(text):
+        start, end = found.span()
+        if any(first <= start and end <= last for first, last in allowed):
             continue
-        line = text.count("\n", 0, found.start()) + 1
-        assert found.lastgroup is not None
-        advice = next(
-            instead[number]
-            for number in range(len(instead))
-            if found[f"p{number}"] is not None
-        )
+        line = text.count("\n", 0, start) + 1
+        advice = next(a for each, a in EACH_BANNED if each.match(text, start, end))
         yield f"{relative}:{line}: {found[0]!r}; instead: {advice}"
 
 
@@ -170,6 +188,20 @@ def test_the_text_is_free_of_banned_phrases() -> None:
         if not is_pending(relative)
         for fault in faults(relative, text)
     ]
+    assert not found, "\n".join(found)
+
+
+def test_identifiers_are_free_of_banned_phrases() -> None:
+    found = []
+    for relative, text in texts():
+        if relative.suffix != ".py" or is_pending(relative, PENDING_IDENTIFIERS):
+            continue
+        names = [
+            name
+            for name in identifiers(text)
+            if not any(re.fullmatch(each, name) for each in ALLOWED_NAMES)
+        ]
+        found += faults(relative, "\n".join(names).replace("_", " "))
     assert not found, "\n".join(found)
 
 

@@ -51,7 +51,7 @@ GOAL_POSE = StackTopic("/goal_pose", "geometry_msgs/msg/PoseStamped")
 INITIAL_POSE = StackTopic("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped")
 
 
-class Link(NamedTuple):
+class ChainLink(NamedTuple):
     """A stage of the chain from sensor to wheels: its input and its output."""
 
     stage: str
@@ -60,8 +60,8 @@ class Link(NamedTuple):
 
 
 CHAIN = (
-    Link("costmap", LIDAR, COSTMAP),
-    Link("map_memory", COSTMAP, MAP),
-    Link("planner", MAP, PATH),
-    Link("control", PATH, CMD_VEL),
+    ChainLink("costmap", LIDAR, COSTMAP),
+    ChainLink("map_memory", COSTMAP, MAP),
+    ChainLink("planner", MAP, PATH),
+    ChainLink("control", PATH, CMD_VEL),
 )

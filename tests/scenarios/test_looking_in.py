@@ -78,7 +78,7 @@ class Terminals:
         self._reader = threading.Thread(target=self._read)
         self._reader.start()
 
-    def program_says(self) -> str:
+    def program_prints(self) -> str:
         """Its next line."""
         return self._lines.get(timeout=LIMIT_S)
 
@@ -120,7 +120,7 @@ class Terminals:
 def terminals(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Terminals]:
     made = Terminals(tmp_path_factory.mktemp("looking_in"))
     try:
-        assert made.program_says() == "ready"
+        assert made.program_prints() == "ready"
         yield made
     finally:
         made.close()
@@ -201,7 +201,7 @@ def test_a_single_message_is_received(terminals: Terminals) -> None:
         "topic", "pub", "--once", "/command", "std_msgs/msg/String", "{data: go}"
     )
     assert shown.returncode == 0, shown.stderr
-    assert terminals.program_says() == "command go"
+    assert terminals.program_prints() == "command go"
 
 
 @pytest.mark.slow

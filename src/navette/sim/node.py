@@ -137,7 +137,7 @@ class SimNode(StageNode):
         p = self.params
         self._child_frame = p.odometry_child_frame or p.base_frame
         self._base_T_child = self.frames.fixed_pose(self._child_frame)
-        self._contacts_told = 0
+        self._contacts_reported = 0
         self._sleepers: list[tuple[Timer, tuple[str, ...]]] = []
         self._publish_latched()
         self._create_timers()
@@ -153,7 +153,7 @@ class SimNode(StageNode):
         """Reset robot and world to the start; the clock continues."""
         self.simulator.reset()
         self._origin_ns = self.get_clock().now_ns
-        self._contacts_told = 0
+        self._contacts_reported = 0
 
     def on_cmd_vel(self, msg: Twist) -> None:
         """Apply a command; a non-finite one is refused and the last one stays."""
@@ -263,14 +263,14 @@ class SimNode(StageNode):
     def _beat(self) -> None:
         self._advance()
         episodes = self.simulator.contacts.episodes
-        for number in range(self._contacts_told, len(episodes)):
+        for number in range(self._contacts_reported, len(episodes)):
             episode = episodes[number]
             self.get_logger().warning(
                 f"contact: {episode.part} touched {episode.obstacle}"
             )
             contact = messages.contact_message(episode, number + 1)
             self.publish(topics.CONTACTS.name, contact)
-        self._contacts_told = len(episodes)
+        self._contacts_reported = len(episodes)
 
     def _publish_clock(self, stamp_ns: int) -> None:
         self.publish(topics.CLOCK.name, Clock(clock=messages.time_message(stamp_ns)))

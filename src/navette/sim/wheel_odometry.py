@@ -71,7 +71,7 @@ class WheelOdometry:
         """Start at an exact pose with the encoders at these angles (rad)."""
         self.pose = pose
         self._wheels = wheels
-        self._stamp_ns = self._told_ns = 0
+        self._stamp_ns = self._published_ns = 0
         self._covariance = np.zeros((3, 3))
         self._left = self._right = 0.0  # metres since the last call of motion
         self._spread = (0.0, 0.0)  # variances of these
@@ -102,7 +102,7 @@ class WheelOdometry:
 
     def motion(self) -> WheelMotion:
         """Mean motion since the :meth:`update` before the previous call."""
-        seconds = (self._stamp_ns - self._told_ns) * 1e-9
+        seconds = (self._stamp_ns - self._published_ns) * 1e-9
         if seconds > 0:
             travel, turn = self._travel_and_turn(self._left, self._right)
             covariance = _floor()
@@ -110,7 +110,7 @@ class WheelOdometry:
                 self._step_covariance(self._spread) / seconds**2
             )
             self._motion = WheelMotion(travel / seconds, turn / seconds, covariance)
-            self._told_ns = self._stamp_ns
+            self._published_ns = self._stamp_ns
             self._left = self._right = 0.0
             self._spread = (0.0, 0.0)
         return self._motion

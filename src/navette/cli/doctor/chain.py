@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from navette.cli.doctor.snapshot import Snapshot
-from navette.topics import CHAIN, LIDAR, ODOMETRY, Link
+from navette.topics import CHAIN, LIDAR, ODOMETRY, ChainLink
 
 _STOPPED_MPS = 0.03
 
@@ -13,7 +13,7 @@ NEEDED = frozenset(
 )
 
 
-def missing_links(seen: Snapshot) -> list[Link]:
+def missing_links(seen: Snapshot) -> list[ChainLink]:
     """Return missing stages whose input is published and whose output is subscribed."""
     unreached = _unreached_topics(seen)
     return [

@@ -26,7 +26,7 @@ class World:
         self.graph = graph
         self.plant = Plant(Pose2(0.0, 0.0, 0.0))
         self.odometry = self.lidar = self.planner = True
-        self.planner_says = "following"
+        self.planner_publishes = "following"
         self.wall_x: float | None = None  # across the x axis of the map
         self.resolution = 0.1  # published resolution of the costmap
         self.node = graph.add(
@@ -105,7 +105,7 @@ class World:
 
     def _plan(self) -> None:
         if self.planner:
-            status = DiagnosticStatus(message=self.planner_says)
+            status = DiagnosticStatus(message=self.planner_publishes)
             self.graph.publish("/planner/status", status, latched=True)
 
 
@@ -189,7 +189,7 @@ def test_a_restarted_planner_drops_the_path(world: World) -> None:
     world.planner = False
     world.graph.run_for(3.0)
     assert world.state == "stale_path"
-    world.planner, world.planner_says = True, "waiting_for_goal"
+    world.planner, world.planner_publishes = True, "waiting_for_goal"
     world.graph.run_for(2.0)
     assert (world.state, world.plant.speed) == ("idle", pytest.approx(0.0, abs=0.01))
 
@@ -198,7 +198,7 @@ def test_a_path_of_another_node_is_followed_beside_an_idle_planner(
     graph: GraphHarness,
 ) -> None:
     world = World(graph)
-    world.planner_says = "waiting_for_goal"
+    world.planner_publishes = "waiting_for_goal"
     graph.run_for(1.0)
     world.send_path(STRAIGHT)
     assert graph.run_until(lambda: world.state == "reached", 15.0)

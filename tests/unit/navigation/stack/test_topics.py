@@ -31,7 +31,7 @@ def test_nodes_declare_type_and_qos_of_the_table(node: type[StageNode]) -> None:
 
 
 @pytest.mark.parametrize("link", CHAIN, ids=lambda each: each.stage)
-def test_the_chain_is_that_of_the_nodes(link: topics.Link) -> None:
+def test_the_chain_is_that_of_the_nodes(link: topics.ChainLink) -> None:
     node = NODES[link.stage]
     assert link.reads.name in [port.topic for port in node.INPUTS]
     assert link.publishes.name in [port.topic for port in node.OUTPUTS]
