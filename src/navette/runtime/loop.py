@@ -9,7 +9,7 @@ import heapq
 import threading
 from collections import deque
 from collections.abc import Callable, Coroutine
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 from navette.errors import CallbackError
 from navette.runtime.callback_groups import CallbackGroup, ReentrantCallbackGroup
@@ -20,6 +20,15 @@ from navette.runtime.time import seconds_to_ns
 
 # How long a thread that may not drive the loop waits before it checks again.
 _TURN_S = 0.005
+
+
+class _RunEnd(NamedTuple):
+    """Conditions that end a run, as in :meth:`EventLoop.run`."""
+
+    until_ns: int | None = None
+    done: Callable[[], bool] | None = None
+    limit: int | None = None
+    stop: Callable[[], bool] | None = None
 
 
 class EventLoop:
@@ -190,13 +199,14 @@ class EventLoop:
         Raises:
             CallbackError: a callback raised; names node, source and stamp.
         """
+        end = _RunEnd(until_ns, done, limit, stop)
         if self.in_driver_thread:
-            self._run_nested(until_ns, done, limit, stop, calling=calling)
+            self._run_nested(end, calling=calling)
             return
         while not self._closed and not (done is not None and done()):
             if self._take_turn():
                 try:
-                    self._run(until_ns, done, limit, stop)
+                    self._run(end)
                 finally:
                     self._give_turn()
                 return
@@ -234,11 +244,12 @@ class EventLoop:
         """
         if self.in_driver_thread:
             self.ready.appendleft(entity)
-            self._run_nested(self.clock.now_ns, None, 1, None, calling=False)
+            end = _RunEnd(until_ns=self.clock.now_ns, limit=1)
+            self._run_nested(end, calling=False)
         elif self._claim_turn():
             try:
                 self.ready.appendleft(entity)
-                self._run(self.clock.now_ns, None, 1, None)
+                self._run(_RunEnd(until_ns=self.clock.now_ns, limit=1))
             finally:
                 self._give_turn()
 
@@ -292,15 +303,7 @@ class EventLoop:
             self._driver = None
             self._turn.notify_all()
 
-    def _run_nested(
-        self,
-        until_ns: int | None,
-        done: Callable[[], bool] | None,
-        limit: int | None,
-        stop: Callable[[], bool] | None,
-        *,
-        calling: bool,
-    ) -> None:
+    def _run_nested(self, end: _RunEnd, *, calling: bool) -> None:
         outer = self._running
         held = outer.group if outer is not None and outer.group.exclusive else None
         # A coroutine's later step holds the group of the callback that started it.
@@ -310,7 +313,7 @@ class EventLoop:
         if waiting is not None:
             waiting.begin_call()
         try:
-            self._run(until_ns, done, limit, stop)
+            self._run(end)
         finally:
             if waiting is not None:
                 waiting.end_call()
@@ -319,13 +322,8 @@ class EventLoop:
             self._running = outer
             self._attention = True  # the wake-up may concern the outer run
 
-    def _run(
-        self,
-        until_ns: int | None,
-        done: Callable[[], bool] | None,
-        limit: int | None,
-        stop: Callable[[], bool] | None,
-    ) -> None:
+    def _run(self, end: _RunEnd) -> None:
+        until_ns, done, limit, stop = end
         count = 0
         is_late = False
         while not self._closed:
