@@ -55,7 +55,11 @@ def _parameter_row(field: "dataclasses.Field[Any]") -> str:
 
 
 def _shown(value: object) -> str:
-    return str(list(value)) if isinstance(value, tuple) else str(value)
+    if not isinstance(value, tuple):
+        return str(value)
+    if len(value) > 6 and len(set(value)) == 1:
+        return f"{len(value)} × {value[0]}"
+    return str(list(value))
 
 
 def _first_paragraph(cls: type) -> str:
