@@ -9,7 +9,7 @@ import numpy as np
 from harness import Benchmark
 from scipy.ndimage import distance_transform_edt
 
-from navette.grids import LETHAL, cost_table, inflate
+from navette.navigation.grids import LETHAL, cost_table, inflate
 
 CELLS = 20
 TABLE = cost_table("linear", inflation_radius_m=1.0, resolution=1.0 / CELLS)

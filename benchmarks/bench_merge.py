@@ -9,7 +9,7 @@ from harness import Benchmark
 from scipy.ndimage import affine_transform
 
 from navette.geometry import Pose2
-from navette.grids import GridSpec, merge, placed
+from navette.navigation.grids import GridSpec, merge, placed
 
 RESOLUTION = 0.1
 MAP = GridSpec(RESOLUTION, 2000, 2000, Pose2(-100.0, -100.0, 0.0))

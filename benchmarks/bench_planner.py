@@ -24,7 +24,7 @@ from scipy.sparse.csgraph import dijkstra as scipy_dijkstra
 from skimage.graph import MCP_Geometric
 
 from navette.geometry import Pose2
-from navette.grids import GridSpec
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning import Goal, Planner, PlannerParams, dijkstra
 from navette.navigation.planning.astar import AStar
 from navette.navigation.planning.string_pulling import centers, pull

@@ -7,7 +7,7 @@ from harness import Benchmark
 from skimage.draw import line
 
 from navette.geometry import Pose2
-from navette.grids import GridSpec, beam_directions, trace_beams
+from navette.navigation.grids import GridSpec, beam_directions, trace_beams
 
 BEAMS = 720
 RANGE_MAX = 20.0

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
 from navette.geometry import Footprint, Pose2
-from navette.grids import grid_from_message
 from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.navigation.grids import grid_from_message
 
 # The palette of the live view.
 FREE, UNKNOWN, COST = "#ffffff", "#ece8e0", "#a9b0b8"

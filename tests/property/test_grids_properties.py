@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from navette.geometry import Pose2
-from navette.grids import (
+from navette.navigation.grids import (
     LETHAL,
     GridSpec,
     beam_directions,

@@ -7,7 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from navette.geometry import Footprint, Pose2
-from navette.grids import GridSpec
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning import Goal, Planner, PlannerParams
 
 OUTLINE = (0.6, 0.25, -0.2, 0.25, -0.2, -0.25, 0.6, -0.25)

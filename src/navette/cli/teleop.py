@@ -8,7 +8,7 @@ from typing import Annotated
 import click
 
 from navette.cli.options import Argument, Option
-from navette.topics import CMD_VEL
+from navette.msgs.topics import CMD_VEL
 
 # A terminal reports key presses and repeats, but not releases: each press drives for
 # this long, which exceeds the usual repeat delay of keyboards.

@@ -4,8 +4,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from navette import topics
 from navette.geometry import Pose2, Transform3
+from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import String

@@ -7,7 +7,7 @@ address and work for every robot.
 
 from typing import Any
 
-from navette import topics
+from navette.msgs import topics
 
 _BLUE = "#4c8dff"
 _PATH = ("#ff8a3dff", "#ffc46bff")

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from navette.cli.doctor.snapshot import Snapshot
-from navette.topics import CHAIN, LIDAR, ODOMETRY, ChainLink
+from navette.msgs.topics import CHAIN, LIDAR, ODOMETRY, ChainLink
 
 _STOPPED_MPS = 0.03
 

@@ -8,7 +8,7 @@ from navette.cli.doctor.chain import consequence, explained, missing_links
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.snapshot import Snapshot, is_own
 from navette.cli.session import is_of_every_node
-from navette.topics import GOAL_POINT, GOAL_POSE, INITIAL_POSE
+from navette.msgs.topics import GOAL_POINT, GOAL_POSE, INITIAL_POSE
 from navette.transports import Endpoint, EndpointKind, QoSPolicyKind
 from navette.transports.qos import incompatible_policies
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
 from navette.cli.service_calls import node_names
 from navette.cli.session import endpoints, is_hidden, service_endpoints, wait_for
-from navette.topics import CLOCK, ODOMETRY
+from navette.msgs.topics import CLOCK, ODOMETRY
 from navette.transports import Endpoint, EndpointKind
 
 if TYPE_CHECKING:

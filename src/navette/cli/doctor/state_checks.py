@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from navette.cli.doctor.chain import motion, robot_clause
 from navette.cli.doctor.findings import Finding, Level, listed, plural
 from navette.cli.doctor.snapshot import Heartbeat, Snapshot
-from navette.topics import CLOCK
+from navette.msgs.topics import CLOCK
 
 TIME = "Time"
 STAGES = "Stages"

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from navette import topics
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, yaw_of
-from navette.grids import grid_from_message
+from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Pose, Twist
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
@@ -28,6 +27,7 @@ from navette.navigation.control.records import (
     FollowerOutput,
 )
 from navette.navigation.control.states import ControlState
+from navette.navigation.grids import grid_from_message
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 from navette.runtime.stage.status import StatusReporter, status_output

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids import GridSpec
+from navette.navigation.grids import GridSpec
 
 
 def obstacle_points(

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from navette.grids.checks import kernel_array
+from navette.navigation.grids.checks import kernel_array
 
 
 def grazing_margins(

@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from navette import topics
 from navette.errors import InvalidValueError
-from navette.grids import grid_to_message
+from navette.msgs import topics
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.costmap.params import CostmapParams
 from navette.navigation.costmap.scan_costmap import PlanarScan, ScanCostmap
+from navette.navigation.grids import grid_to_message
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 
 

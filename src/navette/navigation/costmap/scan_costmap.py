@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids import (
+from navette.navigation.costmap.grazing import grazing_margins
+from navette.navigation.costmap.params import CostmapParams
+from navette.navigation.grids import (
     UNKNOWN,
     GridSpec,
     beam_directions,
@@ -16,8 +18,6 @@ from navette.grids import (
     inflate,
     trace_beams,
 )
-from navette.navigation.costmap.grazing import grazing_margins
-from navette.navigation.costmap.params import CostmapParams
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class PlanarScan:
     """One revolution of a planar scanner (as sensor_msgs/LaserScan)."""
 
     ranges: NDArray[np.float32]
-    """(N,) metres; for invalid values see :func:`navette.grids.trace_beams`"""
+    """(N,) m; invalid values: see :func:`navette.navigation.grids.trace_beams`"""
     angle_min: float
     """of the first beam, rad from the sensor's x axis, counter-clockwise"""
     angle_increment: float

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2
-from navette.grids import UNKNOWN, GridSpec
+from navette.navigation.grids import UNKNOWN, GridSpec
 from navette.navigation.mapping.params import MapMemoryParams
 
 

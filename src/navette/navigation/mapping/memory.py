@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.grids import (
+from navette.navigation.grids import (
     FREE,
     LETHAL,
     UNKNOWN,

@@ -8,11 +8,11 @@ or transforms they are dropped and the map does not change.
 import math
 from typing import Any, ClassVar
 
-from navette import topics
 from navette.errors import InvalidValueError
-from navette.grids import grid_from_message, grid_to_message, placed
+from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.navigation.grids import grid_from_message, grid_to_message, placed
 from navette.navigation.mapping.gate import FusionGate
 from navette.navigation.mapping.memory import (
     STEADY,

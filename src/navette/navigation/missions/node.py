@@ -7,7 +7,7 @@ has arrived and, with ``wait_for_map``, a map. Each goal is published once.
 from collections.abc import Callable
 from typing import Any
 
-from navette import topics
+from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry

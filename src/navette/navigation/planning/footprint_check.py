@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.grids import body_clearance
+from navette.navigation.grids import body_clearance
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 

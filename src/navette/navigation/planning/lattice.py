@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids import DistanceGrid, GridSpec, grid_frame, make_body
+from navette.navigation.grids import DistanceGrid, GridSpec, grid_frame, make_body
 from navette.navigation.planning.bucket_queue import BucketQueue, new_pool
 from navette.navigation.planning.dijkstra import Field
 from navette.navigation.planning.lattice_kernels import (

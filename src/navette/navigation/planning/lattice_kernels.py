@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from navette.grids import Body, DistanceGrid, pose_clearance, pose_is_clear
+from navette.navigation.grids import Body, DistanceGrid, pose_clearance, pose_is_clear
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     BucketQueue,

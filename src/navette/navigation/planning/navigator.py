@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
-from navette.grids import GridSpec
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams

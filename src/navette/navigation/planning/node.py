@@ -12,10 +12,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from navette import topics
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
-from navette.grids import GridSpec, grid_from_message
+from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import (
     Point,
     PointStamped,
@@ -25,6 +24,7 @@ from navette.msgs.geometry_msgs.msg import (
 )
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.std_msgs.msg import Header
+from navette.navigation.grids import GridSpec, grid_from_message
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from navette.grids import DistanceGrid, distance_at, grid_frame
+from navette.navigation.grids import DistanceGrid, distance_at, grid_frame
 from navette.navigation.planning.planning_grid import PlanningGrid
 
 Poses = NDArray[np.float64]

@@ -12,7 +12,12 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
-from navette.grids import GridSpec, body_points, cells_in_footprint, distance_field
+from navette.navigation.grids import (
+    GridSpec,
+    body_points,
+    cells_in_footprint,
+    distance_field,
+)
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import DEAREST, LETHAL, Cell, EdgeTable
 
@@ -28,7 +33,8 @@ class BodyShape:
     """The robot's body in the base frame.
 
     Attributes:
-        points: (K, 3) x, y, disc radius; see :func:`navette.grids.body_points`.
+        points: (K, 3) x, y, disc radius; see
+            :func:`navette.navigation.grids.body_points`.
         inscribed_m, circumscribed_m: radii of the circles about the base.
     """
 

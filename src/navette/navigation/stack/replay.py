@@ -15,6 +15,7 @@ from navette.bags.node import RecorderNode
 from navette.bags.play import PlayOptions, Source
 from navette.bags.play.node import PlayerNode
 from navette.errors import InvalidValueError
+from navette.msgs.topics import TF, TF_STATIC
 from navette.navigation.stack.recorded_parameters import give_recorded_parameters
 from navette.runtime import (
     Context,
@@ -27,7 +28,6 @@ from navette.runtime import (
 )
 from navette.runtime.context import Scope, current_scope
 from navette.runtime.overrides import ParameterOverrides
-from navette.topics import TF, TF_STATIC
 from navette.transports import EndpointKind
 
 MakeNode = Callable[[Context], Node]

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from navette.geometry import Footprint, Pose2
-from navette.grids import GridSpec
 from navette.navigation.control import (
     CommandGate,
     ControlParams,
@@ -17,6 +16,7 @@ from navette.navigation.control import (
     obstacle_points,
 )
 from navette.navigation.control.collision_check import CollisionCheck, signed_distance
+from navette.navigation.grids import GridSpec
 
 BODY = Footprint(((1.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (1.5, -0.5)))
 ORIGIN = Pose2(0.0, 0.0, 0.0)

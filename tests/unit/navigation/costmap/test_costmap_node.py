@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from navette.errors import ParameterError
-from navette.grids import grid_from_message
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import Header
 from navette.navigation.costmap.node import CostmapNode
+from navette.navigation.grids import grid_from_message
 from navette.runtime import Parameter
 from navette.testing import GraphHarness, Probe
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from navette.geometry import Pose2
-from navette.grids import GridSpec, placed
+from navette.navigation.grids import GridSpec, placed
 from navette.navigation.mapping import (
     BodyMotion,
     FusionGate,

@@ -5,7 +5,7 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.geometry import Pose2
-from navette.grids import GridSpec, placed
+from navette.navigation.grids import GridSpec, placed
 from navette.navigation.mapping import MapMemory, MapMemoryParams, PlacedCostmap
 
 SMALL = {"size_m": 10.0, "growth_m": 2.0, "max_size_m": 20.0}

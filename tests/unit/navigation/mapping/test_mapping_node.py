@@ -5,7 +5,6 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.geometry import Pose2, quaternion_from_rpy
-from navette.grids import GridSpec, grid_from_message, grid_to_message
 from navette.msgs.geometry_msgs.msg import (
     Point,
     Pose,
@@ -20,6 +19,7 @@ from navette.msgs.geometry_msgs.msg import (
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.std_msgs.msg import Header
 from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.navigation.grids import GridSpec, grid_from_message, grid_to_message
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.runtime import Parameter, ns_to_stamp
 from navette.testing import GraphHarness, Probe

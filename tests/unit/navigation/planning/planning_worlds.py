@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.grids import GridSpec
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning.traversal import DEAREST, DIAGONAL, STRAIGHT, EdgeTable
 
 COURSE_FOOTPRINT = (

@@ -8,7 +8,7 @@ from planning_worlds import COURSE_FOOTPRINT, empty_map, fill
 
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint, Pose2
-from navette.grids import GridSpec
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning import path_shape
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.params import PlannerParams

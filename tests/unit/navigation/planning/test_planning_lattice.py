@@ -15,7 +15,7 @@ from planning_worlds import (
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
-from navette.grids import GridSpec
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning.dijkstra import cost_to_go
 from navette.navigation.planning.lattice import (
     LatticeGoal,

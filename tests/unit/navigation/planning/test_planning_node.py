@@ -8,7 +8,6 @@ import pytest
 from planning_worlds import empty_map, fill
 
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
-from navette.grids import grid_to_message
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import (
     Point,
@@ -18,6 +17,7 @@ from navette.msgs.geometry_msgs.msg import (
     TransformStamped,
 )
 from navette.msgs.nav_msgs.msg import Odometry
+from navette.navigation.grids import grid_to_message
 from navette.navigation.planning.node import PlannerNode
 from navette.runtime import Parameter, StaticTransformBroadcaster
 from navette.runtime.time import ns_to_stamp

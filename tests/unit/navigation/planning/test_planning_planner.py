@@ -15,7 +15,7 @@ from planning_worlds import (
 )
 
 from navette.geometry import Pose2
-from navette.grids import GridSpec
+from navette.navigation.grids import GridSpec
 from navette.navigation.planning import (
     Goal,
     Outcome,

@@ -6,11 +6,10 @@ from pathlib import Path
 import pytest
 
 import navette
-from navette import topics
-from navette.msgs import get_interface
+from navette.msgs import get_interface, topics
+from navette.msgs.topics import CHAIN, StackTopic
 from navette.navigation.stack.stack import NODE_CLASSES
 from navette.runtime import StageNode
-from navette.topics import CHAIN, StackTopic
 
 SOURCE = Path(navette.__file__).parent
 TABLE = {each.name: each for each in vars(topics).values() if type(each) is StackTopic}
@@ -45,4 +44,4 @@ def test_topic_names_are_written_once() -> None:
             tree = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
             literals = {each.value for each in tree if isinstance(each, ast.Constant)}
             found = own & literals
-            assert not found, f"{path}: {found}; import navette.topics"
+            assert not found, f"{path}: {found}; import navette.msgs.topics"

@@ -7,8 +7,8 @@ second, also without new messages.
 from dataclasses import replace
 from typing import Any, ClassVar
 
-from navette import topics
 from navette.geometry.geodesy import GeoPoint
+from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import TwistStamped
 from navette.msgs.gnss_driver.msg import Gps
 from navette.msgs.nav_msgs.msg import Odometry

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from navette import topics
 from navette.errors import ParameterError
+from navette.msgs import topics
 from navette.params import Params, param
 
 GPS = "gnss_driver/msg/Gps"

@@ -11,9 +11,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from navette import topics
 from navette.errors import NavetteError, ParameterError, TransformError
 from navette.geometry import Transform3
+from navette.msgs import topics
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.localization.ekf.filter import Estimate, Fused, PlanarEkf
 from navette.navigation.localization.ekf.history import OrderedEkf

@@ -5,9 +5,9 @@ import pytest
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids import GridSpec, grid_from_message, grid_to_message
 from navette.msgs import deserialize, serialize
 from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.navigation.grids import GridSpec, grid_from_message, grid_to_message
 
 SPEC = GridSpec(0.1, 4, 3, Pose2(-1.5, 2.0, 0.5))
 CELLS = np.arange(-1, 11, dtype=np.int8).reshape(3, 4)

@@ -8,9 +8,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.grids.checks import at_least, kernel_array
-from navette.grids.distance import Scratch, column_distances, make_scratch, row_squares
-from navette.grids.spec import FREE, LETHAL, UNKNOWN, Cells
+from navette.navigation.grids.checks import at_least, kernel_array
+from navette.navigation.grids.distance import (
+    Scratch,
+    column_distances,
+    make_scratch,
+    row_squares,
+)
+from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, Cells
 
 InflationMethod = Literal["linear", "exponential"]
 

@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.grids.checks import at_least, kernel_array
+from navette.navigation.grids.checks import at_least, kernel_array
 
 # Columns per block: a few registers that stay in the first-level cache.
 BLOCK = 64

@@ -5,7 +5,7 @@ import pytest
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
-from navette.grids import (
+from navette.navigation.grids import (
     DistanceGrid,
     GridSpec,
     body_clearance,

@@ -5,7 +5,7 @@ import pytest
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids import GridSpec, beam_directions, trace_beams
+from navette.navigation.grids import GridSpec, beam_directions, trace_beams
 
 SPEC = GridSpec(0.1, 60, 50, Pose2(-3.0, -2.5, 0.0))
 

@@ -8,7 +8,7 @@ from numba import njit
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids.alignment import (
+from navette.navigation.grids.alignment import (
     Affine,
     Alignment,
     align,
@@ -17,8 +17,8 @@ from navette.grids.alignment import (
     pull_row,
     row_range,
 )
-from navette.grids.checks import grid_array, output_array
-from navette.grids.spec import LETHAL, Cells, GridSpec
+from navette.navigation.grids.checks import grid_array, output_array
+from navette.navigation.grids.spec import LETHAL, Cells, GridSpec
 
 MergeMode = Literal["overwrite", "max"]
 

@@ -5,7 +5,7 @@ import pytest
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids import GridSpec, accumulate, merge, placed
+from navette.navigation.grids import GridSpec, accumulate, merge, placed
 
 MAP = GridSpec(0.1, 140, 120, Pose2(-7.0, -6.0, 0.0))
 

@@ -8,7 +8,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.grids.alignment import (
+from navette.navigation.grids.alignment import (
     Alignment,
     align,
     cell_at,
@@ -16,8 +16,8 @@ from navette.grids.alignment import (
     pull_row,
     row_range,
 )
-from navette.grids.checks import grid_array, output_array
-from navette.grids.spec import FREE, LETHAL, UNKNOWN, Cells, GridSpec
+from navette.navigation.grids.checks import grid_array, output_array
+from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, Cells, GridSpec
 
 LogOdds = NDArray[np.float32]
 

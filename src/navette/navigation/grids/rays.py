@@ -8,8 +8,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.grids.checks import grid_array, kernel_array
-from navette.grids.spec import (
+from navette.navigation.grids.checks import grid_array, kernel_array
+from navette.navigation.grids.spec import (
     FREE,
     LETHAL,
     Cells,

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from navette.grids.alignment import Affine, align, cell_at
-from navette.grids.checks import at_least, grid_array
-from navette.grids.spec import FREE, LETHAL, Cells, GridSpec
+from navette.navigation.grids.alignment import Affine, align, cell_at
+from navette.navigation.grids.checks import at_least, grid_array
+from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec
 
 _ANY = -128  # least int8: every cell counts, unknown ones too
 

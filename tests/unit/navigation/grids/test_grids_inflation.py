@@ -5,7 +5,7 @@ import pytest
 from scipy.ndimage import distance_transform_edt
 
 from navette.errors import InvalidValueError
-from navette.grids import LETHAL, UNKNOWN, cost_table, inflate
+from navette.navigation.grids import LETHAL, UNKNOWN, cost_table, inflate
 
 
 def some_grid(rng: np.random.Generator, shape=(80, 130)) -> np.ndarray:

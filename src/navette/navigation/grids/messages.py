@@ -4,12 +4,12 @@ import numpy as np
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
-from navette.grids.checks import grid_array
-from navette.grids.spec import Cells, GridSpec
 from navette.msgs.builtin_interfaces.msg import Time
 from navette.msgs.geometry_msgs.msg import Point, Pose, Quaternion
 from navette.msgs.nav_msgs.msg import MapMetaData, OccupancyGrid
 from navette.msgs.std_msgs.msg import Header
+from navette.navigation.grids.checks import grid_array
+from navette.navigation.grids.spec import Cells, GridSpec
 
 
 def grid_to_message(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.grids.spec import GridSpec
+from navette.navigation.grids.spec import GridSpec
 
 
 def cells_in_footprint(

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from navette.geometry import Pose2
-from navette.grids.spec import LETHAL, UNKNOWN, Cells, GridSpec
+from navette.navigation.grids.spec import LETHAL, UNKNOWN, Cells, GridSpec
 
 # Source coordinates along a row advance in fixed point: exact and fast.
 FRACTION_BITS = 32

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from navette.errors import InvalidValueError
-from navette.grids.spec import GridSpec
+from navette.navigation.grids.spec import GridSpec
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 

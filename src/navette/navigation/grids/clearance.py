@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint
-from navette.grids.checks import grid_array, kernel_array
-from navette.grids.spec import GridFrame, GridSpec, grid_frame
+from navette.navigation.grids.checks import grid_array, kernel_array
+from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
 
 # Of a cell, in cells: an obstacle may fill its cell to the corners.
 HALF_DIAGONAL = math.sqrt(0.5)
@@ -20,8 +20,8 @@ class DistanceGrid(NamedTuple):
     """A distance field for kernels.
 
     Attributes:
-        distance_m: (H, W) float32 from :func:`navette.grids.distance_field`.
-        frame: :func:`~navette.grids.spec.grid_frame` of its spec.
+        distance_m: (H, W) float32 from :func:`navette.navigation.grids.distance_field`.
+        frame: :func:`~navette.navigation.grids.spec.grid_frame` of its spec.
         outside_m: distance of points outside the grid.
     """
 
@@ -91,7 +91,7 @@ def body_clearance(
     cells), less half a cell's diagonal: an obstacle may fill its cell.
 
     Args:
-        distance_m: (H, W) float32 from :func:`navette.grids.distance_field`.
+        distance_m: (H, W) float32 from :func:`navette.navigation.grids.distance_field`.
         spec: geometry of that grid.
         body: (K, 2) x, y or (K, 3) x, y, disc radius in the base frame, metres;
             see :func:`body_points`.

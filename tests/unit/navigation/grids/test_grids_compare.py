@@ -3,7 +3,7 @@ import pytest
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.grids import Changes, GridSpec, compare, placed
+from navette.navigation.grids import Changes, GridSpec, compare, placed
 
 MAP = GridSpec(0.1, 100, 80, Pose2(-5.0, -4.0, 0.0))
 SEEN = GridSpec(0.1, 40, 40, Pose2(-2.0, -2.0, 0.0))

@@ -3,8 +3,8 @@ import pytest
 from scipy.ndimage import distance_transform_edt
 
 from navette.errors import InvalidValueError
-from navette.grids import distance_field
-from navette.grids.checks import kernel_array
+from navette.navigation.grids import distance_field
+from navette.navigation.grids.checks import kernel_array
 
 
 def squares(occupied: np.ndarray, radius: int) -> np.ndarray:

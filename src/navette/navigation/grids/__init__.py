@@ -1,0 +1,51 @@
+"""Grid arrays: cells, rays, distance, inflation, resampling."""
+
+from navette.navigation.grids.alignment import placed
+from navette.navigation.grids.clearance import (
+    Body,
+    DistanceGrid,
+    body_clearance,
+    body_points,
+    distance_at,
+    make_body,
+    pose_clearance,
+    pose_is_clear,
+)
+from navette.navigation.grids.compare import Changes, compare
+from navette.navigation.grids.distance import distance_field
+from navette.navigation.grids.evidence import accumulate
+from navette.navigation.grids.footprint_cells import cells_in_footprint
+from navette.navigation.grids.inflation import cost_table, inflate
+from navette.navigation.grids.merge import merge
+from navette.navigation.grids.messages import grid_from_message, grid_to_message
+from navette.navigation.grids.rays import beam_directions, trace_beams
+from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
+
+__all__ = [
+    "GridSpec",
+    "grid_frame",
+    "UNKNOWN",
+    "FREE",
+    "LETHAL",
+    "distance_field",
+    "DistanceGrid",
+    "Body",
+    "make_body",
+    "body_points",
+    "body_clearance",
+    "distance_at",
+    "pose_clearance",
+    "pose_is_clear",
+    "cost_table",
+    "inflate",
+    "beam_directions",
+    "trace_beams",
+    "merge",
+    "accumulate",
+    "placed",
+    "cells_in_footprint",
+    "Changes",
+    "compare",
+    "grid_to_message",
+    "grid_from_message",
+]
