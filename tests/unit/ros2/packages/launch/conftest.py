@@ -1,4 +1,4 @@
-"""A launch on a virtual clock, whose commands are pretended."""
+"""Launches on a virtual clock with fake processes."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ from navette.supervisor import INTERRUPT, ProcessListener
 
 @dataclass
 class FakeProcess:
-    """A command that ends when it is interrupted, unless it is stubborn."""
+    """Process that ends on SIGINT, or only on SIGKILL if ``stubborn``."""
 
     command: LaunchCommand
     pid: int
@@ -40,9 +40,9 @@ class FakeProcess:
 
 
 class FakeRunner:
-    """Keeps what it was asked to start.
+    """Records started commands.
 
-    ``behaviour(process)`` is called after each start.
+    ``behaviour(process)`` is called for each process once it is watched.
     """
 
     graph = None
@@ -72,7 +72,7 @@ class FakeRunner:
 
 
 class Launch:
-    """What a test has in hand."""
+    """A launch service with a fake runner."""
 
     def __init__(self) -> None:
         loop = EventLoop(VirtualClock())

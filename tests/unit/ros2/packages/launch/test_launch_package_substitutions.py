@@ -102,14 +102,14 @@ def test_the_text_of_a_substitution(
         (PythonExpression("1", ["os"]), "module 'os' is not available"),
     ],
 )
-def test_a_substitution_that_fails_says_what_there_is(
+def test_a_failed_substitution_lists_the_known_values(
     context: LaunchContext, substitution: Any, reason: str
 ) -> None:
     with pytest.raises(SubstitutionFailure, match=reason):
         substitution.perform(context)
 
 
-def test_standard_error_of_a_command_is_handled_as_asked(
+def test_standard_error_of_a_command_is_handled(
     context: LaunchContext, caplog: pytest.LogCaptureFixture
 ) -> None:
     words = [sys.executable, " -c 'import sys; print(1); sys.stderr.write(\"oh\")'"]
@@ -132,7 +132,7 @@ def test_environment_and_files(
     assert FileContent([str(tmp_path), "/a.txt"]).perform(context) == "inside"
 
 
-def test_an_anonymous_name_is_the_same_each_time(context: LaunchContext) -> None:
+def test_an_anonymous_name_is_stable(context: LaunchContext) -> None:
     first = AnonName("rviz").perform(context)
     assert first == AnonName("rviz").perform(context)
     assert first.startswith(f"rviz_{os.getpid()}")
@@ -140,7 +140,7 @@ def test_an_anonymous_name_is_the_same_each_time(context: LaunchContext) -> None
 
 
 @pytest.mark.parametrize("value", [3, 2.5, None, ["a", 3], {"a": 1}])
-def test_what_is_no_substitution_is_refused_at_once(value: object) -> None:
+def test_invalid_substitutions_are_refused_on_construction(value: object) -> None:
     with pytest.raises(InvalidLaunchValueError, match="expected text"):
         LaunchConfiguration(value)  # type: ignore[arg-type]
 

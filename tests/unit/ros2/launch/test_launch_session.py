@@ -40,10 +40,10 @@ class Listener(Node):
 
     def __init__(self):
         super().__init__("listener")
-        self.create_subscription(String, "chatter", self.hear, 10)
+        self.create_subscription(String, "chatter", self.receive, 10)
 
-    def hear(self, message):
-        print("heard", message.data, "as", self.get_fully_qualified_name())
+    def receive(self, message):
+        print("received", message.data, "as", self.get_fully_qualified_name())
         raise SystemExit(0)
 
 
@@ -131,7 +131,7 @@ def write(package: Path, body: str) -> Path:
     return file
 
 
-def test_nodes_of_one_process_meet(workspace: Path, capsys: Any) -> None:
+def test_nodes_of_one_process_communicate(workspace: Path, capsys: Any) -> None:
     file = write(
         workspace,
         """
@@ -141,19 +141,19 @@ def test_nodes_of_one_process_meet(workspace: Path, capsys: Any) -> None:
             Node(package="parlance", executable="talker",
                  parameters=[{"word": LaunchConfiguration("word")}]),
             Node(package="parlance", executable="listener", name="ear",
-                 on_exit=Shutdown(reason="heard")),
+                 on_exit=Shutdown(reason="received")),
         ]),
         """,
     )
     assert launch(file, {"word": "salut"}) == 0
     out, err = capsys.readouterr()
-    assert "[listener-2] heard salut as /robot/ear\n" in out
+    assert "[listener-2] received salut as /robot/ear\n" in out
     assert "[talker-1] interrupted\n" in out
     assert "[INFO] [launch]: process[listener-2] was required" in out
     assert not err
 
 
-def test_a_process_each(workspace: Path, capfd: Any) -> None:
+def test_a_process_per_node(workspace: Path, capfd: Any) -> None:
     file = write(
         workspace,
         """
@@ -183,7 +183,7 @@ def test_each_program_has_its_own_arguments(workspace: Path, capsys: Any) -> Non
     assert sys.argv is argv
 
 
-def test_a_program_that_raises_has_died(workspace: Path, capsys: Any) -> None:
+def test_a_program_that_raises_fails(workspace: Path, capsys: Any) -> None:
     file = write(
         workspace,
         """
@@ -201,9 +201,7 @@ def test_a_program_that_raises_has_died(workspace: Path, capsys: Any) -> None:
     assert "[talker-1] interrupted" in out
 
 
-def test_a_program_that_does_not_end_is_left_behind(
-    workspace: Path, capsys: Any
-) -> None:
+def test_a_program_that_does_not_end_is_abandoned(workspace: Path, capsys: Any) -> None:
     file = write(
         workspace,
         """
@@ -217,7 +215,7 @@ def test_a_program_that_does_not_end_is_left_behind(
     assert "does not end; sending SIGKILL" in capsys.readouterr().err
 
 
-def test_components_share_a_loop(workspace: Path, capsys: Any) -> None:
+def test_components_share_an_executor(workspace: Path, capsys: Any) -> None:
     file = write(
         workspace,
         """
@@ -236,7 +234,7 @@ def test_components_share_a_loop(workspace: Path, capsys: Any) -> None:
     )
     launch(file, {})
     out, err = capsys.readouterr()
-    assert "heard inside as /in/listener" in out
+    assert "received inside as /in/listener" in out
     assert "loaded parlance.nodes.Talker as /mouth" in err
 
 
@@ -248,7 +246,7 @@ def test_components_share_a_loop(workspace: Path, capsys: Any) -> None:
         ("parlance.nodes::Talker", ", parameters=[{'wrod': 1}]", "unknown parameter"),
     ],
 )
-def test_a_component_that_cannot_be_loaded(
+def test_a_component_that_fails_to_load(
     workspace: Path, capsys: Any, plugin: str, options: str, reason: str
 ) -> None:
     file = write(
@@ -263,13 +261,13 @@ def test_a_component_that_cannot_be_loaded(
     assert re.search(reason, capsys.readouterr().err)
 
 
-def test_an_argument_that_nobody_declares(workspace: Path) -> None:
+def test_an_undeclared_argument(workspace: Path) -> None:
     file = write(workspace, 'DeclareLaunchArgument("speed", default_value="1")')
     with pytest.raises(InvalidValueError, match="'sped'; did you mean 'speed'"):
         launch(file, {"sped": "2"})
 
 
-def test_an_argument_that_a_function_declares(workspace: Path, capsys: Any) -> None:
+def test_an_argument_declared_by_a_function(workspace: Path, capsys: Any) -> None:
     file = write(
         workspace,
         """
@@ -305,7 +303,7 @@ def test_launch_files_by_package_or_path(workspace: Path) -> None:
     words = ["parlance", "it.launch.py", "a:=b"]
     assert find_launch_file(words) == (file, ["a:=b"])
     assert find_launch_file([str(file), "a:=b"]) == (file, ["a:=b"])
-    for wrong in (["nowhere.py"], ["parlance", "nothing.py"], ["nobody", "x.py"]):
+    for wrong in (["nowhere.py"], ["parlance", "nothing.py"], ["unknown", "x.py"]):
         with pytest.raises(NavetteError):
             find_launch_file(wrong)
 
@@ -318,7 +316,7 @@ def test_malformed_arguments(words: list[str]) -> None:
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 @pytest.mark.parametrize("options", [[], ["--processes"]])
-def test_an_interrupt_ends_everything(workspace: Path, options: list[str]) -> None:
+def test_an_interrupt_ends_all_processes(workspace: Path, options: list[str]) -> None:
     file = write(
         workspace, 'Node(package="parlance", executable="stuck", required=True)'
     )

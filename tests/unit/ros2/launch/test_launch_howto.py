@@ -1,4 +1,4 @@
-"""The files of docs/howto/launch.md do what the page says."""
+"""The examples of docs/howto/launch.md run."""
 
 import re
 from collections.abc import Iterator
@@ -38,12 +38,12 @@ rclpy.init()
 node = rclpy.create_node("listener")
 
 
-def hear(message):
-    print("heard", message.data, "on", node.resolve_topic_name("chatter"))
+def receive(message):
+    print("received", message.data, "on", node.resolve_topic_name("chatter"))
     rclpy.shutdown()
 
 
-node.create_subscription(String, "chatter", hear, 10)
+node.create_subscription(String, "chatter", receive, 10)
 rclpy.spin(node)
 """
 
@@ -69,4 +69,4 @@ def test_the_example_runs(
     file.write_text(BLOCKS[language])
     assert launch(file, {"word": "salut"}) == 0
     out, err = capsys.readouterr()
-    assert "[listener-2] heard salut at 2.5 on /robot/speech\n" in out, err
+    assert "[listener-2] received salut at 2.5 on /robot/speech\n" in out, err

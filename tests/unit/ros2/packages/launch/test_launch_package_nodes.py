@@ -87,7 +87,7 @@ def test_namespaces(
 
 
 @pytest.mark.parametrize("wrong", [{"name": "a-b"}, {"namespace": "a b"}])
-def test_a_wrong_name_or_namespace_is_refused(
+def test_an_invalid_name_or_namespace_is_refused(
     launch: Any, program: str, wrong: dict[str, str]
 ) -> None:
     launch.run(Node(executable=program, **wrong))
@@ -153,14 +153,14 @@ def test_parameters_of_every_kind(launch: Any, program: str, tmp_path: Path) -> 
     [True, 0, -5, 1.0, 1e300, -2.5e-7, "", "true", "1.0", "é\n\"'", "[1]", [1, 2],
      [0.1, 1e22], ["a", "b, c"], [True], math.inf, -math.inf, "~", "2020-01-01"],
 )  # fmt: skip
-def test_a_value_is_read_back_as_it_was(value: object) -> None:
+def test_values_survive_formatting_and_parsing(value: object) -> None:
     found = parse_value(parameter_text("x", value))
     assert found == value
     assert type(found) is type(value)
     assert math.isnan(parse_value(parameter_text("x", math.nan)))
 
 
-def test_a_value_that_is_no_parameter(launch: Any, program: str) -> None:
+def test_an_invalid_parameter_value(launch: Any, program: str) -> None:
     with pytest.raises(ParameterError, match="expected a bool"):
         parameter_text("x", object())
     launch.run(Node(executable=program, parameters=[{"x": None}]))
@@ -174,7 +174,7 @@ def test_a_value_that_is_no_parameter(launch: Any, program: str) -> None:
 @pytest.mark.parametrize(
     ("value", "value_type"), [("x", int), ("1.5", int), ("3", list[int]), ("yes", int)]
 )
-def test_a_value_of_another_type_than_asked_for(
+def test_a_value_of_the_wrong_type(
     launch: Any, program: str, value: str, value_type: Any
 ) -> None:
     given = ParameterValue(LaunchConfiguration("v"), value_type=value_type)
@@ -182,7 +182,7 @@ def test_a_value_of_another_type_than_asked_for(
     assert "expected" in launch.errors
 
 
-def test_a_parameter_file_that_reaches_no_node(
+def test_a_parameter_file_without_a_matching_node(
     launch: Any, program: str, tmp_path: Path
 ) -> None:
     file = tmp_path / "p.yaml"
@@ -207,9 +207,7 @@ def test_a_parameter_file_for_one_of_several_nodes(
     assert launch.run(*nodes) == 0, launch.errors
 
 
-def test_a_parameter_file_that_is_not_there(
-    launch: Any, program: str, tmp_path: Path
-) -> None:
+def test_a_missing_parameter_file(launch: Any, program: str, tmp_path: Path) -> None:
     launch.run(Node(executable=program, parameters=[str(tmp_path / "no.yaml")]))
     assert "no.yaml: no such parameter file" in launch.errors
 
@@ -231,7 +229,7 @@ def test_substitutions_in_a_parameter_file(
     assert not Path(launch.argv[0][-1]).exists()
 
 
-def test_what_is_set_for_a_scope_reaches_its_nodes(
+def test_settings_of_a_scope_apply_to_its_nodes(
     launch: Any, program: str, tmp_path: Path, caplog: Any
 ) -> None:
     file = tmp_path / "all.yaml"
@@ -264,7 +262,7 @@ def test_remappings_are_pairs(launch: Any, program: str) -> None:
     assert "expected a pair, as in ('from', 'to')" in launch.errors
 
 
-def test_what_only_a_process_can_have(
+def test_options_that_require_a_process(
     launch: Any, program: str, tmp_path: Path
 ) -> None:
     launch.run(
@@ -312,7 +310,7 @@ def requests(process: Any) -> list[dict[str, Any]]:
     return [json.loads(line) for line in process.written.splitlines()]
 
 
-def test_composable_nodes_are_sent_to_their_container(launch: Any) -> None:
+def test_components_are_loaded_into_their_container(launch: Any) -> None:
     def part(name: str, **options: Any) -> ComposableNode:
         return ComposableNode(package="demo", plugin="demo::Part", name=name, **options)
 
@@ -352,7 +350,7 @@ def test_composable_nodes_are_sent_to_their_container(launch: Any) -> None:
     ]  # fmt: skip
 
 
-def test_an_unknown_container_is_named(launch: Any) -> None:
+def test_an_unknown_container(launch: Any) -> None:
     launch.run(
         DeclareLaunchArgument("c", default_value="box"),
         LoadComposableNodes(

@@ -42,7 +42,7 @@ from navette.ros2.packages.launch.substitutions import (
 )
 
 
-def say(name: str) -> LogInfo:
+def log_value(name: str) -> LogInfo:
     return LogInfo(msg=[f"{name}=", LaunchConfiguration(name, default="-")])
 
 
@@ -56,15 +56,15 @@ def test_arguments_have_defaults_and_may_be_given(launch: Any, caplog: Any) -> N
     code = launch.run(
         DeclareLaunchArgument("a", default_value="1"),
         DeclareLaunchArgument("b", default_value=["x", LaunchConfiguration("a")]),
-        say("a"),
-        say("b"),
+        log_value("a"),
+        log_value("b"),
         a="2",
     )
     assert code == 0
     assert messages(caplog) == ["a=2", "b=x2"]
 
 
-def test_a_required_argument_says_how_to_give_it(launch: Any) -> None:
+def test_a_missing_required_argument_is_an_error(launch: Any) -> None:
     argument = DeclareLaunchArgument("map", description="the map's file")
     assert launch.run(argument) == 1
     assert "argument 'map' is required: give map:=value (the map's file)" in (
@@ -81,7 +81,7 @@ def test_choices_are_checked(launch: Any) -> None:
     assert "'d'; expected one of a, b" in launch.errors
 
 
-def test_a_group_keeps_its_settings_to_itself(
+def test_a_group_limits_the_scope_of_settings(
     launch: Any, caplog: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NAVETTE_A", "outer")
@@ -92,19 +92,21 @@ def test_a_group_keeps_its_settings_to_itself(
             [
                 SetLaunchConfiguration("x", "2"),
                 SetEnvironmentVariable("NAVETTE_A", "inner"),
-                say("x"),
+                log_value("x"),
                 show,
             ]
         ),
-        say("x"),
+        log_value("x"),
         LogInfo(msg=["env=", EnvironmentVariable("NAVETTE_A")]),
         GroupAction([SetLaunchConfiguration("x", "3")], scoped=False),
-        say("x"),
+        log_value("x"),
         GroupAction(
-            [say("x"), say("y")], forwarding=False, launch_configurations={"y": "7"}
+            [log_value("x"), log_value("y")],
+            forwarding=False,
+            launch_configurations={"y": "7"},
         ),
         UnsetLaunchConfiguration("x"),
-        say("x"),
+        log_value("x"),
     )  # fmt: skip
     assert messages(caplog) == [
         *("x=2", "env=inner", "x=1", "env=outer", "x=3", "x=-", "y=7", "x=-"),
@@ -131,9 +133,7 @@ def test_environment_actions(launch: Any, caplog: Any) -> None:
     assert "NAVETTE_P" not in os.environ
 
 
-def test_timers_happen_in_their_order_and_in_their_scope(
-    launch: Any, caplog: Any
-) -> None:
+def test_timers_fire_in_order_with_their_scope(launch: Any, caplog: Any) -> None:
     def at(seconds: Any, name: str) -> TimerAction:
         return TimerAction(
             period=seconds,
@@ -143,7 +143,7 @@ def test_timers_happen_in_their_order_and_in_their_scope(
                         msg=f"{name} {context.loop.clock.now_ns / 1e9:g}"
                     )
                 ),
-                say("x"),
+                log_value("x"),
             ],
         )
 
@@ -172,7 +172,7 @@ def test_a_wrong_period_is_refused(launch: Any, period: object) -> None:
     assert "period" in launch.errors
 
 
-def test_events_of_ones_own(launch: Any, caplog: Any) -> None:
+def test_custom_events(launch: Any, caplog: Any) -> None:
     class Found(Event):
         name = "test.Found"
 
@@ -214,7 +214,7 @@ def test_a_function_may_return_entities_and_raise(launch: Any, caplog: Any) -> N
     assert "OpaqueFunction(broken): KeyError: 'lost'" in launch.errors
 
 
-def test_conditions_hold_actions_back(launch: Any, caplog: Any) -> None:
+def test_false_conditions_prevent_actions(launch: Any, caplog: Any) -> None:
     launch.run(
         LogInfo(msg="yes", condition=IfCondition("true")),
         LogInfo(msg="no", condition=IfCondition("false")),
@@ -255,7 +255,7 @@ def module(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("module")
-def test_an_include_gets_arguments_and_knows_its_folder(
+def test_an_include_has_arguments_and_its_folder(
     launch: Any, caplog: Any, tmp_path: Path
 ) -> None:
     file = tmp_path / "part.launch.py"
@@ -265,7 +265,7 @@ def test_an_include_gets_arguments_and_knows_its_folder(
             PythonLaunchDescriptionSource([str(tmp_path), "/part.launch.py"]),
             launch_arguments={"who": "world", "wo": "x"}.items(),
         ),
-        say("who"),
+        log_value("who"),
     )
     assert code == 0, launch.errors
     assert messages(caplog) == ["hello world", str(tmp_path), "who=world"]
@@ -300,7 +300,7 @@ def test_an_include_without_a_required_argument(launch: Any, tmp_path: Path) -> 
         ),
     ],
 )
-def test_a_broken_file_is_named_with_its_line(
+def test_an_error_in_a_file_names_the_line(
     launch: Any, tmp_path: Path, text: str, reason: str
 ) -> None:
     file = tmp_path / "part.launch.py"
@@ -309,7 +309,7 @@ def test_a_broken_file_is_named_with_its_line(
     assert reason in launch.errors
 
 
-def test_an_unknown_kind_of_file(launch: Any, tmp_path: Path) -> None:
+def test_an_unknown_file_format(launch: Any, tmp_path: Path) -> None:
     (tmp_path / "a.toml").touch()
     launch.run(IncludeLaunchDescription(str(tmp_path / "a.toml")))
     assert "expected a file ending in .py, .xml, .launch, .yaml, .yml" in launch.errors
@@ -323,7 +323,7 @@ def test_an_action_runs_once(launch: Any) -> None:
     assert "can be executed once" in launch.errors
 
 
-def test_loops_make_entities(launch: Any, caplog: Any) -> None:
+def test_loops_create_entities(launch: Any, caplog: Any) -> None:
     launch.run(
         ForLoop(LaunchConfiguration("n"), function=lambda i: LogInfo(msg=f"no {i}")),
         ForEach(
@@ -346,12 +346,12 @@ def test_loops_make_entities(launch: Any, caplog: Any) -> None:
         (lambda: ForEach("[1]", function=list), "expected a mapping"),
     ],
 )
-def test_wrong_loops_are_named(launch: Any, action: Any, reason: str) -> None:
+def test_invalid_loops_are_errors(launch: Any, action: Any, reason: str) -> None:
     assert launch.run(action()) == 1
     assert reason in launch.errors
 
 
-def test_a_description_can_be_looked_into() -> None:
+def test_a_description_can_be_inspected() -> None:
     inner = GroupAction([LogInfo(msg="a"), LogInfo(msg="b")])
     text = LaunchIntrospector().format_launch_description(
         LaunchDescription([inner, LogInfo(msg="c")])

@@ -102,7 +102,7 @@ def test_load_list_and_unload(container: Container) -> None:
 
 
 @pytest.mark.parametrize(
-    ("plugin", "fields", "said"),
+    ("plugin", "fields", "reason"),
     [
         ("components_here::Listener", {}, "Listener.*known: Broken, Node, Talker"),
         ("nowhere::Talker", {}, "no Python module 'nowhere'"),
@@ -115,24 +115,24 @@ def test_load_list_and_unload(container: Container) -> None:
         ),
     ],
 )
-def test_what_cannot_be_loaded_is_said_and_leaves_nothing(
-    container: Container, plugin: str, fields: dict[str, Any], said: str
+def test_a_failed_load_leaves_no_node(
+    container: Container, plugin: str, fields: dict[str, Any], reason: str
 ) -> None:
     answer = container.load(plugin, **fields)
     assert not answer.success
-    assert re.search(said, answer.error_message)
+    assert re.search(reason, answer.error_message)
     assert container.listed() == []
     assert container.node.get_fully_qualified_node_names() == ["/mine/container"]
 
 
-def test_an_id_that_is_not_there(container: Container) -> None:
+def test_an_unknown_id(container: Container) -> None:
     container.load("components_here::Talker")
     answer = container.ask(UnloadNode, "unload_node", unique_id=7)
     assert not answer.success
     assert "'7'; known: 1" in answer.error_message
 
 
-def test_a_launch_files_node_is_listed_too(container: Container) -> None:
+def test_components_of_a_launch_file_are_listed(container: Container) -> None:
     arguments = arguments_of_words(["-r", "__node:=named", "-p", "rate:=3.0"])
     number = container.manager.load(
         "components_here", "components_here:Talker", arguments, "launch file"

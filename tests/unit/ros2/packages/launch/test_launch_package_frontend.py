@@ -112,7 +112,7 @@ def demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize(("ending", "text"), [("xml", XML), ("yaml", YAML)])
-def test_everything_in_one_file(
+def test_a_file_with_all_tags(
     launch: Any, caplog: Any, demo: Path, ending: str, text: str
 ) -> None:
     file = demo / "launch" / f"all.launch.{ending}"
@@ -167,7 +167,7 @@ def test_everything_in_one_file(
         ("<launch><node pkg='a' exec='b'><param name='x'/></node></launch>", 1, "valu"),
     ],
 )  # fmt: skip
-def test_a_mistake_is_named_with_file_and_line(
+def test_an_error_names_file_and_line(
     tmp_path: Path, xml: str, line: int | None, reason: str
 ) -> None:
     file = tmp_path / "a.launch.xml"
@@ -190,7 +190,7 @@ def test_a_mistake_is_named_with_file_and_line(
         ("launch:\n- log: {message: !!python/object:os.system a}\n", None, "not YAML"),
     ],
 )  # fmt: skip
-def test_a_mistake_in_yaml(
+def test_an_error_in_yaml(
     tmp_path: Path, text: str, line: int | None, reason: str
 ) -> None:
     file = tmp_path / "a.launch.yaml"
@@ -200,7 +200,7 @@ def test_a_mistake_in_yaml(
         parse_launch_file(file)
 
 
-def test_a_condition_that_fails_names_its_tag(launch: Any, tmp_path: Path) -> None:
+def test_an_invalid_condition_names_its_tag(launch: Any, tmp_path: Path) -> None:
     file = tmp_path / "a.launch.xml"
     file.write_text("<launch>\n<log message='a' if='$(var missing)'/>\n</launch>")
     launch.run(IncludeLaunchDescription(str(file)))
@@ -257,7 +257,7 @@ def context(launch: Any) -> LaunchContext:
     return found
 
 
-def test_aliases_cannot_make_a_small_file_large(
+def test_the_expansion_of_aliases_is_limited(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(yaml_files, "MAX_ELEMENTS", 5000)  # sooner there

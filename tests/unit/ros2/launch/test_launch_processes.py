@@ -1,4 +1,4 @@
-"""``navette launch`` with real processes: what ends, how, what is left."""
+"""``navette launch`` with processes: how they end."""
 
 import os
 import select
@@ -60,7 +60,7 @@ def generate_launch_description():
 
 
 class Pipe:
-    """A named pipe, which tells when nobody holds it any more."""
+    """A named pipe whose end shows that no process holds it open."""
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / "pipe"
@@ -78,7 +78,7 @@ class Pipe:
 def launched(
     folder: Path, body: str, *options: str
 ) -> Iterator["subprocess.Popen[str]"]:
-    """``navette launch`` in a process of its own; its errors come as output."""
+    """Run ``navette launch`` in a process; its errors are part of its output."""
     file = folder / "it.launch.py"
     file.write_text(LAUNCH.format(body=body))
     source = str(Path(navette.__file__).parent.parent)
@@ -102,7 +102,7 @@ def launched(
 
 
 def read_until(process: "subprocess.Popen[str]", words: str) -> str:
-    """What it says until these words come; bounded."""
+    """Return the output up to these words; bounded."""
     assert process.stdout is not None
     pipe, seen = process.stdout.fileno(), ""
     while words not in seen:
@@ -118,7 +118,7 @@ def read_until(process: "subprocess.Popen[str]", words: str) -> str:
 @pytest.mark.skipif(
     not Path("/proc/self").is_dir(), reason="what left its group is found in /proc"
 )
-def test_nothing_is_left_behind(
+def test_no_process_outlives_the_launch(
     tmp_path: Path, options: list[str], how: signal.Signals
 ) -> None:
     (tmp_path / "node.py").write_text(NODE)
@@ -132,7 +132,7 @@ def test_nothing_is_left_behind(
         assert launch.wait(WAIT_S) == expected
 
 
-def test_a_required_node_takes_the_rest_with_it(tmp_path: Path) -> None:
+def test_the_exit_of_a_required_node_ends_the_launch(tmp_path: Path) -> None:
     (tmp_path / "short.py").write_text(
         "import rclpy\nrclpy.init()\nprint('gone')\nraise SystemExit(3)\n"
     )
@@ -143,12 +143,12 @@ def test_a_required_node_takes_the_rest_with_it(tmp_path: Path) -> None:
         Node(executable="{tmp_path}/short.py", on_exit=Shutdown(reason="it is over")),
     """
     with launched(tmp_path, body, "--processes") as launch:
-        said = read_until(launch, "[rest-1]: process has ended")
+        output = read_until(launch, "[rest-1]: process has ended")
         assert launch.wait(WAIT_S) == 1
     pipe.wait_end()
-    assert "[short-2] gone" in said
-    assert "process has died [pid" in said
-    assert "exit code 3" in said
+    assert "[short-2] gone" in output
+    assert "process has died [pid" in output
+    assert "exit code 3" in output
 
 
 MANAGED = """
@@ -175,7 +175,7 @@ except KeyboardInterrupt:
 """
 
 
-def test_managed_nodes_are_taken_from_state_to_state(tmp_path: Path) -> None:
+def test_lifecycle_events_cause_transitions(tmp_path: Path) -> None:
     (tmp_path / "managed.py").write_text(MANAGED)
     body = f"""
         *(lambda node: [
@@ -197,13 +197,13 @@ def test_managed_nodes_are_taken_from_state_to_state(tmp_path: Path) -> None:
                          namespace="r1")),
     """
     with launched(tmp_path, body) as launch:
-        said = read_until(launch, "process has finished cleanly")
+        output = read_until(launch, "process has finished cleanly")
         assert launch.wait(WAIT_S) == 0
     order = ["configures", "it is inactive", "activates"]
-    assert sorted(order, key=said.index) == order
+    assert sorted(order, key=output.index) == order
 
 
-def test_a_managed_node_starts_by_itself_where_asked(tmp_path: Path) -> None:
+def test_autostart_activates_a_lifecycle_node(tmp_path: Path) -> None:
     (tmp_path / "managed.py").write_text(MANAGED)
     body = f"""
         LifecycleNode(executable="{tmp_path}/managed.py", name="managed",

@@ -38,7 +38,7 @@ def user_lines(caplog: pytest.LogCaptureFixture) -> list[str]:
     ]
 
 
-def test_a_command_line_is_worked_out(launch: Any, tmp_path: Any) -> None:
+def test_a_command_line_with_substitutions(launch: Any, tmp_path: Any) -> None:
     launch.runner.behaviour = lambda p: p.listener.exited(0)
     launch.run(
         SetLaunchConfiguration("n", "3"),
@@ -75,7 +75,7 @@ def test_output_is_labelled_line_by_line(launch: Any, capsys: Any) -> None:
     assert err == "[t-1] bad\n"
 
 
-def test_output_may_go_to_a_file(
+def test_output_can_go_to_a_file(
     launch: Any, capsys: Any, tmp_path: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def talk(process: Any) -> None:
@@ -91,12 +91,12 @@ def test_output_may_go_to_a_file(
     launch.service.errors.clear()
 
 
-def test_an_unknown_place_for_output(launch: Any) -> None:
+def test_an_unknown_output_destination(launch: Any) -> None:
     launch.run(ExecuteProcess(cmd=["t"], output="sreen"))
     assert "output 'sreen'; expected screen, log" in launch.errors
 
 
-def test_handlers_hear_of_start_output_and_end(launch: Any, caplog: Any) -> None:
+def test_handlers_receive_start_output_and_exit(launch: Any, caplog: Any) -> None:
     def live(process: Any) -> None:
         process.listener.output("stdout", b"ready\n")
         launch.runner.exit_after(process, 1.0, 0)
@@ -104,8 +104,8 @@ def test_handlers_hear_of_start_output_and_end(launch: Any, caplog: Any) -> None
     launch.runner.behaviour = live
     watched, other = ExecuteProcess(cmd=["watched"]), ExecuteProcess(cmd=["other"])
 
-    def heard(event: Any) -> Any:
-        return LogInfo(msg=["heard ", event.text.decode().strip()])
+    def report(event: Any) -> Any:
+        return LogInfo(msg=["received ", event.text.decode().strip()])
 
     launch.run(
         RegisterEventHandler(
@@ -114,7 +114,7 @@ def test_handlers_hear_of_start_output_and_end(launch: Any, caplog: Any) -> None
                 on_start=[LogInfo(msg=["pid ", LocalSubstitution("event.pid")])],
             )
         ),
-        RegisterEventHandler(OnProcessIO(target_action=watched, on_stdout=heard)),
+        RegisterEventHandler(OnProcessIO(target_action=watched, on_stdout=report)),
         RegisterEventHandler(
             OnProcessExit(
                 target_action=lambda action: action is watched,
@@ -127,13 +127,13 @@ def test_handlers_hear_of_start_output_and_end(launch: Any, caplog: Any) -> None
         watched,
         other,
     )
-    assert user_lines(caplog) == ["pid 100", "heard ready", "code 0"]
+    assert user_lines(caplog) == ["pid 100", "received ready", "code 0"]
     with pytest.raises(InvalidLaunchValueError, match="expected an action"):
         OnProcessExit(target_action="talker", on_exit=[])
 
 
 @pytest.mark.parametrize("how", ["on_exit", "required"])
-def test_the_end_of_a_required_process_ends_the_rest(launch: Any, how: str) -> None:
+def test_the_exit_of_a_required_process_ends_the_launch(launch: Any, how: str) -> None:
     def live(process: Any) -> None:
         if process.command.label == "needed-2":
             launch.runner.exit_after(process, 2.0, 1)
@@ -149,7 +149,7 @@ def test_the_end_of_a_required_process_ends_the_rest(launch: Any, how: str) -> N
     assert launch.runner.started[0].signals == [(2.0, signal.SIGINT)]
 
 
-def test_a_stubborn_process_gets_each_signal_in_turn(launch: Any) -> None:
+def test_signals_escalate(launch: Any) -> None:
     def live(process: Any) -> None:
         process.stubborn = True
 
@@ -165,7 +165,7 @@ def test_a_stubborn_process_gets_each_signal_in_turn(launch: Any) -> None:
     ]
 
 
-def test_a_second_interrupt_is_stronger(launch: Any) -> None:
+def test_a_second_interrupt_escalates(launch: Any) -> None:
     def live(process: Any) -> None:
         process.stubborn = True
         launch.runner.loop.call_at(2_000_000_000, launch.service.escalate)
@@ -180,7 +180,7 @@ def test_a_second_interrupt_is_stronger(launch: Any) -> None:
     ]
 
 
-def test_respawn_waits_and_gives_up(launch: Any) -> None:
+def test_respawn_has_a_delay_and_a_limit(launch: Any) -> None:
     launch.runner.behaviour = lambda p: launch.runner.exit_after(p, 1.0, 1)
     code = launch.run(
         ExecuteProcess(
@@ -192,7 +192,7 @@ def test_respawn_waits_and_gives_up(launch: Any) -> None:
     assert code == 1
 
 
-def test_nothing_is_respawned_once_the_launch_ends(launch: Any) -> None:
+def test_a_shutdown_cancels_respawns(launch: Any) -> None:
     def live(process: Any) -> None:
         if process.command.label.startswith("flaky"):
             launch.runner.exit_after(process, 1.0, 0)
@@ -206,7 +206,7 @@ def test_nothing_is_respawned_once_the_launch_ends(launch: Any) -> None:
     assert launch.context.loop.clock.now_ns == 2_000_000_000
 
 
-def test_events_that_are_sent_to_processes(launch: Any) -> None:
+def test_events_for_processes(launch: Any) -> None:
     first, second = ExecuteProcess(cmd=["a"]), ExecuteProcess(cmd=["b"])
     launch.run(
         first,
@@ -245,7 +245,7 @@ def test_a_failed_launch_ends_what_it_started(launch: Any) -> None:
     assert "LogInfo(LaunchConfiguration('missing'))" in launch.errors
 
 
-def test_wrong_command_lines_are_refused() -> None:
+def test_invalid_command_lines_are_refused() -> None:
     with pytest.raises(InvalidLaunchValueError, match="expected a list of words"):
         ExecuteProcess(cmd="ls -l")
     with pytest.raises(InvalidLaunchValueError, match="empty"):
