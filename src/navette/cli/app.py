@@ -21,7 +21,7 @@ from navette.cli.commands import LazyGroup
 from navette.cli.completing_installed import complete_robots, complete_worlds
 from navette.cli.completion import discard_stderr, is_completing
 from navette.cli.options import Argument, Option
-from navette.cli.stderr import complain
+from navette.cli.stderr import print_error
 from navette.cli.verbs import VERBS
 from navette.errors import NavetteError
 
@@ -201,7 +201,7 @@ def main() -> None:
     try:
         app.main(args=arguments, prog_name="navette")
     except NavetteError as error:
-        complain(str(error))
+        print_error(str(error))
         raise SystemExit(USAGE_ERROR) from None
     except SystemExit as end:
         _exit_without_waiting(end.code)

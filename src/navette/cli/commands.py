@@ -11,7 +11,7 @@ from navette.cli.interruption import INTERRUPTED, raise_at_interrupt
 from navette.cli.options import call_arguments, click_parameters
 
 
-class Command(click.Command):
+class AnnotatedCommand(click.Command):
     """A command whose parameters are the annotated parameters of its function."""
 
     def __init__(
@@ -37,10 +37,10 @@ class Command(click.Command):
         return help_page(self, ctx)
 
 
-class Group(Command, click.Group):
+class Group(AnnotatedCommand, click.Group):
     """A group that lists its commands in the order in which they were added."""
 
-    command_class = Command
+    command_class = AnnotatedCommand
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self.commands)
@@ -77,7 +77,7 @@ class LazyCommand(click.Command):
         if isinstance(target, click.Command):
             return target
         return click.command(
-            self.name, cls=Command, context_settings=self.context_settings
+            self.name, cls=AnnotatedCommand, context_settings=self.context_settings
         )(target)
 
 

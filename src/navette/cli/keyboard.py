@@ -102,7 +102,7 @@ def split_keys(text: str) -> list[str]:
 
 
 def _sequence_length(text: str) -> int:
-    """Return the length of the leading control sequence: it ends at a letter or ~."""
+    """Return the length of the leading control sequence: it ends with a-z, A-Z or ~."""
     for index in range(2, len(text)):
         if text[index].isalpha() or text[index] == "~":
             return index + 1

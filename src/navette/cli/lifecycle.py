@@ -167,11 +167,11 @@ def _change(here: "Node", name: str, transition: Any) -> Any:
     client = here.create_client(ChangeState, f"{name}/change_state")
     if not client.wait_for_service(RESPONSE_TIMEOUT_S):
         fail(f"no server of {client.srv_name}")
-    asked = client.call_async(ChangeState.Request(transition=transition))
-    if not wait_for(here, asked.done, RESPONSE_TIMEOUT_S):
+    future = client.call_async(ChangeState.Request(transition=transition))
+    if not wait_for(here, future.done, RESPONSE_TIMEOUT_S):
         note(f"waiting for {name}; Ctrl-C stops the wait, not the transition")
-        wait_for(here, lambda: asked.done() or not client.service_is_ready())
-    got = response_of(asked, client.srv_name)
+        wait_for(here, lambda: future.done() or not client.service_is_ready())
+    got = response_of(future, client.srv_name)
     return fail(got.reason) if got.response is None else got.response
 
 

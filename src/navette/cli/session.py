@@ -22,7 +22,7 @@ from navette.cli.interruption import (
     ending_on_signals,
     interruptible,
 )
-from navette.cli.stderr import complain
+from navette.cli.stderr import print_error
 from navette.errors import CallbackError
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ def is_of_every_node(service: str) -> bool:
 
 def fail(message: str) -> Never:
     """Print an error and end the command with exit code 1."""
-    complain(message)
+    print_error(message)
     raise click.exceptions.Exit(FAILED)
 
 

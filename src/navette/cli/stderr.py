@@ -16,7 +16,7 @@ def note(text: str) -> None:
     _print(text, dim=True)
 
 
-def complain(text: str) -> None:
+def print_error(text: str) -> None:
     """Print an error message."""
     _print(f"navette: {text}", fg="red")
 

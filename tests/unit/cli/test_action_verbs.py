@@ -100,24 +100,24 @@ def counter(here: World) -> Counter:
 
 def test_looking(here: World, counter: Counter) -> None:
     ActionClient(counter.node, Fibonacci, "count")
-    assert here.said("action", "list") == "/count\n"
-    assert here.said("action", "list", "-t") == f"/count [{TYPE}]\n"
-    assert here.said("action", "list", "-c") == "1\n"
-    assert here.said("action", "type", "/count") == f"{TYPE}\n"
-    assert here.said("action", "find", "example_interfaces/Fibonacci") == "/count\n"
+    assert here.read("action", "list") == "/count\n"
+    assert here.read("action", "list", "-t") == f"/count [{TYPE}]\n"
+    assert here.read("action", "list", "-c") == "1\n"
+    assert here.read("action", "type", "/count") == f"{TYPE}\n"
+    assert here.read("action", "find", "example_interfaces/Fibonacci") == "/count\n"
     done = here.run("action", "find", "nav2_msgs/action/Spin")
     assert done == ("", "navette: no action has type nav2_msgs/action/Spin\n", 1)
     info = (
         "Action: /count\nAction clients: 1\n    /counter\n"
         "Action servers: 1\n    /counter\n"
     )
-    assert here.said("action", "info", "/count") == info
-    assert here.said("action", "info", "count", "-t") == info.replace(
+    assert here.read("action", "info", "/count") == info
+    assert here.read("action", "info", "count", "-t") == info.replace(
         "    /counter", f"    /counter [{TYPE}]"
     )
-    counted = here.said("action", "info", "count", "-c")
+    counted = here.read("action", "info", "count", "-c")
     assert counted == "Action: /count\nAction clients: 1\nAction servers: 1\n"
-    as_json = json.loads(here.said("action", "info", "count", "--json"))
+    as_json = json.loads(here.read("action", "info", "count", "--json"))
     assert as_json["servers"] == [{"node": "/counter", "type": TYPE}]
 
 
@@ -131,15 +131,15 @@ def test_a_mistyped_action(here: World, counter: Counter, verb: str) -> None:
 
 @pytest.mark.parametrize("words", [[TYPE, "{order: 2}"], ["{order: 2}"]])
 def test_send_goal(here: World, counter: Counter, words: list[str]) -> None:
-    said = here.said("action", "send_goal", "/count", *words, "-f")
-    goal_id = said.split("ID: ")[1].splitlines()[0]
+    printed = here.read("action", "send_goal", "/count", *words, "-f")
+    goal_id = printed.split("ID: ")[1].splitlines()[0]
     assert len(bytes.fromhex(goal_id)) == 16
-    assert said == SENT.format(goal_id=goal_id)
+    assert printed == SENT.format(goal_id=goal_id)
 
 
 def test_send_goal_for_programs(here: World, counter: Counter) -> None:
-    said = here.said("action", "send_goal", "/count", "{order: 2}", "--json", "-f")
-    lines = [json.loads(line) for line in said.splitlines()]
+    printed = here.read("action", "send_goal", "/count", "{order: 2}", "--json", "-f")
+    lines = [json.loads(line) for line in printed.splitlines()]
     assert lines[0] == {"feedback": {"sequence": [0, 1]}}
     assert lines[-1] == {"status": "SUCCEEDED", "result": {"sequence": [0, 1, 1]}}
 

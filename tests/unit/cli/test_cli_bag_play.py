@@ -169,17 +169,17 @@ def test_piped_it_is_plain(bag: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "printed"),
     [
         (["--topics", "/scan"], "unknown topic '/scan'; known: /chatter"),
         (["-r", "0"], "rate 0.0: wanted"),
         (["-s", "99"], "start offset 99 s: the bag has only 60.000 s"),
     ],
 )
-def test_mistakes_are_named(bag: Path, words: list[str], said: str) -> None:
+def test_mistakes_are_named(bag: Path, words: list[str], printed: str) -> None:
     done = CliRunner().invoke(app, ["bag", "play", str(bag), *words])
     assert isinstance(done.exception, NavetteError)
-    assert said in str(done.exception)
+    assert printed in str(done.exception)
 
 
 def test_keys_are_told_apart() -> None:

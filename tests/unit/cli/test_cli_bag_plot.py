@@ -12,7 +12,7 @@ from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.writing import open_writer
 from navette.cli.app import app
 from navette.cli.bag.drawing import draw
-from navette.cli.bag.series import Wanted, read_series
+from navette.cli.bag.series import PlotField, read_series
 from navette.errors import (
     FileFormatError,
     InvalidValueError,
@@ -57,7 +57,7 @@ def message(name: str, stamp_ns: int, msg: object) -> BagMessage:
 
 def numbers(bag: Path, *texts: str) -> list[tuple[list[float], list[float]]]:
     with open_bag(bag) as reader:
-        series = read_series(reader, [Wanted.read(text) for text in texts])
+        series = read_series(reader, [PlotField.read(text) for text in texts])
     return [(list(each.x), list(each.y)) for each in series]
 
 
@@ -107,7 +107,7 @@ def test_what_is_no_number_is_told(bag: Path, text: str, error: type, reason) ->
 
 def series_of(bag: Path, *texts: str):
     with open_bag(bag) as reader:
-        return read_series(reader, [Wanted.read(text) for text in texts])
+        return read_series(reader, [PlotField.read(text) for text in texts])
 
 
 @pytest.mark.slow

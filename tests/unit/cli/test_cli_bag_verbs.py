@@ -39,8 +39,8 @@ def test_info_says_what_rosbag_says(sample_bag: Path) -> None:
     result = run("info", sample_bag)
     assert result.exit_code == 0
     head, table = result.stdout.split("\n\n")
-    told = dict(line.split(": ", 1) for line in head.splitlines())
-    assert {name.strip(): value.strip() for name, value in told.items()} | {
+    lines = dict(line.split(": ", 1) for line in head.splitlines())
+    assert {name.strip(): value.strip() for name, value in lines.items()} | {
         "size": ""
     } == {
         "path": str(sample_bag),
@@ -68,8 +68,8 @@ def test_the_rate_of_bursts_is_their_mean(tmp_path: Path) -> None:
             stamp_ns = START_NS + second * 10**9 + microsecond * 1000
             writer.write(BagMessage(POINT, stamp_ns, data))
     writer.close()
-    told = run("info", tmp_path / "a.mcap").stdout.splitlines()[-1]
-    assert re.split("  +", told)[2:5] == ["44", "~1.43 Hz", "10 s"]
+    lines = run("info", tmp_path / "a.mcap").stdout.splitlines()[-1]
+    assert re.split("  +", lines)[2:5] == ["44", "~1.43 Hz", "10 s"]
 
 
 def test_one_figure_and_names_only(sample_bag: Path) -> None:
@@ -83,19 +83,19 @@ def test_one_figure_and_names_only(sample_bag: Path) -> None:
 
 def test_info_for_programs(sample_bag: Path, tmp_path: Path) -> None:
     other = write_sample(tmp_path / "b.bag", 4)
-    told = json.loads(run("info", sample_bag, other, "--json").stdout)
-    assert [each["storage"] for each in told] == ["mcap", "rosbag1"]
-    assert told[0]["topics"][0]["longest_gap_s"] == pytest.approx(0.2)
-    assert told[0]["topics"][0]["qos"][0]["durability"] == "transient_local"
+    lines = json.loads(run("info", sample_bag, other, "--json").stdout)
+    assert [each["storage"] for each in lines] == ["mcap", "rosbag1"]
+    assert lines[0]["topics"][0]["longest_gap_s"] == pytest.approx(0.2)
+    assert lines[0]["topics"][0]["qos"][0]["durability"] == "transient_local"
 
 
 def test_details(sample_bag: Path) -> None:
-    said = run("info", "-v", sample_bag).stdout
+    printed = run("info", "-v", sample_bag).stdout
     assert (
         "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
-        in said
+        in printed
     )
-    assert "/chatter  reliable, transient_local, keep_last 1" in said
+    assert "/chatter  reliable, transient_local, keep_last 1" in printed
 
 
 def test_list(sample_bag: Path, tmp_path: Path) -> None:
@@ -109,8 +109,8 @@ def test_list(sample_bag: Path, tmp_path: Path) -> None:
         str(tmp_path / "broken.mcap"),
     ]
     assert "the magic bytes are missing" in lines[2]
-    told = json.loads(run("list", "-r", "--json", tmp_path).stdout)
-    assert [each["messages"] for each in told] == [20, 3, 0]
+    lines = json.loads(run("list", "-r", "--json", tmp_path).stdout)
+    assert [each["messages"] for each in lines] == [20, 3, 0]
     assert run("list", tmp_path / "below" / "..", "--json").exit_code == 0
     (tmp_path / "empty").mkdir()
     assert "no recordings in" in run("list", tmp_path / "empty").output
@@ -127,8 +127,8 @@ def test_check_and_recover(sample_bag: Path, tmp_path: Path) -> None:
     assert result.exit_code == 1
     assert "error   the summary cannot be read" in result.stdout
     assert "navette bag recover" in result.stdout
-    told = json.loads(run("check", "--json", sample_bag).stdout)
-    assert (told["sound"], told["messages"]) == (False, 20)
+    lines = json.loads(run("check", "--json", sample_bag).stdout)
+    assert (lines["sound"], lines["messages"]) == (False, 20)
     saved = tmp_path / "saved.mcap"
     result = run("recover", sample_bag, "-o", saved)
     assert result.exit_code == 0

@@ -91,7 +91,7 @@ def test_names_that_a_node_answers(here: World) -> None:
         "shutdown",
     ]
     assert completing.complete_parameters(typed(""), "") == []
-    assert completing.complete_parameters(typed("nobody"), "") == []
+    assert completing.complete_parameters(typed("missing"), "") == []
 
 
 def test_the_value_of_a_parameter(here: World) -> None:

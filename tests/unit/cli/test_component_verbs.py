@@ -35,23 +35,23 @@ def here(monkeypatch: pytest.MonkeyPatch) -> Iterator[World]:
 
 def test_load_list_unload(here: World) -> None:
     load = ("component", "load", "/box", "lamps", "lamps::Lamp")
-    assert here.said(*load, "-n", "left", "-p", "watts:=60") == (
+    assert here.read(*load, "-n", "left", "-p", "watts:=60") == (
         "Loaded component 1 into '/box' container node as '/left'\n"
     )
-    assert here.said("param", "get", "left", "watts") == "Double value is: 60.0\n"
-    assert here.said(*load, "--node-namespace", "/hall", "-q") == "2  /hall/lamp\n"
+    assert here.read("param", "get", "left", "watts") == "Double value is: 60.0\n"
+    assert here.read(*load, "--node-namespace", "/hall", "-q") == "2  /hall/lamp\n"
     assert (
-        here.said("component", "list") == "/box\n  1  /left\n  2  /hall/lamp\n/shelf\n"
+        here.read("component", "list") == "/box\n  1  /left\n  2  /hall/lamp\n/shelf\n"
     )
-    assert here.said("component", "list", "box") == "1  /left\n2  /hall/lamp\n"
-    assert here.said("component", "list", "--containers-only") == "/box\n/shelf\n"
-    as_json = json.loads(here.said("component", "list", "--json"))
+    assert here.read("component", "list", "box") == "1  /left\n2  /hall/lamp\n"
+    assert here.read("component", "list", "--containers-only") == "/box\n/shelf\n"
+    as_json = json.loads(here.read("component", "list", "--json"))
     assert as_json == {"/box": {"1": "/left", "2": "/hall/lamp"}, "/shelf": {}}
-    assert here.said("component", "unload", "/box", "1", "2") == (
+    assert here.read("component", "unload", "/box", "1", "2") == (
         "Unloaded component 1 from '/box' container node\n"
         "Unloaded component 2 from '/box' container node\n"
     )
-    assert here.said("component", "list", "box") == ""
+    assert here.read("component", "list", "box") == ""
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def test_troubles_are_problems(here: World) -> None:
 
 def test_sim_time_without_a_clock(here: World) -> None:
     waiting = node(here, "waiting")
-    here.said("param", "set", "waiting", "use_sim_time", "true")
+    here.read("param", "set", "waiting", "use_sim_time", "true")
     assert findings(here)["/clock"]["level"] == "problem"
     clock = waiting.create_publisher(Clock, "/clock", 10)
     waiting.create_timer(0.01, lambda: clock.publish(Clock()))

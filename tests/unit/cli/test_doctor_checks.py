@@ -1,18 +1,18 @@
-"""The doctor's checks, each on a made-up snapshot: what is said, and how loudly."""
+"""The doctor's checks, each on a made-up snapshot: what is printed, and how loudly."""
 
 from collections.abc import Iterable
 from dataclasses import replace
 
 import pytest
 
-from navette.cli.doctor.findings import Finding, Level, listed, plural
+from navette.cli.doctor.findings import Diagnosis, Rating, listed, plural
 from navette.cli.doctor.graph_checks import check_nodes, check_services, check_topics
 from navette.cli.doctor.machine import is_navette, left_running, stopped
 from navette.cli.doctor.network import Network, Router, check_network
 from navette.cli.doctor.processes import Process
 from navette.cli.doctor.report import report_lines, summary
 from navette.cli.doctor.router_diagnosis import PortProbe, Refusal
-from navette.cli.doctor.snapshot import Heartbeat, Snapshot
+from navette.cli.doctor.snapshot import Snapshot, StageStatus
 from navette.cli.doctor.state_checks import check_stages, check_time
 from navette.cli.doctor.up_checks import check_supervised
 from navette.transports import (
@@ -46,7 +46,7 @@ def sub(topic: str, node: str, *rest: object) -> Endpoint:
     return end(EndpointKind.SUBSCRIPTION, topic, node, *rest)  # type: ignore[arg-type]
 
 
-def of(findings: Iterable[Finding], what: str) -> Finding:
+def of(findings: Iterable[Diagnosis], what: str) -> Diagnosis:
     (found,) = [finding for finding in findings if finding.what == what]
     return found
 
@@ -55,7 +55,7 @@ def test_nodes_that_are_well() -> None:
     seen = Snapshot(nodes=("/a", "/b"), sim_time={"/a": False, "/b": False})
     (finding,) = check_nodes(seen)
     assert (finding.level, finding.text) == (
-        Level.GOOD,
+        Rating.GOOD,
         "2 nodes with unique names; all respond",
     )
     (finding,) = check_nodes(Snapshot(nodes=("/a",), sim_time={"/a": False}))
@@ -64,14 +64,14 @@ def test_nodes_that_are_well() -> None:
 
 def test_no_nodes_is_no_problem_but_says_what_to_do() -> None:
     (finding,) = check_nodes(Snapshot())
-    assert finding.level is Level.NOTE
+    assert finding.level is Rating.NOTE
     assert "ROS_DOMAIN_ID" in finding.advice
 
 
 def test_nodes_of_one_name() -> None:
     finding = of(check_nodes(Snapshot(nodes=("/a", "/b", "/a"))), "/a")
     assert (finding.level, finding.text) == (
-        Level.PROBLEM,
+        Rating.PROBLEM,
         "2 nodes have this name",
     )
     assert "__node:=" in finding.advice
@@ -82,7 +82,7 @@ def test_a_node_that_does_not_answer() -> None:
     findings = list(check_nodes(seen))
     assert of(findings, "/a").text == "does not respond"
     assert of(findings, "/b").text == "is listed by the router, but cannot be reached"
-    assert {finding.level for finding in findings} == {Level.PROBLEM}
+    assert {finding.level for finding in findings} == {Rating.PROBLEM}
 
 
 def test_who_cannot_be_reached_explains_what_is_missing() -> None:
@@ -109,13 +109,13 @@ def test_a_stage_that_is_missing_between_others() -> None:
         speed_mps=0.42,
     )
     finding = of(check_nodes(seen), "control")
-    assert finding.level is Level.PROBLEM
+    assert finding.level is Rating.PROBLEM
     assert finding.text == (
         "is missing: no node turns /path into /cmd_vel; the robot drives at 0.4 m/s"
     )
     assert "navette run navette control" in finding.advice
     assert "/cmd_vel" not in [each.what for each in check_topics(seen)]
-    # Driven by hand: nobody plans, nothing is missing.
+    # Driven by hand, without a planner: no stage is missing.
     by_hand = Snapshot(nodes=("/sim",), endpoints=(sub("/cmd_vel", "sim"),))
     assert [each.what for each in check_nodes(by_hand)] == ["nodes"]
 
@@ -126,18 +126,18 @@ def test_two_definitions_of_a_type() -> None:
         for end, digit in ((pub("/scan", "lidar"), "a"), (sub("/scan", "old"), "b"))
     )
     finding = of(check_topics(Snapshot(endpoints=(ours, theirs))), "/scan")
-    assert finding.level is Level.PROBLEM
+    assert finding.level is Rating.PROBLEM
     assert finding.text == f"{SCAN} has 2 definitions: /lidar | /old"
     unhashed = replace(theirs, type_hash="TypeHashNotSupported")
     (finding,) = check_topics(Snapshot(endpoints=(ours, unhashed)))
-    assert finding.level is Level.GOOD
+    assert finding.level is Rating.GOOD
 
 
 def test_topics_that_fit() -> None:
     seen = Snapshot(endpoints=(pub("/scan", "lidar"), sub("/scan", "costmap")))
     (finding,) = check_topics(seen)
     assert (finding.level, finding.text) == (
-        Level.GOOD,
+        Rating.GOOD,
         "1 topic connected, types and QoS match",
     )
 
@@ -147,7 +147,7 @@ def test_two_types_on_a_topic() -> None:
         endpoints=(pub("/scan", "lidar"), sub("/scan", "odd", "std_msgs/msg/String"))
     )
     finding = of(check_topics(seen), "/scan")
-    assert finding.level is Level.PROBLEM
+    assert finding.level is Rating.PROBLEM
     assert finding.text == (f"has 2 types: {SCAN}: /lidar; std_msgs/msg/String: /odd")
 
 
@@ -170,7 +170,7 @@ def test_qos_that_does_not_fit(
         )
     )
     finding = of(check_topics(seen), "/scan")
-    assert finding.level is Level.PROBLEM
+    assert finding.level is Rating.PROBLEM
     assert finding.text == (
         f"/costmap receives nothing from /lidar: incompatible {policy}"
     )
@@ -181,13 +181,13 @@ def test_a_topic_that_nobody_publishes_and_the_one_that_was_meant() -> None:
     seen = Snapshot(endpoints=(pub("/lidar", "lidar"), sub("/scan", "costmap")))
     findings = list(check_topics(seen))
     finding = of(findings, "/scan")
-    assert finding.level is Level.WARNING
+    assert finding.level is Rating.WARNING
     assert finding.text == "has no publisher; /costmap waits for it"
     assert finding.advice == (
         "/lidar has the same type and no subscription; to use it:"
         " --ros-args -r /scan:=/lidar"
     )
-    assert of(findings, "unread").level is Level.NOTE
+    assert of(findings, "unread").level is Rating.NOTE
 
 
 def test_what_a_person_publishes_and_what_every_node_has_is_not_missed() -> None:
@@ -202,8 +202,8 @@ def test_what_a_person_publishes_and_what_every_node_has_is_not_missed() -> None
 
 
 def test_a_client_without_a_server() -> None:
-    asks = end(EndpointKind.CLIENT, "/gone/get_parameters", "viewer", "a/srv/Get")
-    assert list(check_services(Snapshot(services=(asks,)))) == []
+    client = end(EndpointKind.CLIENT, "/gone/get_parameters", "viewer", "a/srv/Get")
+    assert list(check_services(Snapshot(services=(client,)))) == []
     client = end(EndpointKind.CLIENT, "/add", "asker", "a/srv/Add")
     finding = of(check_services(Snapshot(services=(client,))), "/add")
     assert finding.text == "has no server; /asker may wait for it"
@@ -211,13 +211,13 @@ def test_a_client_without_a_server() -> None:
     assert list(check_services(Snapshot(services=(client, server)))) == []
     odd = replace(server, type_name="b/srv/Add")
     (finding,) = check_services(Snapshot(services=(client, odd)))
-    assert finding.level is Level.PROBLEM
+    assert finding.level is Rating.PROBLEM
 
 
 def test_time_stands_still_without_a_clock() -> None:
     seen = Snapshot(nodes=("/a", "/b"), sim_time={"/a": True, "/b": False})
     (finding,) = check_time(seen)
-    assert finding.level is Level.PROBLEM
+    assert finding.level is Rating.PROBLEM
     assert "1 node with use_sim_time (/a)" in finding.text
     assert "navette param set /a use_sim_time false" in finding.advice
 
@@ -230,34 +230,46 @@ def test_clocks() -> None:
         clock_ticks=True,
     )
     (finding,) = check_time(one)
-    assert (finding.level, finding.text) == (Level.GOOD, "simulated, by /sim")
+    assert (finding.level, finding.text) == (Rating.GOOD, "simulated, by /sim")
     (finding,) = check_time(replace(one, clock_ticks=False))
-    assert finding.level is Level.WARNING
+    assert finding.level is Rating.WARNING
     two = replace(one, endpoints=(*one.endpoints, pub("/clock", "player")))
-    assert next(iter(check_time(two))).level is Level.PROBLEM
+    assert next(iter(check_time(two))).level is Rating.PROBLEM
 
 
 @pytest.mark.parametrize(
     ("beat", "level", "text"),
     [
-        (Heartbeat("/planner/status", "following", 0, 0.1), Level.GOOD, "following"),
-        (Heartbeat("/planner/status", "no_path", 1, 0.1), Level.WARNING, "no_path"),
         (
-            Heartbeat("/planner/status", "following", 0, 7.0),
-            Level.PROBLEM,
+            StageStatus("/planner/status", "following", 0, 0.1),
+            Rating.GOOD,
+            "following",
+        ),
+        (
+            StageStatus("/planner/status", "no_path", 1, 0.1),
+            Rating.WARNING,
+            "no_path",
+        ),
+        (
+            StageStatus("/planner/status", "following", 0, 7.0),
+            Rating.PROBLEM,
             "no status for 7.0 s, last state following",
         ),
-        (Heartbeat("/planner/status"), Level.PROBLEM, "no status, last state unknown"),
+        (
+            StageStatus("/planner/status"),
+            Rating.PROBLEM,
+            "no status, last state unknown",
+        ),
     ],
 )
-def test_heartbeats(beat: Heartbeat, level: Level, text: str) -> None:
+def test_heartbeats(beat: StageStatus, level: Rating, text: str) -> None:
     seen = Snapshot(endpoints=(pub(beat.topic, "planner"),), heartbeats=(beat,))
     (finding,) = check_stages(seen)
     assert (finding.level, finding.text) == (level, text)
 
 
 def test_a_stage_without_a_clock_is_not_said_to_hang() -> None:
-    beat = Heartbeat("/planner/status", "following", level=0, age_s=7.0)
+    beat = StageStatus("/planner/status", "following", level=0, age_s=7.0)
     ends = (pub(beat.topic, "planner"),)
     seen = Snapshot(endpoints=ends, heartbeats=(beat,), sim_time={"/planner": True})
     (found,) = check_stages(seen)
@@ -265,10 +277,10 @@ def test_a_stage_without_a_clock_is_not_said_to_hang() -> None:
 
 
 def test_what_the_robot_does() -> None:
-    stale = Heartbeat("/control/status", "stale_path", 1, 0.1)
+    stale = StageStatus("/control/status", "stale_path", 1, 0.1)
     seen = Snapshot(heartbeats=(stale,), speed_mps=0.0)
     status, robot = check_stages(seen)
-    assert status.level is Level.WARNING
+    assert status.level is Rating.WARNING
     assert status.text == "stale_path: this input is too old; the robot is stopped"
     assert (robot.what, robot.text) == ("robot", "the robot is stopped")
 
@@ -282,27 +294,29 @@ DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
     [
         (
             Network(routers=(Router(HERE, PortProbe.OPEN, DEMO),), nodes={}),
-            Level.GOOD,
+            Rating.GOOD,
             f"{HERE}, served by navette demo (process 12)",
         ),
         (
             Network(routers=(Router(HERE, PortProbe.REFUSED),), nodes=None),
-            Level.NOTE,
+            Rating.NOTE,
             f"{HERE} is free: the first program becomes the router",
         ),
         (
             Network(
-                routers=(Router(HERE, PortProbe.OPEN, None, Refusal("wants TLS", "")),),
+                routers=(
+                    Router(HERE, PortProbe.OPEN, None, Refusal("requires TLS", "")),
+                ),
                 nodes=None,
             ),
-            Level.PROBLEM,
-            f"{HERE} is open, but wants TLS",
+            Rating.PROBLEM,
+            f"{HERE} is open, but requires TLS",
         ),
         (
             Network(
                 routers=(Router(HERE, PortProbe.OPEN, DEMO._replace(is_stopped=True)),)
             ),
-            Level.PROBLEM,
+            Rating.PROBLEM,
             f"{HERE} belongs to navette demo (process 12), which is stopped: no"
             " program can connect",
         ),
@@ -310,34 +324,34 @@ DEMO = Process(12, 11, ("python", "/bin/navette", "demo"))
             Network(
                 routers=(Router("tcp/10.0.0.2:7447", PortProbe.TIMED_OUT),), nodes=None
             ),
-            Level.PROBLEM,
+            Rating.PROBLEM,
             "tcp/10.0.0.2:7447 does not respond",
         ),
         (
             Network(routers=(Router("quic/10.0.0.2:7447"),), nodes={}),
-            Level.NOTE,
+            Rating.NOTE,
             "quic/10.0.0.2:7447, whose protocol cannot be probed",
         ),
     ],
 )
-def test_routers(network: Network, level: Level, text: str) -> None:
+def test_routers(network: Network, level: Rating, text: str) -> None:
     finding = of(check_network(network, 0), "router")
     assert (finding.level, finding.text) == (level, text)
 
 
 def test_nodes_of_another_domain() -> None:
     finding = of(check_network(Network(nodes={42: ["/a", "/b"]}), 0), "domain")
-    assert finding.level is Level.WARNING
+    assert finding.level is Rating.WARNING
     assert finding.text == "0 (ROS_DOMAIN_ID) is empty; 2 nodes in 42"
     assert finding.advice == "to see them: export ROS_DOMAIN_ID=42"
     both = Network(nodes={0: ["/c"], 42: ["/a"]})
-    assert of(check_network(both, 0), "domain").level is Level.NOTE
+    assert of(check_network(both, 0), "domain").level is Rating.NOTE
 
 
 def test_settings_that_keep_one_alone() -> None:
     network = Network(transport="inprocess", middleware="rmw_fastrtps_cpp")
     findings = list(check_network(network, 0))
-    assert of(findings, "transport").level is Level.PROBLEM
+    assert of(findings, "transport").level is Rating.PROBLEM
     assert "rmw_zenoh_cpp" in of(findings, "ROS 2").advice
 
 
@@ -351,11 +365,11 @@ def test_supervised_services() -> None:
     ]
     assert list(check_supervised([])) == []
     (finding,) = check_supervised(services[:1])
-    assert (finding.level, finding.text) == (Level.GOOD, "1 service up: sim")
+    assert (finding.level, finding.text) == (Rating.GOOD, "1 service up: sim")
     found = list(check_supervised(services))
     assert [(each.what, each.level, each.text) for each in found] == [
-        ("planner", Level.WARNING, "restarted 3 times: exit code 1"),
-        ("control", Level.PROBLEM, "not running: no such file"),
+        ("planner", Rating.WARNING, "restarted 3 times: exit code 1"),
+        ("control", Rating.PROBLEM, "not running: no such file"),
     ]
     assert found[0].advice == "navette logs robot"
 
@@ -367,7 +381,7 @@ def test_programs_that_are_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     assert list(stopped(every, here=14)) == []
     monkeypatch.setattr("navette.cli.doctor.machine.has_nodes", lambda _: True)
     (finding,) = stopped(every, here=14)
-    assert (finding.what, finding.level) == ("process 20", Level.PROBLEM)
+    assert (finding.what, finding.level) == ("process 20", Rating.PROBLEM)
     assert finding.text.startswith("navette run is stopped (Ctrl-Z, SIGSTOP)")
     assert "kill -CONT 20" in finding.advice
 
@@ -415,9 +429,9 @@ def test_words() -> None:
 
 def test_the_report() -> None:
     findings = [
-        Finding(Level.GOOD, "Nodes", "nodes", "2 nodes"),
-        Finding(Level.PROBLEM, "Topics", "/scan", "bad", "mend it"),
-        Finding(Level.WARNING, "Topics", "/map", "odd"),
+        Diagnosis(Rating.GOOD, "Nodes", "nodes", "2 nodes"),
+        Diagnosis(Rating.PROBLEM, "Topics", "/scan", "bad", "mend it"),
+        Diagnosis(Rating.WARNING, "Topics", "/map", "odd"),
     ]
     assert report_lines(findings, everything=True) == [
         "Nodes",

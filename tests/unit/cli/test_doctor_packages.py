@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from navette.cli.doctor.findings import Level
+from navette.cli.doctor.findings import Rating
 from navette.cli.doctor.machine import check_packages
 
 
 def test_all_packages_are_navettes() -> None:
     finding = check_packages()
-    assert finding.level is Level.GOOD
+    assert finding.level is Rating.GOOD
     assert finding.text == "packages that come with rclpy are Navette's"
 
 
@@ -23,6 +23,6 @@ def test_an_installed_package_is_named_with_its_folder(
     (folder / "__init__.py").touch()
     monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path)])
     finding = check_packages()
-    assert finding.level is Level.NOTE
+    assert finding.level is Rating.NOTE
     assert finding.text.endswith(f"Navette's: tf_transformations in {folder}")
     assert finding.data == {"replaced": {"tf_transformations": str(folder)}}

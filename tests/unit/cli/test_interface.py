@@ -8,7 +8,7 @@ import pytest
 from topic_world import navette, shared_graph
 
 READING = """\
-# What the sensor says.
+# Output of the sensor.
 
 std_msgs/Header header   # stamped
 string UNIT="C # not F"  # always
@@ -28,7 +28,7 @@ bool ok # answer
 
 @pytest.fixture
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A package of messages that nobody has installed, and standing in it."""
+    """Current folder with a package of messages that is not installed."""
     package = tmp_path / "verbs_msgs"
     (package / "msg").mkdir(parents=True)
     (package / "srv").mkdir()
@@ -52,7 +52,7 @@ def alone() -> Iterator[None]:
 
 def test_show_with_own_comments_and_what_is_contained(workspace: Path) -> None:
     assert navette("interface", "show", "verbs_msgs/msg/Reading").stdout == (
-        "# What the sensor says.\n"
+        "# Output of the sensor.\n"
         "\n"
         "std_msgs/Header header   # stamped\n"
         "\tbuiltin_interfaces/Time stamp\n"

@@ -62,31 +62,34 @@ def test_a_transition_that_takes_its_time(here: World) -> None:
 
 
 def test_nodes(here: World) -> None:
-    assert here.said("lifecycle", "nodes") == "/arm\n/camera\n"
-    assert here.said("lifecycle", "nodes", "-c") == "2\n"
-    assert json.loads(here.said("lifecycle", "nodes", "--json")) == ["/arm", "/camera"]
+    assert here.read("lifecycle", "nodes") == "/arm\n/camera\n"
+    assert here.read("lifecycle", "nodes", "-c") == "2\n"
+    assert json.loads(here.read("lifecycle", "nodes", "--json")) == [
+        "/arm",
+        "/camera",
+    ]
 
 
 def test_get(here: World) -> None:
-    assert here.said("lifecycle", "get", "camera") == "unconfigured [1]\n"
-    assert here.said("lifecycle", "get") == (
+    assert here.read("lifecycle", "get", "camera") == "unconfigured [1]\n"
+    assert here.read("lifecycle", "get") == (
         "/arm: unconfigured [1]\n/camera: unconfigured [1]\n"
     )
-    one = json.loads(here.said("lifecycle", "get", "arm", "--json"))
+    one = json.loads(here.read("lifecycle", "get", "arm", "--json"))
     assert one == {"id": 1, "label": "unconfigured"}
 
 
 def test_set_by_label_and_id(here: World) -> None:
-    assert here.said("lifecycle", "set", "camera", "configure") == (
+    assert here.read("lifecycle", "set", "camera", "configure") == (
         "Transitioning successful\n"
     )
-    assert here.said("lifecycle", "get", "camera") == "inactive [2]\n"
-    here.said("lifecycle", "set", "camera", "2")  # cleanup
-    assert here.said("lifecycle", "get", "camera") == "unconfigured [1]\n"
+    assert here.read("lifecycle", "get", "camera") == "inactive [2]\n"
+    here.read("lifecycle", "set", "camera", "2")  # cleanup
+    assert here.read("lifecycle", "get", "camera") == "unconfigured [1]\n"
 
 
 def test_set_that_fails(here: World) -> None:
-    here.said("lifecycle", "set", "camera", "configure")
+    here.read("lifecycle", "set", "camera", "configure")
     done = here.run("lifecycle", "set", "camera", "activate")
     assert (done.out, done.err, done.code) == ("", "navette: Transitioning failed\n", 1)
 
@@ -101,13 +104,13 @@ def test_a_transition_that_is_not_there(here: World) -> None:
 
 
 def test_list(here: World) -> None:
-    assert here.said("lifecycle", "list", "camera") == (
+    assert here.read("lifecycle", "list", "camera") == (
         "- configure [1]\n\tStart: unconfigured\n\tGoal: configuring\n"
         "- shutdown [5]\n\tStart: unconfigured\n\tGoal: shuttingdown\n"
     )
-    every = here.said("lifecycle", "list", "camera", "-a")
+    every = here.read("lifecycle", "list", "camera", "-a")
     assert "- activate [3]\n\tStart: inactive\n\tGoal: activating\n" in every
-    as_json = json.loads(here.said("lifecycle", "list", "camera", "--json"))
+    as_json = json.loads(here.read("lifecycle", "list", "camera", "--json"))
     assert as_json[0] == {
         "id": 1,
         "label": "configure",

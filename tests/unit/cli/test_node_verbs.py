@@ -15,7 +15,7 @@ from navette.runtime.action import ActionServer
 INFO = """\
 /ns/talker
   Subscribers:
-    /heard: std_msgs/msg/String
+    /received: std_msgs/msg/String
   Publishers:
     /chatter: std_msgs/msg/String
     /parameter_events: rcl_interfaces/msg/ParameterEvent
@@ -35,7 +35,7 @@ def here() -> Iterator[World]:
     with world() as here:
         talker = _node(here, "talker", "/ns")
         talker.create_publisher(String, "/chatter", 10)
-        talker.create_subscription(String, "/heard", lambda _: None, 10)
+        talker.create_subscription(String, "/received", lambda _: None, 10)
         talker.create_client(AddTwoInts, "/add")
         ActionServer(talker, Fibonacci, "/count", lambda goal: Fibonacci.Result())
         _node(here, "listener")
@@ -55,10 +55,10 @@ def _node(here: World, name: str, namespace: str = "") -> Node:
 
 
 def test_list(here: World) -> None:
-    assert here.said("node", "list") == "/listener\n/ns/talker\n"
-    assert here.said("node", "list", "-a") == "/_hidden\n/listener\n/ns/talker\n"
-    assert here.said("node", "list", "-c") == "2\n"
-    assert json.loads(here.said("node", "list", "--json")) == [
+    assert here.read("node", "list") == "/listener\n/ns/talker\n"
+    assert here.read("node", "list", "-a") == "/_hidden\n/listener\n/ns/talker\n"
+    assert here.read("node", "list", "-c") == "2\n"
+    assert json.loads(here.read("node", "list", "--json")) == [
         "/listener",
         "/ns/talker",
     ]
@@ -73,19 +73,19 @@ def test_list_warns_of_names_that_are_there_twice(here: World) -> None:
 
 @pytest.mark.parametrize("name", ["/ns/talker", "ns/talker"])
 def test_info(here: World, name: str) -> None:
-    assert here.said("node", "info", name) == INFO
+    assert here.read("node", "info", name) == INFO
 
 
 def test_info_with_what_is_hidden(here: World) -> None:
-    shown = here.said("node", "info", "/ns/talker", "--include-hidden")
+    shown = here.read("node", "info", "/ns/talker", "--include-hidden")
     assert "    /count/_action/feedback: " in shown
     assert "    /count/_action/send_goal: " in shown
 
 
 def test_info_for_programs(here: World) -> None:
-    info = json.loads(here.said("node", "info", "/ns/talker", "--json"))
+    info = json.loads(here.read("node", "info", "/ns/talker", "--json"))
     assert info["node"] == "/ns/talker"
-    assert info["subscribers"] == {"/heard": ["std_msgs/msg/String"]}
+    assert info["subscribers"] == {"/received": ["std_msgs/msg/String"]}
     assert info["action_servers"] == {"/count": ["example_interfaces/action/Fibonacci"]}
 
 
@@ -101,7 +101,7 @@ def test_a_mistyped_node(here: World, typed: str, hint: str) -> None:
 
 def test_where_nothing_runs() -> None:
     with world() as here:
-        assert here.said("node", "list") == ""
+        assert here.read("node", "list") == ""
         done = here.run("node", "info", "/planner")
     assert done.code == 1
     assert done.err == (

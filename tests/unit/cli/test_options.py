@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import click
 from click.testing import CliRunner
 
-from navette.cli.commands import Command
+from navette.cli.commands import AnnotatedCommand
 from navette.cli.options import Argument, Option, click_parameters
 
 
@@ -30,7 +30,7 @@ def greet(options: Options, *, loud: Annotated[bool, Option()] = False) -> None:
 
 
 def output(*words: str) -> str:
-    command = Command("greet", callback=greet, help=greet.__doc__)
+    command = AnnotatedCommand("greet", callback=greet, help=greet.__doc__)
     return CliRunner().invoke(command, list(words)).output.strip()
 
 
@@ -63,7 +63,7 @@ def test_values_arrive_with_the_declared_type() -> None:
         seen.update(words=words, number=number, ratio=ratio, file=file, many=many,
                     pose=pose)  # fmt: skip
 
-    command = Command("verb", callback=verb)
+    command = AnnotatedCommand("verb", callback=verb)
     assert CliRunner().invoke(command, ["a", "b"]).exit_code == 0
     assert seen == {
         "words": ["a", "b"], "number": 3, "ratio": 0.5, "file": None, "many": None,
@@ -84,7 +84,7 @@ def test_the_shell_completes_files_where_no_name_matches() -> None:
     def verb(world: Annotated[str, Argument(complete=complete)]) -> None: ...
 
     (parameter,) = click_parameters(verb)
-    context = click.Context(Command("verb", callback=verb))
+    context = click.Context(AnnotatedCommand("verb", callback=verb))
 
     def completions(word: str) -> list[tuple[str, str]]:
         found = parameter.shell_complete(context, word)
@@ -98,6 +98,6 @@ def test_a_value_can_begin_with_a_dash_and_cannot_be_omitted() -> None:
     def verb(number: Annotated[int, Option()] = 3) -> None:
         click.echo(number)
 
-    command = Command("verb", callback=verb)
+    command = AnnotatedCommand("verb", callback=verb)
     assert CliRunner().invoke(command, ["--number", "-4"]).output == "-4\n"
     assert "requires an argument" in CliRunner().invoke(command, ["--number"]).stderr

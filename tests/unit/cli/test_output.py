@@ -21,7 +21,7 @@ from navette.msgs.std_msgs.msg import String
 
 def strict(text: str) -> Any:
     def refuse(constant: str) -> None:
-        pytest.fail(f"{constant} is no JSON")
+        pytest.fail(f"{constant} is not JSON")
 
     return json.loads(text, parse_constant=refuse)
 

@@ -53,16 +53,16 @@ def test_list(here: World, driver: Node) -> None:
         "  topic\n  use_sim_time\n"
     )
     of_other = "  start_type_description_service\n  use_sim_time\n"
-    assert here.said("param", "list", "driver") == of_driver
+    assert here.read("param", "list", "driver") == of_driver
     both = f"/driver:\n{of_driver}/other:\n{of_other}"
-    assert here.said("param", "list") == both
-    assert here.said("param", "list", "driver", "--filter", "r.*") == "  rate\n"
-    by_prefix = here.said("param", "list", "--prefixes", "limits", "topic")
+    assert here.read("param", "list") == both
+    assert here.read("param", "list", "driver", "--filter", "r.*") == "  rate\n"
+    by_prefix = here.read("param", "list", "--prefixes", "limits", "topic")
     assert by_prefix == "/driver:\n  limits.max\n  topic\n"
 
 
 def test_list_with_types(here: World, driver: Node) -> None:
-    shown = here.said("param", "list", "driver", "--param-type", "--filter", "[lnrtu]")
+    shown = here.read("param", "list", "driver", "--param-type", "--filter", "[lnrtu]")
     assert shown.splitlines() == [
         "  limits.max (type: double)",
         "  names (type: string array)",
@@ -76,7 +76,7 @@ def test_a_text_that_yaml_reads_otherwise(here: World, driver: Node) -> None:
     done = here.run("param", "set", "driver", "topic", "5")
     assert done.code == 1
     assert done.err.endswith("""5 is INTEGER, expected STRING; for a string: "'5'"\n""")
-    here.said("param", "set", "driver", "topic", "'5'")
+    here.read("param", "set", "driver", "topic", "'5'")
     assert driver.get_parameter("topic").value == "5"
 
 
@@ -97,20 +97,20 @@ def test_a_wrong_pattern_is_a_usage_error(here: World) -> None:
     ],
 )
 def test_get(here: World, driver: Node, name: str, text: str) -> None:
-    assert here.said("param", "get", "/driver", name) == f"{text}\n"
+    assert here.read("param", "get", "/driver", name) == f"{text}\n"
 
 
 def test_get_only_the_value(here: World, driver: Node) -> None:
-    assert here.said("param", "get", "driver", "limits.max", "--hide-type") == "2.5\n"
-    assert json.loads(here.said("param", "get", "driver", "names", "--json")) == [
+    assert here.read("param", "get", "driver", "limits.max", "--hide-type") == "2.5\n"
+    assert json.loads(here.read("param", "get", "driver", "names", "--json")) == [
         "left",
         "right",
     ]
 
 
 def test_set_takes_an_integer_for_a_double(here: World, driver: Node) -> None:
-    said = here.said("param", "set", "driver", "limits.max", "3")
-    assert said == "Set parameter successful\n"
+    printed = here.read("param", "set", "driver", "limits.max", "3")
+    assert printed == "Set parameter successful\n"
     assert driver.get_parameter("limits.max").value == 3.0
 
 
@@ -141,7 +141,7 @@ def test_a_mistyped_parameter(here: World, driver: Node, verb: str) -> None:
 
 
 def test_describe(here: World, driver: Node) -> None:
-    shown = here.said("param", "describe", "driver", "limits.max", "topic")
+    shown = here.read("param", "describe", "driver", "limits.max", "topic")
     assert shown == (
         "Parameter name: limits.max\n"
         "  Type: double\n"
@@ -156,15 +156,15 @@ def test_describe(here: World, driver: Node) -> None:
 
 
 def test_dump_goes_round(here: World, driver: Node, tmp_path: Path) -> None:
-    text = here.said("param", "dump", "driver")
+    text = here.read("param", "dump", "driver")
     assert text == DUMP
-    here.said("param", "dump", "-o", str(tmp_path))
+    here.read("param", "dump", "-o", str(tmp_path))
     file = tmp_path / "driver.yaml"
     assert file.read_text() == DUMP
     driver.set_parameters([Parameter("rate", value=1), Parameter("topic", value="x")])
-    said = here.said("param", "load", "driver", str(file))
-    assert "Set parameter rate successful\n" in said
-    assert here.said("param", "dump", "driver") == DUMP
+    printed = here.read("param", "load", "driver", str(file))
+    assert "Set parameter rate successful\n" in printed
+    assert here.read("param", "dump", "driver") == DUMP
     with_file = Node(
         "driver",
         namespace="/again",
@@ -184,7 +184,7 @@ def _for_node(file: Path, node: str) -> Path:
 
 def test_dump_of_all_nodes_is_one_file(here: World, driver: Node) -> None:
     here.graph.add(Node("other", context=here.context))
-    patterns = [name for name, _ in parse_parameters(here.said("param", "dump"))]
+    patterns = [name for name, _ in parse_parameters(here.read("param", "dump"))]
     assert patterns == ["/driver", "/other"]
 
 
@@ -197,7 +197,7 @@ def test_load_takes_what_is_for_the_node(
         "driver: {ros__parameters: {topic: scan}}\n"
         "planner: {ros__parameters: {tolerance: 0.5}}\n"
     )
-    assert here.said("param", "load", "driver", str(file)) == (
+    assert here.read("param", "load", "driver", str(file)) == (
         "Set parameter rate successful\nSet parameter topic successful\n"
     )
     assert driver.get_parameter("rate").value == 5
@@ -229,7 +229,7 @@ def test_load_of_a_file_for_others(here: World, driver: Node, tmp_path: Path) ->
 def test_delete(here: World, driver: Node) -> None:
     driver.declare_parameter("any")
     driver.set_parameters([Parameter("any", value=1)])
-    assert here.said("param", "delete", "driver", "any") == (
+    assert here.read("param", "delete", "driver", "any") == (
         "Deleted parameter successfully\n"
     )
     assert not driver.has_parameter("any")
@@ -252,7 +252,7 @@ def test_a_node_without_parameter_services(here: World) -> None:
 
 
 def test_a_node_that_hangs_is_named(here: World, driver: Node) -> None:
-    """Its executor is gone: it is in the graph, and nobody answers."""
+    """A node without an executor is in the graph but does not respond."""
     here.graph.executor.remove_node(driver)
     done = here.run("param", "list")
     assert done.out == ""
@@ -265,4 +265,4 @@ def test_a_parameter_without_a_value(here: World, driver: Node) -> None:
     assert done.err == "navette: node /driver: mode: declared but not set\n"
     done = here.run("param", "set", "driver", "mode", "5")
     assert "parameter 'mode': 5 is INTEGER, expected STRING" in done.err
-    assert here.said("param", "set", "driver", "mode", "fast")
+    assert here.read("param", "set", "driver", "mode", "fast")

@@ -101,7 +101,7 @@ def test_who_describes_nothing_is_named(
             node, "std_srvs/srv/Trigger", service_endpoints(node, "/other")
         )
         assert found.reason == "/mute: describes no types"
-        # Another topic's program knows that type, and is asked instead.
+        # A node on another topic has the definition.
         mute.create_service(SetBool, "like_switch", lambda _, response: response)
         (end,) = service_endpoints(node, "/like_switch")
         found = described_by_peers(node, "std_srvs/srv/SetBool", [end])
@@ -135,8 +135,8 @@ def test_another_definition_than_here_is_said(
         (end,) = service_endpoints(node, "/switch")
         other = replace(end, type_hash="RIHS01_" + "0" * 64)
         assert interface_class(node, "std_srvs/srv/SetBool", [other]) is SetBool
-    said = capsys.readouterr().err
-    assert said.startswith(
+    printed = capsys.readouterr().err
+    assert printed.startswith(
         "/server has another definition of std_srvs/srv/SetBool (RIHS01_0000000000…"
     )
-    assert "messages cannot be exchanged with it" in said
+    assert "messages cannot be exchanged with it" in printed

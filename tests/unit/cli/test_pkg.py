@@ -28,12 +28,12 @@ def navette(*words: str) -> str:
 
 
 def test_create_and_find(workspace: Path) -> None:
-    said = navette(
+    printed = navette(
         "create", "my_robot", "--node", "drive", "--dependencies", "tf2_ros", "nav_msgs"
     )
     folder = workspace / "src" / "my_robot"
-    assert f"made {folder}" in said
-    assert "my_robot/drive_node.py" in said
+    assert f"made {folder}" in printed
+    assert "my_robot/drive_node.py" in printed
     assert "<depend>nav_msgs</depend>" in (folder / "package.xml").read_text()
     listed = navette("list").splitlines()
     assert {"my_robot", "std_msgs", "navette"} <= set(listed)

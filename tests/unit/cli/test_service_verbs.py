@@ -56,19 +56,19 @@ NAMES = "/add\n/adder/get_type_description\n/enable\n"
 
 
 def test_list(here: World, adder: Node) -> None:
-    assert here.said("service", "list") == NAMES
-    assert here.said("service", "list", "-a") == "/_own/enable\n" + NAMES
-    assert here.said("service", "list", "-c") == "3\n"
-    typed = here.said("service", "list", "-t").splitlines()
+    assert here.read("service", "list") == NAMES
+    assert here.read("service", "list", "-a") == "/_own/enable\n" + NAMES
+    assert here.read("service", "list", "-c") == "3\n"
+    typed = here.read("service", "list", "-t").splitlines()
     assert typed[0] == f"/add [{ADD}]"
-    listed = json.loads(here.said("service", "list", "--json"))
+    listed = json.loads(here.read("service", "list", "--json"))
     assert listed[0] == {"name": "/add", "types": [ADD]}
 
 
 def test_type_and_find(here: World, adder: Node) -> None:
-    assert here.said("service", "type", "/add") == f"{ADD}\n"
-    assert here.said("service", "find", ADD) == "/add\n"
-    assert here.said("service", "find", "std_srvs/SetBool", "-c") == "1\n"
+    assert here.read("service", "type", "/add") == f"{ADD}\n"
+    assert here.read("service", "find", ADD) == "/add\n"
+    assert here.read("service", "find", "std_srvs/SetBool", "-c") == "1\n"
     done = here.run("service", "find", "std_srvs/srv/Empty")
     assert done == ("", "navette: no service has type std_srvs/srv/Empty\n", 1)
 
@@ -76,15 +76,15 @@ def test_type_and_find(here: World, adder: Node) -> None:
 def test_info(here: World, adder: Node) -> None:
     adder.create_client(AddTwoInts, "add")
     text = f"Type: {ADD}\nClients count: 1\nServices count: 1\n"
-    assert here.said("service", "info", "add") == text
-    verbose = here.said("service", "info", "add", "-v")
+    assert here.read("service", "info", "add") == text
+    verbose = here.read("service", "info", "add", "-v")
     assert verbose.splitlines()[1:] == [
         "Clients count: 1",
         "    /adder",
         "Services count: 1",
         "    /adder",
     ]
-    info = json.loads(here.said("service", "info", "add", "--json"))
+    info = json.loads(here.read("service", "info", "add", "--json"))
     assert info["servers"] == ["/adder"]
 
 
@@ -105,13 +105,13 @@ def test_a_mistyped_service(here: World, adder: Node, verb: str) -> None:
     ],
 )
 def test_call(here: World, adder: Node, words: list[str]) -> None:
-    assert here.said("service", "call", *words) == CALLED
+    assert here.read("service", "call", *words) == CALLED
 
 
 def test_call_with_partial_yaml_and_for_programs(here: World, adder: Node) -> None:
-    said = here.said("service", "call", "/add", "{b: 3}", "--json")
-    assert json.loads(said) == {"sum": 3}
-    assert json.loads(here.said("service", "call", "/add", "--json")) == {"sum": 0}
+    printed = here.read("service", "call", "/add", "{b: 3}", "--json")
+    assert json.loads(printed) == {"sum": 3}
+    assert json.loads(here.read("service", "call", "/add", "--json")) == {"sum": 0}
 
 
 def test_call_from_standard_input(here: World, adder: Node) -> None:
@@ -210,7 +210,7 @@ def test_echo(here: World, adder: Node) -> None:
     event = EVENT.replace("sec: 0\n", "sec: 1\n", 1)
     assert done.out.startswith(event)
     assert "\nrequest:\n- a: 1\n  b: 0\nresponse: []\n---\n" in done.out
-    as_csv = here.said("service", "echo", "/add", "--csv", "--once")
+    as_csv = here.read("service", "echo", "/add", "--csv", "--once")
     assert as_csv.startswith("1,2,0,")
 
 

@@ -38,12 +38,12 @@ def test_own_endpoints_are_not_listed(context: Context) -> None:
 
 def test_callbacks_run_while_waiting(context: Context) -> None:
     with connect(context) as node:
-        heard: list[String] = []
-        node.create_subscription(String, "chatter", heard.append, 10)
+        received: list[String] = []
+        node.create_subscription(String, "chatter", received.append, 10)
         publisher = node.create_publisher(String, "chatter", 10)
         node.create_timer(0.5, lambda: publisher.publish(String(data="hello")))
-        assert wait_for(node, lambda: len(heard) == 3, 5.0)
-        assert not wait_for(node, lambda: len(heard) == 300, 1.0)
+        assert wait_for(node, lambda: len(received) == 3, 5.0)
+        assert not wait_for(node, lambda: len(received) == 300, 1.0)
     assert context.clock.now_ns == 2_500_000_000
 
 

@@ -1,16 +1,16 @@
-"""What is said beside the result: whole words on a terminal, one line in a pipe."""
+"""What is printed beside the result: whole words on a terminal, one line in a pipe."""
 
 import sys
 
 import pytest
 
-from navette.cli.stderr import complain, note
+from navette.cli.stderr import note, print_error
 
-LONG = "nobody publishes /odometry/filtered_and_long; did you mean /odom/filtered?"
+LONG = "no publisher on /odometry/filtered_and_long; did you mean /odom/filtered?"
 
 
 def test_in_a_pipe_it_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    complain(LONG)
+    print_error(LONG)
     note("from a peer: \x1b[2J")
     assert capsys.readouterr().err == (f"navette: {LONG}\nfrom a peer: \\x1b[2J\n")
 
@@ -21,10 +21,10 @@ def test_on_a_terminal_lines_end_between_words(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setenv("COLUMNS", "40")
     monkeypatch.setenv("NO_COLOR", "1")
-    complain(LONG)
+    print_error(LONG)
     note("known:\n- one [1]\n- two [2]")
     assert capsys.readouterr().err.splitlines() == [
-        "navette: nobody publishes",
+        "navette: no publisher on",
         "  /odometry/filtered_and_long; did you",
         "  mean /odom/filtered?",
         "known:",
@@ -38,5 +38,5 @@ def test_colours(
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.delenv("NO_COLOR", raising=False)
-    complain("no")
+    print_error("no")
     assert capsys.readouterr().err == "\x1b[31mnavette: no\x1b[0m\n"

@@ -35,7 +35,7 @@ def test_a_key_drives_while_it_is_held_and_a_little_longer(
     driver.press(key, HELD_NS - 1)
     assert driver.command(HELD_NS) == command
     assert driver.command(2 * HELD_NS) == (0.0, 0.0)
-    assert driver.command(2 * HELD_NS) is None, "the zero is said once"
+    assert driver.command(2 * HELD_NS) is None, "the zero is printed once"
 
 
 @pytest.mark.parametrize("key", [" ", "x", "escape", "q"])

@@ -7,7 +7,7 @@ from unittest.mock import patch
 import pytest
 from verb_world import World, world
 
-from navette.cli.doctor.findings import Finding, Level
+from navette.cli.doctor.findings import Diagnosis, Rating
 from navette.cli.doctor.report import report_lines
 from navette.cli.message_yaml import yaml_of
 from navette.msgs.example_interfaces.action import Fibonacci
@@ -43,19 +43,19 @@ def here() -> Iterator[World]:
 
 
 def test_node_info(here: World) -> None:
-    lines = here.said("node", "info", "talker").splitlines()
+    lines = here.read("node", "info", "talker").splitlines()
     assert lines[:3] == ["/talker", "  Subscribers  none", "  Publishers"]
     # Fifty columns are too few for the longest name and its type side by side.
     assert lines[3:5] == ["    /chatter", "        std_msgs/msg/String"]
 
 
 def test_param_list(here: World) -> None:
-    assert here.said("param", "list", "talker", "--filter", "s|w").splitlines() == [
+    assert here.read("param", "list", "talker", "--filter", "s|w").splitlines() == [
         "  speed                           1.5",
         "  start_type_description_service  true",
         "  where                           a place whose n…",
     ]
-    typed = here.said("param", "list", "talker", "--param-type", "--filter", "sp|u")
+    typed = here.read("param", "list", "talker", "--param-type", "--filter", "sp|u")
     assert typed.splitlines() == [
         "  speed         double   1.5",
         "  use_sim_time  boolean  false",
@@ -66,15 +66,15 @@ def test_service_list(here: World) -> None:
     done = here.run("service", "list")
     assert done.out == "/add\n"
     assert done.err == "and 7 that every node has (-a shows them)\n"
-    assert len(here.said("service", "list", "-a").splitlines()) == 8
-    assert here.said("service", "list", "-t") == (
+    assert len(here.read("service", "list", "-a").splitlines()) == 8
+    assert here.read("service", "list", "-t") == (
         "/add  example_interfaces/srv/AddTwoInts\n"
     )
 
 
 def test_the_doctors_lines_are_wrapped_under_themselves() -> None:
-    finding = Finding(
-        Level.PROBLEM,
+    finding = Diagnosis(
+        Rating.PROBLEM,
         "Topics",
         "/scan",
         "/costmap receives nothing from /lidar: incompatible reliability",
@@ -91,7 +91,7 @@ def test_the_doctors_lines_are_wrapped_under_themselves() -> None:
 
 
 def test_what_others_say_does_not_move_the_cursor() -> None:
-    finding = Finding(Level.NOTE, "Stages", "/s", "calm \x1b[2J")
+    finding = Diagnosis(Rating.NOTE, "Stages", "/s", "calm \x1b[2J")
     assert report_lines([finding], everything=True)[1] == "  · /s  calm \\x1b[2J"
 
 

@@ -29,14 +29,14 @@ def listener() -> Iterator[Node]:
         yield node
 
 
-def hear(listener: Node, kind: type, topic: str) -> list[tuple[float, Any]]:
+def collect(listener: Node, kind: type, topic: str) -> list[tuple[float, Any]]:
     """(time in s, message) of all that comes."""
-    heard: list[tuple[float, Any]] = []
+    received: list[tuple[float, Any]] = []
     clock = listener.get_clock()
     listener.create_subscription(
-        kind, topic, lambda m: heard.append((clock.now_ns / 1e9, m)), 10
+        kind, topic, lambda m: received.append((clock.now_ns / 1e9, m)), 10
     )
-    return heard
+    return received
 
 
 def pub(listener: Node, topic: str, type_name: str, **options: Any) -> None:
@@ -47,25 +47,25 @@ def pub(listener: Node, topic: str, type_name: str, **options: Any) -> None:
 def test_partial_yaml_at_a_rate_as_ros2_prints_it(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    heard = hear(listener, Twist, "cmd_vel")
+    received = collect(listener, Twist, "cmd_vel")
     pub(
         listener, "cmd_vel", "geometry_msgs/msg/Twist",
         values="{linear: {x: 2.0}, angular: {z: 1.8}}", rate_hz=2.0, times=3,
     )  # fmt: skip
-    assert [time for time, _ in heard] == [0.0, 0.5, 1.0]
-    assert heard[-1][1].linear.x == 2.0
-    assert heard[-1][1].angular.z == 1.8
-    assert heard[-1][1].linear.y == 0.0
+    assert [time for time, _ in received] == [0.0, 0.5, 1.0]
+    assert received[-1][1].linear.x == 2.0
+    assert received[-1][1].angular.z == 1.8
+    assert received[-1][1].linear.y == 0.0
     lines = capsys.readouterr().out.split("\n")
     assert lines[0] == "publisher: beginning loop"
-    assert lines[1] == f"publishing #1: {heard[0][1]!r}"
-    assert lines[2:4] == ["", f"publishing #2: {heard[0][1]!r}"]
+    assert lines[1] == f"publishing #1: {received[0][1]!r}"
+    assert lines[2:4] == ["", f"publishing #2: {received[0][1]!r}"]
 
 
 def test_every_nth_is_printed(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    hear(listener, String, "chatter")
+    collect(listener, String, "chatter")
     pub(listener, "chatter", "std_msgs/String", times=4, print_each=2)
     assert [
         line.partition(":")[0] for line in capsys.readouterr().out.splitlines() if line
@@ -75,10 +75,10 @@ def test_every_nth_is_printed(
 
 
 def test_headers_and_times_are_stamped_when_sent(listener: Node) -> None:
-    heard = hear(listener, PointStamped, "goal")
+    received = collect(listener, PointStamped, "goal")
     values = "{header: auto, point: {x: 1.0}}"
     pub(listener, "goal", "geometry_msgs/PointStamped", values=values, times=2)
-    assert [m.header.stamp for _, m in heard] == [ns_to_stamp(0), ns_to_stamp(10**9)]
+    assert [m.header.stamp for _, m in received] == [ns_to_stamp(0), ns_to_stamp(10**9)]
 
     message, stamps = filled_message(
         PointStamped, {"header": {"stamp": "now", "frame_id": "map"}}
@@ -90,13 +90,13 @@ def test_headers_and_times_are_stamped_when_sent(listener: Node) -> None:
 
 
 def test_what_echo_wrote_is_published_again(listener: Node, tmp_path: Path) -> None:
-    heard = hear(listener, Twist, "cmd_vel")
+    received = collect(listener, Twist, "cmd_vel")
     file = tmp_path / "drive.yaml"
     file.write_text("linear:\n  x: 1.0\n---\nlinear:\n  x: 2.0\n---\n")
     pub(listener, "cmd_vel", "geometry_msgs/Twist", yaml_file=file, rate_hz=2.0)
-    assert [(at_s, m.linear.x) for at_s, m in heard] == [(0.0, 1.0), (0.5, 2.0)]
+    assert [(at_s, m.linear.x) for at_s, m in received] == [(0.0, 1.0), (0.5, 2.0)]
     pub(listener, "cmd_vel", "geometry_msgs/Twist", yaml_file=file, once=True)
-    assert [m.linear.x for _, m in heard] == [1.0, 2.0, 1.0]
+    assert [m.linear.x for _, m in received] == [1.0, 2.0, 1.0]
     for text, reason in (("---\n", "no message"), ("{", "is not YAML"), (None, "No")):
         other = tmp_path / "other.yaml"
         if text:
@@ -133,16 +133,16 @@ def test_what_does_not_fit_is_refused(kind: Any, text: str, reason: str) -> None
 def test_it_waits_for_who_hears_it(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    heard: list[Any] = []
+    received: list[Any] = []
     timer = listener.create_timer(2.5, lambda: join())
 
     def join() -> None:
         timer.cancel()
-        heard.extend([None])
-        listener.create_subscription(String, "chatter", heard.append, 10)
+        received.extend([None])
+        listener.create_subscription(String, "chatter", received.append, 10)
 
     pub(listener, "chatter", "std_msgs/String", values="{data: hi}", times=1)
-    assert heard == [None, String(data="hi")]
+    assert received == [None, String(data="hi")]
     assert capsys.readouterr().err == "waiting for 1 matching subscription(s)\n"
 
 
@@ -150,14 +150,14 @@ def test_it_says_why_nobody_hears_it(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     listener.create_subscription(String, "chatter", lambda _: None, 10)
-    told = []
+    lines = []
     for topic, qos in (("chattr", QosOverrides()),
                        ("chatter", QosOverrides(reliability="best_effort")),
                        ):  # fmt: skip
         with pytest.raises(click.exceptions.Exit):
             pub(listener, topic, "std_msgs/String", times=1, max_wait_s=1.0, qos=qos)
-        told += capsys.readouterr().err.splitlines()[-2:-1]
-    assert told == [
+        lines += capsys.readouterr().err.splitlines()[-2:-1]
+    assert lines == [
         "waiting for 1 matching subscription(s); did you mean /chatter?",
         "waiting for 1 matching subscription(s); 1 of /chatter have incompatible QoS",
     ]
@@ -179,7 +179,7 @@ def test_waiting_for_hearers_ends(
 def test_a_topic_of_another_type_and_an_unknown_type_are_refused(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    hear(listener, String, "chatter")
+    collect(listener, String, "chatter")
     with pytest.raises(click.exceptions.Exit):
         pub(listener, "chatter", "std_msgs/Bool", times=1)
     assert "/chatter has type std_msgs/msg/String" in capsys.readouterr().err
@@ -190,15 +190,15 @@ def test_a_topic_of_another_type_and_an_unknown_type_are_refused(
 
 def test_the_command() -> None:
     with shared_graph(), program("listener") as listener:
-        heard: list[String] = []
-        listener.create_subscription(String, "chatter", heard.append, 10)
+        received: list[String] = []
+        listener.create_subscription(String, "chatter", received.append, 10)
         shown = navette(
             "topic", "pub", "-1", "--keep-alive", "0", "/chatter",
             "std_msgs/msg/String", "{data: Hello}",
         )  # fmt: skip
         listener.executor.spin_once(0.1)
     assert shown.exit_code == 0, shown.output
-    assert heard == [String(data="Hello")]
+    assert received == [String(data="Hello")]
     assert shown.stdout == (
         "publisher: beginning loop\n"
         "publishing #1: std_msgs.msg.String(data='Hello')\n\n"
@@ -222,12 +222,12 @@ def test_stamps_are_in_simulated_time_where_there_is_a_clock() -> None:
         clock = node.create_publisher(Clock, "/clock", 10)
         message = Clock(clock=ns_to_stamp(42 * 10**9))
         node.create_timer(0.005, lambda: clock.publish(message))
-        heard: list[PointStamped] = []
-        node.create_subscription(PointStamped, "goal", heard.append, 10)
+        received: list[PointStamped] = []
+        node.create_subscription(PointStamped, "goal", received.append, 10)
         for wall_time in (False, True):
             pub(
                 node, "goal", "geometry_msgs/PointStamped", values="{header: auto}",
                 times=1, keep_alive_s=0.0, print_each=0, wall_time=wall_time,
             )  # fmt: skip
-    assert heard[0].header.stamp.sec == 42
-    assert heard[1].header.stamp.sec > 10**9
+    assert received[0].header.stamp.sec == 42
+    assert received[1].header.stamp.sec > 10**9

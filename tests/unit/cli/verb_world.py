@@ -55,7 +55,7 @@ class World:
             raise done.exception
         return Done(done.stdout, done.stderr, done.exit_code)
 
-    def said(self, *words: str) -> str:
+    def read(self, *words: str) -> str:
         """What a verb that succeeds prints."""
         done = self.run(*words)
         assert done.code == 0, done

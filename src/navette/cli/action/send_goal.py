@@ -170,9 +170,9 @@ def _cancel(here: "Node", sent: "Future[ClientGoalHandle]", report: _Report) -> 
     if handle is None or not handle.accepted:
         return
     report.print("Canceling goal...")
-    asked = handle.cancel_goal_async()
-    wait_for(here, asked.done, _CANCEL_S)
-    response: Any = asked.result() if asked.done() else None
+    future = handle.cancel_goal_async()
+    wait_for(here, future.done, _CANCEL_S)
+    response: Any = future.result() if future.done() else None
     if response is None or not response.goals_canceling:
         note("the server did not cancel the goal")
     else:

@@ -45,7 +45,7 @@ def draw(series: Sequence[Series], title: str, path: Path) -> None:
     """
     if path.suffix not in SUFFIXES:
         raise InvalidValueError(f"{path}: the suffix is not {' or '.join(SUFFIXES)}")
-    if len({bool(each.wanted.x) for each in series}) > 1:
+    if len({bool(each.selected.x) for each in series}) > 1:
         raise InvalidValueError(
             "fields over time and fields over each other (with a colon) cannot be in"
             " one picture; make two"
@@ -59,7 +59,7 @@ def draw(series: Sequence[Series], title: str, path: Path) -> None:
         ) from error
     with rc_context(_STYLE):
         figure = Figure(layout="constrained", dpi=144)
-        paint = _paint_plane if series[0].wanted.x else _paint_panels
+        paint = _paint_plane if series[0].selected.x else _paint_panels
         paint(figure, series)
         figure.suptitle(title, x=0.01, ha="left", color=_INK, weight="bold", size=11)
         metadata: dict[str, None] = {
@@ -78,7 +78,7 @@ def _paint_panels(figure: Any, series: Sequence[Series]) -> None:
     """Draw a panel for each field name with a common time axis."""
     panels: dict[str, list[Series]] = {}
     for each in series:
-        panels.setdefault(each.wanted.y.rpartition(".")[2], []).append(each)
+        panels.setdefault(each.selected.y.rpartition(".")[2], []).append(each)
     figure.set_size_inches(9.0, 0.9 + 2.3 * len(panels))
     axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
     colours = cycle(_COLOURS)
@@ -94,16 +94,18 @@ def _paint_plane(figure: Any, series: Sequence[Series]) -> None:
     """Draw all lines in one plane with equal scales."""
     figure.set_size_inches(7.2, 6.2)
     axis = figure.subplots()
-    alike = len({(each.wanted.x, each.wanted.y) for each in series}) == 1 < len(series)
+    alike = (
+        len({(each.selected.x, each.selected.y) for each in series}) == 1 < len(series)
+    )
     for each, colour in zip(series, cycle(_COLOURS), strict=False):
         # The axes name common fields.
-        label = each.wanted.topic if alike else _label(each)
+        label = each.selected.topic if alike else _label(each)
         axis.plot(each.x, each.y, color=colour, label=label)
         axis.plot(each.x[0], each.y[0], "o", color=colour, markersize=4.5)
     _name(axis, series)
     axis.set_aspect("equal", adjustable="datalim")
-    axis.set_xlabel(series[0].wanted.x)
-    axis.set_ylabel(series[0].wanted.y)
+    axis.set_xlabel(series[0].selected.x)
+    axis.set_ylabel(series[0].selected.y)
 
 
 def _name(axis: Any, lines: Sequence[Series]) -> None:
@@ -115,7 +117,7 @@ def _name(axis: Any, lines: Sequence[Series]) -> None:
 
 
 def _label(series: Series) -> str:
-    wanted = series.wanted
-    over = f" over {wanted.x}" if wanted.x else ""
+    selected = series.selected
+    over = f" over {selected.x}" if selected.x else ""
     note = f" ({series.note})" if series.note else ""
-    return f"{wanted.topic}  {wanted.y}{over}{note}"
+    return f"{selected.topic}  {selected.y}{over}{note}"

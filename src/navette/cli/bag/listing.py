@@ -15,7 +15,7 @@ from navette.errors import FileFormatError
 
 
 @dataclass(frozen=True)
-class Listed:
+class BagListing:
     """Summary of a recording, or the problem that prevents reading it."""
 
     path: Path
@@ -39,7 +39,7 @@ class Listed:
         }
 
 
-def find(folder: Path, *, recursive: bool = False) -> list[Listed]:
+def find(folder: Path, *, recursive: bool = False) -> list[BagListing]:
     """Return all recordings in a folder (or the folder itself), sorted by name.
 
     Raises:
@@ -61,10 +61,10 @@ def _bags(folder: Path, *, recursive: bool) -> Iterator[Path]:
             yield from _bags(path, recursive=True)
 
 
-def _summary(path: Path) -> Listed:
+def _summary(path: Path) -> BagListing:
     try:
         with open_bag(path) as reader:
-            return Listed(
+            return BagListing(
                 path,
                 reader.size,
                 reader.start_ns,
@@ -74,10 +74,10 @@ def _summary(path: Path) -> Listed:
                 "; ".join(reader.problems),
             )
     except FileFormatError as error:
-        return Listed(path, problem=error.reason)
+        return BagListing(path, problem=error.reason)
 
 
-def show_list(found: list[Listed]) -> None:
+def show_list(found: list[BagListing]) -> None:
     table = new_table("bag", "start", ">duration", ">size", ">messages", ">topics", "")
     for each in found:
         duration = (each.end_ns - each.start_ns) / 1e9

@@ -36,12 +36,14 @@ def plot(bag: Bag, fields: Fields, output: Picture = None) -> None:
     """
     from navette.bags import open_bag
     from navette.cli.bag.drawing import draw
-    from navette.cli.bag.series import Wanted, read_series
+    from navette.cli.bag.series import PlotField, read_series
 
-    wanted = [Wanted.read(text) for text in fields]
+    selected = [PlotField.read(text) for text in fields]
     path = output or Path(f"{bag.name.partition('.')[0] or 'recording'}.png")
     with open_bag(bag) as reader:
-        series = read_series(reader, wanted, lambda damage: note(f"left out: {damage}"))
+        series = read_series(
+            reader, selected, lambda damage: note(f"left out: {damage}")
+        )
     draw(series, bag.name, path)
     points = sum(len(each.x) for each in series)
     show(f"{path}: {len(series)} line{'s' * (len(series) > 1)}, {points} points")

@@ -23,7 +23,7 @@ _PAIR = re.compile(r":(?![^\[]*\])")
 
 
 @dataclass(frozen=True)
-class Wanted:
+class PlotField:
     """A field to plot over time, or over another field."""
 
     text: str
@@ -33,7 +33,7 @@ class Wanted:
     """"" = time"""
 
     @classmethod
-    def read(cls, text: str) -> "Wanted":
+    def read(cls, text: str) -> "PlotField":
         """Parse ``/odom.pose.pose.position.x``, or ``….x:y`` for y over x.
 
         After the colon follows a field of the same message as the first one, or a path
@@ -59,7 +59,7 @@ class Wanted:
 class Series:
     """A line of a plot; ``x`` is the time in seconds since the start, or a field."""
 
-    wanted: Wanted
+    selected: PlotField
     x: "array[float]" = field(default_factory=lambda: array("d"))
     y: "array[float]" = field(default_factory=lambda: array("d"))
     note: str = ""
@@ -67,7 +67,7 @@ class Series:
 
 
 def read_series(
-    reader: BagReader, wanted: Sequence[Wanted], on_damage: OnDamage | None = None
+    reader: BagReader, selected: Sequence[PlotField], on_damage: OnDamage | None = None
 ) -> list[Series]:
     """Read one series for each argument, in order of the stamps.
 
@@ -80,12 +80,12 @@ def read_series(
         InvalidValueError: no messages.
     """
     known = sorted({topic.name for topic in reader.topics})
-    for name in (each.topic for each in wanted):
+    for name in (each.topic for each in selected):
         if name not in known:
             raise UnknownNameError.of("topic", name, known)
-    series = [Series(each) for each in wanted]
+    series = [Series(each) for each in selected]
     start_ns, pickers = reader.start_ns, dict[BagTopic, _Picker]()
-    topics = {each.topic for each in wanted}
+    topics = {each.topic for each in selected}
     for message in reader.messages(topics, on_damage=on_damage):
         picker = pickers.get(message.topic)
         if picker is None:
@@ -93,7 +93,7 @@ def read_series(
         picker.add(message.data, (message.stamp_ns - start_ns) * 1e-9)
     for line in series:
         if not line.x:
-            raise InvalidValueError(f"{line.wanted.text}: no messages on that topic")
+            raise InvalidValueError(f"{line.selected.text}: no messages on that topic")
     return series
 
 
@@ -106,11 +106,11 @@ class _Picker:
         self._lines = [
             (
                 each,
-                _Number(each.wanted.x, type_name) if each.wanted.x else None,
-                _Number(each.wanted.y, type_name),
+                _Number(each.selected.x, type_name) if each.selected.x else None,
+                _Number(each.selected.y, type_name),
             )
             for each in series
-            if each.wanted.topic == topic.name
+            if each.selected.topic == topic.name
         ]
         for each, _, y in self._lines:
             each.note = y.note

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import click
 
-from navette.cli.doctor.findings import Finding, Level, count
+from navette.cli.doctor.findings import Diagnosis, Rating, count
 from navette.cli.options import Option
 from navette.cli.output import show, show_json
 from navette.cli.session import FAILED, connect
@@ -38,11 +38,11 @@ def doctor(
             lines = report.report_lines(findings, everything=not quiet)
             for line in (*lines, *([""] if lines else []), report.summary(findings)):
                 show(line)
-    if count(findings, Level.PROBLEM):
+    if count(findings, Rating.PROBLEM):
         raise click.exceptions.Exit(FAILED)
 
 
-def _findings(joined: ExitStack) -> Iterator[Finding]:
+def _findings(joined: ExitStack) -> Iterator[Diagnosis]:
     """Run the checks; ``joined`` closes the connection after the report."""
     from navette.cli.doctor.look import look
     from navette.cli.doctor.machine import check_machine, stopped
@@ -69,7 +69,7 @@ def _findings(joined: ExitStack) -> Iterator[Finding]:
         if not isinstance(end.__context__, NetworkError):
             raise
         yield from check_network(network, None)
-        yield Finding(Level.PROBLEM, NETWORK, "connection", str(end.__context__))
+        yield Diagnosis(Rating.PROBLEM, NETWORK, "connection", str(end.__context__))
     else:
         yield from check_network(network, domain)
         yield from stopped(processes(), os.getpid())
@@ -90,7 +90,7 @@ def _quiet() -> Iterator[None]:
         logger.setLevel(before)
 
 
-def _check_running(seen: "Snapshot") -> Iterator[Finding]:
+def _check_running(seen: "Snapshot") -> Iterator[Diagnosis]:
     from navette.cli.doctor.graph_checks import (
         check_nodes,
         check_services,

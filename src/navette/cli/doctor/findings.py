@@ -6,7 +6,7 @@ from enum import Enum
 from typing import Any
 
 
-class Level(Enum):
+class Rating(Enum):
     """Severity; the value is the printed mark."""
 
     GOOD = "✓"
@@ -16,7 +16,7 @@ class Level(Enum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class Diagnosis:
     """One line of the report.
 
     Args:
@@ -27,7 +27,7 @@ class Finding:
         data: details for programs.
     """
 
-    level: Level
+    level: Rating
     section: str
     what: str
     text: str
@@ -45,7 +45,7 @@ class Finding:
         }
 
 
-def count(findings: Iterable[Finding], level: Level) -> int:
+def count(findings: Iterable[Diagnosis], level: Rating) -> int:
     return sum(finding.level is level for finding in findings)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from itertools import product
 
 from navette.cli.doctor.chain import consequence, explained, missing_links
-from navette.cli.doctor.findings import Finding, Level, listed, plural
+from navette.cli.doctor.findings import Diagnosis, Rating, listed, plural
 from navette.cli.doctor.snapshot import Snapshot, is_own
 from navette.cli.session import is_of_every_node
 from navette.msgs.topics import GOAL_POINT, GOAL_POSE, INITIAL_POSE
@@ -35,15 +35,15 @@ _REMEDIES = {
 }
 
 
-def check_nodes(seen: Snapshot) -> Iterator[Finding]:
+def check_nodes(seen: Snapshot) -> Iterator[Diagnosis]:
     """Check that nodes have unique names and respond, and that no stage is missing."""
     for name in seen.unreached:
         topics = seen.unreached_topics.get(name, ())
         how = "is listed by the router, but cannot be reached"
         yield _silent(name, how + consequence(seen, topics), topics)
     for link in missing_links(seen):
-        yield Finding(
-            Level.PROBLEM,
+        yield Diagnosis(
+            Rating.PROBLEM,
             NODES,
             link.stage,
             f"is missing: no node turns {link.reads.name} into {link.publishes.name}"
@@ -57,8 +57,8 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
             },
         )
     if not seen.nodes:
-        yield Finding(
-            Level.NOTE,
+        yield Diagnosis(
+            Rating.NOTE,
             NODES,
             "nodes",
             "none",
@@ -68,8 +68,8 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
         return
     twice = sorted(name for name, times in Counter(seen.nodes).items() if times > 1)
     for name in twice:
-        yield Finding(
-            Level.PROBLEM,
+        yield Diagnosis(
+            Rating.PROBLEM,
             NODES,
             name,
             f"{seen.nodes.count(name)} nodes have this name",
@@ -88,18 +88,22 @@ def check_nodes(seen: Snapshot) -> Iterator[Finding]:
         text += (
             f"; {'all respond' if several else 'it responds'}" if seen.sim_time else ""
         )
-        yield Finding(
-            Level.GOOD, NODES, "nodes", text, data={"nodes": sorted(seen.nodes)}
+        yield Diagnosis(
+            Rating.GOOD,
+            NODES,
+            "nodes",
+            text,
+            data={"nodes": sorted(seen.nodes)},
         )
 
 
-def _silent(name: str, how: str, topics: Iterable[str]) -> Finding:
+def _silent(name: str, how: str, topics: Iterable[str]) -> Diagnosis:
     advice = "its program is stopped (Ctrl-Z), hangs in a callback, or is disconnected"
     data = {"silent": name, "publishes": sorted(topics)}
-    return Finding(Level.PROBLEM, NODES, name, how, advice, data)
+    return Diagnosis(Rating.PROBLEM, NODES, name, how, advice, data)
 
 
-def check_topics(seen: Snapshot) -> Iterator[Finding]:
+def check_topics(seen: Snapshot) -> Iterator[Diagnosis]:
     """Check types and QoS of each topic, and report topics without a publisher."""
     problems = [
         finding
@@ -110,19 +114,19 @@ def check_topics(seen: Snapshot) -> Iterator[Finding]:
     joined = [t for t in seen.topics if seen.publishers(t) and seen.subscriptions(t)]
     if joined and not problems:
         text = f"{plural(len(joined), 'topic')} connected, types and QoS match"
-        yield Finding(Level.GOOD, TOPICS, "topics", text, data={"topics": joined})
+        yield Diagnosis(Rating.GOOD, TOPICS, "topics", text, data={"topics": joined})
     yield from _unconnected(seen)
 
 
-def _type_problems(seen: Snapshot, topic: str) -> Iterator[Finding]:
+def _type_problems(seen: Snapshot, topic: str) -> Iterator[Diagnosis]:
     ends = [*seen.publishers(topic), *seen.subscriptions(topic)]
     types: dict[str, set[str]] = {}
     for end in ends:
         types.setdefault(end.type_name, set()).add(end.node_full_name)
     if len(types) > 1:
         who = "; ".join(f"{name}: {listed(types[name])}" for name in sorted(types))
-        yield Finding(
-            Level.PROBLEM,
+        yield Diagnosis(
+            Rating.PROBLEM,
             TOPICS,
             topic,
             f"has {len(types)} types: {who}",
@@ -136,8 +140,8 @@ def _type_problems(seen: Snapshot, topic: str) -> Iterator[Finding]:
         versions.setdefault(end.type_hash, set()).add(end.node_full_name)
     if len(versions) > 1:
         who = " | ".join(sorted(listed(names) for names in versions.values()))
-        yield Finding(
-            Level.PROBLEM,
+        yield Diagnosis(
+            Rating.PROBLEM,
             TOPICS,
             topic,
             f"{next(iter(types))} has {len(versions)} definitions: {who}",
@@ -147,7 +151,7 @@ def _type_problems(seen: Snapshot, topic: str) -> Iterator[Finding]:
         )
 
 
-def _qos_problems(seen: Snapshot, topic: str) -> Iterator[Finding]:
+def _qos_problems(seen: Snapshot, topic: str) -> Iterator[Diagnosis]:
     for publisher, subscription in product(
         seen.publishers(topic), seen.subscriptions(topic)
     ):
@@ -155,8 +159,8 @@ def _qos_problems(seen: Snapshot, topic: str) -> Iterator[Finding]:
             continue
         short = incompatible_policies(publisher.qos, subscription.qos)
         if short:
-            yield Finding(
-                Level.PROBLEM,
+            yield Diagnosis(
+                Rating.PROBLEM,
                 TOPICS,
                 topic,
                 f"{subscription.node_full_name} receives nothing from"
@@ -169,7 +173,7 @@ def _policies(kinds: tuple[QoSPolicyKind, ...]) -> str:
     return ", ".join(kind.name.lower().replace("_", " ") for kind in kinds)
 
 
-def _unconnected(seen: Snapshot) -> Iterator[Finding]:
+def _unconnected(seen: Snapshot) -> Iterator[Diagnosis]:
     """Report topics with only one side, often caused by a mistyped name."""
     unread = [t for t in seen.topics if not seen.subscriptions(t)]
     known = _BY_HAND | explained(seen)
@@ -179,8 +183,8 @@ def _unconnected(seen: Snapshot) -> Iterator[Finding]:
         instead = [t for t in unread if _has_type(seen, t, wanted.type_name)]
         yield _unpublished(seen, wanted, instead)
     if unread:
-        yield Finding(
-            Level.NOTE,
+        yield Diagnosis(
+            Rating.NOTE,
             TOPICS,
             "unread",
             listed(unread),
@@ -192,7 +196,7 @@ def _has_type(seen: Snapshot, topic: str, type_name: str) -> bool:
     return any(e.type_name == type_name for e in seen.publishers(topic))
 
 
-def _unpublished(seen: Snapshot, wanted: Endpoint, instead: list[str]) -> Finding:
+def _unpublished(seen: Snapshot, wanted: Endpoint, instead: list[str]) -> Diagnosis:
     topic = wanted.topic
     readers = {e.node_full_name for e in seen.subscriptions(topic)}
     advice = "start its publisher, or check the spelling of the name"
@@ -201,8 +205,8 @@ def _unpublished(seen: Snapshot, wanted: Endpoint, instead: list[str]) -> Findin
             f"{listed(instead)} has the same type and no subscription; to use it:"
             f" --ros-args -r {topic}:={instead[0]}"
         )
-    return Finding(
-        Level.WARNING,
+    return Diagnosis(
+        Rating.WARNING,
         TOPICS,
         topic,
         f"has no publisher; {listed(readers)} "
@@ -212,7 +216,7 @@ def _unpublished(seen: Snapshot, wanted: Endpoint, instead: list[str]) -> Findin
     )
 
 
-def check_services(seen: Snapshot) -> Iterator[Finding]:
+def check_services(seen: Snapshot) -> Iterator[Diagnosis]:
     """Check that every client has a server with the same type."""
     every = [
         e for e in seen.services if not (is_own(e.topic) or is_of_every_node(e.topic))
@@ -223,16 +227,16 @@ def check_services(seen: Snapshot) -> Iterator[Finding]:
         clients = [e for e in every if e.topic == name]
         types = {e.type_name for e in clients}
         if len(types) > 1:
-            yield Finding(
-                Level.PROBLEM,
+            yield Diagnosis(
+                Rating.PROBLEM,
                 SERVICES,
                 name,
                 f"has {len(types)} types: {listed(types)}",
                 "the client and the server need the same type",
             )
         elif not served[name]:
-            yield Finding(
-                Level.WARNING,
+            yield Diagnosis(
+                Rating.WARNING,
                 SERVICES,
                 name,
                 f"has no server; {listed({e.node_full_name for e in clients})}"

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from navette.cli.doctor.snapshot import Heartbeat, Snapshot
+from navette.cli.doctor.snapshot import Snapshot, StageStatus
 from navette.cli.service_calls import node_names
 from navette.cli.session import endpoints, is_hidden, service_endpoints, wait_for
 from navette.msgs.topics import CLOCK, ODOMETRY
@@ -116,16 +116,16 @@ class _Subscriptions:
         waits = waits_for_clock or waits_for_speed
         return not waits and all(map(self._is_alive, self._count))
 
-    def heartbeats(self) -> list[Heartbeat]:
+    def heartbeats(self) -> list[StageStatus]:
         beats = []
         for topic in sorted(self._count):
             if topic not in self._last:
-                beats.append(Heartbeat(topic))
+                beats.append(StageStatus(topic))
                 continue
             status, _ = self._last[topic]
             level = status.level[0]
             age_s = self._age_s(topic)
-            beats.append(Heartbeat(topic, status.message, level, age_s))
+            beats.append(StageStatus(topic, status.message, level, age_s))
         return beats
 
     def _subscribe_clock(self) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from navette import __version__
-from navette.cli.doctor.findings import Finding, Level
+from navette.cli.doctor.findings import Diagnosis, Rating
 from navette.cli.doctor.graph_checks import NODES
 from navette.cli.doctor.processes import Process, has_nodes, listener, processes
 from navette.cli.doctor.router_diagnosis import PortProbe, probe
@@ -25,7 +25,7 @@ _INITS = {"systemd", "init", "launchd", "tini", "dumb-init", "docker-init"}
 _BROWSERS = ("xdg-open", "open", "firefox", "chromium", "google-chrome")
 
 
-def check_machine() -> Iterator[Finding]:
+def check_machine() -> Iterator[Diagnosis]:
     """Run the checks that do not need the network."""
     yield _versions()
     yield from _optional_parts()
@@ -34,7 +34,7 @@ def check_machine() -> Iterator[Finding]:
     yield from left_running(processes(), os.getpid())
 
 
-def _versions() -> Finding:
+def _versions() -> Diagnosis:
     python = platform.python_version()
     zenoh = _version_of("eclipse-zenoh")
     data = {
@@ -51,11 +51,11 @@ def _versions() -> Finding:
     if sys.version_info < OLDEST_PYTHON:
         oldest = ".".join(map(str, OLDEST_PYTHON))
         advice = f"Navette needs Python {oldest} or newer"
-        return Finding(Level.PROBLEM, MACHINE, "versions", text, advice, data)
+        return Diagnosis(Rating.PROBLEM, MACHINE, "versions", text, advice, data)
     if zenoh is None:
         advice = "pip install eclipse-zenoh, to communicate between processes"
-        return Finding(Level.PROBLEM, MACHINE, "versions", text, advice, data)
-    return Finding(Level.GOOD, MACHINE, "versions", text, data=data)
+        return Diagnosis(Rating.PROBLEM, MACHINE, "versions", text, advice, data)
+    return Diagnosis(Rating.GOOD, MACHINE, "versions", text, data=data)
 
 
 def _version_of(distribution: str) -> str | None:
@@ -65,7 +65,7 @@ def _version_of(distribution: str) -> str | None:
         return None
 
 
-def _optional_parts() -> Iterator[Finding]:
+def _optional_parts() -> Iterator[Diagnosis]:
     """Report software that is used if present; none of it is required."""
     from navette.ros2.names import installed_rclpy
 
@@ -77,14 +77,14 @@ def _optional_parts() -> Iterator[Finding]:
         ("OpenGL", library, f"{library}", "none; cameras use ray casting instead"),
         ("ROS 2", ros, f"{ros}", "none; ROS 2 programs run on Navette"),
     ):
-        level = Level.GOOD if found else Level.NOTE
+        level = Rating.GOOD if found else Rating.NOTE
         text = with_it if found else without
-        yield Finding(
+        yield Diagnosis(
             level, MACHINE, what, text, data={"found": str(found) if found else None}
         )
 
 
-def check_packages() -> Finding:
+def check_packages() -> Diagnosis:
     """Report the packages of ROS 2 that programs use instead of Navette's."""
     from navette.ros2.names import replaced_packages
 
@@ -93,8 +93,8 @@ def check_packages() -> Finding:
     if replaced:
         used = ", ".join(f"{name} in {folder}" for name, folder in replaced.items())
         text = f"installed and used instead of Navette's: {used}"
-    return Finding(
-        Level.NOTE if replaced else Level.GOOD,
+    return Diagnosis(
+        Rating.NOTE if replaced else Rating.GOOD,
         MACHINE,
         "packages",
         text,
@@ -110,25 +110,25 @@ def _loads(library: str) -> bool:
     return True
 
 
-def _live_view() -> Finding:
+def _live_view() -> Diagnosis:
     """Report the process on the live view's port."""
     what = f"port {VIEW_PORT}"
     if probe("127.0.0.1", VIEW_PORT) is not PortProbe.OPEN:
-        return Finding(Level.NOTE, MACHINE, what, "free: no live view runs")
-    who = listener(VIEW_PORT)
-    if who is None:
-        return Finding(Level.NOTE, MACHINE, what, "in use")
-    data = {"pid": who.pid, "command": who.command}
-    text = f"in use by {who.command} (process {who.pid})"
-    if is_navette(who):
+        return Diagnosis(Rating.NOTE, MACHINE, what, "free: no live view runs")
+    process = listener(VIEW_PORT)
+    if process is None:
+        return Diagnosis(Rating.NOTE, MACHINE, what, "in use")
+    data = {"pid": process.pid, "command": process.command}
+    text = f"in use by {process.command} (process {process.pid})"
+    if is_navette(process):
         url = f"http://127.0.0.1:{VIEW_PORT}"
-        text = f"live view at {url}, of {who.command} (process {who.pid})"
-        return Finding(Level.GOOD, MACHINE, what, text, data=data)
+        text = f"live view at {url}, of {process.command} (process {process.pid})"
+        return Diagnosis(Rating.GOOD, MACHINE, what, text, data=data)
     advice = "use another port for the live view: navette demo --port 8766"
-    return Finding(Level.WARNING, MACHINE, what, text, advice, data)
+    return Diagnosis(Rating.WARNING, MACHINE, what, text, advice, data)
 
 
-def left_running(every: list[Process], here: int) -> Iterator[Finding]:
+def left_running(every: list[Process], here: int) -> Iterator[Diagnosis]:
     """Report Navette programs that lost their parent process.
 
     Args:
@@ -143,8 +143,8 @@ def left_running(every: list[Process], here: int) -> Iterator[Finding]:
         of_init = parent is not None and parent.command.partition(" ")[0] in _INITS
         # In a container, process 1 can be any program, also a shell.
         if of_init or (process.parent == 1 and process.session not in by_id):
-            yield Finding(
-                Level.WARNING,
+            yield Diagnosis(
+                Rating.WARNING,
                 MACHINE,
                 f"process {process.pid}",
                 f"{process.command} still runs, but the terminal or program that"
@@ -154,7 +154,7 @@ def left_running(every: list[Process], here: int) -> Iterator[Finding]:
             )
 
 
-def stopped(every: list[Process], here: int) -> Iterator[Finding]:
+def stopped(every: list[Process], here: int) -> Iterator[Diagnosis]:
     """Report stopped programs with nodes: their nodes do not respond.
 
     Args:
@@ -165,8 +165,8 @@ def stopped(every: list[Process], here: int) -> Iterator[Finding]:
         if process.pid == here or not process.is_stopped:
             continue
         if has_nodes(process):
-            yield Finding(
-                Level.PROBLEM,
+            yield Diagnosis(
+                Rating.PROBLEM,
                 NODES,
                 f"process {process.pid}",
                 f"{process.command} is stopped (Ctrl-Z, SIGSTOP): its nodes are frozen",

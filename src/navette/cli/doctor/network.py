@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from navette.cli.doctor.findings import Finding, Level, plural
+from navette.cli.doctor.findings import Diagnosis, Rating, plural
 from navette.cli.doctor.processes import Process, listener
 from navette.cli.doctor.router_diagnosis import PortProbe, Refusal, probe, refusal
 from navette.transports import EndpointKind
@@ -148,15 +148,15 @@ def _address(endpoint: str) -> tuple[str, int | None]:
     return host, int(port) if port.isdecimal() else None
 
 
-def check_network(network: Network, domain: int | None) -> Iterator[Finding]:
+def check_network(network: Network, domain: int | None) -> Iterator[Diagnosis]:
     """Check that programs started here reach the others.
 
     Args:
         domain: domain of this process; None if it could not connect.
     """
     if network.is_alone:
-        yield Finding(
-            Level.PROBLEM,
+        yield Diagnosis(
+            Rating.PROBLEM,
             NETWORK,
             "transport",
             "NAVETTE_TRANSPORT=inprocess: programs started here are isolated",
@@ -164,14 +164,14 @@ def check_network(network: Network, domain: int | None) -> Iterator[Finding]:
         )
     if network.session_file:
         text = f"settings of {network.session_file} (ZENOH_SESSION_CONFIG_URI)"
-        yield Finding(Level.NOTE, NETWORK, "Zenoh", text)
+        yield Diagnosis(Rating.NOTE, NETWORK, "Zenoh", text)
     for router in network.routers:
         yield _router_finding(router, speaks=network.nodes is not None)
     if domain is not None:
         yield from _domain_findings(network.nodes or {}, domain)
     if network.middleware and network.middleware != "rmw_zenoh_cpp":
-        yield Finding(
-            Level.WARNING,
+        yield Diagnosis(
+            Rating.WARNING,
             NETWORK,
             "ROS 2",
             f"its programs started here use {network.middleware} and cannot"
@@ -180,42 +180,42 @@ def check_network(network: Network, domain: int | None) -> Iterator[Finding]:
         )
 
 
-def _router_finding(router: Router, *, speaks: bool) -> Finding:
-    who = router.process
+def _router_finding(router: Router, *, speaks: bool) -> Diagnosis:
+    process = router.process
     data = {
         "endpoint": router.endpoint,
         "answers": None if router.probe is None else router.probe is PortProbe.OPEN,
-        "pid": who.pid if who else None,
+        "pid": process.pid if process else None,
     }
-    by = f", served by {who.command} (process {who.pid})" if who else ""
+    by = f", served by {process.command} (process {process.pid})" if process else ""
     if router.probe is None:
         text = f"{router.endpoint}, whose protocol cannot be probed"
-        return Finding(Level.NOTE, NETWORK, "router", text, data=data)
-    if who is not None and who.is_stopped:
-        return Finding(
-            Level.PROBLEM,
+        return Diagnosis(Rating.NOTE, NETWORK, "router", text, data=data)
+    if process is not None and process.is_stopped:
+        return Diagnosis(
+            Rating.PROBLEM,
             NETWORK,
             "router",
-            f"{router.endpoint} belongs to {who.command} (process {who.pid}), which is"
-            " stopped: no program can connect",
-            f"continue it: fg in its terminal, or kill -CONT {who.pid}; or end it:"
-            f" kill -KILL {who.pid}",
+            f"{router.endpoint} belongs to {process.command} (process {process.pid}),"
+            " which is stopped: no program can connect",
+            f"continue it: fg in its terminal, or kill -CONT {process.pid}; or end it:"
+            f" kill -KILL {process.pid}",
             data,
         )
     if router.probe is PortProbe.OPEN and speaks:
-        return Finding(
-            Level.GOOD, NETWORK, "router", f"{router.endpoint}{by}", data=data
+        return Diagnosis(
+            Rating.GOOD, NETWORK, "router", f"{router.endpoint}{by}", data=data
         )
     if router.probe is PortProbe.OPEN:
         why = router.refusal or Refusal("rejects the session", "")
         text = f"{router.endpoint} is open{by}, but {why.text}"
-        return Finding(Level.PROBLEM, NETWORK, "router", text, why.advice, data)
+        return Diagnosis(Rating.PROBLEM, NETWORK, "router", text, why.advice, data)
     if router.is_here:
         text = f"{router.endpoint} is free: the first program becomes the router"
-        return Finding(Level.NOTE, NETWORK, "router", text, data=data)
+        return Diagnosis(Rating.NOTE, NETWORK, "router", text, data=data)
     how, advice = _UNREACHED[router.probe]
     text = f"{router.endpoint} {how}"
-    return Finding(Level.PROBLEM, NETWORK, "router", text, advice, data)
+    return Diagnosis(Rating.PROBLEM, NETWORK, "router", text, advice, data)
 
 
 _THERE = "start Navette on that machine with NAVETTE_ROUTER set to this address"
@@ -241,7 +241,7 @@ _UNREACHED = {
 
 def _domain_findings(
     nodes: Mapping[int, Sequence[str]], domain: int
-) -> Iterator[Finding]:
+) -> Iterator[Diagnosis]:
     """Report nodes in other domains."""
     elsewhere = {d: names for d, names in nodes.items() if d != domain}
     others = ", ".join(
@@ -251,12 +251,12 @@ def _domain_findings(
     text = f"{domain} (ROS_DOMAIN_ID)"
     data = {"domain": domain, "nodes": {d: list(names) for d, names in nodes.items()}}
     if not elsewhere:
-        yield Finding(Level.GOOD, NETWORK, "domain", text, data=data)
+        yield Diagnosis(Rating.GOOD, NETWORK, "domain", text, data=data)
     elif here:
-        yield Finding(Level.NOTE, NETWORK, "domain", f"{text}; {others}", data=data)
+        yield Diagnosis(Rating.NOTE, NETWORK, "domain", f"{text}; {others}", data=data)
     else:
-        yield Finding(
-            Level.WARNING,
+        yield Diagnosis(
+            Rating.WARNING,
             NETWORK,
             "domain",
             f"{text} is empty; {others}",

@@ -4,18 +4,18 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
-from navette.cli.doctor.findings import Finding, Level, count, plural
+from navette.cli.doctor.findings import Diagnosis, Rating, count, plural
 from navette.cli.output import harmless, styled, wrapped
 
 _COLOURS = {
-    Level.GOOD: "green",
-    Level.NOTE: None,
-    Level.WARNING: "yellow",
-    Level.PROBLEM: "red",
+    Rating.GOOD: "green",
+    Rating.NOTE: None,
+    Rating.WARNING: "yellow",
+    Rating.PROBLEM: "red",
 }
 
 
-def report_lines(findings: Sequence[Finding], *, everything: bool) -> list[str]:
+def report_lines(findings: Sequence[Diagnosis], *, everything: bool) -> list[str]:
     """Format findings under headings; the advice follows on the next line.
 
     Args:
@@ -24,7 +24,7 @@ def report_lines(findings: Sequence[Finding], *, everything: bool) -> list[str]:
     shown = [
         each
         for each in findings
-        if everything or each.level in (Level.WARNING, Level.PROBLEM)
+        if everything or each.level in (Rating.WARNING, Rating.PROBLEM)
     ]
     width = max((len(each.what) for each in shown if len(each.what) <= 18), default=0)
     lines: list[str] = []
@@ -37,11 +37,11 @@ def report_lines(findings: Sequence[Finding], *, everything: bool) -> list[str]:
     return lines
 
 
-def _finding_lines(finding: Finding, width: int) -> Iterator[str]:
+def _finding_lines(finding: Diagnosis, width: int) -> Iterator[str]:
     mark = styled(finding.level.value, fg=_COLOURS[finding.level], bold=True)
     head = f"  {mark} {finding.what.ljust(width)}  "
     indent = " " * (width + 6)
-    quiet = {"dim": True} if finding.level is Level.NOTE else {}
+    quiet = {"dim": True} if finding.level is Rating.NOTE else {}
     for line in wrapped(harmless(finding.text), len(indent)):
         yield head + styled(line, **quiet)
         head = indent
@@ -51,10 +51,10 @@ def _finding_lines(finding: Finding, width: int) -> Iterator[str]:
         arrow = " "
 
 
-def summary(findings: Sequence[Finding]) -> str:
+def summary(findings: Sequence[Diagnosis]) -> str:
     """Return the last line of the report."""
-    problems = count(findings, Level.PROBLEM)
-    warnings = count(findings, Level.WARNING)
+    problems = count(findings, Rating.PROBLEM)
+    warnings = count(findings, Rating.WARNING)
     if not problems and not warnings:
         return styled("no problems", fg="green", bold=True)
     parts = []
@@ -66,9 +66,9 @@ def summary(findings: Sequence[Finding]) -> str:
     return ", ".join(parts)
 
 
-def as_json(findings: Sequence[Finding]) -> dict[str, Any]:
+def as_json(findings: Sequence[Diagnosis]) -> dict[str, Any]:
     return {
-        "problems": count(findings, Level.PROBLEM),
-        "warnings": count(findings, Level.WARNING),
+        "problems": count(findings, Rating.PROBLEM),
+        "warnings": count(findings, Rating.WARNING),
         "findings": [each.as_dict() for each in findings],
     }

@@ -7,7 +7,7 @@ from navette.transports import Endpoint, EndpointKind
 
 
 @dataclass(frozen=True)
-class Heartbeat:
+class StageStatus:
     """Newest message of a status topic.
 
     ``age_s`` is the time since it was published, None without a message; ``level`` is
@@ -44,7 +44,7 @@ class Snapshot:
     unreached_topics: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     speed_mps: float | None = None
     clock_ticks: bool = False
-    heartbeats: tuple[Heartbeat, ...] = ()
+    heartbeats: tuple[StageStatus, ...] = ()
 
     def publishers(self, topic: str) -> list[Endpoint]:
         return self._of(topic, EndpointKind.PUBLISHER)

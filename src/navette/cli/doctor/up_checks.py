@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from navette.cli.doctor.findings import Finding, Level, listed, plural
+from navette.cli.doctor.findings import Diagnosis, Rating, listed, plural
 
 SECTION = "Supervised services"
 
@@ -18,10 +18,10 @@ def services_here() -> list[dict[str, Any]]:
     return client.status() if client.is_reachable() else []
 
 
-def check_supervised(services: Iterable[Mapping[str, Any]]) -> Iterator[Finding]:
+def check_supervised(services: Iterable[Mapping[str, Any]]) -> Iterator[Diagnosis]:
     """Report processes that failed or were restarted."""
     names: list[str] = []
-    problems: list[Finding] = []
+    problems: list[Diagnosis] = []
     for service in services:
         names.append(service["service"])
         for process in service["processes"]:
@@ -29,16 +29,16 @@ def check_supervised(services: Iterable[Mapping[str, Any]]) -> Iterator[Finding]
     yield from problems
     if names and not problems:
         text = f"{plural(len(names), 'service')} up: {listed(names)}"
-        yield Finding(Level.GOOD, SECTION, "services", text)
+        yield Diagnosis(Rating.GOOD, SECTION, "services", text)
 
 
-def _check_process(service: str, process: Mapping[str, Any]) -> Iterator[Finding]:
+def _check_process(service: str, process: Mapping[str, Any]) -> Iterator[Diagnosis]:
     advice = f"navette logs {service}"
     label, reason = process["label"], process["reason"]
     suffix = f": {reason}" if reason else ""
     if process["state"] == "failed":
         text = f"not running{suffix}"
-        yield Finding(Level.PROBLEM, SECTION, label, text, advice, dict(process))
+        yield Diagnosis(Rating.PROBLEM, SECTION, label, text, advice, dict(process))
     elif process["restarts"]:
         text = f"restarted {plural(process['restarts'], 'time')}{suffix}"
-        yield Finding(Level.WARNING, SECTION, label, text, advice, dict(process))
+        yield Diagnosis(Rating.WARNING, SECTION, label, text, advice, dict(process))

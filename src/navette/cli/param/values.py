@@ -22,21 +22,23 @@ if TYPE_CHECKING:
     from navette.runtime.parameter_client import AsyncParameterClient
 
 
-class Listed(NamedTuple):
+class ParameterNames(NamedTuple):
     """Parameter names by node, and reasons by node that did not respond."""
 
     found: dict[str, list[str]]
     unanswered: dict[str, str]
 
 
-class Dumped(NamedTuple):
+class ParameterDump(NamedTuple):
     """Values by node and name, and remarks on omitted ones."""
 
     found: dict[str, dict[str, Any]]
     remarks: list[str]
 
 
-def names(here: "Node", nodes: Sequence[str], prefixes: Iterable[str] = ()) -> Listed:
+def names(
+    here: "Node", nodes: Sequence[str], prefixes: Iterable[str] = ()
+) -> ParameterNames:
     """Return the sorted parameter names of several nodes, with concurrent requests.
 
     Nodes without parameter services are left out.
@@ -52,7 +54,7 @@ def names(here: "Node", nodes: Sequence[str], prefixes: Iterable[str] = ()) -> L
             unanswered[node] = reason
         else:
             found[node] = sorted(response.result.names)
-    return Listed(found, unanswered)
+    return ParameterNames(found, unanswered)
 
 
 def types(
@@ -184,7 +186,7 @@ def describe(here: "Node", node: str, wanted: Sequence[str]) -> list[Any]:
     return list(response.descriptors)
 
 
-def dump(here: "Node", nodes: Sequence[str]) -> Dumped:
+def dump(here: "Node", nodes: Sequence[str]) -> ParameterDump:
     """Return all values that a parameter file can contain."""
     from navette.runtime.parameter import ParameterType, parameter_value_to_python
 
@@ -211,7 +213,7 @@ def dump(here: "Node", nodes: Sequence[str]) -> Dumped:
                 )
             else:
                 values[node][name] = parameter_value_to_python(value)
-    return Dumped(values, remarks)
+    return ParameterDump(values, remarks)
 
 
 def as_file(values: Mapping[str, Mapping[str, Any]]) -> str:

@@ -57,7 +57,7 @@ def echo(node: Node, options: EchoOptions) -> None:
     if deadline_ns is not None:
         left_s = max(0.0, (deadline_ns - node.context.clock.now_ns) / 1e9)
     enough = wait_for(node, lambda: screen.is_full, left_s)
-    if not enough and (options.wanted is not None or not screen.count):
+    if not enough and (options.limit is not None or not screen.count):
         fail(f"received {screen.count} messages on {topic} in {options.timeout_s:g} s")
 
 
@@ -74,8 +74,8 @@ class Screen:
 
     @property
     def is_full(self) -> bool:
-        wanted = self._options.wanted
-        return wanted is not None and self.count >= wanted
+        limit = self._options.limit
+        return limit is not None and self.count >= limit
 
     def show(self, message: Any, info: dict[str, Any]) -> None:
         if self.is_full:

@@ -104,6 +104,6 @@ class EchoOptions:
     qos: QosOverrides = field(default_factory=QosOverrides)
 
     @property
-    def wanted(self) -> int | None:
+    def limit(self) -> int | None:
         """Number of messages to print; None: until Ctrl-C."""
         return 1 if self.once else self.count

@@ -22,7 +22,7 @@ from navette.transports import (
 
 
 @dataclass(frozen=True)
-class Topic:
+class TopicListing:
     """A topic and its endpoints."""
 
     name: str
@@ -55,7 +55,7 @@ class Topic:
         }
 
 
-def topics(node: Node, *, hidden: bool = False) -> list[Topic]:
+def topics(node: Node, *, hidden: bool = False) -> list[TopicListing]:
     """Return all topics of other nodes, sorted by name."""
     by_name: dict[str, list[Endpoint]] = {}
     for endpoint in endpoints(node):
@@ -64,7 +64,7 @@ def topics(node: Node, *, hidden: bool = False) -> list[Topic]:
     return [_topic(name, by_name[name]) for name in names]
 
 
-def topic(node: Node, name: str) -> Topic:
+def topic(node: Node, name: str) -> TopicListing:
     """Return the topic with this name; the command fails if there is none."""
     full_name = node.resolve_topic_name(name)
     found = endpoints(node, full_name)
@@ -74,7 +74,7 @@ def topic(node: Node, name: str) -> Topic:
     return _topic(full_name, found)
 
 
-def listed(found: list[Topic], *, show_types: bool, verbose: bool) -> str:
+def listed(found: list[TopicListing], *, show_types: bool, verbose: bool) -> str:
     """Format a list: as ``ros2 topic list``, in columns on a terminal."""
     if verbose:
         return _table(found) if is_terminal() else _by_direction(found)
@@ -83,7 +83,7 @@ def listed(found: list[Topic], *, show_types: bool, verbose: bool) -> str:
     return "\n".join(each.name for each in found)
 
 
-def described(found: Topic, *, verbose: bool) -> str:
+def described(found: TopicListing, *, verbose: bool) -> str:
     """Format one topic as ``ros2 topic info`` does, with its mismatches."""
     types = ", ".join(found.types)
     publishers, subscriptions = map(_nodes, (found.publishers, found.subscriptions))
@@ -119,19 +119,19 @@ def describe_qos(qos: EndpointQos) -> str:
     return ", ".join(words)
 
 
-def _topic(name: str, found: list[Endpoint]) -> Topic:
+def _topic(name: str, found: list[Endpoint]) -> TopicListing:
     publishers = [e for e in found if e.kind == EndpointKind.PUBLISHER]
     subscriptions = [e for e in found if e.kind == EndpointKind.SUBSCRIPTION]
-    return Topic(name, tuple(publishers), tuple(subscriptions))
+    return TopicListing(name, tuple(publishers), tuple(subscriptions))
 
 
-def _with_types(found: list[Topic]) -> str:
+def _with_types(found: list[TopicListing]) -> str:
     if not is_terminal():
         return "\n".join(f"{each.name} [{', '.join(each.types)}]" for each in found)
     return "\n".join(beside((each.name, ", ".join(each.types)) for each in found))
 
 
-def _by_direction(found: list[Topic]) -> str:
+def _by_direction(found: list[TopicListing]) -> str:
     sections = (
         ("Published topics:", "publisher", [each.publishers for each in found]),
         ("Subscribed topics:", "subscriber", [each.subscriptions for each in found]),
@@ -147,7 +147,7 @@ def _by_direction(found: list[Topic]) -> str:
     return "\n".join(lines)
 
 
-def _table(found: list[Topic]) -> str:
+def _table(found: list[TopicListing]) -> str:
     head = ("TOPIC", "TYPE", "PUB", "SUB", "QOS OF THE PUBLISHERS")
     rows = [
         (

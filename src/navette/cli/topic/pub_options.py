@@ -13,7 +13,7 @@ from navette.errors import InvalidValueError
 
 @dataclass(frozen=True, kw_only=True)
 class PublishOptions:
-    """What ``topic pub`` publishes, how often and to whom."""
+    """What ``topic pub`` publishes, and how often."""
 
     topic: TopicName
     type_name: TypeName
@@ -116,11 +116,11 @@ class PublishOptions:
             )
 
     @property
-    def wanted(self) -> int:
+    def limit(self) -> int:
         """Number of messages to publish; 0: until Ctrl-C."""
         return 1 if self.once else self.times
 
     @property
     def subscriptions_wanted(self) -> int:
         """Subscriptions to wait for; 1 with ``--once`` or ``--times``, as in ROS 2."""
-        return int(self.wanted > 0) if self.wait_for is None else self.wait_for
+        return int(self.limit > 0) if self.wait_for is None else self.wait_for

@@ -37,9 +37,9 @@ def publish(node: Node, options: PublishOptions) -> None:
     """Publish until the requested number of messages is sent."""
     cls = topic_class(node, options.topic, options.type_name)
     messages = [filled_message(cls, values) for values in _typed(options)]
-    wanted = options.wanted
+    limit = options.limit
     if options.yaml_file is not None:
-        wanted = min(wanted or len(messages), len(messages))
+        limit = min(limit or len(messages), len(messages))
     profile = overridden_profile(options.qos, "default")
     publisher = node.create_publisher(cls, options.topic, profile)
     _wait_for_subscriptions(node, publisher, options)
@@ -55,7 +55,7 @@ def publish(node: Node, options: PublishOptions) -> None:
 
     def send() -> None:
         nonlocal count
-        if wanted and count >= wanted:
+        if limit and count >= limit:
             return
         message, stamps = messages[count % len(messages)]
         now = node.get_clock().now().to_msg()
@@ -69,7 +69,7 @@ def publish(node: Node, options: PublishOptions) -> None:
     send()
     clock = Clock(clock_type=ClockType.STEADY_TIME, context=node.context)
     node.create_timer(1.0 / options.rate_hz, send, clock=clock)
-    wait_for(node, lambda: bool(wanted) and count >= wanted)
+    wait_for(node, lambda: bool(limit) and count >= limit)
     # Time to send the last message and for late subscriptions to match.
     wait_for(node, lambda: False, options.keep_alive_s)
 
