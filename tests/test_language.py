@@ -81,7 +81,6 @@ PENDING_IDENTIFIERS: tuple[str, ...] = (
 
 #: Class names that ROS 2's API needs twice, with the reason.
 SHARED_NAMES: dict[str, str] = {
-    "Command": "launch's substitution, and the command line's base class",
     "Shutdown": "launch has an action and an event of this name",
     "IncludeLaunchDescription": "launch has an action and an event of this name",
     "EventHandler": "launch's handler of events, and rclpy's of QoS events",

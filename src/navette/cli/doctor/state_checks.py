@@ -3,15 +3,9 @@
 from collections.abc import Iterator
 
 from navette.cli.doctor.chain import motion, robot_clause
-<<<<<<< HEAD
-from navette.cli.doctor.findings import Finding, Level, listed, plural
-from navette.cli.doctor.snapshot import Heartbeat, Snapshot
-from navette.msgs.topics import CLOCK
-=======
 from navette.cli.doctor.findings import Diagnosis, Rating, listed, plural
 from navette.cli.doctor.snapshot import Snapshot, StageStatus
-from navette.topics import CLOCK
->>>>>>> 826291b (cli: one class name in one place, plain names in its tests)
+from navette.msgs.topics import CLOCK
 
 TIME = "Time"
 STAGES = "Stages"
