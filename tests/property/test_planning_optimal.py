@@ -11,9 +11,9 @@ from navette.navigation.planning import breadth_first, dijkstra
 from navette.navigation.planning.astar import AStar
 from navette.navigation.planning.string_pulling import centers, line_cost, pull
 from navette.navigation.planning.traversal import (
-    DEAREST,
     DIAGONAL,
     LETHAL,
+    MAX_PASSABLE_COST,
     STRAIGHT,
     EdgeTable,
     steps_cost,
@@ -43,7 +43,7 @@ def brute_force(cost: np.ndarray, start: Cell, goal: Cell, weight: float) -> int
             if not {to, (row + dr, column), (row, column + dc)} <= free:
                 continue
             unit = DIAGONAL if dr and dc else STRAIGHT
-            there = g + round(unit * (1 + weight * int(cost[to]) / DEAREST))
+            there = g + round(unit * (1 + weight * int(cost[to]) / MAX_PASSABLE_COST))
             if there < best.get(to, 1 << 60):
                 best[to] = there
                 heapq.heappush(waiting, (there, to))

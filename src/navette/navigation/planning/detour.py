@@ -16,7 +16,7 @@ from navette.navigation.planning import lattice, path_shape
 from navette.navigation.planning.dijkstra import Field, cost_to_go
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.goals import cells_within
-from navette.navigation.planning.lattice_kernels import GOOD_ENOUGH_M, GREED
+from navette.navigation.planning.lattice_kernels import GOOD_ENOUGH_M, HEURISTIC_WEIGHT
 from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import Poses, joined
@@ -135,8 +135,10 @@ class DetourPlanner:
     def _guide(self, target: Target, begin: Pose2) -> Field:
         cells, away = cells_within(self.grid, (target.x, target.y), target.tolerance_m)
         off = np.maximum(away - GOOD_ENOUGH_M, 0.0)
-        # The search multiplies the guide by GREED, but not the goal's cost.
-        units = off * (_GOAL_PULL / GREED * STRAIGHT / self.grid.spec.resolution)
+        # The search multiplies the guide by HEURISTIC_WEIGHT, but not the goal's cost.
+        units = off * (
+            _GOAL_PULL / HEURISTIC_WEIGHT * STRAIGHT / self.grid.spec.resolution
+        )
         seeds = [
             ((int(row), int(column)), int(unit))
             for (row, column), unit in zip(cells, units, strict=True)

@@ -27,7 +27,7 @@ ROOM = 1 << 30
 NOWHERE = 1 << 60
 # The heuristic ignores headings and underestimates; weighted A* (Pohl 1970) gives up
 # optimality, within this factor, to avoid expanding every turn in place.
-GREED = 1.5
+HEURISTIC_WEIGHT = 1.5
 # Ends this near the goal cost the same: manoeuvring for centimetres is useless.
 GOOD_ENOUGH_M = 0.1
 # Additional cost factor of a pose at the margin, relative to a comfortable one.
@@ -98,7 +98,7 @@ def grow(
     queue = tree.queue
     clearance = _clearance(scene, start[0], start[1], start[2], scene.margin_m)
     escape_m = clearance - 1e-3
-    bucket = _plant(scene, tree, start, clearance < scene.margin_m)
+    bucket = _add_root(scene, tree, start, clearance < scene.margin_m)
     # int64 from the start: a literal would compile the callee a second time.
     used: Any = np.int64(1)
     push(pool, queue, bucket, used - 1)
@@ -129,7 +129,7 @@ def grow(
 
 
 @njit(cache=True)
-def _plant(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
+def _add_root(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     """Create the root; return its bucket."""
     tree.position[0, 0], tree.position[0, 1] = start[0], start[1]
     tree.links[0, HEADING], tree.links[0, G] = 0, 0
@@ -200,7 +200,7 @@ def _branch(
 @njit(cache=True)
 def _estimate(g: int, ahead: int) -> int:
     """Return f, the estimated cost of a path through this pose."""
-    return g + (int(GREED * ahead) if ahead < UNREACHED else 0)
+    return g + (int(HEURISTIC_WEIGHT * ahead) if ahead < UNREACHED else 0)
 
 
 @njit(cache=True)

@@ -19,7 +19,12 @@ from navette.navigation.grids import (
     distance_field,
 )
 from navette.navigation.planning.params import PlannerParams
-from navette.navigation.planning.traversal import DEAREST, LETHAL, Cell, EdgeTable
+from navette.navigation.planning.traversal import (
+    LETHAL,
+    MAX_PASSABLE_COST,
+    Cell,
+    EdgeTable,
+)
 
 # Share of the full clearance cost that applies at once where the body can no longer
 # turn in place: a step keeps paths out of there, a slope alone would not.
@@ -79,15 +84,17 @@ class PlanningGrid:
 
     def factor(self) -> NDArray[np.float32]:
         """Return (H, W) the cost of a metre in each cell; closed: the highest."""
-        cost = np.minimum(self.cost, DEAREST).astype(np.float32)
-        return 1 + np.float32(self.table.weight / DEAREST) * cost
+        cost = np.minimum(self.cost, MAX_PASSABLE_COST).astype(np.float32)
+        return 1 + np.float32(self.table.weight / MAX_PASSABLE_COST) * cost
 
     def factor_at(
         self, rows: NDArray[np.int64], columns: NDArray[np.int64]
     ) -> NDArray[np.float64]:
         """Return (N,) the cost of a metre in these cells; closed: the highest."""
-        cost = np.minimum(self.cost[rows, columns], DEAREST).astype(np.float64)
-        return 1 + self.table.weight / DEAREST * cost
+        cost = np.minimum(self.cost[rows, columns], MAX_PASSABLE_COST).astype(
+            np.float64
+        )
+        return 1 + self.table.weight / MAX_PASSABLE_COST * cost
 
     def cell_of(self, x: float, y: float) -> Cell | None:
         """Return the cell of a point in the map frame; None outside."""
@@ -171,8 +178,10 @@ def open_at(grid: PlanningGrid, start: Cell, body: BodyShape) -> PlanningGrid:
     least = grid.distance_m[start] - 0.5 * grid.spec.resolution
     cost = grid.cost.copy()
     window, distance = cost[rows, columns], grid.distance_m[rows, columns]
-    window[(window == LETHAL) & (distance >= least) & (distance > 0)] = DEAREST
-    cost[start] = DEAREST
+    window[(window == LETHAL) & (distance >= least) & (distance > 0)] = (
+        MAX_PASSABLE_COST
+    )
+    cost[start] = MAX_PASSABLE_COST
     return replace(grid, cost=cost)
 
 
@@ -190,7 +199,7 @@ def _prepared(
     weight = max(
         params.clearance_weight, params.unknown_cost, params.map_cost_weight, 1e-3
     )
-    scale = DEAREST / weight
+    scale = MAX_PASSABLE_COST / weight
     levels = (distance_m * np.float32(1 / _LEVEL_M)).astype(np.int32)
     count = round((free_m + spec.resolution) / _LEVEL_M) + 2
     full = params.clearance_weight * scale
@@ -200,7 +209,7 @@ def _prepared(
         np.maximum(cost, own.astype(np.uint8), out=cost)
     unknown = occupancy < 0
     if params.allow_unknown:
-        floor = np.uint8(min(DEAREST, round(params.unknown_cost * scale)))
+        floor = np.uint8(min(MAX_PASSABLE_COST, round(params.unknown_cost * scale)))
         np.maximum(cost, floor, out=cost, where=unknown)
     else:
         cost[unknown] = LETHAL
@@ -215,6 +224,6 @@ def _clearance_table(
     slope = (free_m - distance) / (free_m - closed_m)
     falling = full * (_STEP + (1 - _STEP) * slope)
     table = np.where(distance < free_m, falling, 0.0)
-    table = np.clip(np.rint(table), 0, DEAREST).astype(np.uint8)
+    table = np.clip(np.rint(table), 0, MAX_PASSABLE_COST).astype(np.uint8)
     table[distance < closed_m] = LETHAL
     return table

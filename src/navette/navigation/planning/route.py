@@ -23,7 +23,7 @@ from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.string_pulling import centers, pull
 
 # Above this angle both directions of a turn are of similar length.
-_ABOUT_FACE = 2.4
+_NEARLY_HALF_TURN = 2.4
 
 _Search = Callable[..., tuple[NDArray[np.int64], int] | None]
 
@@ -106,7 +106,7 @@ class GridRouter:
     ) -> Poses:
         """Return a turn in place: the shorter, or the longer if it has more room."""
         short = turn_in_place(at.x, at.y, at.yaw, to_yaw)
-        if abs(angle_difference(to_yaw, at.yaw)) < _ABOUT_FACE:
+        if abs(angle_difference(to_yaw, at.yaw)) < _NEARLY_HALF_TURN:
             return short
         comfort = grid.margin_m + self.params.comfort_m
         room = clearances(short, grid, body, enough_m=comfort).min()

@@ -18,7 +18,7 @@ STRAIGHT = 10_000
 DIAGONAL = 14_142
 LETHAL = 255
 """Cell cost that no path enters."""
-DEAREST = 252
+MAX_PASSABLE_COST = 252
 """Highest passable cell cost, as in Nav2's costmaps."""
 
 Cell = tuple[int, int]
@@ -71,7 +71,9 @@ class EdgeTable:
 
     def _table(self, unit: int) -> NDArray[np.int32]:
         cost = np.arange(256)
-        table = np.rint(unit * (1 + self.weight * cost / DEAREST)).astype(np.int32)
+        table = np.rint(unit * (1 + self.weight * cost / MAX_PASSABLE_COST)).astype(
+            np.int32
+        )
         table[self.lethal_from :] = 0
         return table
 

@@ -8,7 +8,12 @@ from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.grids import GridSpec
-from navette.navigation.planning.traversal import DEAREST, DIAGONAL, STRAIGHT, EdgeTable
+from navette.navigation.planning.traversal import (
+    DIAGONAL,
+    MAX_PASSABLE_COST,
+    STRAIGHT,
+    EdgeTable,
+)
 
 COURSE_FOOTPRINT = (
     *(1.5, 0.5, 0.4, 0.5, 0.4, 0.7, -0.4, 0.7, -0.4, 0.5, -0.5, 0.5),
@@ -143,7 +148,9 @@ def cheapest(
             if not {to, (row + dr, column), (row, column + dc)} <= free:
                 continue
             unit = DIAGONAL if dr and dc else STRAIGHT
-            there = g + round(unit * (1 + table.weight * int(cost[to]) / DEAREST))
+            there = g + round(
+                unit * (1 + table.weight * int(cost[to]) / MAX_PASSABLE_COST)
+            )
             if there < best.get(to, 1 << 60):
                 best[to] = there
                 heapq.heappush(waiting, (there, to))
