@@ -72,8 +72,7 @@ ALLOWED_NAMES = (r"wants_\w+",)
 
 #: As PENDING, for the names of functions, classes, arguments and variables.
 PENDING_IDENTIFIERS: tuple[str, ...] = (
-    "src/navette/cli",
-    "tests/unit/cli",
+    "tests/unit/cli/up",
     "tests/unit/ros2",
     "tests/unit/runtime",
     "tests/unit/supervisor",

@@ -185,7 +185,7 @@ def test_a_server_that_goes_away(here: World, counter: Counter) -> None:
     assert done.err == "navette: action /count: the server was closed\n"
 
 
-def test_nobody_serves(here: World, counter: Counter) -> None:
+def test_an_action_without_a_server(here: World, counter: Counter) -> None:
     done = here.run("action", "send_goal", "/cuont", TYPE, "-w", "1")
     assert (done.out, done.code) == ("", 1)
     assert done.err.endswith("no server of the action /cuont; did you mean /count?\n")

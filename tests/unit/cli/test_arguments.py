@@ -29,7 +29,7 @@ def test_each_goal_becomes_one_word() -> None:
     ]
 
 
-def test_what_only_a_daemon_understands_is_left_out() -> None:
+def test_options_of_the_daemon_are_removed() -> None:
     typed = "topic list --no-daemon -t --spin-time 2 --spin-time=3 -v".split()
     assert without_daemon(typed) == ["topic", "list", "-t", "-v"]
     typed = ["--domain-id", "3", "node", "list", "--no-daemon"]
@@ -75,7 +75,7 @@ def test_speeds() -> None:
 
 
 @pytest.mark.parametrize("text", ["0", "-1", "nan", "fast", "inf"])
-def test_a_malformed_speed_says_what_is_allowed(text: str) -> None:
+def test_the_error_of_a_malformed_speed_lists_what_is_allowed(text: str) -> None:
     with pytest.raises(InvalidValueError, match="max"):
         parse_speed(text)
 

@@ -182,7 +182,7 @@ def test_mistakes_are_named(bag: Path, words: list[str], printed: str) -> None:
     assert printed in str(done.exception)
 
 
-def test_keys_are_told_apart() -> None:
+def test_keys_are_distinguished() -> None:
     assert split_keys("s \x1b[A\x1bOBq") == ["s", " ", "up", "down", "q"]
     assert split_keys("\x1b[C\x1b[D\x1b") == ["right", "left", "escape"]
     assert split_keys("\x1b[1;5A\x1b[3~x") == ["up", "x"]

@@ -74,7 +74,7 @@ def test_a_field_over_another(bag: Path, second: str) -> None:
     assert y == [tick**2 for tick in range(10)]
 
 
-def test_stamps_are_seconds_a_quaternion_its_yaw_and_what_is_not_there_a_gap(
+def test_stamps_become_seconds_quaternions_yaw_and_missing_elements_nan(
     bag: Path,
 ) -> None:
     stamps, yaws, ranges = numbers(
@@ -100,7 +100,9 @@ def test_stamps_are_seconds_a_quaternion_its_yaw_and_what_is_not_there_a_gap(
         ("/scan.ranges", MessageError, "is an array; add an index"),
     ],
 )
-def test_what_is_no_number_is_told(bag: Path, text: str, error: type, reason) -> None:
+def test_fields_that_are_not_numbers_are_errors(
+    bag: Path, text: str, error: type, reason
+) -> None:
     with pytest.raises(error, match=reason):
         numbers(bag, text)
 
@@ -129,7 +131,7 @@ def test_the_verb_draws_over_time_and_over_each_other(
     assert "<svg" in (tmp_path / "way.svg").read_text(encoding="utf-8")
 
 
-def test_what_cannot_be_drawn_is_told(bag: Path, tmp_path: Path) -> None:
+def test_what_cannot_be_drawn_is_an_error(bag: Path, tmp_path: Path) -> None:
     x, way = "/odom.pose.pose.position.x", "/odom.pose.pose.position.x:y"
     with pytest.raises(InvalidValueError, match=r"the suffix is not .png"):
         draw(series_of(bag, x), "run", tmp_path / "run.mcap")
@@ -139,7 +141,7 @@ def test_what_cannot_be_drawn_is_told(bag: Path, tmp_path: Path) -> None:
         draw(series_of(bag, x), "run", tmp_path / "nowhere" / "run.png")
 
 
-def test_without_matplotlib_it_says_how_to_get_it(
+def test_without_matplotlib_the_error_names_the_package(
     bag: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)

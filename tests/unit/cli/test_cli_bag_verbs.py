@@ -35,7 +35,7 @@ def sample_bag(tmp_path: Path) -> Path:
     return write_sample(tmp_path / "a.mcap", 20)
 
 
-def test_info_says_what_rosbag_says(sample_bag: Path) -> None:
+def test_info_has_the_layout_of_rosbag_info(sample_bag: Path) -> None:
     result = run("info", sample_bag)
     assert result.exit_code == 0
     head, table = result.stdout.split("\n\n")

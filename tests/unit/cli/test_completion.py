@@ -34,7 +34,7 @@ def typed(node: str) -> Any:
     return SimpleNamespace(params={"node_name": node})
 
 
-def test_names_of_what_runs(here: World) -> None:
+def test_names_of_the_running_system(here: World) -> None:
     assert completing.complete_nodes("") == ["/camera", "/talker"]
     assert completing.complete_nodes("/t") == ["/talker"]
     assert completing.complete_topics("/c") == ["/camera/transition_event", "/chatter"]
@@ -121,7 +121,7 @@ def test_the_fields_of_a_topics_messages(here: World) -> None:
     assert complete_fields(SimpleNamespace(params={}), "") == []  # type: ignore[arg-type]
 
 
-def test_the_type_of_what_is_served(here: World) -> None:
+def test_the_type_of_a_served_name(here: World) -> None:
     served: Any = SimpleNamespace(params={"service": "add"})
     wanted = ["example_interfaces/srv/AddTwoInts"]
     assert completing.complete_type_of_service(served, "") == wanted
@@ -131,7 +131,7 @@ def test_the_type_of_what_is_served(here: World) -> None:
     assert "nav2_msgs/action/Spin" in completing.complete_type_of_action(other, "nav2")
 
 
-def test_names_of_what_is_installed() -> None:
+def test_installed_names() -> None:
     assert "std_msgs/msg/String" in installed.complete_messages("std_msgs/msg/S")
     assert installed.complete_service_types("std_srvs/srv/E") == ["std_srvs/srv/Empty"]
     assert installed.complete_action_types("example_interfaces/") == [

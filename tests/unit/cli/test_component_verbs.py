@@ -63,7 +63,7 @@ def test_load_list_unload(here: World) -> None:
         (["list", "bax"], "no node /bax; did you mean /box?"),
     ],
 )
-def test_what_fails(here: World, words: list[str], reason: str) -> None:
+def test_failures(here: World, words: list[str], reason: str) -> None:
     done = here.run("component", *words)
     assert (done.out, done.code) == ("", 1)
     assert reason in done.err

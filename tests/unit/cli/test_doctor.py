@@ -36,7 +36,7 @@ def findings(here: World) -> dict[str, dict[str, Any]]:
     return {each["what"]: each for each in report["findings"]}
 
 
-def test_a_graph_that_is_well(here: World) -> None:
+def test_a_healthy_graph(here: World) -> None:
     talker = node(here, "talker")
     talker.create_publisher(String, "chatter", 10)
     node(here, "listener").create_subscription(String, "chatter", lambda _: None, 10)

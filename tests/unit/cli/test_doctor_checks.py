@@ -51,7 +51,7 @@ def of(findings: Iterable[Diagnosis], what: str) -> Diagnosis:
     return found
 
 
-def test_nodes_that_are_well() -> None:
+def test_healthy_nodes() -> None:
     seen = Snapshot(nodes=("/a", "/b"), sim_time={"/a": False, "/b": False})
     (finding,) = check_nodes(seen)
     assert (finding.level, finding.text) == (
@@ -62,7 +62,7 @@ def test_nodes_that_are_well() -> None:
     assert finding.text == "1 node; it responds"
 
 
-def test_no_nodes_is_no_problem_but_says_what_to_do() -> None:
+def test_no_nodes_give_a_note_with_advice() -> None:
     (finding,) = check_nodes(Snapshot())
     assert finding.level is Rating.NOTE
     assert "ROS_DOMAIN_ID" in finding.advice
@@ -77,7 +77,7 @@ def test_nodes_of_one_name() -> None:
     assert "__node:=" in finding.advice
 
 
-def test_a_node_that_does_not_answer() -> None:
+def test_a_node_that_does_not_respond() -> None:
     seen = Snapshot(nodes=("/a",), sim_time={"/a": None}, unreached=("/b",))
     findings = list(check_nodes(seen))
     assert of(findings, "/a").text == "does not respond"
@@ -85,7 +85,7 @@ def test_a_node_that_does_not_answer() -> None:
     assert {finding.level for finding in findings} == {Rating.PROBLEM}
 
 
-def test_who_cannot_be_reached_explains_what_is_missing() -> None:
+def test_an_unreachable_node_explains_missing_topics() -> None:
     seen = Snapshot(
         nodes=("/planner", "/sim"),
         endpoints=(pub("/path", "planner"), sub("/cmd_vel", "sim")),
@@ -133,7 +133,7 @@ def test_two_definitions_of_a_type() -> None:
     assert finding.level is Rating.GOOD
 
 
-def test_topics_that_fit() -> None:
+def test_matching_topics() -> None:
     seen = Snapshot(endpoints=(pub("/scan", "lidar"), sub("/scan", "costmap")))
     (finding,) = check_topics(seen)
     assert (finding.level, finding.text) == (
@@ -160,7 +160,7 @@ def test_two_types_on_a_topic() -> None:
         (EndpointQos(), EndpointQos(lease_ns=10**9), "liveliness lease duration"),
     ],
 )
-def test_qos_that_does_not_fit(
+def test_incompatible_qos(
     offered: EndpointQos, wanted: EndpointQos, policy: str
 ) -> None:
     seen = Snapshot(
@@ -177,7 +177,7 @@ def test_qos_that_does_not_fit(
     assert finding.advice
 
 
-def test_a_topic_that_nobody_publishes_and_the_one_that_was_meant() -> None:
+def test_a_topic_without_publisher_and_a_topic_of_the_same_type() -> None:
     seen = Snapshot(endpoints=(pub("/lidar", "lidar"), sub("/scan", "costmap")))
     findings = list(check_topics(seen))
     finding = of(findings, "/scan")
@@ -190,7 +190,7 @@ def test_a_topic_that_nobody_publishes_and_the_one_that_was_meant() -> None:
     assert of(findings, "unread").level is Rating.NOTE
 
 
-def test_what_a_person_publishes_and_what_every_node_has_is_not_missed() -> None:
+def test_topics_published_by_hand_and_standard_topics_are_not_reported() -> None:
     seen = Snapshot(
         endpoints=(
             sub("/goal_point", "planner"),
@@ -214,7 +214,7 @@ def test_a_client_without_a_server() -> None:
     assert finding.level is Rating.PROBLEM
 
 
-def test_time_stands_still_without_a_clock() -> None:
+def test_simulated_time_without_a_clock() -> None:
     seen = Snapshot(nodes=("/a", "/b"), sim_time={"/a": True, "/b": False})
     (finding,) = check_time(seen)
     assert finding.level is Rating.PROBLEM
@@ -268,7 +268,7 @@ def test_heartbeats(beat: StageStatus, level: Rating, text: str) -> None:
     assert (finding.level, finding.text) == (level, text)
 
 
-def test_a_stage_without_a_clock_is_not_said_to_hang() -> None:
+def test_a_stage_without_a_clock_is_not_reported_as_hanging() -> None:
     beat = StageStatus("/planner/status", "following", level=0, age_s=7.0)
     ends = (pub(beat.topic, "planner"),)
     seen = Snapshot(endpoints=ends, heartbeats=(beat,), sim_time={"/planner": True})
@@ -276,7 +276,7 @@ def test_a_stage_without_a_clock_is_not_said_to_hang() -> None:
     assert found.advice.startswith("/planner waits for /clock")
 
 
-def test_what_the_robot_does() -> None:
+def test_the_motion_of_the_robot() -> None:
     stale = StageStatus("/control/status", "stale_path", 1, 0.1)
     seen = Snapshot(heartbeats=(stale,), speed_mps=0.0)
     status, robot = check_stages(seen)
@@ -386,7 +386,7 @@ def test_programs_that_are_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "kill -CONT 20" in finding.advice
 
 
-def test_programs_that_were_left_running() -> None:
+def test_programs_that_lost_their_parent() -> None:
     demo = Process(10, 1, ("/venv/bin/python", "/venv/bin/navette", "demo"), session=9)
     every = [
         Process(1, 0, ("/sbin/init",)),

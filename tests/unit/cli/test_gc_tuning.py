@@ -9,7 +9,7 @@ import pytest
 from navette.cli.gc_tuning import collect, uncollected
 
 
-def test_none_is_looked_for_until_all_is_loaded() -> None:
+def test_the_collector_is_off_until_all_is_loaded() -> None:
     assert gc.isenabled()
     with uncollected():
         assert not gc.isenabled()
@@ -17,12 +17,12 @@ def test_none_is_looked_for_until_all_is_loaded() -> None:
         assert gc.isenabled()
 
 
-def test_a_verb_that_loads_nothing_more_leaves_all_as_it_was() -> None:
+def test_a_verb_that_ends_early_restores_the_collector() -> None:
     with pytest.raises(SystemExit), uncollected():
         raise SystemExit(2)
     assert gc.isenabled()
 
 
-def test_at_the_end_none_is_looked_for() -> None:
+def test_the_collector_is_off_at_exit() -> None:
     with patch.object(atexit, "register") as register, uncollected():
         register.assert_called_once_with(gc.freeze)

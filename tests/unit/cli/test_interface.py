@@ -50,7 +50,7 @@ def alone() -> Iterator[None]:
         yield
 
 
-def test_show_with_own_comments_and_what_is_contained(workspace: Path) -> None:
+def test_show_with_comments_and_nested_types(workspace: Path) -> None:
     assert navette("interface", "show", "verbs_msgs/msg/Reading").stdout == (
         "# Output of the sensor.\n"
         "\n"
@@ -114,7 +114,7 @@ def test_an_unknown_type_fails(verb: str) -> None:
     assert "std_msgs/msg/Strin" in shown.stderr
 
 
-def test_an_unknown_type_names_those_alike() -> None:
+def test_an_unknown_type_suggests_similar_names() -> None:
     shown = navette("interface", "show", "std_msgs/msg/Strin")
     assert "did you mean std_msgs/msg/String" in shown.stderr
     for name in ("Twist", "geometry_msg/msg/Twist", "geometry_msgs/Twst"):

@@ -47,7 +47,7 @@ def test_a_wait_ends_between_two_events(number: int, code: int) -> None:
     assert seen
 
 
-def test_outside_of_waits_it_is_an_exception_at_once() -> None:
+def test_outside_of_waits_a_signal_raises_at_once() -> None:
     def body() -> None:
         signal.raise_signal(signal.SIGINT)
         pytest.fail("went on")
@@ -97,7 +97,7 @@ def test_an_event_that_does_not_end_is_given_up(
     assert codes == [130]
 
 
-def test_what_is_ignored_stays_ignored() -> None:
+def test_ignored_signals_stay_ignored() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with default_signal_action(), ending_on_signals():
         signal.raise_signal(signal.SIGINT)
@@ -109,7 +109,9 @@ def test_what_is_ignored_stays_ignored() -> None:
     ("verb", "handler"),
     [("bag", signal.default_int_handler), ("topic", signal.SIG_DFL)],
 )
-def test_verbs_that_have_to_clean_up_hear_of_it(verb: str, handler: object) -> None:
+def test_verbs_that_need_cleanup_get_keyboard_interrupt(
+    verb: str, handler: object
+) -> None:
     group = LazyGroup("navette", commands=list(VERBS))
     with default_signal_action():
         assert signal.getsignal(signal.SIGINT) is signal.SIG_DFL

@@ -94,7 +94,7 @@ def test_set_that_fails(here: World) -> None:
     assert (done.out, done.err, done.code) == ("", "navette: Transitioning failed\n", 1)
 
 
-def test_a_transition_that_is_not_there(here: World) -> None:
+def test_an_unavailable_transition(here: World) -> None:
     done = here.run("lifecycle", "set", "camera", "configur")
     assert done.code == 1
     assert done.err == (

@@ -76,7 +76,7 @@ def test_info(here: World, name: str) -> None:
     assert here.read("node", "info", name) == INFO
 
 
-def test_info_with_what_is_hidden(here: World) -> None:
+def test_info_with_hidden_endpoints(here: World) -> None:
     shown = here.read("node", "info", "/ns/talker", "--include-hidden")
     assert "    /count/_action/feedback: " in shown
     assert "    /count/_action/send_goal: " in shown
@@ -99,7 +99,7 @@ def test_a_mistyped_node(here: World, typed: str, hint: str) -> None:
     assert done.err == f"navette: no node {typed}; {hint}\n"
 
 
-def test_where_nothing_runs() -> None:
+def test_without_running_nodes() -> None:
     with world() as here:
         assert here.read("node", "list") == ""
         done = here.run("node", "info", "/planner")
@@ -110,7 +110,7 @@ def test_where_nothing_runs() -> None:
     )
 
 
-def test_an_empty_list_says_why() -> None:
+def test_an_empty_list_is_explained() -> None:
     with world() as here:
         domain = here.context.get_domain_id()
         nothing = f": no nodes run in domain {domain} (ROS_DOMAIN_ID)\n"

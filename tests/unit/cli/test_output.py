@@ -37,7 +37,7 @@ def test_numbers_that_json_has_not_are_null() -> None:
 HOSTILE = "\x1b[2J\x9b31m\x07\u202eabc\u2028\r"
 
 
-def test_what_others_sent_does_not_act_on_a_terminal(
+def test_received_control_characters_are_escaped_on_a_terminal(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert escaped("a\tb\n" + HOSTILE) == (
@@ -56,7 +56,7 @@ def test_what_others_sent_does_not_act_on_a_terminal(
     assert not set(capsys.readouterr().err) & set("\x1b\x9b\x07\u202e\u2028\r")
 
 
-def test_a_text_that_only_turns_letters_round_is_escaped_in_yaml_too(
+def test_bidirectional_controls_are_escaped_in_yaml_too(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     message = String(data="\u202eabc")
@@ -90,7 +90,7 @@ def test_rows_of_numbers_end_between_two_of_them(
     ]
 
 
-def test_what_does_not_fit_beside_a_name_stands_below_it(
+def test_long_text_is_printed_below_the_name(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("COLUMNS", "24")
@@ -102,7 +102,7 @@ def test_what_does_not_fit_beside_a_name_stands_below_it(
     ]
 
 
-def test_a_full_disk_is_told_in_a_line(
+def test_a_full_disk_is_reported_in_a_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     class Full:
@@ -121,7 +121,7 @@ def test_a_full_disk_is_told_in_a_line(
     assert capsys.readouterr().err == expected
 
 
-def test_nobody_to_read_is_no_error_of_ours(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_closed_pipe_is_not_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     class Closed:
         def write(self, text: str) -> None:
             raise BrokenPipeError

@@ -122,7 +122,7 @@ def test_set_takes_an_integer_for_a_double(here: World, driver: Node) -> None:
         ("limits.max", "-1", "parameter 'limits.max': -1.0 is out of range 0 … 5"),
     ],
 )
-def test_set_tells_why_it_was_refused(
+def test_set_prints_why_a_value_was_rejected(
     here: World, driver: Node, name: str, value: str, reason: str
 ) -> None:
     before = driver.get_parameter(name).value
@@ -188,7 +188,7 @@ def test_dump_of_all_nodes_is_one_file(here: World, driver: Node) -> None:
     assert patterns == ["/driver", "/other"]
 
 
-def test_load_takes_what_is_for_the_node(
+def test_load_uses_the_entries_of_the_node(
     here: World, driver: Node, tmp_path: Path
 ) -> None:
     file = tmp_path / "stack.yaml"
@@ -216,7 +216,9 @@ def test_load_fails_where_a_value_is_refused(
     assert done.err.startswith("Set parameter rate failed: parameter 'rate': 'fast'")
 
 
-def test_load_of_a_file_for_others(here: World, driver: Node, tmp_path: Path) -> None:
+def test_load_of_a_file_without_values_for_the_node(
+    here: World, driver: Node, tmp_path: Path
+) -> None:
     file = tmp_path / "stack.yaml"
     file.write_text("planner: {ros__parameters: {tolerance: 0.5}}\n")
     done = here.run("param", "load", "driver", str(file))

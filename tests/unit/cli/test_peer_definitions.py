@@ -42,7 +42,7 @@ def on_the_wire(spec: Any) -> list[Any]:
 
 
 @pytest.mark.parametrize("with_sources", [True, False])
-def test_every_type_comes_back_as_it_was(*, with_sources: bool) -> None:
+def test_every_type_round_trips(*, with_sources: bool) -> None:
     for name in EVERY_TYPE:
         text = definition_of(name, answer(name, with_sources=with_sources))
         top, *contained = read_definition(name, text)
@@ -61,7 +61,7 @@ def test_sources_keep_constants_and_defaults() -> None:
     assert "POWER_SUPPLY_STATUS_FULL" not in text
 
 
-def test_a_type_number_that_nobody_has_is_no_definition() -> None:
+def test_an_unknown_type_number_gives_no_definition() -> None:
     response = answer("std_msgs/msg/Int32", with_sources=False)
     response.type_description.type_description.fields[0].type.type_id = 200
     text = definition_of("std_msgs/msg/Int32", response)
@@ -78,7 +78,7 @@ def server() -> Iterator[Node]:
         yield node
 
 
-def test_who_has_the_type_is_asked(server: Node) -> None:
+def test_the_definition_is_requested_from_a_user_of_the_type(server: Node) -> None:
     with connect(server.context) as node:
         every = [*endpoints(node), *service_endpoints(node)]
         found = described_by_peers(node, "std_srvs/srv/SetBool", every)
@@ -88,7 +88,7 @@ def test_who_has_the_type_is_asked(server: Node) -> None:
         assert other.text is None
 
 
-def test_who_describes_nothing_is_named(
+def test_nodes_without_a_definition_are_named(
     server: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with connect(server.context) as node:
@@ -110,7 +110,7 @@ def test_who_describes_nothing_is_named(
         assert described_by_peers(node, "std_srvs/srv/SetBool", [other]).text is None
 
 
-def test_a_type_that_nobody_knows_ends_the_command(
+def test_an_unknown_type_ends_the_command(
     server: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with connect(server.context) as node, pytest.raises(click.exceptions.Exit):
@@ -128,7 +128,7 @@ def test_a_type_of_another_kind_is_refused(server: Node) -> None:
     assert get_interface("std_srvs/srv/SetBool") is SetBool
 
 
-def test_another_definition_than_here_is_said(
+def test_a_different_definition_is_reported(
     server: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with connect(server.context) as node:

@@ -86,7 +86,7 @@ def test_a_door_with_tls_and_one_without(keys: Path) -> None:
         assert found.text == "requires a certificate, and this program has none"
 
 
-def test_whose_certificate_is_of_another_authority(keys: Path) -> None:
+def test_a_certificate_of_another_authority(keys: Path) -> None:
     with tls_door(keys / "theirs" / "robot") as address:
         trouble = certificate_error(*address, keys / "ours" / "laptop")
         assert trouble
@@ -106,7 +106,7 @@ def test_a_password(tmp_path: Path) -> None:
     assert str(tmp_path / "login") in found.advice
 
 
-def test_a_program_that_is_none_of_zenoh() -> None:
+def test_a_program_without_zenoh() -> None:
     shell = Process(1, 0, ("sh",))
     with door() as address:
         found = refusal("tcp/x:1", address, None, shell)
@@ -114,14 +114,14 @@ def test_a_program_that_is_none_of_zenoh() -> None:
     assert found.text.startswith(("is not a Zenoh program", "rejects the session"))
 
 
-def test_knocking() -> None:
+def test_probing_a_port() -> None:
     with door() as (host, port):
         assert probe(host, port) is PortProbe.OPEN
     assert probe(host, port) is PortProbe.REFUSED
     assert probe("no.such.name.invalid", 1) is PortProbe.UNKNOWN_HOST
 
 
-def test_who_is_out_of_reach_need_not_join() -> None:
+def test_an_unreachable_router_needs_no_connection() -> None:
     far = Router("tcp/10.0.0.2:7447", PortProbe.TIMED_OUT)
     assert Network(routers=(far,)).is_out_of_reach
     here = Router("tcp/127.0.0.1:7447", PortProbe.REFUSED)

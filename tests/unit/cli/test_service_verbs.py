@@ -164,7 +164,7 @@ def test_call_of_another_type(here: World, adder: Node) -> None:
     )
 
 
-def test_call_of_a_type_that_nobody_knows(here: World, adder: Node) -> None:
+def test_call_of_an_unknown_type(here: World, adder: Node) -> None:
     done = here.run("service", "call", "/add", "no_such/srv/Type")
     assert done.code == 1
     assert done.err == "navette: type no_such/srv/Type is not installed\n"
@@ -214,7 +214,7 @@ def test_echo(here: World, adder: Node) -> None:
     assert as_csv.startswith("1,2,0,")
 
 
-def test_echo_says_that_nobody_tells(here: World, adder: Node) -> None:
+def test_echo_reports_that_introspection_is_off(here: World, adder: Node) -> None:
     done = here.run("service", "echo", "/add")
     assert (
         "no publisher on /add/_service_event: enable service introspection" in done.err

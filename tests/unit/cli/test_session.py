@@ -47,7 +47,7 @@ def test_callbacks_run_while_waiting(context: Context) -> None:
     assert context.clock.now_ns == 2_500_000_000
 
 
-def test_what_a_callback_raises_comes_out_as_it_is(context: Context) -> None:
+def test_exceptions_of_callbacks_propagate_unchanged(context: Context) -> None:
     def refuse() -> None:
         raise UnknownNameError("no such field")
 
@@ -64,7 +64,7 @@ def test_what_a_callback_raises_comes_out_as_it_is(context: Context) -> None:
 @pytest.mark.parametrize(
     ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)]
 )
-def test_signals_end_it_with_the_shells_exit_codes(number: int, code: int) -> None:
+def test_signals_end_a_verb_with_the_usual_exit_codes(number: int, code: int) -> None:
     before = signal.getsignal(signal.SIGTERM)
 
     def wait() -> None:
@@ -78,7 +78,9 @@ def test_signals_end_it_with_the_shells_exit_codes(number: int, code: int) -> No
     assert signal.getsignal(signal.SIGTERM) is before
 
 
-def test_failing_is_said_on_standard_error(capsys: pytest.CaptureFixture[str]) -> None:
+def test_failures_are_printed_on_standard_error(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     with pytest.raises(click.exceptions.Exit) as ended:
         fail("nothing came")
     assert ended.value.exit_code == 1

@@ -9,7 +9,7 @@ from navette.cli.stderr import note, print_error
 LONG = "no publisher on /odometry/filtered_and_long; did you mean /odom/filtered?"
 
 
-def test_in_a_pipe_it_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_pipe_gets_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     print_error(LONG)
     note("from a peer: \x1b[2J")
     assert capsys.readouterr().err == (f"navette: {LONG}\nfrom a peer: \\x1b[2J\n")

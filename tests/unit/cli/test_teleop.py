@@ -56,7 +56,7 @@ def test_plus_and_minus_change_both_speeds() -> None:
     assert driver.command(0) is None
 
 
-def test_without_a_terminal_it_says_so(tmp_path: Path) -> None:
+def test_without_a_terminal_the_verb_fails(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "navette", "teleop"],
         stdin=subprocess.DEVNULL,

@@ -72,7 +72,7 @@ def test_service_list(here: World) -> None:
     )
 
 
-def test_the_doctors_lines_are_wrapped_under_themselves() -> None:
+def test_the_lines_of_the_doctor_are_wrapped_and_indented() -> None:
     finding = Diagnosis(
         Rating.PROBLEM,
         "Topics",
@@ -90,7 +90,7 @@ def test_the_doctors_lines_are_wrapped_under_themselves() -> None:
     ]
 
 
-def test_what_others_say_does_not_move_the_cursor() -> None:
+def test_received_text_does_not_move_the_cursor() -> None:
     finding = Diagnosis(Rating.NOTE, "Stages", "/s", "calm \x1b[2J")
     assert report_lines([finding], everything=True)[1] == "  · /s  calm \\x1b[2J"
 

@@ -77,7 +77,7 @@ def test_a_latched_message_is_shown_at_once(
     assert talker.context.clock.now_ns == 0
 
 
-def test_best_effort_publishers_are_heard(
+def test_best_effort_publishers_are_received(
     talker: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     publisher = talker.create_publisher(Int32, "n", qos_profile_sensor_data)
@@ -263,7 +263,7 @@ def test_a_path_into_many_skips_messages_that_are_too_short(
     )
 
 
-def test_it_waits_for_a_topic_and_says_so(
+def test_echo_waits_for_a_topic_and_reports_it(
     talker: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     timer = talker.create_timer(2.0, lambda: begin())
@@ -289,7 +289,7 @@ def test_waiting_ends(talker: Node, capsys: pytest.CaptureFixture[str]) -> None:
     assert "received 0 messages on /silent in 2 s" in capsys.readouterr().err
 
 
-def test_a_time_that_is_over_with_messages_is_no_failure(
+def test_a_timeout_after_messages_is_a_success(
     talker: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     publish_each(talker, "x", lambda i: Int32(data=i))
@@ -336,7 +336,7 @@ def test_on_a_terminal_names_are_coloured_and_control_characters_do_not_act(
     assert "\x1b[2J" not in capsys.readouterr().out
 
 
-def test_what_is_printed_over_the_last_fits_the_screen(
+def test_an_overwritten_message_fits_the_screen(
     talker: Node,
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,

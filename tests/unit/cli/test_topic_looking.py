@@ -90,7 +90,7 @@ def test_list_as_json(talker: Node) -> None:
     assert publisher["qos"]["deadline_ns"] is None
 
 
-def test_nothing_running_is_said_beside_the_result() -> None:
+def test_an_empty_domain_is_reported_on_standard_error() -> None:
     with shared_graph():
         shown = navette("topic", "list")
     assert shown.exit_code == 0
@@ -104,7 +104,7 @@ def test_info(talker: Node) -> None:
     )
 
 
-def test_info_for_a_person_says_whose_they_are(
+def test_info_on_a_terminal_names_the_nodes(
     talker: Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("navette.cli.topic.listing.is_terminal", lambda: True)
@@ -124,7 +124,7 @@ def test_info_verbose_names_endpoints_with_hash_gid_and_qos(talker: Node) -> Non
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_info_says_who_does_not_hear_whom_and_why(talker: Node) -> None:
+def test_info_lists_mismatches_with_the_reason(talker: Node) -> None:
     talker.create_publisher(String, "scan", qos_profile_sensor_data)
     with program("listener") as listener:
         reliable = QoSProfile(
@@ -142,7 +142,7 @@ def test_info_says_who_does_not_hear_whom_and_why(talker: Node) -> None:
 
 
 @pytest.mark.parametrize("verb", ["info", "type"])
-def test_an_unknown_topic_fails_and_names_those_alike(talker: Node, verb: str) -> None:
+def test_an_unknown_topic_suggests_similar_names(talker: Node, verb: str) -> None:
     shown = navette("topic", verb, "/chater")
     assert shown.exit_code == 1
     assert shown.stdout == ""
@@ -163,7 +163,7 @@ def test_find(talker: Node) -> None:
     assert navette("topic", "find", "std_msgs/String", "-c").stdout == "2\n"
 
 
-def test_find_nothing(talker: Node) -> None:
+def test_find_without_a_result(talker: Node) -> None:
     shown = navette("topic", "find", "std_msgs/msg/Bool")
     assert (shown.exit_code, shown.stdout) == (1, "")
     assert shown.stderr == "navette: no topic has type std_msgs/msg/Bool\n"

@@ -80,7 +80,7 @@ def test_hz_as_ros2_prints_it(talker: Node, capsys: pytest.CaptureFixture[str]) 
     )
 
 
-def test_one_that_nobody_publishes_yet_does_not_keep_the_others_waiting(
+def test_a_topic_without_publisher_does_not_block_the_others(
     talker: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     publish_each(talker, "chatter", 0.1, lambda _: String())
@@ -97,7 +97,7 @@ def test_one_that_nobody_publishes_yet_does_not_keep_the_others_waiting(
     assert ["/later" in table for table in tables] == [False, False, True]
 
 
-def test_all_topics_and_those_that_come(
+def test_all_topics_including_later_ones(
     talker: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     publish_each(talker, "chatter", 0.1, lambda _: String())
@@ -146,7 +146,7 @@ def test_hz_of_several_topics_is_a_table(
     )
 
 
-def test_hz_counts_only_what_passes_the_filter(
+def test_hz_counts_only_messages_that_pass_the_filter(
     talker: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     publish_each(talker, "n", 0.1, lambda now_ns: Int32(data=now_ns // (100 * MS)))
@@ -168,7 +168,9 @@ def test_hz_as_json(talker: Node, capsys: pytest.CaptureFixture[str]) -> None:
     }
 
 
-def test_silence_is_said_once(talker: Node, capsys: pytest.CaptureFixture[str]) -> None:
+def test_silence_is_reported_once(
+    talker: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
     publisher = talker.create_publisher(String, "chatter", 10)
     clock = talker.get_clock()
 
@@ -206,7 +208,7 @@ def test_delay_as_ros2_prints_it(
     )
 
 
-def test_stamps_of_other_times_are_remarked_once(
+def test_stamps_of_another_clock_are_reported_once(
     talker: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     year_2020 = ns_to_stamp(1_577_836_800 * 10**9)
@@ -247,7 +249,7 @@ def test_messages_at_one_instant_make_no_infinite_rate() -> None:
     assert RateMeter.rate_hz(fed(RateMeter(10), 5, 5, 5)) == 0.0
 
 
-def test_time_that_goes_back_begins_anew() -> None:
+def test_a_jump_back_in_time_resets_the_meters() -> None:
     meter = RateMeter(10)
     assert fed(meter, 100, 200).window == 1
     assert not meter.add(0, 0)

@@ -89,7 +89,7 @@ def test_headers_and_times_are_stamped_when_sent(listener: Node) -> None:
     assert message.header.frame_id == "map"
 
 
-def test_what_echo_wrote_is_published_again(listener: Node, tmp_path: Path) -> None:
+def test_the_output_of_echo_can_be_published(listener: Node, tmp_path: Path) -> None:
     received = collect(listener, Twist, "cmd_vel")
     file = tmp_path / "drive.yaml"
     file.write_text("linear:\n  x: 1.0\n---\nlinear:\n  x: 2.0\n---\n")
@@ -125,12 +125,12 @@ def test_a_value_alone_is_the_field_of_a_message_that_has_one() -> None:
         (String, "!!python/object/apply:os.system ['true']", "is not YAML"),
     ],
 )
-def test_what_does_not_fit_is_refused(kind: Any, text: str, reason: str) -> None:
+def test_values_of_the_wrong_form_are_errors(kind: Any, text: str, reason: str) -> None:
     with pytest.raises(InvalidValueError, match=reason):
         filled_message(kind, from_yaml(text))
 
 
-def test_it_waits_for_who_hears_it(
+def test_publishing_waits_for_subscriptions(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     received: list[Any] = []
@@ -146,7 +146,7 @@ def test_it_waits_for_who_hears_it(
     assert capsys.readouterr().err == "waiting for 1 matching subscription(s)\n"
 
 
-def test_it_says_why_nobody_hears_it(
+def test_missing_subscriptions_are_explained(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     listener.create_subscription(String, "chatter", lambda _: None, 10)
@@ -163,7 +163,7 @@ def test_it_says_why_nobody_hears_it(
     ]
 
 
-def test_waiting_for_hearers_ends(
+def test_waiting_for_subscriptions_ends(
     listener: Node, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(click.exceptions.Exit) as ended:
@@ -209,7 +209,7 @@ def test_the_command() -> None:
     ("options", "reason"),
     [(["-1", "-t", "3"], "cannot be combined"), (["-r", "0"], "above 0")],
 )
-def test_wrong_options_are_refused(options: list[str], reason: str) -> None:
+def test_conflicting_options_are_errors(options: list[str], reason: str) -> None:
     shown = navette("topic", "pub", "/x", "std_msgs/msg/String", *options)
     assert isinstance(shown.exception, InvalidValueError)
     assert reason in str(shown.exception)

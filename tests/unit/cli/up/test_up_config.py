@@ -203,9 +203,7 @@ def test_what_is_wrong_is_named(bench: Any, text: str, reason: str) -> None:
         ("environment: 3", ":5: .*environment: 3: expected a mapping"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_line(
-    bench: Any, line: str, reason: str
-) -> None:
+def test_errors_name_the_line(bench: Any, line: str, reason: str) -> None:
     bench.write("", "n.py")
     bench.write(f"services:\n  m:\n    nodes:\n      - n.py\n{line}\n")
     with pytest.raises(FileFormatError, match=f"navette.yaml{reason}"):
@@ -226,7 +224,7 @@ def test_environment_of_all_services(bench: Any) -> None:
     assert (env["ROS_DOMAIN_ID"], env["LEVEL"]) == ("7", "2")
 
 
-def test_unknown_modules_and_arguments_are_told(bench: Any) -> None:
+def test_unknown_services_and_arguments_are_errors(bench: Any) -> None:
     bench.write("", "n.py")
     bench.write("arguments: {world: a}\nservices: {robot: {nodes: [n.py]}}")
     with pytest.raises(InvalidValueError, match="did you mean 'robot'"):

@@ -218,7 +218,7 @@ def test_a_process_that_ends_at_once_is_shown_with_its_last_words(bench: Any) ->
     )
 
 
-def test_there_is_one_supervisor_whoever_comes_first(bench: Any) -> None:
+def test_two_concurrent_starts_share_one_supervisor(bench: Any) -> None:
     bench.write("services: {a: {nodes: [{command: sleep 1000}]}}")
     specs = bench.specs()
     clients = [bench.client for _ in range(3)]
