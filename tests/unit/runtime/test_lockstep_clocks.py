@@ -375,7 +375,7 @@ def test_a_node_that_does_not_respond_is_named() -> None:
         turns(coordinated.clock)
 
 
-def test_a_node_that_never_knows_all_endpoints_is_named() -> None:
+def test_a_node_without_all_endpoints_is_named() -> None:
     """Although all processes continue to report."""
     coordinated = CoordinatorBench(limit_s=0.02)
     coordinated.begin()

@@ -55,11 +55,11 @@ def test_the_exit_is_reported_after_all_output(
     bench: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(child, "_LAST_OUTPUT_S", 0.0)
-    go_on = threading.Event()
+    proceed = threading.Event()
 
     class Slow(OutputRecorder):
         def output(self, stream: str, data: bytes) -> None:
-            assert go_on.wait(WAIT_S)
+            assert proceed.wait(WAIT_S)
             super().output(stream, data)
 
     recorder = Slow()
@@ -68,7 +68,7 @@ def test_the_exit_is_reported_after_all_output(
     running.watch(recorder)
     assert running._process.wait() == 0
     assert not recorder.over.wait(0.1)
-    go_on.set()
+    proceed.set()
     assert recorder.wait_over() == 0
     assert recorder.text["stdout"] == b"ready\n"
 

@@ -324,10 +324,10 @@ def test_an_interrupt_waits_for_the_end_of_an_import(
 ) -> None:
     """An import lock that is never released would block every later import."""
     (tmp_path / "slow_module.py").write_text(
-        "import gates\ngates.entered.set()\ngates.go_on.wait(20)\nvalue = 1\n"
+        "import gates\ngates.entered.set()\ngates.proceed.wait(20)\nvalue = 1\n"
     )
     gates = ModuleType("gates")
-    gates.entered, gates.go_on = threading.Event(), threading.Event()  # type: ignore[attr-defined]
+    gates.entered, gates.proceed = threading.Event(), threading.Event()  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "gates", gates)
     monkeypatch.syspath_prepend(tmp_path)
     seen: list[object] = []
@@ -344,7 +344,7 @@ def test_an_interrupt_waits_for_the_end_of_an_import(
     assert gates.entered.wait(20)
     running.interrupt()
     assert not seen
-    gates.go_on.set()
+    gates.proceed.set()
     assert running.join(20)
     assert running.exit_code == 130
     import slow_module
