@@ -8,7 +8,7 @@ from navette.cli.commands import Group
 from navette.cli.completing import complete_managed_nodes, complete_transitions
 from navette.cli.nearest import did_you_mean
 from navette.cli.options import Argument, Option
-from navette.cli.output import harmless, show, show_json, styled
+from navette.cli.output import harmless, show, show_json, show_names, styled
 from navette.cli.service_calls import (
     GET_STATE,
     RESPONSE_TIMEOUT_S,
@@ -60,13 +60,7 @@ def nodes(
         names = managed_nodes(here, hidden=all_)
         if not (names or count or as_json):
             note_none(here, "managed nodes")
-    if count:
-        show(str(len(names)))
-    elif as_json:
-        show_json(names)
-    else:
-        for name in names:
-            show(name)
+    show_names(names, count=count, as_json=as_json)
 
 
 @lifecycle.command()

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 from navette.cli.commands import Group
 from navette.cli.completing import complete_nodes
 from navette.cli.options import Argument, Option
-from navette.cli.output import beside, is_terminal, show, show_json, styled
+from navette.cli.output import beside, is_terminal, show, show_json, show_names, styled
 from navette.cli.service_calls import chosen_node, node_names, note_none
 from navette.cli.session import connect, is_hidden, is_of_every_node
 from navette.cli.stderr import note
@@ -36,15 +36,9 @@ def list_(
         names = node_names(here, hidden=all_)
         if not (names or count or as_json):
             note_none(here, "nodes")
-    if count:
-        show(str(len(names)))
-    elif as_json:
-        show_json(names)
-    else:
-        if len(set(names)) < len(names):
-            note("some nodes share a name: service calls reach any one of them")
-        for name in names:
-            show(name)
+    if len(set(names)) < len(names) and not (count or as_json):
+        note("some nodes share a name: service calls reach any one of them")
+    show_names(names, count=count, as_json=as_json)
 
 
 @node.command()

@@ -71,6 +71,16 @@ def show_json(value: Any) -> None:
     show(json_text(value, indent=2 if is_terminal() else None))
 
 
+def show_names(names: Sequence[str], *, count: bool, as_json: bool) -> None:
+    """Print names one per line, as JSON, or only their number."""
+    if count:
+        show(str(len(names)))
+    elif as_json:
+        show_json(list(names))
+    elif names:
+        show("\n".join(names))
+
+
 def json_text(value: Any, *, indent: int | None = None) -> str:
     """Return standard JSON: null for NaN and infinity, control characters escaped."""
     try:

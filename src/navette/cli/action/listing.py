@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 from navette.cli.action.options import ActionName, ActionType, Json
 from navette.cli.nearest import did_you_mean
 from navette.cli.options import Option
-from navette.cli.output import show, show_json
-from navette.cli.service.listing import show_names
+from navette.cli.output import show, show_json, show_names
+from navette.cli.service.listing import show_types_of
 from navette.cli.service_calls import note_none
 from navette.cli.session import connect, endpoints, fail
 
@@ -33,7 +33,7 @@ def list_(
     elif as_json:
         show_json([{"name": name, "types": found[name]} for name in found])
     else:
-        show_names(found, with_types=show_types)
+        show_types_of(found, with_types=show_types)
 
 
 def type_(action: ActionName) -> None:
@@ -52,13 +52,9 @@ def find(action_type: ActionType, count: Count = False, as_json: Json = False) -
     full = f"{parts[0]}/action/{parts[1]}" if len(parts) == 2 else action_type
     with connect() as here:
         found = [name for name, types in actions(here).items() if full in types]
-    if count:
-        show(str(len(found)))
-    elif as_json:
-        show_json(found)
-    else:
-        for name in found or fail(f"no action has type {full}{if_unknown(full)}"):
-            show(name)
+    if not (found or count or as_json):
+        fail(f"no action has type {full}{if_unknown(full)}")
+    show_names(found, count=count, as_json=as_json)
 
 
 def info(

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from navette.cli.nearest import did_you_mean
 from navette.cli.options import Option
-from navette.cli.output import beside, is_terminal, show, show_json
+from navette.cli.output import beside, is_terminal, show, show_json, show_names
 from navette.cli.service.options import Hidden, Json, ServiceName, ServiceType
 from navette.cli.service_calls import note_none
 from navette.cli.session import (
@@ -42,14 +42,14 @@ def list_(
         show_json([{"name": name, "types": found[name]} for name in found])
     elif is_terminal() and not include_hidden_services:
         own = {n: types for n, types in found.items() if not is_of_every_node(n)}
-        show_names(own, with_types=show_types)
+        show_types_of(own, with_types=show_types)
         if len(own) < len(found):
             note(f"and {len(found) - len(own)} that every node has (-a shows them)")
     else:
-        show_names(found, with_types=show_types)
+        show_types_of(found, with_types=show_types)
 
 
-def show_names(found: dict[str, list[str]], *, with_types: bool) -> None:
+def show_types_of(found: dict[str, list[str]], *, with_types: bool) -> None:
     """Print a name per line; types in brackets, or in a column on a terminal."""
     if not with_types:
         lines = list(found)
@@ -84,13 +84,9 @@ def find(
     with connect() as here:
         every = services(here, hidden=include_hidden_services)
     found = [name for name, types in every.items() if full in types]
-    if count:
-        show(str(len(found)))
-    elif as_json:
-        show_json(found)
-    else:
-        for name in found or fail(f"no service has type {full}{if_unknown(full)}"):
-            show(name)
+    if not (found or count or as_json):
+        fail(f"no service has type {full}{if_unknown(full)}")
+    show_names(found, count=count, as_json=as_json)
 
 
 def info(

@@ -19,8 +19,15 @@ if TYPE_CHECKING:
 QOS_PANEL = "Quality of service"
 # ROS 2's names; spelled out so that declaring the options imports nothing.
 QOS_PROFILES = (
-    "unknown default system_default sensor_data services_default parameters "
-    "parameter_events action_status_default best_available"
+    "unknown",
+    "default",
+    "system_default",
+    "sensor_data",
+    "services_default",
+    "parameters",
+    "parameter_events",
+    "action_status_default",
+    "best_available",
 )
 
 TopicName = Annotated[
@@ -68,58 +75,34 @@ NodeName = Annotated[
 ]
 
 
+def _qos(policy: str, *values: str) -> Option:
+    """Return the option of a policy with a fixed set of values."""
+    return Option(
+        f"--qos-{policy}",
+        help=f"{', '.join(values[:-1])} or {values[-1]}.",
+        complete=complete_from(*values),
+        panel=QOS_PANEL,
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class QosOverrides:
     """Policies given with ``--qos-…``; None means not given."""
 
-    profile: Annotated[
-        str | None,
-        Option(
-            "--qos-profile",
-            help=f"Preset: {QOS_PROFILES.replace(' ', ', ')}.",
-            complete=complete_from(*QOS_PROFILES.split()),
-            panel=QOS_PANEL,
-        ),
-    ] = None
+    profile: Annotated[str | None, _qos("profile", *QOS_PROFILES)] = None
     depth: Annotated[
         int | None,
         Option("--qos-depth", min=0, metavar="N", help="Queue size.", panel=QOS_PANEL),
     ] = None
-    history: Annotated[
-        str | None,
-        Option(
-            "--qos-history",
-            help="keep_last or keep_all.",
-            complete=complete_from("keep_last", "keep_all"),
-            panel=QOS_PANEL,
-        ),
-    ] = None
+    history: Annotated[str | None, _qos("history", "keep_last", "keep_all")] = None
     reliability: Annotated[
-        str | None,
-        Option(
-            "--qos-reliability",
-            help="reliable or best_effort.",
-            complete=complete_from("reliable", "best_effort"),
-            panel=QOS_PANEL,
-        ),
+        str | None, _qos("reliability", "reliable", "best_effort")
     ] = None
     durability: Annotated[
-        str | None,
-        Option(
-            "--qos-durability",
-            help="volatile or transient_local.",
-            complete=complete_from("volatile", "transient_local"),
-            panel=QOS_PANEL,
-        ),
+        str | None, _qos("durability", "volatile", "transient_local")
     ] = None
     liveliness: Annotated[
-        str | None,
-        Option(
-            "--qos-liveliness",
-            help="automatic or manual_by_topic.",
-            complete=complete_from("automatic", "manual_by_topic"),
-            panel=QOS_PANEL,
-        ),
+        str | None, _qos("liveliness", "automatic", "manual_by_topic")
     ] = None
     lease_s: Annotated[
         float | None,

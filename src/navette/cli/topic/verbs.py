@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 from navette.cli.commands import Group
 from navette.cli.completing import complete_topics
 from navette.cli.options import Argument, Option
-from navette.cli.output import show, show_json
+from navette.cli.output import show, show_json, show_names
 from navette.cli.service_calls import note_none
 from navette.cli.session import connect, fail, follow_clock, is_simulated
 from navette.cli.stderr import note
@@ -263,11 +263,6 @@ def find(
     with connect() as node:
         every = listing.topics(node, hidden=include_hidden_topics)
     found = [each.name for each in every if wanted in each.types]
-    if count_topics:
-        show(str(len(found)))
-    elif as_json:
-        show_json(found)
-    elif found:
-        show("\n".join(found))
-    else:
+    if not (found or count_topics or as_json):
         fail(f"no topic has type {wanted}{if_unknown(wanted)}")
+    show_names(found, count=count_topics, as_json=as_json)
