@@ -158,9 +158,13 @@ class PackageLoader(_LazyLoader):
     def _has_module_of(self, name: str) -> bool:
         """Whether ROS 2 keeps something of this package in a module of that name.
 
-        In launch and launch_ros each class has one: ``launch.actions.opaque_function``.
+        In launch, launch_ros and tf2_ros each class has one:
+        ``launch.actions.opaque_function``. Small packages have one of their own name:
+        ``laser_geometry.laser_geometry``.
         """
-        if self.name.partition(".")[0] not in ("launch", "launch_ros"):
+        if name == self.name:
+            return True
+        if self.name.partition(".")[0] not in ("launch", "launch_ros", "tf2_ros"):
             return False
         start = name.replace("_", "")
         return name.islower() and any(

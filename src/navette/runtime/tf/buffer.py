@@ -1,7 +1,7 @@
 """tf2's Buffer: lookup of transforms as messages, with waiting."""
 
 from collections.abc import Callable
-from typing import Any, Literal, overload
+from typing import Any
 
 from navette.geometry import Transform3
 from navette.msgs.geometry_msgs.msg import TransformStamped
@@ -11,8 +11,6 @@ from navette.runtime.tf.buffer_interface import NO_WAIT, BufferInterface
 from navette.runtime.tf.exceptions import TransformException
 from navette.runtime.tf.message_core import MessageCore
 from navette.runtime.time import Duration
-
-_Result = bool | tuple[bool, str]
 
 
 class Buffer(MessageCore, BufferInterface):
@@ -87,25 +85,6 @@ class Buffer(MessageCore, BufferInterface):
         self._wait(lambda: self.can_transform_full_core(*query)[0], timeout)
         return self.lookup_transform_full_core(*query)
 
-    @overload
-    def can_transform(
-        self,
-        target_frame: str,
-        source_frame: str,
-        time: Any,
-        timeout: Duration | None = ...,
-        return_debug_tuple: Literal[False] = ...,
-    ) -> bool: ...
-    @overload
-    def can_transform(
-        self,
-        target_frame: str,
-        source_frame: str,
-        time: Any,
-        timeout: Duration | None = ...,
-        *,
-        return_debug_tuple: Literal[True],
-    ) -> tuple[bool, str]: ...
     def can_transform(
         self,
         target_frame: str,
@@ -113,8 +92,11 @@ class Buffer(MessageCore, BufferInterface):
         time: Any,
         timeout: Duration | None = NO_WAIT,
         return_debug_tuple: bool = False,
-    ) -> _Result:
-        """Whether :meth:`lookup_transform` succeeds, optionally with a reason."""
+    ) -> Any:
+        """Whether :meth:`lookup_transform` succeeds.
+
+        Return a bool, with ``return_debug_tuple`` a bool and the reason.
+        """
         query = (target_frame, source_frame, time)
         self._wait(lambda: self.can_transform_core(*query)[0], timeout)
         result = self.can_transform_core(*query)
@@ -129,8 +111,8 @@ class Buffer(MessageCore, BufferInterface):
         fixed_frame: str,
         timeout: Duration | None = NO_WAIT,
         return_debug_tuple: bool = False,
-    ) -> _Result:
-        """Whether :meth:`lookup_transform_full` succeeds, optionally with a reason."""
+    ) -> Any:
+        """As :meth:`can_transform`, through ``fixed_frame``."""
         query = (target_frame, target_time, source_frame, source_time, fixed_frame)
         self._wait(lambda: self.can_transform_full_core(*query)[0], timeout)
         result = self.can_transform_full_core(*query)

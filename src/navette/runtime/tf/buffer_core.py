@@ -142,11 +142,6 @@ class BufferCore:
     def contains(self, frame: str) -> bool:
         return frame in self._frames or frame in self._parents
 
-    def clear(self) -> None:
-        self._frames.clear()
-        self._parents.clear()
-        self._chains.clear()
-
     def drop_moving(self) -> None:
         """Delete all moving frames, after a jump backward in time."""
         self._frames = {n: h for n, h in self._frames.items() if h.is_static}

@@ -65,46 +65,16 @@ class BufferInterface:
         transformed = do_transform(object_stamped, found)
         return transformed if new_type is None else convert(transformed, new_type)
 
-    def lookup_transform(
-        self,
-        target_frame: str,
-        source_frame: str,
-        time: Any,
-        timeout: Duration | None = NO_WAIT,
-    ) -> TransformStamped:
-        """Return target_T_source at ``time``."""
+    # Subclasses override the following methods; :class:`Buffer` lists the arguments.
+
+    def lookup_transform(self, *args: Any, **kwargs: Any) -> TransformStamped:
         raise NotImplementedException
 
-    def lookup_transform_full(
-        self,
-        target_frame: str,
-        target_time: Any,
-        source_frame: str,
-        source_time: Any,
-        fixed_frame: str,
-        timeout: Duration | None = NO_WAIT,
-    ) -> TransformStamped:
-        """Return target_T_source with different times for target and source."""
+    def lookup_transform_full(self, *args: Any, **kwargs: Any) -> TransformStamped:
         raise NotImplementedException
 
-    def can_transform(
-        self,
-        target_frame: str,
-        source_frame: str,
-        time: Any,
-        timeout: Duration | None = NO_WAIT,
-    ) -> Any:
-        """Whether :meth:`lookup_transform` succeeds."""
+    def can_transform(self, *args: Any, **kwargs: Any) -> Any:
         raise NotImplementedException
 
-    def can_transform_full(
-        self,
-        target_frame: str,
-        target_time: Any,
-        source_frame: str,
-        source_time: Any,
-        fixed_frame: str,
-        timeout: Duration | None = NO_WAIT,
-    ) -> Any:
-        """Whether :meth:`lookup_transform_full` succeeds."""
+    def can_transform_full(self, *args: Any, **kwargs: Any) -> Any:
         raise NotImplementedException

@@ -17,20 +17,15 @@ def transform_from_msg(message: Transform) -> Transform3:
     return Transform3((t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
 
 
-def transform_to_msg(transform: Transform3) -> Transform:
-    """Convert outer_T_inner to geometry_msgs/Transform."""
-    (x, y, z), (qx, qy, qz, qw) = transform
-    return Transform(
-        translation=Vector3(x=x, y=y, z=z),
-        rotation=Quaternion(x=qx, y=qy, z=qz, w=qw),
-    )
-
-
 def transform_stamped(
     parent: str, child: str, stamp_ns: int, parent_T_child: Transform3
 ) -> TransformStamped:
+    (x, y, z), (qx, qy, qz, qw) = parent_T_child
     return TransformStamped(
         header=Header(stamp=ns_to_stamp(stamp_ns), frame_id=parent),
         child_frame_id=child,
-        transform=transform_to_msg(parent_T_child),
+        transform=Transform(
+            translation=Vector3(x=x, y=y, z=z),
+            rotation=Quaternion(x=qx, y=qy, z=qz, w=qw),
+        ),
     )

@@ -173,6 +173,26 @@ def test_two_threads_import_at_the_same_time(monkeypatch: pytest.MonkeyPatch) ->
     assert found[0].Node is runtime.Node
 
 
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("laser_geometry.laser_geometry", "LaserProjection"),
+        ("tf2_geometry_msgs.tf2_geometry_msgs", "do_transform_pose"),
+        ("tf2_sensor_msgs.tf2_sensor_msgs", "do_transform_cloud"),
+        ("tf2_ros.buffer", "Buffer"),
+        ("tf2_ros.buffer_interface", "TransformRegistration"),
+        ("tf2_ros.static_transform_broadcaster", "StaticTransformBroadcaster"),
+        ("tf2_ros.transform_broadcaster", "TransformBroadcaster"),
+        ("tf2_ros.transform_listener", "TransformListener"),
+    ],
+)
+def test_modules_of_packages_that_are_one_file_in_navette(
+    module: str, name: str
+) -> None:
+    package = import_module(module.partition(".")[0])
+    assert getattr(import_module(module), name) is getattr(package, name)
+
+
 def test_services_and_actions() -> None:
     from example_interfaces.action import Fibonacci
     from example_interfaces.srv import AddTwoInts

@@ -25,9 +25,7 @@ from navette.msgs.std_msgs.msg import Header
 from navette.msgs.tf2_msgs.action import LookupTransform
 from navette.msgs.tf2_msgs.srv import FrameGraph
 from navette.ros2.packages import tf2_geometry_msgs, tf2_py, tf2_ros
-from navette.ros2.packages.tf2_geometry_msgs import tf2_geometry_msgs as functions
-from navette.ros2.packages.tf2_ros.buffer import Buffer
-from navette.ros2.packages.tf2_ros.transform_listener import TransformListener
+from navette.ros2.packages.tf2_ros import Buffer, TransformListener
 from navette.runtime import (
     ActionServer,
     Context,
@@ -221,10 +219,6 @@ def test_interface_alone_has_no_transforms() -> None:
         Half().lookup_transform("a", "b", Time())
     with pytest.raises(tf2_ros.NotImplementedException):
         Half().can_transform_full("a", Time(), "b", Time(), "c")
-
-
-def test_the_function_module_has_the_same_names() -> None:
-    assert tf2_geometry_msgs.__all__ == functions.__all__
 
 
 def test_the_covariance_is_rotated() -> None:

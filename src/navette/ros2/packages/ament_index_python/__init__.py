@@ -17,19 +17,3 @@ from navette.ros2.packages.ament_index_python.resources import (
     has_resource,
 )
 from navette.ros2.packages.ament_index_python.search_paths import get_search_paths
-
-__all__ = [
-    "InvalidResourceNameError",
-    "InvalidResourceTypeNameError",
-    "PackageNotFoundError",
-    "RESOURCE_INDEX_SUBFOLDER",
-    "get_package_prefix",
-    "get_package_share_directory",
-    "get_package_share_path",
-    "get_packages_with_prefixes",
-    "get_resource",
-    "get_resource_types",
-    "get_resources",
-    "get_search_paths",
-    "has_resource",
-]

@@ -4,5 +4,3 @@ from navette.ros2.packages.image_geometry.cameramodels import (
     PinholeCameraModel,
     StereoCameraModel,
 )
-
-__all__ = ["PinholeCameraModel", "StereoCameraModel"]

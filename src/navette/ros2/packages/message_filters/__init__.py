@@ -6,11 +6,3 @@ from navette.ros2.packages.message_filters.synchronizers import (
     ApproximateTimeSynchronizer,
     TimeSynchronizer,
 )
-
-__all__ = [
-    "ApproximateTimeSynchronizer",
-    "Cache",
-    "SimpleFilter",
-    "Subscriber",
-    "TimeSynchronizer",
-]

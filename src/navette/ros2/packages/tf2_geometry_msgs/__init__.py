@@ -1,6 +1,6 @@
 """tf2_geometry_msgs: transformation of geometry messages."""
 
-from navette.ros2.packages.tf2_geometry_msgs.tf2_geometry_msgs import (
+from navette.runtime.tf.do_transform import (
     do_transform_point,
     do_transform_polygon_stamped,
     do_transform_pose,
@@ -12,16 +12,3 @@ from navette.ros2.packages.tf2_geometry_msgs.tf2_geometry_msgs import (
     to_msg_msg,
     transform_covariance,
 )
-
-__all__ = [
-    "do_transform_point",
-    "do_transform_polygon_stamped",
-    "do_transform_pose",
-    "do_transform_pose_stamped",
-    "do_transform_pose_with_covariance_stamped",
-    "do_transform_vector3",
-    "do_transform_wrench_stamped",
-    "from_msg_msg",
-    "to_msg_msg",
-    "transform_covariance",
-]

@@ -9,13 +9,3 @@ from navette.runtime.tf import (
     TransformException,
 )
 from navette.runtime.tf import MessageCore as BufferCore
-
-__all__ = [
-    "BufferCore",
-    "ConnectivityException",
-    "ExtrapolationException",
-    "InvalidArgumentException",
-    "LookupException",
-    "TimeoutException",
-    "TransformException",
-]

@@ -6,10 +6,9 @@ from navette.msgs.builtin_interfaces.msg import Duration as DurationMsg
 from navette.msgs.builtin_interfaces.msg import Time as TimeMsg
 from navette.msgs.geometry_msgs.msg import TransformStamped
 from navette.msgs.tf2_msgs.action import LookupTransform
-from navette.ros2.packages.tf2_py import TimeoutException, TransformException
 from navette.ros2.packages.tf2_ros.lookup_errors import exception_of
 from navette.runtime import ActionClient, Duration, Future, Node, Time
-from navette.runtime.tf import BufferInterface
+from navette.runtime.tf import BufferInterface, TimeoutException, TransformException
 
 _NO_WAIT = Duration()
 _PADDING = Duration(seconds=2.0)

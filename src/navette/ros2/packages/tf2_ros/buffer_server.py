@@ -6,10 +6,10 @@ In ROS 2 this is a C++ program, ``tf2_ros buffer_server``.
 from typing import Any
 
 from navette.msgs.tf2_msgs.action import LookupTransform
-from navette.ros2.packages.tf2_py import TransformException
 from navette.ros2.packages.tf2_ros.lookup_errors import error_of
 from navette.runtime import ActionServer, Buffer, Duration, Node, Time
 from navette.runtime.callback_groups import ReentrantCallbackGroup
+from navette.runtime.tf import TransformException
 
 
 class BufferServer:

@@ -1,7 +1,7 @@
 """Conversion between tf2's exceptions and tf2_msgs/msg/TF2Error."""
 
 from navette.msgs.tf2_msgs.msg import TF2Error
-from navette.ros2.packages.tf2_py import (
+from navette.runtime.tf import (
     ConnectivityException,
     ExtrapolationException,
     InvalidArgumentException,

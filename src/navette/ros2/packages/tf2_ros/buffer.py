@@ -1,5 +1,0 @@
-"""tf2_ros.buffer."""
-
-from navette.runtime.tf import Buffer
-
-__all__ = ["Buffer"]

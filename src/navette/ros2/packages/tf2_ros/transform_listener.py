@@ -1,5 +1,0 @@
-"""tf2_ros.transform_listener."""
-
-from navette.runtime.tf import TransformListener
-
-__all__ = ["TransformListener"]
