@@ -68,12 +68,7 @@ PENDING: tuple[str, ...] = ("tests/unit/cli/up",)
 ALLOWED_NAMES = (r"wants_\w+",)
 
 #: As PENDING, for the names of functions, classes, arguments and variables.
-PENDING_IDENTIFIERS: tuple[str, ...] = (
-    "tests/unit/cli/up",
-    "tests/unit/ros2",
-    "tests/unit/runtime",
-    "tests/unit/supervisor",
-)
+PENDING_IDENTIFIERS: tuple[str, ...] = ("tests/unit/runtime",)
 
 #: Class names that ROS 2's API needs twice, with the reason.
 SHARED_NAMES: dict[str, str] = {

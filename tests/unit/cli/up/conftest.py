@@ -1,4 +1,4 @@
-"""A project whose supervisor keeps its state in the test's own folder."""
+"""A project whose supervisor stores its state in a temporary folder."""
 
 import os
 import select
@@ -23,7 +23,7 @@ WAIT_S = 60.0
 
 
 class Bench:
-    """A project's folder, and what a person does there."""
+    """A project folder with the commands of a user."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

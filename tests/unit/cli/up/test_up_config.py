@@ -1,4 +1,4 @@
-"""``navette.yaml``: what it may say, and how it is told what it may not."""
+"""``navette.yaml``: valid files, and errors."""
 
 import sys
 from pathlib import Path
@@ -15,7 +15,7 @@ from navette.supervisor.service_config import ServiceConfig
 RUN = (sys.executable, "-u", "-m", "navette", "run")
 
 
-def test_a_node_with_everything(bench: Any) -> None:
+def test_a_node_with_all_keys(bench: Any) -> None:
     bench.write("p:\n  ros__parameters:\n    a: 1\n", "shared.yaml")
     bench.write("p:\n  ros__parameters:\n    b: 1\n", "own.yaml")
     bench.write("", "node.py")
@@ -70,7 +70,7 @@ def test_a_node_with_everything(bench: Any) -> None:
     assert ServiceConfig.from_json(service.to_json()) == service
 
 
-def test_names_come_from_what_runs(bench: Any) -> None:
+def test_default_names(bench: Any) -> None:
     bench.write("", "node.py")
     bench.write("", "it.launch.py")
     bench.write(
@@ -106,7 +106,7 @@ def test_names_come_from_what_runs(bench: Any) -> None:
     assert shell.shell
 
 
-def test_what_is_needed_comes_first(bench: Any) -> None:
+def test_dependencies_come_first(bench: Any) -> None:
     bench.write("", "n.py")
     bench.write(
         """
@@ -143,7 +143,7 @@ def node(extra: str) -> str:
         ("services: {m: {nodes: [3]}}", "3: expected the arguments of"),
         ("services: {m: {nodes: [no.py]}}", "no.py: no such file"),
         ("services: {m: {nodes: [navette planer]}}", "unknown executable .*'planer'"),
-        ("services: {m: {nodes: [nobody talker]}}", "package 'nobody' not found"),
+        ("services: {m: {nodes: [unknown talker]}}", "package 'unknown' not found"),
         ("services: {m: {nodes: [{launch: no.launch.py}]}}", "no such launch file"),
         ("services: {m: {nodes: [{command: no-such}]}}", "'no-such': no such program"),
         (
@@ -180,7 +180,7 @@ def node(extra: str) -> str:
         ("services: {m: {nodes: ['n.py \"a']}}", "No closing quotation"),
     ],
 )
-def test_what_is_wrong_is_named(bench: Any, text: str, reason: str) -> None:
+def test_an_invalid_file_is_an_error(bench: Any, text: str, reason: str) -> None:
     bench.write("", "n.py")
     bench.write(text)
     with pytest.raises(NavetteError, match=reason):
@@ -203,7 +203,7 @@ def test_what_is_wrong_is_named(bench: Any, text: str, reason: str) -> None:
         ("environment: 3", ":5: .*environment: 3: expected a mapping"),
     ],
 )
-def test_errors_name_the_line(bench: Any, line: str, reason: str) -> None:
+def test_an_error_names_the_line(bench: Any, line: str, reason: str) -> None:
     bench.write("", "n.py")
     bench.write(f"services:\n  m:\n    nodes:\n      - n.py\n{line}\n")
     with pytest.raises(FileFormatError, match=f"navette.yaml{reason}"):
@@ -224,7 +224,7 @@ def test_environment_of_all_services(bench: Any) -> None:
     assert (env["ROS_DOMAIN_ID"], env["LEVEL"]) == ("7", "2")
 
 
-def test_unknown_services_and_arguments_are_errors(bench: Any) -> None:
+def test_unknown_services_and_arguments(bench: Any) -> None:
     bench.write("", "n.py")
     bench.write("arguments: {world: a}\nservices: {robot: {nodes: [n.py]}}")
     with pytest.raises(InvalidValueError, match="did you mean 'robot'"):
@@ -233,7 +233,7 @@ def test_unknown_services_and_arguments_are_errors(bench: Any) -> None:
         bench.read(wrld="b")
 
 
-def test_the_project_is_found_from_below(bench: Any) -> None:
+def test_the_project_is_found_from_a_subfolder(bench: Any) -> None:
     file = bench.write("services: {}")
     below = bench.folder / "a" / "b"
     below.mkdir(parents=True)

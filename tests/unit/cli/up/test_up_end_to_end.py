@@ -1,4 +1,4 @@
-"""Real supervisors with real processes."""
+"""Supervisors with processes, from up to down."""
 
 import json
 import os
@@ -27,7 +27,7 @@ pytestmark = [
 ]
 WAIT_S = 60.0
 
-# Holds a named pipe open as long as it lives.
+# Holds a named pipe open until its end.
 HOLD = (
     "import signal, sys; f = open(sys.argv[1], 'w'); print(sys.argv[2]); signal.pause()"
 )
@@ -46,16 +46,16 @@ except KeyboardInterrupt:
 
 
 def wait_for(condition: Callable[[], object]) -> None:
-    """Look again and again, with a bound."""
+    """Poll a condition, with a time limit."""
     pause = threading.Event()
     for _ in range(int(WAIT_S / 0.02)):
         if condition():
             return
         pause.wait(0.02)
-    raise AssertionError("it never came")
+    raise AssertionError("timed out")
 
 
-def said(bench: Any) -> list[str]:
+def log_lines(bench: Any) -> list[str]:
     reader = LogReader(bench.client.project.state, lambda line: True)
     lines = [f"{line.label}: {line.text}" for line in reader.last(None)]
     reader.close()
@@ -75,10 +75,10 @@ class Pipe:
         self._file = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
 
     def wait_end(self) -> None:
-        """Until nobody holds it any more."""
+        """Wait until no process holds the pipe."""
         poll = select.poll()
         poll.register(self._file, 0)
-        assert poll.poll(WAIT_S * 1000), "it is still held, or never was"
+        assert poll.poll(WAIT_S * 1000), "still held, or never opened"
         os.close(self._file)
 
 
@@ -96,12 +96,12 @@ def test_from_up_to_down(bench: Any) -> None:
     up = navette("up", "b")
     assert up.exit_code == 0, up.output
     assert up.output.split("\n")[:2] == ["a/hold  running", "b/sleep  running"]
-    wait_for(lambda: "a/hold: holding" in said(bench))
+    wait_for(lambda: "a/hold: holding" in log_lines(bench))
     assert "a/hold: holding" in navette("logs", "a").output.replace("Z ", "")
     assert "holding" not in navette("logs", "b").output
-    nobody = navette("logs", "hold").output
-    assert f"no output of hold in {bench.folder}" in nobody
-    assert "output of a/hold, b/sleep" in nobody
+    nothing = navette("logs", "hold").output
+    assert f"no output of hold in {bench.folder}" in nothing
+    assert "output of a/hold, b/sleep" in nothing
     (first, second) = json.loads(navette("ps", "--json").output)
     assert (first["label"], first["state"]) == ("a/hold", "running")
     assert os.getpgid(first["pid"]) == first["pid"]
@@ -124,11 +124,11 @@ def test_from_up_to_down(bench: Any) -> None:
     assert not known_projects()
 
 
-def test_nothing_outlives_a_supervisor_that_was_killed(bench: Any) -> None:
+def test_no_process_outlives_a_killed_supervisor(bench: Any) -> None:
     pipe = Pipe(bench.folder / "pipe")
     bench.write(f"services: {{a: {{nodes: [{holder(pipe)}]}}}}")
     bench.up()
-    wait_for(lambda: "a/hold: holding" in said(bench))
+    wait_for(lambda: "a/hold: holding" in log_lines(bench))
     project = bench.client.project
     pid = json.loads((project.state / "supervisor.json").read_text())["pid"]
     os.kill(pid, signal.SIGKILL)
@@ -139,7 +139,7 @@ def test_nothing_outlives_a_supervisor_that_was_killed(bench: Any) -> None:
     second = Pipe(bench.folder / "second")
     bench.write(f"services: {{a: {{nodes: [{holder(second, 'again')}]}}}}")
     assert set(bench.up()) == {"a/hold"}
-    wait_for(lambda: "a/hold: again" in said(bench))
+    wait_for(lambda: "a/hold: again" in log_lines(bench))
     bench.down()
     second.wait_end()
 
@@ -147,15 +147,15 @@ def test_nothing_outlives_a_supervisor_that_was_killed(bench: Any) -> None:
 @pytest.mark.skipif(
     not Path("/proc/self").is_dir(), reason="leftovers are found in Linux's /proc"
 )
-def test_what_a_supervisor_and_its_guard_left_ends_with_the_next(bench: Any) -> None:
+def test_the_next_supervisor_ends_leftover_processes(bench: Any) -> None:
     pipe = Pipe(bench.folder / "pipe")
     bench.write(f"services: {{a: {{nodes: [{holder(pipe)}]}}}}")
     bench.up()
-    wait_for(lambda: "a/hold: holding" in said(bench))
+    wait_for(lambda: "a/hold: holding" in log_lines(bench))
     pid = json.loads((bench.client.project.state / "supervisor.json").read_text())[
         "pid"
     ]
-    os.kill(pid, signal.SIGSTOP)  # lest it replaces its guard
+    os.kill(pid, signal.SIGSTOP)  # so that it does not replace its guard
     children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     (guard,) = (
         int(child)
@@ -173,14 +173,14 @@ def test_edit_and_restart(bench: Any) -> None:
     node = bench.write(NODE, "node.py")
     bench.write("services: {m: {nodes: [node.py]}}")
     assert bench.up()["m/node"].state.value == "running"
-    wait_for(lambda: "m/node: version 1" in said(bench))
+    wait_for(lambda: "m/node: version 1" in log_lines(bench))
     node.write_text(NODE.replace("version 1", "version 2"))
     assert navette("restart", "m").exit_code == 0
-    wait_for(lambda: "m/node: version 2" in said(bench))
-    assert "m/node: interrupted" in said(bench)
+    wait_for(lambda: "m/node: version 2" in log_lines(bench))
+    assert "m/node: interrupted" in log_lines(bench)
 
 
-def test_arguments_hold_until_all_is_down(bench: Any) -> None:
+def test_arguments_are_kept_until_all_is_down(bench: Any) -> None:
     bench.write(
         """
         arguments: {word: first}
@@ -190,26 +190,26 @@ def test_arguments_hold_until_all_is_down(bench: Any) -> None:
         """
     )
     assert "kept" not in navette("up", "a", "word:=second").output
-    wait_for(lambda: "a: a second" in said(bench))
+    wait_for(lambda: "a: a second" in log_lines(bench))
     up = navette("up", "b")
     assert "arguments kept from the last command: word:=second" in up.output
-    wait_for(lambda: "b: b second" in said(bench))
+    wait_for(lambda: "b: b second" in log_lines(bench))
     navette("restart", "a")
-    wait_for(lambda: said(bench).count("a: a second") == 2)
+    wait_for(lambda: log_lines(bench).count("a: a second") == 2)
     navette("restart", "a", "word:=third")
-    wait_for(lambda: "a: a third" in said(bench))
+    wait_for(lambda: "a: a third" in log_lines(bench))
     bench.down()
     wait_for(lambda: not bench.client.project.is_supervised)
     assert bench.client.arguments() == {}
 
 
-def test_a_process_that_ends_at_once_is_shown_with_its_last_words(bench: Any) -> None:
-    bench.write("raise ValueError('of its own making')", "node.py")
+def test_a_failed_start_shows_the_last_output(bench: Any) -> None:
+    bench.write("raise ValueError('invalid state')", "node.py")
     bench.write("services: {m: {nodes: [node.py], restart: no}}")
     up = navette("up")
     assert up.exit_code == 1
     assert "m/node  failed: exit code 1" in up.output
-    assert "ValueError: of its own making" in up.output
+    assert "ValueError: invalid state" in up.output
     (view,) = json.loads(navette("ps", "--json").output)
     assert (view["state"], view["reason"], view["pid"]) == (
         "failed",
@@ -218,7 +218,7 @@ def test_a_process_that_ends_at_once_is_shown_with_its_last_words(bench: Any) ->
     )
 
 
-def test_two_concurrent_starts_share_one_supervisor(bench: Any) -> None:
+def test_concurrent_starts_create_one_supervisor(bench: Any) -> None:
     bench.write("services: {a: {nodes: [{command: sleep 1000}]}}")
     specs = bench.specs()
     clients = [bench.client for _ in range(3)]
@@ -248,14 +248,14 @@ def test_malformed_requests_are_refused(bench: Any, line: bytes) -> None:
     assert len(bench.client.status()) == 1
 
 
-def test_attached_to_the_end(bench: Any) -> None:
+def test_an_attached_up_stops_its_services(bench: Any) -> None:
     pipe = Pipe(bench.folder / "pipe")
     bench.write(
         f"services:\n  a: {{nodes: [{holder(pipe)}]}}\n"
         "  b: {depends_on: [a], nodes: [{command: sleep 1000}]}\n"
     )
     bench.up("a")
-    wait_for(lambda: "a/hold: holding" in said(bench))
+    wait_for(lambda: "a/hold: holding" in log_lines(bench))
     words = [sys.executable, "-u", "-m", "navette", "up", "b", "--attach"]
     source = str(Path(package.__file__).parents[1])
     with subprocess.Popen(

@@ -1,4 +1,4 @@
-"""The files that docs/howto/services.md and ros2.md show are ones."""
+"""The examples of docs/howto/services.md and ros2.md are valid."""
 
 import re
 from pathlib import Path

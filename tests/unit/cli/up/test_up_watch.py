@@ -1,4 +1,4 @@
-"""Services are restarted when their files change, and stay when the file is wrong."""
+"""Services restart when their files change, except if navette.yaml is invalid."""
 
 import os
 from pathlib import Path
@@ -22,7 +22,7 @@ def touch(path: Any) -> None:
     os.utime(path, ns=(1, path.stat().st_mtime_ns + 1000))
 
 
-def test_a_change_restarts_what_it_concerns(
+def test_a_change_restarts_the_affected_services(
     bench: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
     one, both = bench.write("", "one.py"), bench.write("", "both.py")
@@ -49,14 +49,14 @@ def test_a_change_restarts_what_it_concerns(
     touch(file)
     watch.poll()
     assert client.restarted[3:] == []
-    said = capsys.readouterr().err.split("\n")
-    assert said[0] == "one.py changed: restarting a"
-    assert said[2] == "navette.yaml changed: restarting a"
-    assert said[3].startswith("nothing was restarted: ")
-    assert "gone.py: no such file" in said[3]
+    messages = capsys.readouterr().err.split("\n")
+    assert messages[0] == "one.py changed: restarting a"
+    assert messages[2] == "navette.yaml changed: restarting a"
+    assert messages[3].startswith("nothing was restarted: ")
+    assert "gone.py: no such file" in messages[3]
 
 
-def test_changes_are_seen(tmp_path: Path) -> None:
+def test_changed_files_are_found(tmp_path: Path) -> None:
     folder = tmp_path / "package"
     (folder / "__pycache__").mkdir(parents=True)
     node = folder / "node.py"
@@ -76,7 +76,7 @@ def test_changes_are_seen(tmp_path: Path) -> None:
     assert watch.changed() == []
 
 
-def test_no_more_files_than_can_be_looked_at(
+def test_the_number_of_files_is_limited(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("navette.cli.up.watch._MAX_FILES", 3)
