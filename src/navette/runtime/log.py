@@ -4,7 +4,7 @@ import logging
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from navette.errors import InvalidValueError
 from navette.runtime.log_levels import LoggingSeverity
@@ -23,10 +23,8 @@ class LogRecord:
     line: int = 0
 
 
-class LogSink(Protocol):
-    """Receiver of log records; the hub calls the sinks in order."""
-
-    def __call__(self, record: LogRecord) -> None: ...
+LogSink = Callable[[LogRecord], None]
+"""Receiver of log records; the hub calls the sinks in order."""
 
 
 class LogHub:
@@ -58,7 +56,6 @@ class LogHub:
         self._effective.clear()
 
     def reset_levels(self) -> None:
-        """Remove all levels and set the default to INFO."""
         self.default_level = LoggingSeverity.INFO
         self._levels.clear()
         self._effective.clear()

@@ -87,7 +87,6 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def topic_or_service_is_hidden(name: str) -> bool:
-    """Return whether any part of the name starts with an underscore."""
     tokens = name.split(TOPIC_SEPARATOR_STRING)
     return any(token.startswith(HIDDEN_TOPIC_PREFIX) for token in tokens)
 
@@ -178,7 +177,6 @@ class RemapRule:
             validate_topic_name(self.replacement)
 
     def applies_to(self, node_name: str) -> bool:
-        """Return whether the rule applies to a node with that original name."""
         return self.node is None or self.node == node_name
 
 
@@ -194,7 +192,6 @@ class NodeRemapper:
     def resolve(
         self, name: str, *, is_service: bool = False, only_expand: bool = False
     ) -> str:
-        """Return the full name after expansion and remapping."""
         expanded = self._expand(name, is_service=is_service)
         if not only_expand:
             for rule in self._rules:

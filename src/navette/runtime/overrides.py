@@ -90,7 +90,6 @@ class ParameterOverrides:
         self.sets.append(OverrideSet(pattern, dict(values), origin, by_base_name))
 
     def add_file(self, path: Path | str) -> None:
-        """Add a ROS 2 parameter file, in the order of its entries."""
         for pattern, values in read_parameter_file(path):
             self.add(pattern, values, str(path))
 

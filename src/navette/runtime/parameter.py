@@ -73,7 +73,6 @@ class ParameterType(IntEnum):
         )
 
     def check(self, parameter_value: Any) -> bool:
-        """Whether the value is of this type."""
         if self is ParameterType.NOT_SET:
             return parameter_value is None
         if self in _SCALARS:
@@ -173,7 +172,6 @@ class Parameter(Generic[T]):
     __hash__ = None  # type: ignore[assignment]  # values may be lists
 
     def get_parameter_value(self) -> ParameterValue:
-        """Return the value as rcl_interfaces/msg/ParameterValue."""
         message = ParameterValue(type=int(self._type))
         if self._type is not ParameterType.NOT_SET:
             setattr(message, _VALUE_FIELDS[self._type], _plain(self._value))

@@ -8,53 +8,20 @@ from navette.runtime.time import Duration
 from navette.transports.qos import (
     BEST_AVAILABLE_NS,
     INFINITE_NS,
-    DurabilityPolicy,
     EndpointQos,
-    HistoryPolicy,
-    LivelinessPolicy,
-    QoSPolicyEnum,
-    QoSPolicyKind,
-    ReliabilityPolicy,
     incompatible_policies,
 )
-
-__all__ = [
-    "DeadlineBestAvailable",
-    "DurabilityPolicy",
-    "HistoryPolicy",
-    "InvalidQoSProfileException",
-    "LivelinessLeaseDurationeBestAvailable",
-    "LivelinessPolicy",
-    "QoSDurabilityPolicy",
-    "QoSHistoryPolicy",
-    "QoSLivelinessPolicy",
-    "QoSCompatibility",
-    "QoSPolicyEnum",
-    "QoSPolicyKind",
-    "QoSPresetProfiles",
-    "QoSProfile",
-    "QoSReliabilityPolicy",
-    "ReliabilityPolicy",
-    "as_profile",
-    "qos_check_compatible",
-    "qos_policy_name_from_kind",
-    "qos_profile_action_status_default",
-    "qos_profile_best_available",
-    "qos_profile_default",
-    "qos_profile_parameter_events",
-    "qos_profile_parameters",
-    "qos_profile_rosout_default",
-    "qos_profile_sensor_data",
-    "qos_profile_services_default",
-    "qos_profile_system_default",
-    "qos_profile_unknown",
-]
+from navette.transports.qos import DurabilityPolicy as DurabilityPolicy
+from navette.transports.qos import HistoryPolicy as HistoryPolicy
+from navette.transports.qos import LivelinessPolicy as LivelinessPolicy
+from navette.transports.qos import QoSPolicyEnum as QoSPolicyEnum
+from navette.transports.qos import QoSPolicyKind as QoSPolicyKind
+from navette.transports.qos import ReliabilityPolicy as ReliabilityPolicy
 
 QoSHistoryPolicy = HistoryPolicy
 QoSReliabilityPolicy = ReliabilityPolicy
 QoSDurabilityPolicy = DurabilityPolicy
 QoSLivelinessPolicy = LivelinessPolicy
-
 
 #: The other endpoint's value counts; the second name is misspelled in rclpy.
 DeadlineBestAvailable = Duration(nanoseconds=BEST_AVAILABLE_NS)
@@ -180,8 +147,6 @@ def as_profile(qos_or_depth: "QoSProfile | int") -> QoSProfile:
         raise TypeError(
             f"qos_profile {qos_or_depth!r}: expected a QoSProfile or a depth (int)"
         )
-    if qos_or_depth < 0:
-        raise InvalidQoSProfileException(f"QoS depth {qos_or_depth}: expected >= 0")
     return QoSProfile(depth=qos_or_depth)
 
 

@@ -154,7 +154,6 @@ class EventCallbacks:
     _events: ClassVar[Mapping[str, QoSPublisherEventType | QoSSubscriptionEventType]]
 
     def handlers(self) -> list[EventHandler]:
-        """Return the events that have callbacks."""
         return [
             EventHandler(kind, getattr(self, name))
             for name, kind in self._events.items()

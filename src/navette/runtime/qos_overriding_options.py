@@ -2,11 +2,10 @@
 
 import copy
 from collections.abc import Callable, Iterable
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 from navette.errors import InvalidValueError
 from navette.msgs.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
-from navette.runtime.parameter import Parameter
 from navette.runtime.qos import QoSPolicyEnum, QoSPolicyKind, QoSProfile
 from navette.runtime.time import Duration
 
@@ -50,18 +49,8 @@ class QoSOverridingOptions:
         return cls(kinds, callback=callback, entity_id=entity_id)
 
 
-class _ParameterNode(Protocol):
-    """The part of a node that :func:`overridden` needs."""
-
-    def has_parameter(self, name: str) -> bool: ...
-    def get_parameter(self, name: str) -> Parameter[Any]: ...
-    def declare_parameter(
-        self, name: str, value: Any, descriptor: ParameterDescriptor
-    ) -> Parameter[Any]: ...
-
-
 def overridden(
-    node: _ParameterNode,
+    node: Any,
     kind: str,
     topic: str,
     qos: QoSProfile,
@@ -70,6 +59,7 @@ def overridden(
     """Return a copy of the profile with the values of the node's parameters.
 
     Args:
+        node: has and declares the parameters.
         kind: ``publisher`` or ``subscription``.
         topic: full name.
 

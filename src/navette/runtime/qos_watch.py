@@ -68,7 +68,6 @@ class EndpointWatch:
         self._watch_liveliness()
 
     def stop(self) -> None:
-        """Stop all timers and graph callbacks of the endpoint."""
         for unsubscribe in self._unsubscribe:
             unsubscribe()
         if self._deadline is not None:

@@ -11,7 +11,6 @@
 """
 
 from collections.abc import Callable, Sequence
-from types import TracebackType
 from typing import Any, Self, TypeVar
 
 from navette.errors import InvalidValueError
@@ -56,7 +55,6 @@ class Probe:
         return len(self.messages)
 
     def clear(self) -> None:
-        """Delete the messages."""
         self.messages.clear()
         self.stamps_ns.clear()
 
@@ -100,12 +98,7 @@ class GraphHarness:
         """Publish a message; the publisher continues to exist."""
         publisher = self._publishers.get(topic)
         if publisher is None:
-            durability = (
-                DurabilityPolicy.TRANSIENT_LOCAL
-                if latched
-                else DurabilityPolicy.VOLATILE
-            )
-            qos = QoSProfile(depth=100, durability=durability)
+            qos = QoSProfile(depth=100, durability=_durability(latched=latched))
             publisher = self.node.create_publisher(type(message), topic, qos)
             self._publishers[topic] = publisher
         publisher.publish(message)
@@ -127,12 +120,9 @@ class GraphHarness:
             probe.stamps_ns.append(self.now_ns)
 
         kind = get_interface(message) if isinstance(message, str) else message
-        durability = (
-            DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
-        )
         qos = QoSProfile(
             depth=1000,
-            durability=durability,
+            durability=_durability(latched=latched),
             reliability=ReliabilityPolicy.BEST_EFFORT,
         )
         self.node.create_subscription(kind, topic, receive, qos)
@@ -147,16 +137,14 @@ class GraphHarness:
         return self.executor.spin_until_complete(condition, round(timeout_s * 1e9))
 
     def close(self) -> None:
-        """Shut the context and its nodes down."""
         self.context.try_shutdown()
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
+
+
+def _durability(*, latched: bool) -> DurabilityPolicy:
+    return DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE

@@ -126,7 +126,6 @@ def _import(name: str) -> ModuleType:
 
 
 def load_file(path: Path, name: str) -> ModuleType:
-    """Load a Python file as the module of that name."""
     module = sys.modules[name] = _new_module(path, name)
     _execute(path, module)
     return module

@@ -44,7 +44,6 @@ def _matches(rule: RemapRule, node: Node) -> bool:
 
 
 def _own_names(node: Node) -> list[str]:
-    """Return the node's topics and services, except the default ones."""
     common = (f"{node.get_fully_qualified_name()}/", "/rosout", "/parameter_events")
     return [
         name

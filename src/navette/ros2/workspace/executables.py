@@ -5,15 +5,17 @@ import configparser
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from navette.errors import FileFormatError, UnknownNameError
+from navette.errors import FileFormatError
 from navette.ros2.workspace.setup_py import read_setup_py
 
 BUILT_IN = "navette"
-_STAGES = {
+_PROGRAMS = {
+    "component_container": ("navette.ros2.launch.container", "main"),
+} | {
     name: ("navette.navigation.stack.stages", name)
     for name in (
         "sim",
@@ -27,11 +29,6 @@ _STAGES = {
         "viewer",
         "recorder",
     )
-}
-
-_PROGRAMS = {
-    **_STAGES,
-    "component_container": ("navette.ros2.launch.container", "main"),
 }
 
 _ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
@@ -49,20 +46,6 @@ class PackageExecutable:
     module: str = ""
     attribute: str = ""
     path: Path | None = None
-
-    @staticmethod
-    def named(
-        name: str, package: str, among: Iterable["PackageExecutable"]
-    ) -> "PackageExecutable":
-        """Return the executable of that name.
-
-        Raises:
-            UnknownNameError: there is none; lists the existing ones.
-        """
-        known = {each.name: each for each in among}
-        if name not in known:
-            raise UnknownNameError.of(f"executable of {package}", name, list(known))
-        return known[name]
 
 
 def built_in_executables(package: str) -> tuple[PackageExecutable, ...]:
@@ -138,7 +121,7 @@ def _from_cmake(path: Path) -> Iterator[Path]:
 
 def _from_setup_py(path: Path) -> Iterator[str]:
     setup = read_setup_py(path)
-    entry_points = setup and setup.argument("entry_points")
+    entry_points = setup and setup.arguments.get("entry_points")
     if not setup or not isinstance(entry_points, ast.Dict):
         return
     for key, value in zip(entry_points.keys, entry_points.values, strict=True):

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
+from navette.errors import UnknownNameError
 from navette.ros2.workspace.executables import (
     PackageExecutable,
     built_in_executables,
@@ -93,4 +94,7 @@ class Package:
         Raises:
             UnknownNameError: there is none of that name; lists the existing ones.
         """
-        return PackageExecutable.named(name, self.name, self.executables())
+        known = {each.name: each for each in self.executables()}
+        if name not in known:
+            raise UnknownNameError.of(f"executable of {self.name}", name, list(known))
+        return known[name]

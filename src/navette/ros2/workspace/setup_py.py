@@ -24,10 +24,6 @@ class SetupPy:
     arguments: dict[str, ast.expr]
     names: dict[str, str]
 
-    def argument(self, name: str) -> ast.expr | None:
-        """Return an argument's expression; None if it is not given."""
-        return self.arguments.get(name)
-
     def text(self, node: ast.expr) -> str | None:
         """Return the text of an expression; None if it cannot be evaluated."""
         return _text(node, self.names)
@@ -75,7 +71,6 @@ def _called_name(call: ast.Call) -> str:
 
 
 def _constants(tree: ast.Module) -> dict[str, str]:
-    """Return the texts that the module assigns to names."""
     found: dict[str, str] = {}
     for node in tree.body:
         if isinstance(node, ast.Assign) and len(node.targets) == 1:

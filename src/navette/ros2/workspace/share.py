@@ -31,7 +31,7 @@ def share_directory(name: str, folder: Path) -> Path:
 def _moved(setup: SetupPy, name: str) -> dict[PurePosixPath, Path]:
     """Return the moved files by their path below the share directory."""
     found: dict[PurePosixPath, Path] = {}
-    data_files = setup.argument("data_files")
+    data_files = setup.arguments.get("data_files")
     for entry in getattr(data_files, "elts", ()):
         if len(getattr(entry, "elts", ())) != 2:
             continue

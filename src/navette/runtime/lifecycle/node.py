@@ -81,7 +81,6 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change_state(self._state_machine.by_label("shutdown").id)
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Add an entity to the transitions."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError(f"expected a ManagedEntity, got {entity!r}")
         self._managed_entities.append(entity)
@@ -95,7 +94,6 @@ class LifecycleNodeMixin(ManagedEntity):
         publisher_class: None = None,
         **kwargs: Any,
     ) -> LifecyclePublisher[MsgT]:
-        """Create a publisher that publishes only while the node is active."""
         if publisher_class is not None:
             raise TypeError("lifecycle publishers do not accept a publisher_class")
         publisher = self._node.create_publisher(

@@ -19,6 +19,5 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher[MsgT]):
         Publisher.__init__(self, *args, **kwargs)
 
     def publish(self, msg: MsgT | bytes) -> None:
-        """Publish ``msg`` if activated, else do nothing."""
         if self.is_activated:
             super().publish(msg)

@@ -56,7 +56,6 @@ def declare_params(node: Node, params_class: type[P]) -> P:
 def _declare(
     node: Node, field: "dataclasses.Field[Any]", hint: Any, defaults: Params
 ) -> Any:
-    """Declare one field and return its value."""
     kind = _parameter_type(hint)
     default = getattr(defaults, field.name)
     if isinstance(default, tuple):

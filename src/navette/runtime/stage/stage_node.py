@@ -137,7 +137,6 @@ class StageNode(Node):
         publisher.publish(msg)
 
     def has_listeners(self, topic: str) -> bool:
-        """Whether an output has a subscriber."""
         return self.publishers_by_topic[topic].get_subscription_count() > 0
 
     def is_stale(self, topic: str) -> bool:

@@ -45,7 +45,6 @@ class Buffer(MessageCore, BufferInterface):
         )
 
     def time_jump_callback(self, time_jump: TimeJump) -> None:
-        """Clear the moving transforms after the clock jumped backward."""
         self.clear()
 
     def lookup(self, target_frame: str, source_frame: str, stamp_ns: int) -> Transform3:

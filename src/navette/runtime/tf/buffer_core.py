@@ -136,7 +136,6 @@ class BufferCore:
         return sorted(self._parents | self._frames.keys())
 
     def histories(self) -> dict[str, FrameHistory]:
-        """Return the samples by child frame."""
         return self._frames
 
     def contains(self, frame: str) -> bool:
@@ -148,7 +147,6 @@ class BufferCore:
         self._chains.clear()
 
     def _chain(self, target: str, source: str) -> _Chain:
-        """Return the chain between two frames in the current tree."""
         chain = self._chains.get((target, source))
         if chain is None:
             self._check_known(target, source)

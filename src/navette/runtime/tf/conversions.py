@@ -12,7 +12,6 @@ from navette.runtime.time import ns_to_stamp
 
 
 def transform_from_msg(message: Transform) -> Transform3:
-    """Convert geometry_msgs/Transform to outer_T_inner."""
     t, q = message.translation, message.rotation
     return Transform3((t.x, t.y, t.z), (q.x, q.y, q.z, q.w))
 

@@ -37,7 +37,6 @@ from navette.runtime.tf.registration import ConvertRegistration, TransformRegist
 def do_transform_point(
     point: PointStamped, transform: TransformStamped
 ) -> PointStamped:
-    """Return the point in the transform's frame."""
     p = point.point
     x, y, z = transform_from_msg(transform.transform).apply((p.x, p.y, p.z))
     return PointStamped(header=transform.header, point=Point(x=x, y=y, z=z))
@@ -69,7 +68,6 @@ def do_transform_pose(pose: Pose, transform: TransformStamped) -> Pose:
 def do_transform_pose_stamped(
     pose: PoseStamped, transform: TransformStamped
 ) -> PoseStamped:
-    """Return the pose in the transform's frame."""
     return PoseStamped(
         header=transform.header, pose=do_transform_pose(pose.pose, transform)
     )
@@ -78,7 +76,6 @@ def do_transform_pose_stamped(
 def do_transform_pose_with_covariance_stamped(
     pose: PoseWithCovarianceStamped, transform: TransformStamped
 ) -> PoseWithCovarianceStamped:
-    """Return the pose and its covariance in the transform's frame."""
     return PoseWithCovarianceStamped(
         header=transform.header,
         pose=PoseWithCovariance(
@@ -91,7 +88,6 @@ def do_transform_pose_with_covariance_stamped(
 def do_transform_polygon_stamped(
     polygon: PolygonStamped, transform: TransformStamped
 ) -> PolygonStamped:
-    """Return the polygon in the transform's frame."""
     a_T_b = transform_from_msg(transform.transform)
     corners = (a_T_b.apply((p.x, p.y, p.z)) for p in polygon.polygon.points)
     points = [Point32(x=x, y=y, z=z) for x, y, z in corners]

@@ -64,20 +64,17 @@ class TransformListener:
             self._spin_in_thread()
 
     def unregister(self) -> None:
-        """Destroy the subscriptions."""
         for subscription in (self.tf_static_sub, self.tf_sub):
             if subscription is not None:
                 self.node.destroy_subscription(subscription)
         self.tf_static_sub = self.tf_sub = None
 
     def callback(self, data: TFMessage) -> None:
-        """Store a message of moving transforms."""
         for transform in data.transforms:
             self._watch_stamp(transform)
         self._store(data, self.buffer.set_transform)
 
     def static_callback(self, data: TFMessage) -> None:
-        """Store a message of static transforms."""
         self._store(data, self.buffer.set_transform_static)
 
     def _watch_stamp(self, transform: TransformStamped) -> None:

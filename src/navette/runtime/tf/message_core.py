@@ -31,11 +31,9 @@ class MessageCore:
     def set_transform_static(
         self, transform: TransformStamped, authority: str = ""
     ) -> None:
-        """Add a static transform."""
         self._set(transform, authority, is_static=True)
 
     def clear(self) -> None:
-        """Delete the moving transforms."""
         self.core.drop_moving()
 
     def lookup_transform_core(

@@ -42,11 +42,9 @@ class TransformRegistration:
         print(self._functions)  # noqa: T201 - its purpose
 
     def add(self, key: type, callback: Callable[[Any, Any], Any]) -> None:
-        """Register the function for objects of the type ``key``."""
         self._functions[key] = callback
 
     def get(self, key: type) -> Callable[[Any, Any], Any]:
-        """Return the function; raise TypeException if the type is not registered."""
         return _registered(self._functions, key, "transform")
 
 

@@ -18,7 +18,6 @@ __all__ = [
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    """Return the prefixes of all packages by name."""
     return {name: str(package.prefix) for name, package in find_packages().items()}
 
 

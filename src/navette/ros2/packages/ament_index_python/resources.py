@@ -57,7 +57,6 @@ def get_resources(resource_type: str) -> dict[str, str]:
 
 
 def get_resource_types() -> set[str]:
-    """Return all resource types."""
     indices = (prefix / RESOURCE_INDEX_SUBFOLDER for prefix in installed_prefixes())
     names = {f.name for index in indices if index.is_dir() for f in index.iterdir()}
     return {_PACKAGES, _INTERFACES, *(n for n in names if not n.startswith("."))}

@@ -15,7 +15,6 @@ class DiagnosticStatusWrapper(DiagnosticStatus):
         self.level, self.message = _summary_of(args)
 
     def clearSummary(self) -> None:
-        """Set level OK without a message."""
         self.summary(DiagnosticStatus.OK, "")
 
     def mergeSummary(self, *args: Any) -> None:
@@ -33,7 +32,6 @@ class DiagnosticStatusWrapper(DiagnosticStatus):
         self.level = max(self.level, level)
 
     def add(self, key: str, val: object) -> None:
-        """Add a value, which is converted to text."""
         self.values.append(KeyValue(key=key, value=str(val)))
 
 

@@ -54,7 +54,6 @@ class CompositeDiagnosticTask(DiagnosticTask):
         self.tasks.append(t)
 
     def run(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Run each task and combine values and summaries."""
         given, combined = DiagnosticStatusWrapper(), DiagnosticStatusWrapper()
         given.summary(stat)
         for task in self.tasks:
@@ -140,11 +139,9 @@ class Updater(DiagnosticTaskVector):
         self.timer = self.node.create_timer(period, self.update)
 
     def setHardwareID(self, hwid: str) -> None:
-        """Set the hardware ID of all statuses."""
         self.hwid = hwid
 
     def update(self) -> None:
-        """Run all tasks and publish their statuses."""
         with self.lock:
             statuses = [self._run(task) for task in tuple(self.tasks)]
         is_fine = all(status.level == DiagnosticStatus.OK for status in statuses)
@@ -157,7 +154,6 @@ class Updater(DiagnosticTaskVector):
         self.publish(statuses)
 
     def force_update(self) -> None:
-        """Run all tasks and publish, as :meth:`update` does."""
         self.update()
 
     def broadcast(self, lvl: bytes, msg: str) -> None:
@@ -187,7 +183,6 @@ class Updater(DiagnosticTaskVector):
         self.publisher.publish(array)
 
     def addedTaskCallback(self, task: _NamedFill) -> None:
-        """Publish a first status of the task."""
         status = DiagnosticStatusWrapper(name=task.name)
         status.summary(DiagnosticStatus.OK, "Node starting up")
         self.publish(status)

@@ -32,11 +32,9 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
         diag.add(self)
 
     def tick(self) -> None:
-        """Count a message."""
         self.freq.tick()
 
     def clear_window(self) -> None:
-        """Reset the counts."""
         self.freq.clear()
 
 
@@ -55,7 +53,6 @@ class TopicDiagnostic(HeaderlessTopicDiagnostic):
         self.addTask(self.stamp)
 
     def tick(self, stamp: Time | float) -> None:  # type: ignore[override]
-        """Count a message with that stamp."""
         self.stamp.tick(stamp)
         super().tick()
 
@@ -74,6 +71,5 @@ class DiagnosedPublisher(TopicDiagnostic):
         self.publisher = pub
 
     def publish(self, message: Any) -> None:
-        """Publish a message with a header."""
         self.tick(Time.from_msg(message.header.stamp))
         self.publisher.publish(message)

@@ -60,7 +60,6 @@ class FrequencyStatus(DiagnosticTask):
         self.clear()
 
     def clear(self) -> None:
-        """Reset the counts."""
         with self.lock:
             size = self.params.window_size
             self.count = 0
@@ -69,7 +68,6 @@ class FrequencyStatus(DiagnosticTask):
             self.hist_indx = 0
 
     def tick(self) -> None:
-        """Count an event."""
         with self.lock:
             self.count += 1
 

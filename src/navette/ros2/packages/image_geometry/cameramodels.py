@@ -174,7 +174,6 @@ class PinholeCameraModel:
         return 2 * math.atan(self.height / (2 * float(self.full_P[1, 1])))
 
     def tfFrame(self) -> str | None:
-        """Return the frame of the CameraInfo."""
         return self.tf_frame
 
     def _projection(self, row: int, column: int) -> float:

@@ -43,11 +43,9 @@ class Cache(SimpleFilter):
         return self._stamps.allow_headerless
 
     def connectInput(self, f: Any) -> None:
-        """Connect the input filter."""
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Store a message and pass it on."""
         stamp = self._stamps.read(msg)
         if stamp is None:
             return

@@ -59,7 +59,6 @@ class Subscriber(SimpleFilter):
         )
 
     def callback(self, msg: Any) -> None:
-        """Pass a message on."""
         self.signalMessage(msg)
 
     def getTopic(self) -> str:

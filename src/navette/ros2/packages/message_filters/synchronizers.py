@@ -111,7 +111,6 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return self._stamps.allow_headerless
 
     def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
-        """Add a message of one input."""
         stamp = self._stamps.read(msg)
         if stamp is None:
             return

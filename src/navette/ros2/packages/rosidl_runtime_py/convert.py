@@ -56,11 +56,7 @@ def message_to_csv(
     no_str: bool = False,
 ) -> str:
     """Return the message's values, separated by commas, in order of the fields."""
-    shortening = _Shortening(truncate_length, no_arr, no_str)
-    return ",".join(
-        _csv(getattr(msg, name), shortening, field_type)
-        for name, field_type in get_message_slot_types(msg).items()
-    )
+    return _csv(msg, _Shortening(truncate_length, no_arr, no_str))
 
 
 def yaml_pieces(
@@ -112,7 +108,6 @@ def message_to_ordereddict(
 
 
 def get_message_slot_types(msg: Message) -> "OrderedDict[str, FieldType]":
-    """Return the types of the fields by name."""
     return OrderedDict(zip(msg._field_types_, msg.SLOT_TYPES, strict=True))
 
 

@@ -27,17 +27,14 @@ def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
 
 
 def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """As :func:`get_interfaces`, but only messages."""
     return _interfaces(package_names, ("msg",))
 
 
 def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """As :func:`get_interfaces`, but only services."""
     return _interfaces(package_names, ("srv",))
 
 
 def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
-    """As :func:`get_interfaces`, but only actions."""
     return _interfaces(package_names, ("action",))
 
 

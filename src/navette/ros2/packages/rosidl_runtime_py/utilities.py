@@ -36,12 +36,10 @@ def get_message(identifier: str) -> Any:
 
 
 def get_service(identifier: str) -> Any:
-    """Return the class of a service; accepts ``pkg/Name``."""
     return _of_kind(identifier, "srv", "a service")
 
 
 def get_action(identifier: str) -> Any:
-    """Return the class of an action; accepts ``pkg/Name``."""
     return _of_kind(identifier, "action", "an action")
 
 

@@ -6,19 +6,21 @@ from navette.runtime.tf import (
     Buffer,
     BufferInterface,
     ConnectivityException,
-    ConvertRegistration,
     ExtrapolationException,
     InvalidArgumentException,
     LookupException,
-    NotImplementedException,
-    Stamped,
     StaticTransformBroadcaster,
     TimeoutException,
     TransformBroadcaster,
     TransformException,
     TransformListener,
+)
+from navette.runtime.tf import MessageCore as BufferCore
+from navette.runtime.tf.registration import (
+    ConvertRegistration,
+    NotImplementedException,
+    Stamped,
     TransformRegistration,
     TypeException,
     convert,
 )
-from navette.runtime.tf import MessageCore as BufferCore

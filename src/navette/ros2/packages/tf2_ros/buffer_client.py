@@ -89,7 +89,6 @@ class BufferClient(BufferInterface):
         time: Time | TimeMsg,
         timeout: Duration | None = _NO_WAIT,
     ) -> bool:
-        """Whether :meth:`lookup_transform` succeeds."""
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
         except TransformException:
@@ -105,7 +104,6 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration | None = _NO_WAIT,
     ) -> bool:
-        """Whether :meth:`lookup_transform_full` succeeds."""
         query = (target_frame, target_time, source_frame, source_time, fixed_frame)
         try:
             self.lookup_transform_full(*query, timeout)

@@ -20,12 +20,10 @@ _KINDS: dict[int, type[TransformException]] = {
 
 
 def exception_of(error: TF2Error) -> TransformException:
-    """Return the exception of a server's error."""
     return _KINDS.get(error.error, TransformException)(error.error_string)
 
 
 def error_of(exception: TransformException) -> TF2Error:
-    """Return the error message of an exception."""
     for number, kind in _KINDS.items():
         if isinstance(exception, kind):
             return TF2Error(error=number, error_string=str(exception))

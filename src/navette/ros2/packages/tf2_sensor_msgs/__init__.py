@@ -19,12 +19,8 @@ from navette.ros2.packages.sensor_msgs_py.point_cloud2 import (
     dtype_from_fields,
     read_points,
 )
-from navette.runtime.tf import (
-    ConvertRegistration,
-    TransformRegistration,
-    from_msg_msg,
-    to_msg_msg,
-)
+from navette.runtime.tf.do_transform import from_msg_msg, to_msg_msg
+from navette.runtime.tf.registration import ConvertRegistration, TransformRegistration
 
 __all__ = ["do_transform_cloud", "from_msg_msg", "to_msg_msg", "transform_points"]
 

@@ -56,7 +56,6 @@ def quaternion_conjugate(quaternion: ArrayLike) -> Array:
 
 
 def quaternion_inverse(quaternion: ArrayLike) -> Array:
-    """Return the multiplicative inverse."""
     conjugate = quaternion_conjugate(quaternion)
     return conjugate / np.dot(conjugate, conjugate)  # type: ignore[no-any-return]
 
