@@ -122,7 +122,5 @@ def _driven(scene: Scene, path: Path) -> Model:
 def _existing(name_or_path: str | Path, kind: str, known: list[str]) -> Path:
     path = Path(name_or_path)
     if not path.is_file():
-        raise UnknownNameError.of(
-            f"{kind} (and there is no such file)", str(path), known
-        )
+        raise UnknownNameError.of(f"{kind} or file", str(path), known)
     return path
