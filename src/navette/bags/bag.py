@@ -1,10 +1,10 @@
 """Interface of an open recording, independent of the file format."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import NamedTuple, Protocol, Self
+from typing import NamedTuple, Self
 
 from navette.bags.qos import OfferedQos
 
@@ -63,7 +63,7 @@ class Damage:
 OnDamage = Callable[[Damage], None]
 
 
-class BagReader(Protocol):
+class BagReader(ABC):
     """An open recording; a context manager that closes it.
 
     Opening reads the index only (or, without one, scans the file without decompressing
@@ -71,49 +71,40 @@ class BagReader(Protocol):
     """
 
     path: Path
-
-    @property
-    def storage(self) -> str:
-        """``mcap``, ``rosbag1`` or ``sqlite3``."""
-
-    @property
-    def version(self) -> str:
-        """Version of the file format, as reported by its own tools."""
-
-    @property
-    def topics(self) -> tuple[BagTopic, ...]:
-        """All topics, each with one type."""
-
-    @property
-    def problems(self) -> tuple[str, ...]:
-        """Problems found on opening; intact parts can be read."""
+    storage: str
+    """``mcap``, ``rosbag1`` or ``sqlite3``."""
+    version: str
+    """Version of the file format, as reported by its own tools."""
+    topics: tuple[BagTopic, ...] = ()
+    """All topics, each with one type."""
+    problems: tuple[str, ...] = ()
+    """Problems found on opening; intact parts can be read."""
+    size: int
+    """Total size of the files, bytes."""
+    start_ns: int
+    """Stamp of the first message; 0 without messages."""
+    end_ns: int
+    """Stamp of the last message; 0 without messages."""
 
     @property
     def files(self) -> tuple[Path, ...]:
         """The files with messages."""
+        return (self.path,)
 
     @property
-    def size(self) -> int:
-        """Total size of the files, bytes."""
-
-    @property
-    def start_ns(self) -> int:
-        """Stamp of the first message; 0 without messages."""
-
-    @property
-    def end_ns(self) -> int:
-        """Stamp of the last message; 0 without messages."""
-
-    @property
+    @abstractmethod
     def compression(self) -> Mapping[str, int]:
         """Number of chunks (or files, or messages) by kind: ``none``, ``zstd``, …"""
 
+    @abstractmethod
     def counts(self) -> Mapping[BagTopic, int]:
         """Number of messages by topic; may scan the whole file."""
 
+    @abstractmethod
     def stamps(self) -> Iterator[tuple[BagTopic, int]]:
         """Topic and stamp of every message, in no particular order; fast."""
 
+    @abstractmethod
     def messages(
         self,
         topics: Collection[str] | None = None,
@@ -135,14 +126,12 @@ class BagReader(Protocol):
             FileFormatError: a part of the file is damaged; names file and byte.
         """
 
+    @abstractmethod
     def close(self) -> None:
         """Close the files; a second call has no effect."""
 
-    def __enter__(self) -> Self: ...
+    def __enter__(self) -> Self:
+        return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None: ...
+    def __exit__(self, *error: object) -> None:
+        self.close()

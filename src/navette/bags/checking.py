@@ -11,10 +11,8 @@ from navette.bags.chunked_reader import ChunkedReader
 from navette.bags.chunks import Chunk, Entry
 from navette.bags.db3_reader import Db3Reader
 from navette.bags.folder_reader import FolderReader
-from navette.bags.mcap_reader import McapReader
 from navette.bags.message_types import Decoder
 from navette.bags.opening import open_bag
-from navette.bags.ros1_reader import Ros1Reader
 from navette.errors import FileFormatError, NavetteError
 
 _MOST = 20
@@ -153,7 +151,7 @@ def _check_chunks(
     reader: ChunkedReader, findings: _Findings, on_bytes: OnBytes
 ) -> Counter[BagTopic]:
     counted: Counter[BagTopic] = Counter()
-    if isinstance(reader, McapReader | Ros1Reader):
+    if not reader.index.is_scanned:
         _check_index(reader, findings)
     for chunk in reader.chunks:
         try:
@@ -203,15 +201,13 @@ def _check_chunk(
         )
 
 
-def _check_index(reader: McapReader | Ros1Reader, findings: _Findings) -> None:
+def _check_index(reader: ChunkedReader, findings: _Findings) -> None:
     """Compare the chunks of the index with those of the records."""
-    if not reader.is_indexed:
-        return
-    walked = reader.walked()
-    for problem in walked.problems:
+    scanned = reader.scanned()
+    for problem in scanned.problems:
         findings.error("records", problem)
     named = {chunk.position: chunk for chunk in reader.chunks}
-    there = {chunk.position: chunk for chunk in walked.chunks}
+    there = {chunk.position: chunk for chunk in scanned.chunks}
     for position in sorted(there.keys() - named.keys()):
         findings.error("index", f"byte {position}: the index lacks this chunk")
     for position in sorted(named.keys() & there.keys()):

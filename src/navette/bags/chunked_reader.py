@@ -1,14 +1,12 @@
 """Base class of the readers of chunked files."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from pathlib import Path
-from types import TracebackType
-from typing import Self
 
-from navette.bags.bag import BagMessage, BagTopic, Damage, OnDamage
-from navette.bags.chunks import Chunk, ChunkMerge, ChunkQuery, Entry
+from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage, OnDamage
+from navette.bags.binary_file import BinaryFile
+from navette.bags.chunks import Chunk, ChunkMerge, ChunkQuery, Entry, FileIndex
 from navette.bags.compression import is_zstd, unpack_zstd_message
 from navette.errors import DecodeError, FileFormatError
 
@@ -16,37 +14,56 @@ Convert = Callable[[bytes], bytes]
 FOREVER_NS = 2**63 - 1
 
 
-class ChunkedReader(ABC):
-    """A :class:`~navette.bags.bag.BagReader` over the index of a chunked file.
+class ChunkedReader(BagReader):
+    """Reads messages through the index of a chunked file.
 
-    A derived class sets ``path``, ``topics``, ``chunks``, ``problems`` and the channels
-    (:meth:`_add_channel`) in its constructor, and reads bytes and messages of chunks.
+    A derived class reads the index, and the bytes and messages of chunks.
+
+    Args:
+        file: closed with the reader.
     """
 
-    storage = ""
-    version = ""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.topics: tuple[BagTopic, ...] = ()
-        self.problems: tuple[str, ...] = ()
-        self.chunks: Sequence[Chunk] = ()
-        self.size = 0
+    def __init__(self, file: BinaryFile) -> None:
+        self.path = file.path
+        self.size = file.size
+        self._file = file
         self._topic_of: dict[int, BagTopic] = {}
         self._convert_of: dict[int, Convert] = {}
-        self._known_counts: dict[BagTopic, int] | None = None
+        try:
+            self.index = self._read_index()
+        except BaseException:
+            self.close()
+            raise
+        self.problems = tuple(self.index.problems)
+        # Chunks without messages have no times.
+        filled = [c for c in self.chunks if c.channels or c.start_ns or c.end_ns]
+        self.start_ns = min((chunk.start_ns for chunk in filled), default=0)
+        self.end_ns = max((chunk.end_ns for chunk in filled), default=0)
+        self._known_counts = self._counts_by_topic()
 
     # -- implemented by each format ----------------------------------------------
+
+    @abstractmethod
+    def _read_index(self) -> FileIndex:
+        """Read the index, and register the channels with :meth:`_add_channel`."""
+
+    @abstractmethod
+    def scanned(self) -> FileIndex:
+        """Return the index from a scan of the records."""
+
+    @abstractmethod
+    def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
+        """Return stamps by channel from the index; None without an index.
+
+        Raises:
+            FileFormatError: the index is damaged.
+        """
 
     @abstractmethod
     def _read_chunk(self, chunk: Chunk) -> bytes: ...
 
     @abstractmethod
     def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]: ...
-
-    @abstractmethod
-    def close(self) -> None:
-        """Close the file; a second call has no effect."""
 
     def _add_channel(
         self, number: int, topic: BagTopic, convert: Convert | None = None
@@ -61,6 +78,13 @@ class ChunkedReader(ABC):
 
     # -- common to all formats ---------------------------------------------------
 
+    @property
+    def chunks(self) -> Sequence[Chunk]:
+        return self.index.chunks
+
+    def close(self) -> None:
+        self._file.close()
+
     def topic_of(self, channel: int) -> BagTopic | None:
         """Return the topic of a channel; None for an undefined channel."""
         return self._topic_of.get(channel)
@@ -72,26 +96,6 @@ class ChunkedReader(ABC):
             FileFormatError: the chunk is damaged.
         """
         return self._entries(chunk, self._read_chunk(chunk))
-
-    @abstractmethod
-    def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
-        """Return stamps by channel from the index; None without an index.
-
-        Raises:
-            FileFormatError: the index is damaged.
-        """
-
-    @property
-    def files(self) -> tuple[Path, ...]:
-        return (self.path,)
-
-    @property
-    def start_ns(self) -> int:
-        return min((chunk.start_ns for chunk in self._filled()), default=0)
-
-    @property
-    def end_ns(self) -> int:
-        return max((chunk.end_ns for chunk in self._filled()), default=0)
 
     def _stamps_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]]:
         try:
@@ -105,28 +109,23 @@ class ChunkedReader(ABC):
             found.setdefault(entry.channel, []).append(entry.stamp_ns)
         return found
 
-    def _filled(self) -> Iterator[Chunk]:
-        """Chunks with messages; others have no times."""
-        return (c for c in self.chunks if c.channels or c.start_ns or c.end_ns)
-
     @property
     def compression(self) -> Mapping[str, int]:
         return Counter(chunk.compression or "none" for chunk in self.chunks)
 
     def counts(self) -> Mapping[BagTopic, int]:
         if self._known_counts is None:
-            found: Counter[BagTopic] = Counter()
-            for topic, _ in self.stamps():
-                found[topic] += 1
-            self._known_counts = dict(found)
-        return {topic: self._known_counts.get(topic, 0) for topic in self.topics}
+            self._known_counts = Counter(topic for topic, _ in self.stamps())
+        return {topic: self._known_counts[topic] for topic in self.topics}
 
-    def _set_counts(self, by_channel: Mapping[int, int]) -> None:
+    def _counts_by_topic(self) -> Counter[BagTopic] | None:
+        if self.index.counts is None:
+            return None
         counts: Counter[BagTopic] = Counter()
-        for channel, count in by_channel.items():
+        for channel, count in self.index.counts.items():
             if channel in self._topic_of:
                 counts[self._topic_of[channel]] += count
-        self._known_counts = dict(counts)
+        return counts
 
     def stamps(self) -> Iterator[tuple[BagTopic, int]]:
         for chunk in self.chunks:
@@ -185,14 +184,3 @@ class ChunkedReader(ABC):
             on_damage(damage)
             return None
         return BagMessage(topic, entry.stamp_ns, data)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

@@ -6,9 +6,9 @@ The bytes of open chunks are cached up to a limit and read again beyond it: a fi
 chunks all overlap is slow to read, but does not exhaust memory.
 """
 
-from collections import OrderedDict, deque
+from collections import Counter, OrderedDict, deque
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from typing import NamedTuple
 
@@ -34,6 +34,18 @@ class Chunk:
     compression: str = ""
     channels: frozenset[int] | None = None
     bare: bool = False
+
+
+@dataclass
+class FileIndex:
+    """All chunks of a file in the order of the file."""
+
+    chunks: list[Chunk] = field(default_factory=list)
+    counts: Counter[int] | None = None
+    """Messages by channel; None if they are not known without reading the chunks."""
+    problems: list[str] = field(default_factory=list)
+    is_scanned: bool = False
+    """Whether the records were scanned, because the file's own index is unusable."""
 
 
 class Entry(NamedTuple):

@@ -8,11 +8,10 @@ first message is available at once and nothing is held in memory. Uses Python's
 import sqlite3
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
-from types import TracebackType
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
 from urllib.parse import quote
 
-from navette.bags.bag import BagMessage, BagTopic, Damage, OnDamage
+from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage, OnDamage
 from navette.bags.compression import LARGEST, is_zstd, unpack_zstd_message
 from navette.bags.definitions import idl_to_msg, ros2_name
 from navette.bags.qos import parse_qos
@@ -32,8 +31,8 @@ class _Row(NamedTuple):
     stamp_ns: int
 
 
-class Db3Reader:
-    """An open ``.db3`` file; see :class:`~navette.bags.bag.BagReader`.
+class Db3Reader(BagReader):
+    """An open ``.db3`` file.
 
     Raises:
         FileFormatError: the file does not exist or is not a rosbag2 recording.
@@ -43,13 +42,11 @@ class Db3Reader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.topics: tuple[BagTopic, ...] = ()
         self.version = "1"
         self.start_ns = self.end_ns = 0
-        self._problems: list[str] = []
         self._topic_of: dict[int, BagTopic] = {}
         self._counts: dict[BagTopic, int] | None = None
-        self._database = _connect(path, self._problems)
+        self._database = self._connect()
         try:
             self.size = path.stat().st_size
             self._read_head()
@@ -58,14 +55,6 @@ class Db3Reader:
             if isinstance(error, FileFormatError):
                 raise
             raise FileFormatError(path, f"cannot be read: {error}") from error
-
-    @property
-    def problems(self) -> tuple[str, ...]:
-        return tuple(self._problems)
-
-    @property
-    def files(self) -> tuple[Path, ...]:
-        return (self.path,)
 
     @property
     def compression(self) -> Mapping[str, int]:
@@ -132,6 +121,29 @@ class Db3Reader:
 
     # -- opening -------------------------------------------------------------------
 
+    def _connect(self) -> sqlite3.Connection:
+        """Open read-only, including the write-ahead log of a killed recorder."""
+        path = self.path
+        try:
+            with path.open("rb") as file:
+                if file.read(len(MAGIC)) != MAGIC:
+                    raise FileFormatError(path, "is not an SQLite database")
+        except OSError as error:
+            raise FileFormatError(
+                path, f"cannot be opened: {error.strerror}"
+            ) from error
+        uri = f"file:{quote(str(path.absolute()))}?mode=ro"
+        log = path.with_name(path.name + _LOG_SUFFIX)
+        if log.exists() and log.stat().st_size:
+            try:
+                return _open(uri)
+            except _ERRORS as error:
+                self.problems += (f"{log.name} cannot be read: {error}",)
+        try:
+            return _open(f"{uri}&immutable=1")
+        except _ERRORS as error:
+            raise FileFormatError(path, f"cannot be opened: {error}") from error
+
     def _read_head(self) -> None:
         tables = dict(self._database.execute("SELECT name, type FROM sqlite_master"))
         for table in ("messages", "topics"):
@@ -194,7 +206,7 @@ class Db3Reader:
             try:
                 return idl_to_msg(ros2_name(type_name), text)
             except FileFormatError as error:
-                self._problems.append(str(error))
+                self.problems += (str(error),)
                 return ""
         return text if encoding == "ros2msg" else ""
 
@@ -293,7 +305,7 @@ class Db3Reader:
         try:
             yield from self._database.execute(query)
         except _ERRORS as error:
-            self._problems.append(f"cannot be read to the end: {error}")
+            self.problems += (f"cannot be read to the end: {error}",)
 
     def _attempt(self, query: str, number: int) -> Any:
         """Read one row; None if it does not exist or cannot be read."""
@@ -301,38 +313,6 @@ class Db3Reader:
             return self._database.execute(query, (number,)).fetchone()
         except _ERRORS:
             return None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-
-def _connect(path: Path, problems: list[str]) -> sqlite3.Connection:
-    """Open read-only, including the write-ahead log of a killed recorder."""
-    try:
-        with path.open("rb") as file:
-            if file.read(len(MAGIC)) != MAGIC:
-                raise FileFormatError(path, "is not an SQLite database")
-    except OSError as error:
-        raise FileFormatError(path, f"cannot be opened: {error.strerror}") from error
-    uri = f"file:{quote(str(path.absolute()))}?mode=ro"
-    log = path.with_name(path.name + _LOG_SUFFIX)
-    if log.exists() and log.stat().st_size:
-        try:
-            return _open(uri)
-        except _ERRORS as error:
-            problems.append(f"{log.name} cannot be read: {error}")
-    try:
-        return _open(f"{uri}&immutable=1")
-    except _ERRORS as error:
-        raise FileFormatError(path, f"cannot be opened: {error}") from error
 
 
 def _open(uri: str) -> sqlite3.Connection:

@@ -5,8 +5,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import yaml
 
@@ -84,8 +83,8 @@ def _word(found: object) -> str:
     raise TypeError(f"{type(found).__name__} instead of text")
 
 
-class FolderReader:
-    """Several files as one recording; see :class:`~navette.bags.bag.BagReader`.
+class FolderReader(BagReader):
+    """Several files as one recording.
 
     Args:
         readers: open readers of the files; closed with this one.
@@ -99,9 +98,13 @@ class FolderReader:
         problems: Sequence[str] = (),
     ) -> None:
         self.path = path
-        self._readers = sorted(readers, key=lambda reader: reader.start_ns)
+        #: The files ordered by their first stamps.
+        self.readers = sorted(readers, key=lambda reader: reader.start_ns)
+        self.start_ns = min((r.start_ns for r in readers if r.end_ns), default=0)
+        self.end_ns = max(reader.end_ns for reader in readers)
         self._metadata = metadata
         self.storage = readers[0].storage
+        self.size = sum(reader.size for reader in readers)
         self.version = metadata.version
         names = {reader: reader.path.name for reader in readers}
         self.problems = (
@@ -121,7 +124,7 @@ class FolderReader:
         if not topic.type_hash and self._metadata.hashes:
             hash_ = self._metadata.hashes.get((topic.name, topic.type_name), "")
             topic = replace(topic, type_hash=hash_)
-        for reader in self._readers:
+        for reader in self.readers:
             if topic.definition:
                 break
             for other in reader.topics:
@@ -129,37 +132,20 @@ class FolderReader:
                     topic = replace(topic, definition=other.definition)
         return topic
 
-    @property
-    def readers(self) -> Sequence[BagReader]:
-        """Return the files ordered by their first stamps."""
-        return self._readers
-
     def topic_of(self, topic: BagTopic) -> BagTopic:
         """Return the topic of the folder for a topic of a file."""
         return self._topic_of[topic]
 
     @property
     def files(self) -> tuple[Path, ...]:
-        return tuple(path for reader in self._readers for path in reader.files)
-
-    @property
-    def size(self) -> int:
-        return sum(reader.size for reader in self._readers)
-
-    @property
-    def start_ns(self) -> int:
-        return min((r.start_ns for r in self._readers if r.end_ns), default=0)
-
-    @property
-    def end_ns(self) -> int:
-        return max(reader.end_ns for reader in self._readers)
+        return tuple(path for reader in self.readers for path in reader.files)
 
     @property
     def compression(self) -> Mapping[str, int]:
         if self._metadata.compression:
-            return {self._metadata.compression: len(self._readers)}
+            return {self._metadata.compression: len(self.readers)}
         found: Counter[str] = Counter()
-        for reader in self._readers:
+        for reader in self.readers:
             found.update(reader.compression)
         return found
 
@@ -168,13 +154,13 @@ class FolderReader:
         if known and not self.problems:
             return {t: known.get((t.name, t.type_name), 0) for t in self.topics}
         found = Counter(dict.fromkeys(self.topics, 0))
-        for reader in self._readers:
+        for reader in self.readers:
             for topic, count in reader.counts().items():
                 found[self._topic_of[topic]] += count
         return found
 
     def stamps(self) -> Iterator[tuple[BagTopic, int]]:
-        for reader in self._readers:
+        for reader in self.readers:
             for topic, stamp in reader.stamps():
                 yield self._topic_of[topic], stamp
 
@@ -193,7 +179,7 @@ class FolderReader:
 
         waiting = [
             reader
-            for reader in reversed(self._readers)
+            for reader in reversed(self.readers)
             if start_ns is None or reader.end_ns >= start_ns
         ]
         heap: list[tuple[int, int, BagMessage, Iterator[BagMessage]]] = []
@@ -214,16 +200,5 @@ class FolderReader:
                     heappush(heap, (following.stamp_ns, place, following, rest))
 
     def close(self) -> None:
-        for reader in self._readers:
+        for reader in self.readers:
             reader.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

@@ -2,15 +2,15 @@
 
 import re
 import zlib
-from dataclasses import dataclass, field
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
 
 from mcap.opcode import Opcode
 from mcap.records import Channel, Footer, Header, Schema, Statistics
 
 from navette.bags.binary_file import reason_of, walk
-from navette.bags.chunks import Chunk
+from navette.bags.chunks import Chunk, FileIndex
 from navette.bags.mcap_records import (
     HEAD,
     MAGIC,
@@ -37,18 +37,11 @@ _TO_COMPRESSION = 9 + 28
 
 
 @dataclass
-class McapIndex:
-    """Schemas and channels by number, and all chunks in the order of the file."""
+class McapIndex(FileIndex):
+    """Adds schemas and channels by number."""
 
-    profile: str = ""
-    library: str = ""
-    schemas: dict[int, Any] = field(default_factory=dict)
-    channels: dict[int, Any] = field(default_factory=dict)
-    chunks: list[Chunk] = field(default_factory=list)
-    counts: dict[int, int] | None = None
-    """Messages by channel, if the summary or all chunk indexes state them."""
-    problems: list[str] = field(default_factory=list)
-    from_summary: bool = False
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
 
 
 def read_index(file: RecordFile) -> McapIndex:
@@ -98,7 +91,7 @@ def _read_summary(file: RecordFile) -> McapIndex | None:
 
 
 def _index_of_summary(file: RecordFile, start: int, summary: bytes) -> McapIndex | None:
-    index = McapIndex(from_summary=True)
+    index = McapIndex()
     _read_header(file, index)
     statistics: Statistics | None = None
     whole = Chunk(0, start, len(summary), 0, 0)
@@ -113,7 +106,7 @@ def _index_of_summary(file: RecordFile, start: int, summary: bytes) -> McapIndex
     index.chunks.sort(key=lambda chunk: chunk.position)
     if statistics is None or not _is_complete(index, statistics):
         return None
-    index.counts = dict(statistics.channel_message_counts)
+    index.counts = Counter(statistics.channel_message_counts)
     return index
 
 
@@ -136,8 +129,7 @@ def _read_header(file: RecordFile, index: McapIndex) -> int:
         index.problems.append("there is no header")
         return head.position
     try:
-        header: Header = parse(Header, file.content(head, 1 << 16))
-        index.profile, index.library = header.profile, header.library
+        parse(Header, file.content(head, 1 << 16))
     except (DecodeError, FileFormatError) as error:
         index.problems.append(f"the header cannot be read ({error})")
     return head.end
@@ -159,7 +151,7 @@ def scan(file: RecordFile) -> McapIndex:
     Chunks are decompressed only if they contain unknown schemas or channels. After a
     damaged record the scan resumes at the next chunk that can be found.
     """
-    index = McapIndex(counts={})
+    index = McapIndex(counts=Counter(), is_scanned=True)
     walker = _Walk(file, index)
     start = len(MAGIC)
     try:
@@ -234,8 +226,7 @@ class _Walk:
             self._index.counts = None
         if self._index.counts is not None:
             for channel, stamps in by_channel.items():
-                count = self._index.counts.get(channel, 0)
-                self._index.counts[channel] = count + len(stamps)
+                self._index.counts[channel] += len(stamps)
 
     def _look_into(self, chunk: Chunk) -> None:
         """Search a chunk for schemas and channels."""
@@ -257,7 +248,7 @@ class _Walk:
         chunks, counts = self._index.chunks, self._index.counts
         length = head.end - head.position
         if counts is not None:
-            counts[channel] = counts.get(channel, 0) + 1
+            counts[channel] += 1
         last = chunks[-1] if chunks else None
         if (
             last is not None
@@ -265,14 +256,12 @@ class _Walk:
             and last.position + last.length == head.position
             and last.length + length <= _BARE_BYTES
         ):
-            chunks[-1] = Chunk(
-                last.number,
-                last.position,
-                last.length + length,
-                min(last.start_ns, stamp),
-                max(last.end_ns, stamp),
+            chunks[-1] = replace(
+                last,
+                length=last.length + length,
+                start_ns=min(last.start_ns, stamp),
+                end_ns=max(last.end_ns, stamp),
                 channels=(last.channels or frozenset()) | {channel},
-                bare=True,
             )
             return
         chunks.append(

@@ -6,9 +6,9 @@ from typing import Any
 
 from navette.bags.bag import BagTopic
 from navette.bags.chunked_reader import ChunkedReader, Convert
-from navette.bags.chunks import Chunk, Entry
+from navette.bags.chunks import Chunk, Entry, FileIndex
 from navette.bags.definitions import idl_to_msg, ros2_name
-from navette.bags.mcap_index import McapIndex, read_index, read_message_indexes, scan
+from navette.bags.mcap_index import read_index, read_message_indexes, scan
 from navette.bags.mcap_records import RecordFile, message_entries, read_chunk
 from navette.bags.qos import parse_qos
 from navette.bags.ros1_messages import ros1_type
@@ -18,9 +18,6 @@ from navette.errors import DecodeError, FileFormatError, NavetteError
 class McapReader(ChunkedReader):
     """An open ``.mcap`` file.
 
-    Args:
-        ignore_summary: scan the records even if there is a summary.
-
     Raises:
         FileFormatError: the file does not exist or is not MCAP.
     """
@@ -28,55 +25,31 @@ class McapReader(ChunkedReader):
     storage = "mcap"
     version = "0"
 
-    def __init__(self, path: Path, *, ignore_summary: bool = False) -> None:
-        super().__init__(path)
-        self._file = RecordFile(path)
-        self.size = self._file.size
-        try:
-            read = scan if ignore_summary else read_index
-            self.index = read(self._file)
-            self._take(self.index)
-        except BaseException:
-            self.close()
-            raise
+    _file: RecordFile
 
-    @property
-    def profile(self) -> str:
-        """``ros2``, ``ros1`` or another."""
-        return self.index.profile
+    def __init__(self, path: Path) -> None:
+        super().__init__(RecordFile(path))
 
-    def close(self) -> None:
-        self._file.close()
-
-    def _take(self, index: McapIndex) -> None:
-        problems = list(index.problems)
+    def _read_index(self) -> FileIndex:
+        index = read_index(self._file)
         for number, channel in index.channels.items():
             schema = index.schemas.get(channel.schema_id)
             try:
-                topic, convert = _topic(channel, schema, problems)
+                topic, convert = _topic(channel, schema, index.problems)
             except NavetteError as error:
-                problems.append(f"topic {channel.topic}: {error}")
+                index.problems.append(f"topic {channel.topic}: {error}")
                 continue
             self._add_channel(number, topic, convert)
-        self.chunks = index.chunks
-        self.problems = tuple(problems)
-        if index.counts is not None:
-            self._set_counts(index.counts)
+        return index
+
+    def scanned(self) -> FileIndex:
+        return scan(self._file)
 
     def _read_chunk(self, chunk: Chunk) -> bytes:
         return read_chunk(self._file, chunk)
 
     def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
         return message_entries(self.path, chunk, data)
-
-    @property
-    def is_indexed(self) -> bool:
-        """Whether the summary was used."""
-        return self.index.from_summary
-
-    def walked(self) -> McapIndex:
-        """Return the index from a scan of the records."""
-        return scan(self._file)
 
     def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
         if chunk.bare:

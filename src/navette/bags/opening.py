@@ -101,15 +101,12 @@ class _Unpacked(FolderReader):
     def __init__(self, path: Path, reader: BagReader, stack: ExitStack) -> None:
         metadata = Metadata(reader.version, compression="zstd (file)")
         super().__init__(path, [reader], metadata)
+        self.size = path.stat().st_size
         self._stack = stack
 
     @property
     def files(self) -> tuple[Path, ...]:
         return (self.path,)
-
-    @property
-    def size(self) -> int:
-        return self.path.stat().st_size
 
     def close(self) -> None:
         self._stack.close()

@@ -3,12 +3,12 @@
 import re
 import struct
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
 
 from navette.bags.binary_file import reason_of, walk
-from navette.bags.chunks import Chunk
+from navette.bags.chunks import Chunk, FileIndex
 from navette.bags.ros1_records import (
     MAGIC,
     BagFile,
@@ -41,14 +41,11 @@ class Connection(NamedTuple):
 
 
 @dataclass
-class BagIndex:
-    """Connections by number, and all chunks in the order of the file."""
+class BagIndex(FileIndex):
+    """Adds connections by number."""
 
-    connections: dict[int, Connection] = field(default_factory=dict)
-    chunks: list[Chunk] = field(default_factory=list)
     counts: Counter[int] = field(default_factory=Counter)
-    problems: list[str] = field(default_factory=list)
-    from_index: bool = False
+    connections: dict[int, Connection] = field(default_factory=dict)
 
 
 def read_index(file: BagFile) -> BagIndex:
@@ -91,7 +88,7 @@ def _read_index_section(file: BagFile) -> BagIndex | None:
         return None
     if connections + chunks > _MOST_RECORDS:
         raise file.error(len(MAGIC), f"{connections} connections, {chunks} chunks")
-    index = BagIndex(from_index=True)
+    index = BagIndex()
     for _ in range(connections):
         record = file.record(position, wanted=Op.CONNECTION)
         connection = _connection(record, file.data(record))
@@ -148,7 +145,7 @@ def scan(file: BagFile) -> BagIndex:
     they were outside any chunk. After a damaged record the scan resumes at the next
     chunk that can be found.
     """
-    index = BagIndex()
+    index = BagIndex(is_scanned=True)
     walker = _Walk(file, index)
     walk(file, len(MAGIC), walker.visit, partial(_next_chunk, file), index.problems)
     return index
@@ -220,14 +217,11 @@ class _Walk:
         channels = Counter(entry.channel for entry in entries)
         self._index.counts.update(channels)
         self._index.chunks.append(
-            Chunk(
-                chunk.number,
-                chunk.position,
-                chunk.length,
-                min(stamps),
-                max(stamps),
-                chunk.compression,
-                frozenset(channels),
+            replace(
+                chunk,
+                start_ns=min(stamps),
+                end_ns=max(stamps),
+                channels=frozenset(channels),
             )
         )
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from navette.bags.bag import BagTopic
 from navette.bags.chunked_reader import ChunkedReader
-from navette.bags.chunks import Chunk, Entry
+from navette.bags.chunks import Chunk, Entry, FileIndex
 from navette.bags.qos import OfferedQos
-from navette.bags.ros1_index import BagIndex, read_index, scan
+from navette.bags.ros1_index import read_index, scan
 from navette.bags.ros1_messages import ros1_type
 from navette.bags.ros1_records import (
     BagFile,
@@ -25,9 +25,6 @@ _LATCHED = (OfferedQos(depth=1, durability="transient_local"),)
 class Ros1Reader(ChunkedReader):
     """An open ``.bag`` file.
 
-    Args:
-        ignore_index: scan the records even if there is an index.
-
     Raises:
         FileFormatError: the file does not exist or is not a ROS 1 bag, version 2.0.
     """
@@ -35,27 +32,18 @@ class Ros1Reader(ChunkedReader):
     storage = "rosbag1"
     version = "2.0"
 
-    def __init__(self, path: Path, *, ignore_index: bool = False) -> None:
-        super().__init__(path)
-        self._file = BagFile(path)
-        self.size = self._file.size
-        try:
-            self.index = scan(self._file) if ignore_index else read_index(self._file)
-            self._take(self.index)
-        except BaseException:
-            self.close()
-            raise
+    _file: BagFile
 
-    def close(self) -> None:
-        self._file.close()
+    def __init__(self, path: Path) -> None:
+        super().__init__(BagFile(path))
 
-    def _take(self, index: BagIndex) -> None:
-        problems = list(index.problems)
+    def _read_index(self) -> FileIndex:
+        index = read_index(self._file)
         for number, connection in sorted(index.connections.items()):
             try:
                 ros1 = ros1_type(connection.type_name, connection.definition)
             except NavetteError as error:
-                problems.append(f"topic {connection.topic}: {error}")
+                index.problems.append(f"topic {connection.topic}: {error}")
                 continue
             topic = BagTopic(
                 connection.topic,
@@ -64,9 +52,10 @@ class Ros1Reader(ChunkedReader):
                 qos=_LATCHED if connection.latching else (),
             )
             self._add_channel(number, topic, ros1.to_cdr)
-        self.chunks = index.chunks
-        self.problems = tuple(problems)
-        self._set_counts(index.counts)
+        return index
+
+    def scanned(self) -> FileIndex:
+        return scan(self._file)
 
     def _read_chunk(self, chunk: Chunk) -> bytes:
         return read_chunk(self._file, chunk)
@@ -74,17 +63,7 @@ class Ros1Reader(ChunkedReader):
     def _entries(self, chunk: Chunk, data: bytes) -> list[Entry]:
         return message_entries(self.path, chunk, data)
 
-    @property
-    def is_indexed(self) -> bool:
-        """Whether the index was used."""
-        return self.index.from_index
-
-    def walked(self) -> BagIndex:
-        """Return the index from a scan of the records."""
-        return scan(self._file)
-
     def index_of(self, chunk: Chunk) -> Mapping[int, Sequence[int]] | None:
-        """Read the index records after the chunk."""
         found: dict[int, list[int]] = {}
         if chunk.bare:
             return None
