@@ -33,7 +33,7 @@ class ClearanceProbe:
         self._obstacles = obstacles
         self._fixed = np.array(model.geom_bodyid)[obstacles] == 0
         self._parts = np.flatnonzero(compiled.is_robot & _meets_obstacles(model))
-        self._low, self._high = _bounds(model, data, obstacles)
+        self._low, self._high = bounds_of(model, data, obstacles)
         self._radius = np.array(model.geom_rbound)[obstacles]
         self.reach = self._farthest(data)
 
@@ -49,7 +49,7 @@ class ClearanceProbe:
         if not len(self._obstacles):
             return Clearance(np.inf, "")
         model = self._compiled.model
-        bound = self._lower_bounds(data)
+        bound = self._lowerbounds_of(data)
         best, nearest = np.inf, -1
         for i in np.argsort(bound):
             if bound[i] >= best:
@@ -64,7 +64,7 @@ class ClearanceProbe:
                     best, nearest = distance, obstacle
         return Clearance(float(best), self._compiled.geom_owner[nearest])
 
-    def _lower_bounds(self, data: mujoco.MjData) -> NDArray[np.float64]:
+    def _lowerbounds_of(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Return a lower bound of the distance for each obstacle."""
         radius = self._compiled.model.geom_rbound[self._parts]
         centres = data.geom_xpos[self._parts]
@@ -88,7 +88,7 @@ def _meets_obstacles(model: mujoco.MjModel) -> NDArray[np.bool_]:
     return touches
 
 
-def _bounds(
+def bounds_of(
     model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Corners (N, 3) of axis-aligned boxes around geoms, world frame."""

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Contacts of the robot with obstacles."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from navette.sim.build import Compiled
+from navette.sim.clearance import bounds_of
 
 _GAP_NS = 250_000_000  # a repeated contact within this time belongs to the same episode
 
@@ -60,28 +62,17 @@ class ContactMonitor:
     def _note(self, part: str, obstacle: str, now_ns: int) -> None:
         index = self._open.get(obstacle)
         if index is not None and now_ns - self.episodes[index].end_ns <= _GAP_NS:
-            old = self.episodes[index]
-            self.episodes[index] = ContactEpisode(
-                old.start_ns, now_ns, old.part, obstacle
-            )
+            self.episodes[index] = replace(self.episodes[index], end_ns=now_ns)
             return
         self._open[obstacle] = len(self.episodes)
         self.episodes.append(ContactEpisode(now_ns, now_ns, part, obstacle))
 
 
-def _stands(
-    compiled: Compiled, data: mujoco.MjData
-) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+def _stands(compiled: Compiled, data: mujoco.MjData) -> NDArray[np.bool_]:
     """Geoms that reach down to the wheels' contact height, (ngeom,) bool."""
     model = compiled.model
-    rotation = data.geom_xmat.reshape(-1, 3, 3)
-    local = model.geom_aabb
-    middle = data.geom_xpos[:, 2] + np.einsum("nj,nj->n", rotation[:, 2], local[:, :3])
-    half = np.einsum("nj,nj->n", np.abs(rotation[:, 2]), local[:, 3:])
-    low = middle - half
+    low = bounds_of(model, data, np.arange(model.ngeom))[0][:, 2]
     floor = low[compiled.is_robot & (model.geom_conaffinity != 0)].min()
     slack = 0.1 * compiled.robot.drive.wheel_radius
-    stands: np.ndarray[tuple[int], np.dtype[np.bool_]] = compiled.is_robot & (
-        low <= floor + slack
-    )
+    stands: NDArray[np.bool_] = compiled.is_robot & (low <= floor + slack)
     return stands

@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 
 from navette.errors import InvalidValueError
-from navette.geometry import Pose2, Transform3, Vector3, quaternion_from_yaw
+from navette.geometry import Transform3, Vector3, quaternion_from_yaw
 from navette.geometry.se3 import rotate
 from navette.sim.scene import Model
 
@@ -51,11 +51,6 @@ def base_of(model: Model) -> Transform3:
     yaw = 0.0 if abs(yaw) < 1e-3 else yaw
     floor = z - model.drive.wheel_radius
     return Transform3((x, y, floor), quaternion_from_yaw(yaw))
-
-
-def base_pose_on_floor(pose: Pose2, floor: float) -> Transform3:
-    """``world_T_base`` of a robot at ``pose`` on a floor at height z."""
-    return Transform3.from_pose2(pose, z=floor)
 
 
 def _sides(model: Model) -> tuple[Vector3, Vector3]:

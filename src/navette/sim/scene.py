@@ -6,7 +6,7 @@ are metres, angles radians, masses kilograms. All poses inside a model are resol
 to the model's frame, so that the rules of SDF and URDF end at the readers.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 
@@ -102,12 +102,9 @@ class Inertial:
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
-    """Common fields of all sensors; ``topic`` is empty if the file has none."""
-
     name: str
     link_T_sensor: Transform3 = _IDENTITY
     rate_hz: float = 10.0
-    topic: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,7 +129,6 @@ class CameraSensor(Sensor):
     horizontal_fov: float = 1.047
     near: float = 0.1
     far: float = 100.0
-    noise_stddev: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -202,24 +198,19 @@ class DiffDrive:
     right_joints: tuple[str, ...]
     wheel_separation: float
     wheel_radius: float
-    topic: str = "cmd_vel"
     limits: SpeedLimits = SpeedLimits()
     max_wheel_torque: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Model:
-    """Links and joints; nested models are flattened already.
-
-    ``frames`` are further named frames: name → (link it is attached to, pose).
-    """
+    """Links and joints; nested models are flattened already."""
 
     name: str
     world_T_model: Transform3 = _IDENTITY
     static: bool = False
     links: tuple[Link, ...] = ()
     joints: tuple[Joint, ...] = ()
-    frames: dict[str, tuple[str, Transform3]] = field(default_factory=dict)
     drive: DiffDrive | None = None
 
     def link(self, name: str) -> Link:

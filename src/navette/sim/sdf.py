@@ -6,7 +6,7 @@ continuous, prismatic, ball), collision and visual with primitive shapes, sensor
 diff-drive plugins, gravity. Other elements are ignored with one warning per kind.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from navette.geometry import Transform3, Vector3
@@ -75,21 +75,13 @@ def read_sdf(path: Path) -> Scene:
     return scene
 
 
-def read_sdf_models(root: XmlNode, path: Path) -> tuple[Model, ...]:
-    """Return the models of a parsed element."""
-    unsupported = Unsupported(path)
-    models = _read_world(root, path, unsupported).models
-    unsupported.report()
-    return models
-
-
 def _read_world(world: XmlNode, path: Path, unsupported: Unsupported) -> Scene:
     graph = PoseGraph("world")
     raw: list[tuple[Model, RawPose]] = []
     for node in world.all("model"):
         if len(raw) >= MAX_MODELS:
             raise node.error(f"more than {MAX_MODELS} models")
-        model = _read_model(node, unsupported).model
+        model = _read_model(node, unsupported)
         pose = read_pose(node)
         graph.add(model.name, pose)
         for link in model.links:
@@ -146,13 +138,7 @@ def _plugin_text(node: XmlNode) -> str:
     return f"plugin {name!r}"
 
 
-@dataclass(frozen=True)
-class _Read:
-    model: Model
-    canonical: str
-
-
-def _read_model(node: XmlNode, unsupported: Unsupported) -> _Read:
+def _read_model(node: XmlNode, unsupported: Unsupported) -> Model:
     """Read a model with all poses resolved to its own frame, without its own pose."""
     name = node.name()
     graph = PoseGraph("__model__")
@@ -164,7 +150,7 @@ def _read_model(node: XmlNode, unsupported: Unsupported) -> _Read:
     links = [_read_link(child, graph, unsupported) for child in node.all("link")]
     joints = [_read_joint(child, graph, unsupported) for child in node.all("joint")]
     drive = _find_drive(node, unsupported)
-    for inner in (read.model for read in nested):
+    for inner in nested:
         model_T_inner = graph.pose_of(inner.name, node)
         links += [_lift_link(link, inner.name, model_T_inner) for link in inner.links]
         joints += [_lift_joint(j, inner.name, model_T_inner) for j in inner.joints]
@@ -174,21 +160,16 @@ def _read_model(node: XmlNode, unsupported: Unsupported) -> _Read:
         for end in (joint.parent, joint.child):
             if end not in known:
                 raise node.error(f"joint {joint.name!r} refers to unknown link {end!r}")
-    model = Model(
+    return Model(
         name=name,
         static=node.flag("static"),
         links=tuple(links),
         joints=tuple(joints),
-        frames=_read_frames(node, graph),
         drive=drive,
     )
-    canonical = node.attributes.get("canonical_link") or (
-        links[0].name if links else ""
-    )
-    return _Read(model, canonical)
 
 
-def _fill_graph(node: XmlNode, graph: PoseGraph, nested: list[_Read]) -> None:
+def _fill_graph(node: XmlNode, graph: PoseGraph, nested: list[Model]) -> None:
     for child in node.all("link"):
         graph.add(child.name(), read_pose(child))
     for child in node.all("frame"):
@@ -197,21 +178,11 @@ def _fill_graph(node: XmlNode, graph: PoseGraph, nested: list[_Read]) -> None:
         )
     for child in node.all("joint"):
         graph.add(child.name(), read_pose(child), child.words("child"))
-    for child, read in zip(node.all("model"), nested, strict=True):
-        graph.add(read.model.name, read_pose(child))
-        for link in read.model.links:
-            scoped = f"{read.model.name}::{link.name}"
-            graph.add_fixed(scoped, read.model.name, link.model_T_link, child)
-
-
-def _read_frames(node: XmlNode, graph: PoseGraph) -> dict[str, tuple[str, Transform3]]:
-    return {
-        child.name(): (
-            child.attributes.get("attached_to", ""),
-            graph.pose_of(child.name(), child),
-        )
-        for child in node.all("frame")
-    }
+    for child, inner in zip(node.all("model"), nested, strict=True):
+        graph.add(inner.name, read_pose(child))
+        for link in inner.links:
+            scoped = f"{inner.name}::{link.name}"
+            graph.add_fixed(scoped, inner.name, link.model_T_link, child)
 
 
 def _read_link(node: XmlNode, graph: PoseGraph, unsupported: Unsupported) -> Link:

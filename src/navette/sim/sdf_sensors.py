@@ -43,23 +43,18 @@ _REPLACED = (
 
 
 class _Common(TypedDict):
-    """Read the common fields of a sensor."""
-
     name: str
     link_T_sensor: Transform3
-    topic: str
 
 
 def read_sensors(
     link: XmlNode, graph: PoseGraph, link_name: str, unsupported: Unsupported
 ) -> tuple[Sensor, ...]:
-    """Read the supported sensors of a link."""
     sensors: list[Sensor] = []
     for node in link.all("sensor"):
         common = _Common(
             name=node.name(),
             link_T_sensor=graph.resolve_in(link_name, read_pose(node)),
-            topic=_topic(node),
         )
         sensor = _read_sensor(node, common, unsupported)
         if sensor is not None:
@@ -92,13 +87,6 @@ def _rate(node: XmlNode, default: float) -> float:
     if rate < 0 or rate > 1000:
         raise node.error(f"<update_rate> is {rate:g}; wanted 0 to 1000 Hz")
     return rate or default
-
-
-def _topic(node: XmlNode) -> str:
-    topic = node.words("topic")
-    for plugin in node.all("plugin"):
-        topic = topic or plugin.words("topicName")
-    return topic.strip("/")
 
 
 def _lidar(
@@ -163,7 +151,6 @@ def _camera(node: XmlNode, common: _Common) -> CameraSensor:
         horizontal_fov=fov,
         near=clip.positive("near", 0.1) if clip else 0.1,
         far=clip.positive("far", 100.0) if clip else 100.0,
-        noise_stddev=_stddev(body),
     )
 
 
@@ -222,7 +209,6 @@ def read_drive(plugin: XmlNode) -> DiffDrive:
         right_joints=right,
         wheel_separation=separation * multiplier,
         wheel_radius=radius,
-        topic=plugin.words("topic", "cmd_vel").strip("/"),
         limits=_limits(plugin),
         max_wheel_torque=_first(plugin, ("max_wheel_torque", "wheelTorque", "torque")),
     )

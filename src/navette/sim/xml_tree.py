@@ -180,8 +180,8 @@ def read_bounded(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
         raise FileFormatError(path, f"cannot be read: {error.strerror}") from error
 
 
-def parse_xml(path: Path, text: bytes | None = None) -> XmlNode:
-    """Parse a file (or ``text`` as its content) into nodes with lines.
+def parse_xml(path: Path) -> XmlNode:
+    """Parse a file into nodes with lines.
 
     Raises:
         FileFormatError: invalid XML, entities, document types, or too large.
@@ -190,7 +190,7 @@ def parse_xml(path: Path, text: bytes | None = None) -> XmlNode:
     parser = DefusedXMLParser(target=builder, forbid_dtd=True)
     builder.expat = parser.parser
     try:
-        parser.feed(text if text is not None else read_bounded(path))
+        parser.feed(read_bounded(path))
         root = parser.close()
     except ParseError as error:
         raise FileFormatError(
