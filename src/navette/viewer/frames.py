@@ -100,22 +100,17 @@ class UnwatchParameters:
 
 @dataclass(frozen=True)
 class WatchGraph:
-    pass
-
-
-@dataclass(frozen=True)
-class UnwatchGraph:
-    pass
+    wanted: bool
 
 
 @dataclass(frozen=True)
 class WatchNodes:
-    """Subscribe to node states and parameter texts; used by Navette's own page only."""
+    """Subscribe to node states and parameter texts, or unsubscribe.
 
+    Used by Navette's own page only.
+    """
 
-@dataclass(frozen=True)
-class UnwatchNodes:
-    pass
+    wanted: bool
 
 
 @dataclass(frozen=True)
@@ -158,9 +153,7 @@ ClientFrame = (
     | WatchParameters
     | UnwatchParameters
     | WatchGraph
-    | UnwatchGraph
     | WatchNodes
-    | UnwatchNodes
     | FetchAsset
     | CallService
     | ControlPlayback
@@ -342,10 +335,10 @@ _TEXT: dict[str, Callable[[_Fields], ClientFrame]] = {
     "unsubscribeParameterUpdates": lambda f: UnwatchParameters(
         f.texts("parameterNames")
     ),
-    "subscribeConnectionGraph": lambda _: WatchGraph(),
-    "unsubscribeConnectionGraph": lambda _: UnwatchGraph(),
-    "subscribeNodes": lambda _: WatchNodes(),
-    "unsubscribeNodes": lambda _: UnwatchNodes(),
+    "subscribeConnectionGraph": lambda _: WatchGraph(wanted=True),
+    "unsubscribeConnectionGraph": lambda _: WatchGraph(wanted=False),
+    "subscribeNodes": lambda _: WatchNodes(wanted=True),
+    "unsubscribeNodes": lambda _: WatchNodes(wanted=False),
     "stepPlayback": lambda _: StepPlayback(),
     "fetchAsset": lambda f: FetchAsset(f.text("uri"), f.identifier("requestId")),
 }

@@ -8,6 +8,7 @@ to the socket thread.
 
 import itertools
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from navette.errors import DecodeError
 from navette.viewer import frames, replies
@@ -25,7 +26,17 @@ _MAX_CLIENT_CHANNELS = 256
 _TIME, _NODES = "time", "nodes"
 
 
+def _call_directly(command: Callable[..., None], *args: Any) -> None:
+    command(*args)
+
+
 class Hub:
+    """Clients, channels and subscriptions.
+
+    Args:
+        forward: runs a command on the executor's thread; returns at once.
+    """
+
     def __init__(
         self,
         program: ProgramCommands,
@@ -34,8 +45,10 @@ class Hub:
         session_id: str,
         assets: AssetFolders | None = None,
         playback_range: tuple[int, int] | None = None,
+        forward: Callable[..., None] = _call_directly,
     ) -> None:
         self._program = program
+        self._forward = forward
         self._info = replies.server_info(name, session_id, playback_range)
         self._plays = playback_range is not None
         self._playback: bytes | None = None
@@ -81,7 +94,7 @@ class Hub:
             self._unsubscribe(session, subscription_id)
         for channel_id in list(session.client_channels):
             del session.client_channels[channel_id]
-            self._program.close_publisher(session.id, channel_id)
+            self._forward(self._program.close_publisher, session.id, channel_id)
         self._sessions.pop(session.id, None)
 
     def receive(self, session: Session, frame: str | bytes) -> None:
@@ -250,7 +263,7 @@ class Hub:
         watchers = self._watchers.get(watch)
         if watchers is None:
             self._watchers[watch] = {session.id}
-            self._program.watch(watch)
+            self._forward(self._program.watch, watch)
             return
         watchers.add(session.id)
         last = self._last.last(channel.id)
@@ -268,13 +281,13 @@ class Hub:
                 self._drop_unwatched(watch)
         elif self._last.open(channel.id) and watch not in self._watchers:
             self._watchers[watch] = set()
-            self._program.watch(watch)
+            self._forward(self._program.watch, watch)
 
     def _drop_unwatched(self, watch: Watch) -> None:
         """Unsubscribe from a topic without clients, unless it is cached."""
         if not self._watchers[watch] and watch.channel.id not in self._last:
             del self._watchers[watch]
-            self._program.unwatch(watch)
+            self._forward(self._program.unwatch, watch)
 
     def _advertise(self, session: Session, request: frames.Advertise) -> None:
         for channel in request.channels:
@@ -284,7 +297,7 @@ class Hub:
                 continue
             session.client_channels[channel.id] = channel
             session.pending += 1
-            self._program.open_publisher(session.id, channel)
+            self._forward(self._program.open_publisher, session.id, channel)
 
     def _unadvertise(self, session: Session, request: frames.Unadvertise) -> None:
         for channel_id in request.channel_ids:
@@ -294,7 +307,7 @@ class Hub:
                 )
                 continue
             session.pending += 1
-            self._program.close_publisher(session.id, channel_id)
+            self._forward(self._program.close_publisher, session.id, channel_id)
 
     def _publish(self, session: Session, request: frames.Publish) -> None:
         if request.channel_id not in session.client_channels:
@@ -303,16 +316,29 @@ class Hub:
             )
             return
         session.pending += 1
-        self._program.publish_from_client(session.id, request.channel_id, request.data)
+        self._forward(
+            self._program.publish_from_client,
+            session.id,
+            request.channel_id,
+            request.data,
+        )
 
     def _get_parameters(self, session: Session, request: frames.GetParameters) -> None:
         session.pending += 1
-        self._program.request_parameters(session.id, request.names, request.request_id)
+        self._forward(
+            self._program.request_parameters,
+            session.id,
+            request.names,
+            request.request_id,
+        )
 
     def _set_parameters(self, session: Session, request: frames.SetParameters) -> None:
         session.pending += 1
-        self._program.change_parameters(
-            session.id, request.parameters, request.request_id
+        self._forward(
+            self._program.change_parameters,
+            session.id,
+            request.parameters,
+            request.request_id,
         )
 
     def _watch_parameters(
@@ -329,22 +355,17 @@ class Hub:
             session.parameter_names.clear()
             session.all_parameters = False
 
-    def _watch_graph(self, session: Session, _request: frames.WatchGraph) -> None:
-        session.wants_graph = True
+    def _watch_graph(self, session: Session, request: frames.WatchGraph) -> None:
+        session.wants_graph = request.wanted
         update = replies.graph_update(replies.EMPTY_GRAPH, self._graph)
-        if update is not None:
+        if request.wanted and update is not None:
             session.send(update)
 
-    def _unwatch_graph(self, session: Session, _request: frames.UnwatchGraph) -> None:
-        session.wants_graph = False
-
-    def _watch_nodes(self, session: Session, _request: frames.WatchNodes) -> None:
-        session.wants_nodes = True
-        session.pending += 1
-        self._program.request_parameter_texts(session.id)
-
-    def _unwatch_nodes(self, session: Session, _request: frames.UnwatchNodes) -> None:
-        session.wants_nodes = False
+    def _watch_nodes(self, session: Session, request: frames.WatchNodes) -> None:
+        session.wants_nodes = request.wanted
+        if request.wanted:
+            session.pending += 1
+            self._forward(self._program.request_parameter_texts, session.id)
 
     def _fetch_asset(self, session: Session, request: frames.FetchAsset) -> None:
         try:
@@ -367,11 +388,11 @@ class Hub:
         self, session: Session, request: frames.ControlPlayback
     ) -> None:
         if self._can_play(session):
-            self._program.control_playback(session.id, request)
+            self._forward(self._program.control_playback, session.id, request)
 
     def _step_playback(self, session: Session, _request: frames.StepPlayback) -> None:
         if self._can_play(session):
-            self._program.step_playback(session.id)
+            self._forward(self._program.step_playback, session.id)
 
     def _can_play(self, session: Session) -> bool:
         if not self._plays:
@@ -412,9 +433,7 @@ _HANDLERS: dict[type, Callable[..., None]] = {
     frames.WatchParameters: Hub._watch_parameters,
     frames.UnwatchParameters: Hub._unwatch_parameters,
     frames.WatchGraph: Hub._watch_graph,
-    frames.UnwatchGraph: Hub._unwatch_graph,
     frames.WatchNodes: Hub._watch_nodes,
-    frames.UnwatchNodes: Hub._unwatch_nodes,
     frames.FetchAsset: Hub._fetch_asset,
     frames.CallService: Hub._call_service,
     frames.ControlPlayback: Hub._control_playback,

@@ -39,15 +39,13 @@ class NodeReport:
     since_s: float = 0.0
 
 
+@dataclass
 class _Record:
-    __slots__ = ("can_answer", "gone_s", "is_pending", "probed_s", "responded_s")
-
-    def __init__(self, now_s: float) -> None:
-        self.responded_s = now_s
-        self.probed_s = float("-inf")
-        self.gone_s: float | None = None
-        self.can_answer = True
-        self.is_pending = False
+    responded_s: float
+    probed_s: float = float("-inf")
+    gone_s: float | None = None
+    can_answer: bool = True
+    is_pending: bool = False
 
 
 class LivenessProbe:

@@ -1,9 +1,8 @@
 """The node ``viewer``: every topic of its context for the Foxglove app and browsers.
 
-Two threads meet here. Node methods run on the executor's thread;
-:class:`~navette.viewer.thread_bridge.ThreadBridge` turns the hub's commands (socket
-thread) into events of the executor, and data for clients passes through the server's
-queue. Neither thread waits for the other.
+Two threads meet here. Node methods run on the executor's thread: the hub's commands
+(socket thread) become events of the executor, and data for clients passes through the
+server's queue. Neither thread waits for the other.
 
 Topics appear as the graph changes. A topic without a watching client is not subscribed,
 except for those whose last message is cached (:mod:`navette.viewer.last_value_cache`).
@@ -26,7 +25,6 @@ from navette.params import Params
 from navette.runtime.client import Client
 from navette.runtime.clock import Stopwatch
 from navette.runtime.context import Context
-from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import (
@@ -50,7 +48,6 @@ from navette.viewer.remote_parameters import LIST, RemoteParameters
 from navette.viewer.server import ViewerServer
 from navette.viewer.service_calls import ServiceCalls
 from navette.viewer.session import Watch
-from navette.viewer.thread_bridge import ThreadBridge
 from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
 from navette.viewer.web import AccessPolicy, Site
 
@@ -86,12 +83,13 @@ class ViewerNode(StageNode):
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
         self._hub = Hub(
-            ThreadBridge(self, self.run_soon),
+            self,
             name="Navette",
             # The same when a client reconnects, different in the next run.
             session_id=f"navette-{id(self):x}",
             assets=AssetFolders(asset_folders or {}),
             playback_range=None if playback is None else _range(playback),
+            forward=self._run_command,
         )
         self._publishers = ClientPublishers(self._publisher, self.destroy_publisher)
         self._playback = PlaybackRequests(playback, self._hub, self._call)
@@ -106,7 +104,7 @@ class ViewerNode(StageNode):
         self.create_subscription(
             ParameterEvent,
             "/parameter_events",
-            self._on_parameter_event,
+            self._parameters.on_event,
             qos_profile_parameter_events,
             shared=True,
         )
@@ -196,9 +194,6 @@ class ViewerNode(StageNode):
                 self.get_logger().warning(f"cannot show {topic}: {error}")
         return self._definitions[type_name]
 
-    def _on_parameter_event(self, event: ParameterEvent) -> None:
-        self._parameters.on_event(event)
-
     # -- ProgramCommands (executor thread) -----------------------------------------
 
     def watch(self, watch: Watch) -> None:
@@ -271,6 +266,9 @@ class ViewerNode(StageNode):
             function, f"viewer {source}", self.get_fully_qualified_name()
         )
 
+    def _run_command(self, command: Callable[..., None], *args: Any) -> None:
+        self.run_soon(partial(command, *args), command.__name__)
+
     def _execute(self, client: int, request: Callable[..., None], *args: Any) -> None:
         """Execute a client's request; an error is sent back to that client."""
         try:
@@ -314,11 +312,12 @@ class ViewerNode(StageNode):
             now_s,
         )
         return ParameterRequests(
-            self._hub, self._call, self._context_nodes, self._remote, _parameter
+            self._hub,
+            self._call,
+            lambda: self.context.nodes,
+            self._remote,
+            _parameter,
         )
-
-    def _context_nodes(self) -> list[Node]:
-        return self.context.nodes
 
     def _list_nodes(self) -> tuple[set[str], dict[str, bool]]:
         here = {node.get_fully_qualified_name() for node in self.context.nodes}

@@ -11,9 +11,11 @@ from navette.viewer.liveness import LivenessProbe, NodeReport
 from navette.viewer.parameter_requests import Call
 from navette.viewer.remote_parameters import RemoteParameters
 from navette.viewer.service_calls import ServiceCalls
-from navette.viewer.thread_bridge import RunSoon
 
 _BLOCKED_S = 2.0  # without an executor turn: then all nodes of this program are blocked
+
+RunSoon = Callable[[Callable[[], None], str], None]
+"""Schedules a function on the executor's thread, with a name for it in errors."""
 
 ListNodes = Callable[[], tuple[set[str], Mapping[str, bool]]]
 """Full names of this process's nodes; those of other processes, with whether they

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Hashable
+from dataclasses import dataclass, field
 
 Frame = str | bytes
 
@@ -81,9 +82,7 @@ class Outbox:
         return data
 
 
+@dataclass
 class _Stream:
-    __slots__ = ("frames", "size")
-
-    def __init__(self) -> None:
-        self.frames: deque[Frame] = deque()
-        self.size = 0
+    frames: deque[Frame] = field(default_factory=deque)
+    size: int = 0

@@ -6,7 +6,6 @@ import contextlib
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
-from navette.viewer.outbox import Outbox
 from navette.viewer.session import Session
 
 _MAX_PENDING = 64  # unfinished requests of one client
@@ -15,14 +14,12 @@ _MAX_PENDING = 64  # unfinished requests of one client
 class Peer:
     """A client's connection, the frames queued for it and its unfinished requests."""
 
-    def __init__(
-        self, connection: ServerConnection, session: Session, outbox: Outbox
-    ) -> None:
+    def __init__(self, connection: ServerConnection, session: Session) -> None:
         self.connection = connection
         self.session = session
         #: Aborted: frames that still arrive are ignored.
         self.gone = False
-        self._outbox = outbox
+        self._outbox = session.outbox
         self._answered = asyncio.Event()
         self._filled = asyncio.Event()
 

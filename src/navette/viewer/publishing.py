@@ -2,17 +2,11 @@
 
 import json
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 from navette.errors import DecodeError
 from navette.msgs import Message, deserialize, from_dict
 from navette.viewer.frames import ClientChannel
-
-
-class OpenPublisher(Protocol):
-    @property
-    def msg_type(self) -> type[Message]: ...
-    def publish(self, message: Any) -> None: ...
 
 
 class ClientPublishers:
@@ -27,11 +21,11 @@ class ClientPublishers:
 
     def __init__(
         self,
-        create: Callable[[str, str], OpenPublisher],
+        create: Callable[[str, str], Any],
         destroy: Callable[[Any], object],
     ) -> None:
         self._create, self._destroy = create, destroy
-        self._opened: dict[tuple[int, int], tuple[str, OpenPublisher]] = {}
+        self._opened: dict[tuple[int, int], tuple[str, Any]] = {}
 
     def open(self, client: int, channel: ClientChannel) -> None:
         publisher = self._create(channel.type_name, channel.topic)

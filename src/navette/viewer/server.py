@@ -184,9 +184,8 @@ class ViewerServer:
         return None
 
     async def _client(self, connection: ServerConnection) -> None:
-        outbox = Outbox()
-        session = self._hub.join(outbox)
-        peer = Peer(connection, session, outbox)
+        session = self._hub.join(Outbox())
+        peer = Peer(connection, session)
         self._peers.add(peer)
         peer.wake()
         try:

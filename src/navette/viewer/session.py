@@ -40,11 +40,9 @@ class Watch:
 class ProgramCommands(Protocol):
     """Commands of the hub to the running program.
 
-    :class:`~navette.viewer.node.ViewerNode` executes them on the executor's thread;
-    :class:`~navette.viewer.thread_bridge.ThreadBridge` has the same methods, returns at
-    once and schedules them there. After each publisher, publish, parameter and playback
-    command the program calls :meth:`Hub.done`; the number of unfinished commands of a
-    client is limited.
+    :class:`~navette.viewer.node.ViewerNode` executes them on the executor's thread.
+    After each publisher, publish, parameter and playback command the program calls
+    :meth:`Hub.done`; the number of unfinished commands of a client is limited.
     """
 
     def watch(self, watch: Watch) -> None: ...

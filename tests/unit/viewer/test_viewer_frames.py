@@ -61,8 +61,8 @@ from navette.viewer.replies import Channel, Graph, Level
             {"op": "unsubscribeParameterUpdates", "parameterNames": []},
             frames.UnwatchParameters(()),
         ),
-        ({"op": "subscribeConnectionGraph"}, frames.WatchGraph()),
-        ({"op": "unsubscribeConnectionGraph"}, frames.UnwatchGraph()),
+        ({"op": "subscribeConnectionGraph"}, frames.WatchGraph(wanted=True)),
+        ({"op": "unsubscribeConnectionGraph"}, frames.WatchGraph(wanted=False)),
         (
             {"op": "fetchAsset", "uri": "package://navette/x", "requestId": 7},
             frames.FetchAsset("package://navette/x", 7),
