@@ -10,7 +10,8 @@ from navette.bags.bag import BagMessage, BagReader, BagTopic, OnDamage
 from navette.bags.folder_reader import FolderReader, Metadata
 from navette.bags.message_types import Decoder
 from navette.bags.opening import open_bag
-from navette.bags.writing import TopicWriter, completed
+from navette.bags.topic_writer import TopicWriter
+from navette.bags.writing import completed
 from navette.errors import FileFormatError, InvalidValueError
 from navette.msgs.expressions import Expression, ExpressionError
 

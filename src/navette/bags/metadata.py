@@ -13,14 +13,20 @@ from navette.bags.qos import qos_text
 VERSION = 8
 
 
-@dataclass(frozen=True)
+@dataclass
 class FileFacts:
-    """A file of the folder; stamps of its first and last message."""
+    """Statistics of a file of the folder; stamps of its first and last message."""
 
     name: str
-    start_ns: int
-    end_ns: int
-    count: int
+    start_ns: int = 0
+    end_ns: int = 0
+    count: int = 0
+
+    def add(self, stamp_ns: int) -> None:
+        """Count a message."""
+        self.start_ns = min(self.start_ns, stamp_ns) if self.count else stamp_ns
+        self.end_ns = max(self.end_ns, stamp_ns) if self.count else stamp_ns
+        self.count += 1
 
 
 def write_metadata(

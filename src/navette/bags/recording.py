@@ -11,32 +11,12 @@ from navette.bags.writer import BagWriter
 from navette.errors import FileFormatError
 
 
+@dataclass(eq=False)
 class RecordedTopic:
-    """A topic of a recording; compared by identity."""
+    """A topic, and its number of messages in the whole recording so far."""
 
-    __slots__ = ("count", "topic")
-
-    #: Messages in the whole recording so far.
-    count: int
-
-    def __init__(self, topic: BagTopic) -> None:
-        self.topic = topic
-        self.count = 0
-
-
-@dataclass
-class Facts:
-    """Statistics of one file."""
-
-    start_ns: int = 0
-    end_ns: int = 0
+    topic: BagTopic
     count: int = 0
-
-    def add(self, stamp_ns: int) -> None:
-        """Count a message."""
-        self.start_ns = min(self.start_ns, stamp_ns) if self.count else stamp_ns
-        self.end_ns = max(self.end_ns, stamp_ns) if self.count else stamp_ns
-        self.count += 1
 
 
 class SingleFile:
@@ -52,15 +32,13 @@ class SingleFile:
         self.path = path
         self._writer = BagWriter(path, compression=compression)
         self._channels: dict[RecordedTopic, int] = {}
-        self.facts = Facts()
+        self.facts = FileFacts(path.name)
 
     @property
     def size(self) -> int:
-        """Size so far, bytes."""
         return self._writer.size
 
     def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
-        """Append a message."""
         channel = self._channels.get(recorded)
         if channel is None:
             topic = recorded.topic
@@ -79,7 +57,6 @@ class SingleFile:
         self._writer.flush()
 
     def close(self) -> None:
-        """Finish the file; a second call has no effect."""
         self._writer.close()
 
     def abandon(self) -> None:
@@ -109,7 +86,6 @@ class Folder:
         self._counts: Counter[RecordedTopic] = Counter()
 
     def next_file(self) -> SingleFile:
-        """Start a new file."""
         name = f"{self.path.name}_{len(self.files)}.mcap"
         self.files.append(SingleFile(self.path / name, compression=self._compression))
         return self.files[-1]
@@ -119,11 +95,7 @@ class Folder:
         self._counts[recorded] += 1
 
     def write_metadata(self) -> None:
-        """Write the metadata of the folder."""
-        files = [
-            FileFacts(f.path.name, f.facts.start_ns, f.facts.end_ns, f.facts.count)
-            for f in self.files
-        ]
+        files = [file.facts for file in self.files]
         topics = [(each.topic, count) for each, count in self._counts.items()]
         write_metadata(self.path, files, topics)
 
@@ -221,7 +193,6 @@ class Snapshots:
         self._size = 0
 
     def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
-        """Store a message; drop outdated ones."""
         self._kept.append(_Kept(recorded, stamp_ns, payload))
         self._size += len(payload)
         oldest_ns = stamp_ns - self._duration_ns
@@ -257,12 +228,10 @@ class Snapshots:
         """Nothing to flush: snapshots are written on request."""
 
     def close(self) -> None:
-        """Drop the stored messages."""
         self._kept.clear()
         self._latched.clear()
 
     def abandon(self) -> None:
-        """As :meth:`close`."""
         self.close()
 
 

@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from navette.bags.bag import BagMessage, BagTopic
+from navette.bags.topic_writer import TopicWriter
 from navette.errors import FileFormatError, InvalidValueError
 from navette.msgs.definition_sections import read_definition
 
@@ -41,7 +42,7 @@ def store_of(topic: BagTopic, path: Path) -> Any:
     return store
 
 
-class Db3Writer:
+class Db3Writer(TopicWriter):
     """Writes rosbag2's SQLite, schema 4.
 
     Args:
@@ -54,15 +55,13 @@ class Db3Writer:
         from rosbags.rosbag2 import StoragePlugin, Writer
         from rosbags.rosbag2.enums import CompressionFormat, CompressionMode
 
-        self.path = path
-        self.message_count = 0
+        super().__init__(path)
         is_file = path.suffix == ".db3"
         if compression not in ("none", "zstd") or (is_file and compression != "none"):
             raise InvalidValueError(
                 f"compression {compression!r} of SQLite; known: none, and zstd in a "
                 "folder (a name without .db3)"
             )
-        self._channels: dict[BagTopic, Any] = {}
         try:
             # Written beside the target, so that the target is complete or absent.
             self._temporary = TemporaryDirectory(prefix=".navette-", dir=path.parent)
@@ -76,28 +75,16 @@ class Db3Writer:
                 )
             self._writer.open()
         except OSError as error:
-            raise FileFormatError(path, f"cannot be written: {error}") from error
+            raise self._error(error) from error
         self._made = folder / f"{folder.name}.db3" if is_file else folder
 
     def write(self, message: BagMessage) -> None:
-        """Append a message.
-
-        Raises:
-            FileFormatError: the type has no definition, or the disk is full.
-        """
-        channel = self._channels.get(message.topic)
-        if channel is None:
-            channel = self._channels[message.topic] = self._add(message.topic)
+        channel = self.channel_of(message.topic)
         try:
             self._writer.write(channel, message.stamp_ns, message.data)
         except sqlite3.Error as error:
-            raise FileFormatError(self.path, f"cannot be written: {error}") from error
+            raise self._error(error) from error
         self.message_count += 1
-
-    def add_topic(self, topic: BagTopic) -> None:
-        """Add a topic, possibly without messages."""
-        if topic not in self._channels:
-            self._channels[topic] = self._add(topic)
 
     def _add(self, topic: BagTopic) -> Any:
         from rosbags.rosbag2 import WriterError
@@ -116,17 +103,15 @@ class Db3Writer:
             raise FileFormatError(self.path, f"{topic.name}: {error}") from error
 
     def close(self) -> None:
-        """Finish the file and move it to its target."""
         try:
             self._writer.close()
             self._made.replace(self.path)
         except (sqlite3.Error, OSError) as error:
-            raise FileFormatError(self.path, f"cannot be written: {error}") from error
+            raise self._error(error) from error
         finally:
             self._temporary.cleanup()
 
     def abandon(self) -> None:
-        """Delete the unfinished file."""
         with suppress(sqlite3.Error, OSError):
             self._writer.abort()
         self._temporary.cleanup()
@@ -156,7 +141,7 @@ def _qos(offer: Any) -> Any:
     )
 
 
-class Ros1Writer:
+class Ros1Writer(TopicWriter):
     """Writes a ROS 1 bag, version 2.0, with ROS 1 type names.
 
     Args:
@@ -166,14 +151,12 @@ class Ros1Writer:
     def __init__(self, path: Path, *, compression: str = "none") -> None:
         from rosbags.rosbag1 import Writer
 
-        self.path = path
-        self.message_count = 0
+        super().__init__(path)
         if compression not in ("none", "lz4", "bz2"):
             raise InvalidValueError(
                 f"compression {compression!r} of .bag; known: none, lz4, bz2"
             )
         self._part = path.with_name(f".{path.name}.part")
-        self._channels: dict[BagTopic, tuple[Any, Callable[..., Any]]] = {}
         try:
             self._part.unlink(missing_ok=True)
             self._writer = Writer(self._part)
@@ -183,25 +166,19 @@ class Ros1Writer:
                 )
             self._writer.open()
         except OSError as error:
-            raise FileFormatError(path, f"cannot be written: {error}") from error
+            raise self._error(error) from error
 
     def write(self, message: BagMessage) -> None:
-        """Append a message.
-
-        Raises:
-            FileFormatError: type or stamp has no ROS 1 form, or the disk is full.
-        """
         from rosbags.serde import SerdeError
 
-        self.add_topic(message.topic)
-        channel, convert = self._channels[message.topic]
+        channel, convert = self.channel_of(message.topic)
         try:
             if not 0 <= message.stamp_ns < _FIRST_TOO_LATE_NS:
                 raise ValueError("ROS 1 stamps range from 1970 to 2106")
             data = convert(message.data, message.topic.type_name)
             self._writer.write(channel, message.stamp_ns, data)
         except OSError as error:
-            raise FileFormatError(self.path, f"cannot be written: {error}") from error
+            raise self._error(error) from error
         except (SerdeError, struct.error, ValueError, IndexError, TypeError) as error:
             raise FileFormatError(
                 self.path,
@@ -209,11 +186,6 @@ class Ros1Writer:
                 f"cannot be represented in ROS 1: {error}",
             ) from error
         self.message_count += 1
-
-    def add_topic(self, topic: BagTopic) -> None:
-        """Add a topic, possibly without messages."""
-        if topic not in self._channels:
-            self._channels[topic] = self._add(topic)
 
     def _add(self, topic: BagTopic) -> tuple[Any, Callable[..., Any]]:
         if topic.encoding != "cdr":
@@ -232,15 +204,13 @@ class Ros1Writer:
         return channel, source.cdr_to_ros1
 
     def close(self) -> None:
-        """Finish the file and move it to its target."""
         try:
             self._writer.close()
             self._part.replace(self.path)
         except OSError as error:
-            raise FileFormatError(self.path, f"cannot be written: {error}") from error
+            raise self._error(error) from error
 
     def abandon(self) -> None:
-        """Delete the unfinished file."""
         with suppress(OSError):
             self._writer.close()
         self._part.unlink(missing_ok=True)

@@ -2,13 +2,13 @@
 
 import shutil
 from pathlib import Path
-from typing import Protocol
 
 from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.mcap_file import COMPRESSIONS
 from navette.bags.opening import holds_bag, is_bag
 from navette.bags.qos import qos_text
 from navette.bags.rosbags_writers import Db3Writer, Ros1Writer
+from navette.bags.topic_writer import TopicWriter
 from navette.bags.writer import BagWriter
 from navette.errors import FileFormatError, InvalidValueError, UnknownNameError
 from navette.msgs import definition_text, type_hash
@@ -17,63 +17,32 @@ STORAGES = ("mcap", "sqlite3", "rosbag1")
 _BY_SUFFIX = {".mcap": "mcap", ".db3": "sqlite3", ".bag": "rosbag1"}
 
 
-class TopicWriter(Protocol):
-    """Writer of a recording."""
-
-    path: Path
-
-    @property
-    def message_count(self) -> int:
-        """Messages written so far."""
-
-    def add_topic(self, topic: BagTopic) -> None:
-        """Add a topic, possibly without messages."""
-
-    def write(self, message: BagMessage) -> None:
-        """Append a message; adds its topic if necessary."""
-
-    def close(self) -> None:
-        """Finish the file."""
-
-    def abandon(self) -> None:
-        """Delete the unfinished file; a file to be replaced stays."""
-
-
-class McapWriter:
+class McapWriter(TopicWriter):
     """Writes ``.mcap`` with the ``ros2`` profile; moved to its target when complete."""
 
     def __init__(self, path: Path, *, compression: str = "zstd") -> None:
-        self.path = path
+        super().__init__(path)
         self._part = path.with_name(f".{path.name}.part")
         self._part.unlink(missing_ok=True)
         self._writer = BagWriter(self._part, compression=compression)
-        self._channels: dict[BagTopic, int] = {}
 
-    @property
-    def message_count(self) -> int:
-        return self._writer.message_count
-
-    def add_topic(self, topic: BagTopic) -> None:
-        if topic not in self._channels:
-            self._channels[topic] = self._writer.add_channel(
-                topic.name,
-                topic.type_name,
-                topic.definition,
-                type_hash=topic.type_hash,
-                qos=qos_text(topic.qos),
-                encoding=topic.encoding,
-            )
+    def _add(self, topic: BagTopic) -> int:
+        return self._writer.add_channel(
+            topic.name,
+            topic.type_name,
+            topic.definition,
+            type_hash=topic.type_hash,
+            qos=qos_text(topic.qos),
+            encoding=topic.encoding,
+        )
 
     def write(self, message: BagMessage) -> None:
-        self.add_topic(message.topic)
+        channel = self.channel_of(message.topic)
         try:
-            self._writer.write(
-                self._channels[message.topic], message.stamp_ns, message.data
-            )
+            self._writer.write(channel, message.stamp_ns, message.data)
         except OSError as error:
-            raise FileFormatError(
-                self.path, f"cannot be written: {error.strerror}"
-            ) from error
+            raise self._error(error) from error
+        self.message_count += 1
 
     def close(self) -> None:
         try:
@@ -81,12 +50,9 @@ class McapWriter:
             self._part.replace(self.path)
         except OSError as error:
             self.abandon()
-            raise FileFormatError(
-                self.path, f"cannot be written: {error.strerror}"
-            ) from error
+            raise self._error(error) from error
 
     def abandon(self) -> None:
-        """Delete the unfinished file."""
         self._writer.abandon()
         self._part.unlink(missing_ok=True)
 

@@ -13,9 +13,10 @@ from typing import Any
 from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.compare.fields import FieldDifference, message_differences
 from navette.bags.compare.tolerance import Tolerances
+from navette.bags.message_types import message_class
 from navette.bags.play.source import Source
 from navette.errors import DecodeError, InvalidValueError, NavetteError
-from navette.msgs import deserialize, fields, get_interface, register_definition
+from navette.msgs import deserialize, fields
 
 
 @dataclass
@@ -31,7 +32,7 @@ class FieldSummary:
         if not self.messages:
             self.first_ns = stamp_ns
         self.messages += 1
-        if self.worst is None or _size(difference) > _size(self.worst):
+        if self.worst is None or difference.size > self.worst.size:
             self.worst = difference
 
 
@@ -141,7 +142,7 @@ class _TopicPairs:
             self.result.problem = f"type {topic.type_name} became {other.type_name}"
             return
         try:
-            expected, got = _class_of(topic), _class_of(other or topic)
+            expected, got = message_class(topic), message_class(other or topic)
         except NavetteError as error:
             self.result.problem = str(error)
             return
@@ -189,13 +190,3 @@ class _TopicPairs:
         for each in differences:
             summary = result.fields.setdefault(each.path, FieldSummary(each.path))
             summary.add(expected.stamp_ns, each)
-
-
-def _class_of(topic: BagTopic) -> Any:
-    if topic.definition:
-        return register_definition(topic.type_name, topic.definition, private=True)
-    return get_interface(topic.type_name)
-
-
-def _size(difference: FieldDifference) -> float:
-    return float("inf") if difference.largest is None else difference.largest

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,10 @@ class FieldDifference:
     largest: float | None
     expected: str
     got: str
+
+    @property
+    def size(self) -> float:
+        return math.inf if self.largest is None else self.largest
 
 
 ToleranceOf = Callable[[str], Tolerance]
@@ -145,26 +149,12 @@ def _joined(single: list[FieldDifference], count: int) -> list[FieldDifference]:
     for each in single:
         before = worst.get(each.path)
         if before is None:
-            worst[each.path] = FieldDifference(
-                each.path,
-                each.differing,
-                each.elements * count,
-                each.largest,
-                each.expected,
-                each.got,
-            )
+            worst[each.path] = replace(each, elements=each.elements * count)
             continue
-        shown = each if _size(each) > _size(before) else before
-        worst[each.path] = FieldDifference(
-            each.path,
-            before.differing + each.differing,
-            before.elements,
-            shown.largest,
-            shown.expected,
-            shown.got,
+        shown = each if each.size > before.size else before
+        worst[each.path] = replace(
+            shown,
+            differing=before.differing + each.differing,
+            elements=before.elements,
         )
     return list(worst.values())
-
-
-def _size(difference: FieldDifference) -> float:
-    return math.inf if difference.largest is None else difference.largest

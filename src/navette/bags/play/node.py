@@ -16,6 +16,7 @@ from functools import partial
 from typing import Any
 
 from navette.bags.bag import BagMessage, BagTopic
+from navette.bags.message_types import message_class
 from navette.bags.play.feed import DirectFeed, PrefetchingFeed
 from navette.bags.play.offers import joint_offer
 from navette.bags.play.options import PlayOptions
@@ -24,7 +25,6 @@ from navette.bags.play.services import SERVICES
 from navette.bags.play.source import Source
 from navette.bags.qos import OfferedQos
 from navette.errors import NavetteError
-from navette.msgs import get_interface, register_definition
 from navette.msgs.rosgraph_msgs.msg import Clock as ClockMsg
 from navette.runtime.context import Context
 from navette.runtime.events import Call
@@ -298,7 +298,7 @@ class PlayerNode(Node):
             if name.lstrip("/") != topic.name.lstrip("/"):
                 self.get_logger().warning(f"{topic.name} is played as {name}")
             profile = _profile(joint_offer(topic))
-            return self.create_publisher(_type_of(topic), name, profile)
+            return self.create_publisher(message_class(topic), name, profile)
         except NavetteError as error:
             self.get_logger().warning(f"{topic.name} is not played: {error}")
             return None
@@ -322,13 +322,6 @@ def _valid_name(name: str) -> str:
     """Convert a ROS 1 name, which may have more characters and no slash."""
     parts = (re.sub(r"[^A-Za-z0-9_]", "_", part) for part in name.split("/") if part)
     return "".join(f"/_{p}" if p[0].isdigit() else f"/{p}" for p in parts)
-
-
-def _type_of(topic: BagTopic) -> type:
-    """Return the message class of a topic, from the recorded definition if any."""
-    if topic.definition:
-        return register_definition(topic.type_name, topic.definition, private=True)
-    return get_interface(topic.type_name)
 
 
 def _profile(offer: OfferedQos) -> QoSProfile:
