@@ -61,14 +61,8 @@ ALLOWED = (
     r"do not say, hear, know or want",
 )
 
-#: Folders and files that are still to be cleaned; only ever made shorter.
-PENDING: tuple[str, ...] = ()
-
 #: Identifiers that contain a banned word and are right.
 ALLOWED_NAMES = (r"wants_\w+",)
-
-#: As PENDING, for the names of functions, classes, arguments and variables.
-PENDING_IDENTIFIERS: tuple[str, ...] = ("tests/unit/runtime",)
 
 #: Class names that ROS 2's API needs twice, with the reason.
 SHARED_NAMES: dict[str, str] = {
@@ -80,14 +74,6 @@ SHARED_NAMES: dict[str, str] = {
     "Parameter": "launch_ros's description and substitution, and rclpy's value",
     "TimeoutException": "rclpy's and tf2's",
 }
-
-#: Duplicate class names that are still to be renamed; only ever made shorter.
-PENDING_NAMES: frozenset[str] = frozenset(
-    {
-        "Entry",
-        "Graph",
-    }
-)
 
 #: Unit of a parameter → the end of its name.
 SUFFIXES = {
@@ -128,11 +114,6 @@ def texts() -> Iterator[tuple[Path, str]]:
                 yield relative, path.read_text(encoding="utf-8")
 
 
-def is_pending(relative: Path, places: tuple[str, ...] = PENDING) -> bool:
-    name = relative.as_posix()
-    return any(name == each or name.startswith(f"{each}/") for each in places)
-
-
 def identifiers(text: str) -> Iterator[str]:
     """Names of functions, classes and arguments, and assigned names."""
     for node in ast.walk(ast.parse(text)):
@@ -166,19 +147,14 @@ def faults(relative: Path, text: str) -> Iterator[str]:
 
 
 def test_the_text_is_free_of_banned_phrases() -> None:
-    found = [
-        fault
-        for relative, text in texts()
-        if not is_pending(relative)
-        for fault in faults(relative, text)
-    ]
+    found = [fault for relative, text in texts() for fault in faults(relative, text)]
     assert not found, "\n".join(found)
 
 
 def test_identifiers_are_free_of_banned_phrases() -> None:
     found = []
     for relative, text in texts():
-        if relative.suffix != ".py" or is_pending(relative, PENDING_IDENTIFIERS):
+        if relative.suffix != ".py":
             continue
         names = [
             name
@@ -187,14 +163,6 @@ def test_identifiers_are_free_of_banned_phrases() -> None:
         ]
         found += faults(relative, "\n".join(names).replace("_", " "))
     assert not found, "\n".join(found)
-
-
-def test_pending_places_exist_and_are_not_clean_yet() -> None:
-    """A clean folder leaves the list, so that it stays clean."""
-    dirty = [relative for relative, text in texts() if any(faults(relative, text))]
-    for place in PENDING:
-        inside = [f for f in dirty if f.as_posix().startswith(place)]
-        assert inside, f"{place} is clean: take it out of PENDING"
 
 
 @pytest.mark.parametrize(
@@ -224,7 +192,7 @@ def public_classes() -> dict[str, list[str]]:
 
 def test_a_public_class_name_occurs_once() -> None:
     several = {name: at for name, at in public_classes().items() if len(at) > 1}
-    known = PENDING_NAMES | SHARED_NAMES.keys()
+    known = SHARED_NAMES.keys()
     found = {name: at for name, at in several.items() if name not in known}
     assert not found, found
     settled = known - several.keys()

@@ -19,7 +19,7 @@ from navette.viewer.liveness import NodeReport
 from navette.viewer.outbox import Outbox
 from navette.viewer.parameters import ParameterText
 from navette.viewer.playback import PlaybackState
-from navette.viewer.replies import Channel, Graph, Level
+from navette.viewer.replies import Channel, ConnectionGraph, Level
 from navette.viewer.session import ProgramCommands, Session, Topic, Watch
 
 _MAX_CLIENT_CHANNELS = 256
@@ -147,7 +147,7 @@ class Hub:
             self._last.store(channel_id, stamp_ns, payload)
             self._drop_unwatched(watch)
 
-    def set_graph(self, graph: Graph) -> None:
+    def set_graph(self, graph: ConnectionGraph) -> None:
         update = replies.graph_update(self._graph, graph)
         self._graph = graph
         for topic, channel in self._topics.items():

@@ -49,14 +49,14 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Graph:
+class ConnectionGraph:
     """Names of the publishing and subscribing nodes by topic."""
 
     published: Mapping[str, tuple[str, ...]]
     subscribed: Mapping[str, tuple[str, ...]]
 
 
-EMPTY_GRAPH = Graph({}, {})
+EMPTY_GRAPH = ConnectionGraph({}, {})
 
 
 def server_info(
@@ -151,7 +151,7 @@ def _parameter(parameter: WireParameter) -> dict[str, Any]:
     return document
 
 
-def graph_update(old: Graph, new: Graph) -> str | None:
+def graph_update(old: ConnectionGraph, new: ConnectionGraph) -> str | None:
     """Encode the difference of two graphs; None if they are equal."""
     published = _changed(old.published, new.published)
     subscribed = _changed(old.subscribed, new.subscribed)

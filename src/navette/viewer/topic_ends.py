@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from navette.viewer.replies import Graph
+from navette.viewer.replies import ConnectionGraph
 from navette.viewer.session import Topic
 
 
@@ -37,14 +37,14 @@ def topics_of(
     ]
 
 
-def graph_of(ends: Iterable[TopicEnd]) -> Graph:
+def graph_of(ends: Iterable[TopicEnd]) -> ConnectionGraph:
     """Return the publishing and subscribing nodes by topic."""
     published: dict[str, set[str]] = {}
     subscribed: dict[str, set[str]] = {}
     for end in ends:
         side = published if end.publishes else subscribed
         side.setdefault(end.topic, set()).add(end.node)
-    return Graph(_sorted(published), _sorted(subscribed))
+    return ConnectionGraph(_sorted(published), _sorted(subscribed))
 
 
 def _sorted(names: dict[str, set[str]]) -> dict[str, tuple[str, ...]]:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from navette.errors import DecodeError
 from navette.viewer import frames, replies
 from navette.viewer.frames import WireParameter, decode
-from navette.viewer.replies import Channel, Graph, Level
+from navette.viewer.replies import Channel, ConnectionGraph, Level
 
 
 @pytest.mark.parametrize(
@@ -192,8 +192,10 @@ def test_unset_parameters_have_no_value() -> None:
 
 
 def test_graph_updates_hold_only_what_changed() -> None:
-    old = Graph({"/a": ("/n1",), "/b": ("/n1",)}, {"/a": ("/n2",), "/c": ("/n2",)})
-    new = Graph(
+    old = ConnectionGraph(
+        {"/a": ("/n1",), "/b": ("/n1",)}, {"/a": ("/n2",), "/c": ("/n2",)}
+    )
+    new = ConnectionGraph(
         {"/a": ("/n1",), "/d": ("/n3",)}, {"/a": ("/n2", "/n3"), "/b": ("/n4",)}
     )
     update = replies.graph_update(old, new)

@@ -11,7 +11,7 @@ from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, WireParameter
 from navette.viewer.hub import Hub
 from navette.viewer.outbox import Outbox
-from navette.viewer.replies import Channel, Graph, message_data
+from navette.viewer.replies import Channel, ConnectionGraph, message_data
 from navette.viewer.session import Session, Topic, Watch
 
 SCAN = Topic("/lidar", "sensor_msgs/msg/LaserScan", "float32[] ranges")
@@ -241,16 +241,16 @@ def test_parameter_answers_and_updates(bench: Bench) -> None:
 
 
 def test_the_graph_is_sent_whole_and_then_in_changes(bench: Bench) -> None:
-    bench.hub.set_graph(Graph({"/a": ("/n",)}, {}))
+    bench.hub.set_graph(ConnectionGraph({"/a": ("/n",)}, {}))
     session, other = bench.join(), bench.join()
     (whole,) = bench.ask(session, op="subscribeConnectionGraph")
     assert whole["publishedTopics"] == [{"name": "/a", "publisherIds": ["/n"]}]
-    bench.hub.set_graph(Graph({"/a": ("/n",)}, {"/a": ("/m",)}))
+    bench.hub.set_graph(ConnectionGraph({"/a": ("/n",)}, {"/a": ("/m",)}))
     (change,) = sent(session.outbox)
     assert change["publishedTopics"] == []
     assert change["subscribedTopics"] == [{"name": "/a", "subscriberIds": ["/m"]}]
     bench.ask(session, op="unsubscribeConnectionGraph")
-    bench.hub.set_graph(Graph({}, {}))
+    bench.hub.set_graph(ConnectionGraph({}, {}))
     assert not session.outbox
     assert not other.outbox
 

@@ -9,12 +9,12 @@ from test_viewer_hub import Bench
 from viewer_fakes import sent
 
 from navette.viewer.playback import PlaybackState, PlaybackStatus
-from navette.viewer.replies import Graph, message_data
+from navette.viewer.replies import ConnectionGraph, message_data
 from navette.viewer.session import Topic, Watch
 
 PATH = Topic("/path", "nav_msgs/msg/Path", "float64[] x")
 SCAN = Topic("/lidar", "sensor_msgs/msg/LaserScan", "float32[] ranges")
-PUBLISHED = Graph({"/path": ("/planner",)}, {})
+PUBLISHED = ConnectionGraph({"/path": ("/planner",)}, {})
 
 
 @pytest.fixture
@@ -61,7 +61,7 @@ def test_a_state_topic_stays_subscribed_when_the_last_client_leaves(
 def test_the_message_of_a_publisher_that_left_is_dropped(bench: Bench) -> None:
     say(bench, 1)
     bench.program.take()
-    bench.hub.set_graph(Graph({}, {"/path": ("/control",)}))
+    bench.hub.set_graph(ConnectionGraph({}, {"/path": ("/control",)}))
     assert bench.program.take() == [("unwatch", "/path", None)]
     assert latecomer(bench) == []
     bench.program.take()
@@ -76,7 +76,7 @@ def test_command_topics_are_not_subscribed(bench: Bench) -> None:
     bench.program.take()
     goal = Topic("/goal_point", "geometry_msgs/msg/PointStamped", "float64 x")
     bench.hub.set_topics([goal])
-    bench.hub.set_graph(Graph({"/goal_point": ("/missions",)}, {}))
+    bench.hub.set_graph(ConnectionGraph({"/goal_point": ("/missions",)}, {}))
     assert ("watch", "/goal_point", None) not in bench.program.take()
 
 
@@ -92,7 +92,7 @@ def test_a_stream_is_unsubscribed_without_a_client(bench: Bench) -> None:
     for number in range(20):
         say(bench, number * 100_000_000)
     assert bench.program.take() == [("unwatch", "/path", None)]
-    bench.hub.set_graph(Graph({**PUBLISHED.published, "/new": ("/b",)}, {}))
+    bench.hub.set_graph(ConnectionGraph({**PUBLISHED.published, "/new": ("/b",)}, {}))
     assert bench.program.take() == []
     assert latecomer(bench) == []  # the next one comes soon
 

@@ -12,7 +12,7 @@ from navette.msgs.geometry_msgs.msg import PointStamped, Twist
 from navette.msgs.nav_msgs.msg import Path
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.viewer.publishing import decode_message
-from navette.viewer.replies import Graph
+from navette.viewer.replies import ConnectionGraph
 from navette.viewer.session import Topic
 from navette.viewer.topic_ends import TopicEnd, graph_of, topics_of
 
@@ -99,7 +99,7 @@ def test_topics_are_shown_once_per_type_latched_if_any_publisher_is() -> None:
         Topic("/map", STRING, "string data", latched=True),
         Topic("/scan", STRING, "string data", latched=False),
     ]
-    assert graph_of(ends) == Graph(
+    assert graph_of(ends) == ConnectionGraph(
         {"/map": ("/memory", "/other"), "/odd": ("/odd",)},
         {"/map": ("/planner",), "/scan": ("/costmap",)},
     )

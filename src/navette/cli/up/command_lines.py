@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from navette.cli.up.entry import Entry, errors_under
+from navette.cli.up.entry import ServiceEntry, errors_under
 from navette.cli.up.variables import Variables
 from navette.errors import InvalidValueError, ParameterError
 from navette.ros2.launch.session import find_launch_file
@@ -20,7 +20,7 @@ CommandLine = tuple[list[str], list[Path]]
 """The words, and the files that the program reads."""
 
 
-def read_words(entry: Entry, variables: Variables) -> list[str]:
+def read_words(entry: ServiceEntry, variables: Variables) -> list[str]:
     """Return the words of the entry's command, with its ``arguments`` appended."""
     given = entry.own[entry.kind]
     if isinstance(given, str):
@@ -43,7 +43,9 @@ def read_words(entry: Entry, variables: Variables) -> list[str]:
         return words + [variables.expand(str(word)) for word in arguments]
 
 
-def command_line(entry: Entry, words: list[str], variables: Variables) -> CommandLine:
+def command_line(
+    entry: ServiceEntry, words: list[str], variables: Variables
+) -> CommandLine:
     """Resolve the words of an entry into the command line of a process."""
     if entry.kind == "run":
         return _run(entry, words, variables)
@@ -60,7 +62,7 @@ def _navette(*words: str) -> list[str]:
     return [sys.executable, "-u", "-m", "navette", *words]
 
 
-def _run(entry: Entry, words: list[str], variables: Variables) -> CommandLine:
+def _run(entry: ServiceEntry, words: list[str], variables: Variables) -> CommandLine:
     read_programs(words)
     parameters: list[Any] = _parameter_files(entry, variables)
     files = [*find_sources(words), *parameters]
@@ -79,7 +81,7 @@ def _run(entry: Entry, words: list[str], variables: Variables) -> CommandLine:
     return _navette("run", *words, *(["--ros-args", *ros] if ros else [])), files
 
 
-def _parameter_files(entry: Entry, variables: Variables) -> list[Path]:
+def _parameter_files(entry: ServiceEntry, variables: Variables) -> list[Path]:
     found = []
     with errors_under("parameter_files"):
         for given in entry.all_of("parameter_files"):
@@ -90,7 +92,7 @@ def _parameter_files(entry: Entry, variables: Variables) -> list[Path]:
     return found
 
 
-def _remaps(entry: Entry, variables: Variables) -> list[tuple[str, str]]:
+def _remaps(entry: ServiceEntry, variables: Variables) -> list[tuple[str, str]]:
     with errors_under("remap"):
         remaps = entry.own.get("remap") or {}
         if not isinstance(remaps, dict):

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from navette.cli.up.document import Document, Place, read_document
-from navette.cli.up.entry import Entry, EntryError
+from navette.cli.up.entry import EntryError, ServiceEntry
 from navette.cli.up.process_config import read_process
 from navette.cli.up.variables import Variables
 from navette.errors import FileFormatError, InvalidValueError, NavetteError
@@ -128,7 +128,7 @@ class ProjectConfig:
             if not entry:
                 raise InvalidValueError("empty entry in 'nodes'")
             return read_process(
-                Entry.of(name, entry, self.services[name], self.shared),
+                ServiceEntry.of(name, entry, self.services[name], self.shared),
                 self.variables,
                 self.folder,
                 names_in_use,

@@ -1,4 +1,4 @@
-"""Entry under ``nodes:`` as written in ``navette.yaml``."""
+"""ServiceEntry under ``nodes:`` as written in ``navette.yaml``."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -46,7 +46,7 @@ def errors_under(key: str) -> Iterator[None]:
 
 
 @dataclass(frozen=True)
-class Entry:
+class ServiceEntry:
     """Settings of one process, on the three levels of the file.
 
     Attributes:
@@ -68,7 +68,7 @@ class Entry:
         entry: Any,
         shared: Mapping[str, Any],
         everywhere: Mapping[str, Any],
-    ) -> "Entry":
+    ) -> "ServiceEntry":
         """Check an entry; a string is the command line of ``navette run``.
 
         Raises:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from navette.cli.up.command_lines import command_line, read_words
-from navette.cli.up.entry import Entry, EntryError, errors_under
+from navette.cli.up.entry import EntryError, ServiceEntry, errors_under
 from navette.cli.up.variables import Variables
 from navette.errors import InvalidValueError
 from navette.supervisor.service_config import (
@@ -17,7 +17,7 @@ from navette.supervisor.service_config import (
 
 
 def read_process(
-    entry: Entry, variables: Variables, folder: Path, names_in_use: set[str]
+    entry: ServiceEntry, variables: Variables, folder: Path, names_in_use: set[str]
 ) -> tuple[ProcessConfig, list[str]]:
     """Return the process and the files whose change requires a restart.
 
@@ -47,7 +47,7 @@ def read_process(
     return spec, [str(folder / file) for file in files]
 
 
-def _unique_name(entry: Entry, words: list[str], names_in_use: set[str]) -> str:
+def _unique_name(entry: ServiceEntry, words: list[str], names_in_use: set[str]) -> str:
     given = entry.own.get("name")
     base = str(given) if given else _default_name(entry.kind, words)
     if given and base in names_in_use:
@@ -70,7 +70,7 @@ def _default_name(kind: str, words: list[str]) -> str:
     return Path(last.rpartition(":")[2] or last).name.partition(".")[0]
 
 
-def _environment(entry: Entry, variables: Variables) -> dict[str, str]:
+def _environment(entry: ServiceEntry, variables: Variables) -> dict[str, str]:
     found: dict[str, str] = {}
     with errors_under("environment"):
         for given in entry.all_of("environment"):
@@ -82,7 +82,7 @@ def _environment(entry: Entry, variables: Variables) -> dict[str, str]:
     return found
 
 
-def _seconds(entry: Entry, key: str, default: float) -> float:
+def _seconds(entry: ServiceEntry, key: str, default: float) -> float:
     value = entry.get(key)
     if value is None:
         return default
