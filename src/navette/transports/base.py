@@ -159,15 +159,15 @@ class SubscriptionPort(ABC):
 
 
 class Transport(ABC):
-    """Moves samples between endpoints of the same topic name and type."""
+    """Moves samples between endpoints of the same topic name and type.
+
+    Opening a port raises InvalidValueError if the topic or service has another type;
+    the message names both types.
+    """
 
     @abstractmethod
     def advertise(self, endpoint: Endpoint, message_class: type) -> PublisherPort:
-        """Open a publisher's port.
-
-        Raises:
-            InvalidValueError: the topic has another type; the message names both.
-        """
+        """Open a publisher's port."""
 
     @abstractmethod
     def subscribe(
@@ -177,26 +177,15 @@ class Transport(ABC):
 
         Args:
             shared: samples may be one object for several sinks, which only read it.
-
-        Raises:
-            InvalidValueError: the topic has another type; the message names both.
         """
 
     @abstractmethod
     def serve(self, endpoint: Endpoint, sink: RequestSink) -> ServicePort:
-        """Open a server's port.
-
-        Raises:
-            InvalidValueError: the service has another type; the message names both.
-        """
+        """Open a server's port."""
 
     @abstractmethod
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> ClientPort:
-        """Open a client's port.
-
-        Raises:
-            InvalidValueError: the service has another type; the message names both.
-        """
+        """Open a client's port."""
 
     def announce(self, node: NodeInfo) -> None:
         """Add a node to the graph of other processes."""

@@ -195,7 +195,6 @@ class InProcessTransport(Transport):
         return self._services.connect(endpoint, sink)
 
     def remove_publisher(self, publisher: InProcessPublisher) -> None:
-        """Remove the port from its topic."""
         with self._lock:
             topic = self._topics.get(publisher.endpoint.topic)
             if topic is None or publisher not in topic.publishers:
@@ -210,7 +209,6 @@ class InProcessTransport(Transport):
             self._changed()
 
     def remove_subscription(self, subscription: InProcessSubscription) -> None:
-        """Remove the port from its topic."""
         with self._lock:
             topic = self._topics.get(subscription.endpoint.topic)
             if topic is None or subscription not in topic.subscriptions:
@@ -225,7 +223,6 @@ class InProcessTransport(Transport):
             self._changed()
 
     def count_publishers_of(self, subscription: InProcessSubscription) -> int:
-        """Return the number of publishers matched with the subscription."""
         topic = self._topics.get(subscription.endpoint.topic)
         if topic is None or subscription not in topic.subscriptions:
             return 0

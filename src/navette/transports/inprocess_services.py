@@ -97,20 +97,17 @@ class ServiceTable:
         self._changed = changed
 
     def serve(self, endpoint: Endpoint, sink: RequestSink) -> InProcessService:
-        """Open a server's port."""
         service = InProcessService(endpoint, sink, self)
         self._add(service)
         return service
 
     def connect(self, endpoint: Endpoint, sink: ReplySink) -> InProcessClient:
-        """Open a client's port."""
         client = InProcessClient(endpoint, sink, self)
         self._add(client)
         self.clients_by_gid[endpoint.gid] = client
         return client
 
     def remove(self, port: Port) -> None:
-        """Remove the port from its service."""
         name = port.endpoint.topic
         with self._lock:
             ports = self._ports.get(name, [])
@@ -124,7 +121,6 @@ class ServiceTable:
             self._changed()
 
     def ports(self) -> list[Port]:
-        """Return all ports, by service in order of appearance."""
         with self._lock:
             return [port for ports in self._ports.values() for port in ports]
 

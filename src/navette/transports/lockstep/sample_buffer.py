@@ -110,7 +110,7 @@ class BufferedSubscription:
     def close(self) -> None:
         self._buffer.remove(self)
 
-    # -- under the buffer's lock -------------------------------------------------
+    # The following methods are called under the buffer's lock.
 
     def expect(self, sent: Mapping[bytes, Sent], known: Mapping[bytes, Sent]) -> None:
         """Require the samples of the step that has ended.
@@ -211,7 +211,6 @@ class SampleBuffer:
         self._is_waiting = False
 
     def open(self, info: SubscriptionInfo) -> BufferedSubscription:
-        """Add a subscription."""
         with self.lock:
             self._count += 1
             subscription = BufferedSubscription(self, self._count, info)
@@ -236,12 +235,10 @@ class SampleBuffer:
             return complete
 
     def is_complete(self) -> bool:
-        """Return whether all expected samples have arrived."""
         with self.lock:
             return self._is_complete()
 
     def missing(self) -> list[Missing]:
-        """Return the expected samples that have not arrived."""
         with self.lock:
             return [m for s in self._subscriptions for m in s.missing(self._known)]
 

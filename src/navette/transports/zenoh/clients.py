@@ -71,7 +71,7 @@ class ZenohClient(ClientPort):
         self._is_open = False
         self._owner.release(self)
 
-    # -- on Zenoh's threads ------------------------------------------------------
+    # The following methods run on Zenoh's threads.
 
     def deliver(self, reply: Reply) -> None:
         """Pass the outcome of a call on, unless the port was closed."""

@@ -55,8 +55,6 @@ class RemoteGraph:
         self._events: deque[Callable[[], None]] = deque()
         self._notifying = threading.RLock()
 
-    # -- remote endpoints --------------------------------------------------------
-
     def on_tokens(self, changes: Iterable[tuple[str, bool]]) -> None:
         """Add (true) and remove (false) tokens; invalid ones are logged once.
 
@@ -110,8 +108,6 @@ class RemoteGraph:
             self._lock.wait_for(all_known, timeout_s)
         return missing
 
-    # -- local endpoints ---------------------------------------------------------
-
     def add_local(self, endpoint: Endpoint, type_hash: str) -> Matches:
         """Match an endpoint of this session with the remote ones from now on."""
         matches = Matches(endpoint, type_hash, self._topics, self._queue_assertion)
@@ -148,7 +144,7 @@ class RemoteGraph:
             return None
         return None if token.zid == self._own_zid else token
 
-    # -- inside, under the lock --------------------------------------------------
+    # The methods from here to _queue() are called under the lock.
 
     def _add(self, key: str, token: Token) -> bool:
         if key in self._nodes or key in self._endpoints:
@@ -260,8 +256,6 @@ class RemoteGraph:
                 return
             self._queue("asserted", publisher, matches.endpoint)
         self._notify()
-
-    # -- notification ------------------------------------------------------------
 
     def _notify(self) -> None:
         """Call the observers, in the order of the events."""

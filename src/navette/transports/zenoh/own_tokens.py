@@ -36,10 +36,7 @@ class OwnTokens:
         self._created: dict[bytes, tuple[EndpointToken, int]] = {}
         self._lock = threading.Lock()
 
-    # -- nodes -----------------------------------------------------------------
-
     def announce(self, node: NodeInfo) -> None:
-        """Declare the token of a node."""
         with self._lock:
             free = self._free_nodes.get(node)
             nid = free.pop() if free else next(self._ids)
@@ -67,8 +64,6 @@ class OwnTokens:
         with self._lock:
             return [node for node, tokens in self._nodes.items() for _ in tokens]
 
-    # -- endpoints -------------------------------------------------------------
-
     def gid_for(self, endpoint: Endpoint) -> bytes:
         """Return the gid of a new endpoint: the hash of a token created here."""
         token, initial_sequence = self._create(endpoint)
@@ -94,8 +89,6 @@ class OwnTokens:
         if not self._session.zenoh.is_closed():
             declared.undeclare()
             self._pool.put(token, last_sequence)
-
-    # -- inside ----------------------------------------------------------------
 
     def _create(self, endpoint: Endpoint) -> tuple[EndpointToken, int]:
         offers = endpoint.kind in (EndpointKind.PUBLISHER, EndpointKind.SERVICE)

@@ -40,7 +40,6 @@ class RouterRole:
 
     @property
     def is_serving(self) -> bool:
-        """Whether this process is the router."""
         return self._router is not None
 
     def find_or_serve(self) -> zenoh.Session | None:

@@ -84,7 +84,7 @@ class ZenohService(ServicePort):
         for query in self.waiting.take_all():
             _refuse(query, "the server was closed")
 
-    # -- on Zenoh's threads ------------------------------------------------------
+    # The following methods run on Zenoh's threads.
 
     def _on_query(self, query: zenoh.Query) -> None:
         try:

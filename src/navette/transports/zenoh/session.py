@@ -79,7 +79,6 @@ class ZenohSession:
 
     @property
     def serves_as_router(self) -> bool:
-        """Whether this process is the router."""
         return self._role.is_serving
 
     def close(self) -> None:

@@ -22,5 +22,4 @@ def new_session_id() -> str:
 
 
 def is_navette_session(session_id: str) -> bool:
-    """Return whether the session runs Navette."""
     return len(session_id) == _HEX_DIGITS and session_id.startswith(_MARK)

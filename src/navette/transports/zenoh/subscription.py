@@ -87,7 +87,7 @@ class ZenohSubscription(SubscriptionPort):
         if self._buffered is not None:
             self._buffered.close()
 
-    # -- on Zenoh's threads ------------------------------------------------------
+    # The following methods run on Zenoh's threads.
 
     def _on_sample(self, sample: zenoh.Sample) -> None:
         found = self._checked(sample)

@@ -51,7 +51,6 @@ class NodeToken(NamedTuple):
     node: NodeInfo
 
     def key(self) -> str:
-        """Return the token's key expression."""
         return _head(self, self.nid, "NN")
 
 
@@ -70,7 +69,6 @@ class EndpointToken(NamedTuple):
     qos: EndpointQos
 
     def key(self) -> str:
-        """Return the token's key expression."""
         head = _head(self, self.eid, _ABBREVIATIONS[self.kind])
         return "/".join(
             (

@@ -92,8 +92,6 @@ class ZenohTransport(Transport):
     def observe(self, observer: TransportObserver) -> None:
         self._graph.observers.append(observer)
 
-    # -- nodes -----------------------------------------------------------------
-
     def announce(self, node: NodeInfo) -> None:
         self._tokens.announce(node)
 
@@ -102,8 +100,6 @@ class ZenohTransport(Transport):
 
     def remote_nodes(self) -> list[NodeInfo]:
         return self._graph.nodes()
-
-    # -- endpoints -------------------------------------------------------------
 
     def gid_for(self, endpoint: Endpoint) -> bytes:
         return self._tokens.gid_for(endpoint)
@@ -152,11 +148,9 @@ class ZenohTransport(Transport):
         return self._open(endpoint, lambda entity: ZenohClient(self, entity, sink))
 
     def endpoints(self) -> list[Endpoint]:
-        """Return the topic endpoints of other sessions."""
         return self._graph.endpoints(_TOPIC_KINDS)
 
     def service_endpoints(self) -> list[Endpoint]:
-        """Return the servers and clients of other sessions."""
         return self._graph.endpoints(_SERVICE_KINDS)
 
     def close(self) -> None:
@@ -165,8 +159,6 @@ class ZenohTransport(Transport):
         for port in ports:
             port.close()
         self.session.close()
-
-    # -- for the ports ---------------------------------------------------------
 
     def release(self, port: Port) -> None:
         """Withdraw the endpoint of a port that closes."""
@@ -180,14 +172,10 @@ class ZenohTransport(Transport):
         """Announce that a publisher is alive; see ``PublisherPort.assert_alive``."""
         return self._assertions.send(matches)
 
-    # -- for a lock-step -------------------------------------------------------
-
     def own_nodes(self) -> tuple[str, ...]:
-        """Full names of the nodes announced here."""
         return tuple(dict.fromkeys(node.full_name for node in self._tokens.nodes()))
 
     def own_count(self) -> int:
-        """Return how many nodes and endpoints are announced here."""
         with self._lock:
             return len(self._tokens.nodes()) + len(self._ports)
 
@@ -205,8 +193,6 @@ class ZenohTransport(Transport):
             on_delivered=matches.on_sample,
         )
         return self._traffic.buffer.open(info)
-
-    # -- inside ----------------------------------------------------------------
 
     def _retransmits(self, entity: ZenohEntity) -> bool:
         if self._traffic is not None:  # publishers block there: no sample is lost
