@@ -6,7 +6,6 @@ from navette.transports.base import (
     Item,
     NodeInfo,
     PublisherPort,
-    Sink,
     SubscriptionPort,
     Transport,
     TransportObserver,
@@ -27,10 +26,8 @@ from navette.transports.qos import (
 from navette.transports.service_ports import (
     ClientPort,
     Reply,
-    ReplySink,
     Request,
     RequestId,
-    RequestSink,
     ServicePort,
 )
 
@@ -52,12 +49,9 @@ __all__ = [
     "QoSPolicyKind",
     "ReliabilityPolicy",
     "Reply",
-    "ReplySink",
     "Request",
     "RequestId",
-    "RequestSink",
     "ServicePort",
-    "Sink",
     "SubscriptionPort",
     "Transport",
     "TransportObserver",

@@ -1,7 +1,6 @@
 """Packages of a workspace: search without a build step, and creation."""
 
 from navette.ros2.workspace.create import create_package
-from navette.ros2.workspace.executables import PackageExecutable
 from navette.ros2.workspace.finding import (
     PackageNotFoundError,
     activate,
@@ -9,12 +8,10 @@ from navette.ros2.workspace.finding import (
     find_packages,
     search_roots,
 )
-from navette.ros2.workspace.manifest import Manifest, read_manifest
+from navette.ros2.workspace.manifest import read_manifest
 from navette.ros2.workspace.package import Origin, Package
 
 __all__ = [
-    "PackageExecutable",
-    "Manifest",
     "Origin",
     "Package",
     "PackageNotFoundError",

@@ -3,6 +3,7 @@
 import math
 import threading
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.ros2.packages.diagnostic_updater._diagnostic_status_wrapper import (
@@ -12,6 +13,7 @@ from navette.ros2.packages.diagnostic_updater._diagnostic_updater import Diagnos
 from navette.runtime import Clock, ClockType, Time
 
 
+@dataclass(eq=False)
 class FrequencyStatusParam:
     """Expected frequency of :class:`FrequencyStatus`.
 
@@ -22,15 +24,9 @@ class FrequencyStatusParam:
         window_size: number of runs of the task over which events are counted.
     """
 
-    def __init__(
-        self,
-        freq_bound: Mapping[str, float],
-        tolerance: float = 0.1,
-        window_size: int = 5,
-    ) -> None:
-        self.freq_bound = freq_bound
-        self.tolerance = tolerance
-        self.window_size = window_size
+    freq_bound: Mapping[str, float]
+    tolerance: float = 0.1
+    window_size: int = 5
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -114,12 +110,12 @@ class FrequencyStatus(DiagnosticTask):
             stat.add("Maximum acceptable frequency (Hz)", f"{most:f}")
 
 
+@dataclass(eq=False)
 class TimeStampStatusParam:
     """Accepted delays from stamp to arrival of :class:`TimeStampStatus`, in s."""
 
-    def __init__(self, min_acceptable: float = -1, max_acceptable: float = 5) -> None:
-        self.max_acceptable = max_acceptable
-        self.min_acceptable = min_acceptable
+    min_acceptable: float = -1
+    max_acceptable: float = 5
 
 
 class TimeStampStatus(DiagnosticTask):
@@ -191,10 +187,7 @@ class TimeStampStatus(DiagnosticTask):
         level, message = DiagnosticStatus.OK, "Timestamps are reasonable."
         if self.min_delta < self.params.min_acceptable:
             self.early_count += 1
-            level, message = (
-                DiagnosticStatus.ERROR,
-                "Timestamps too far in future seen.",
-            )
+            level, message = bad, "Timestamps too far in future seen."
         if self.max_delta > self.params.max_acceptable:
             self.late_count += 1
             level, message = bad, "Timestamps too far in past seen."

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from navette.msgs.builtin_interfaces.msg import Duration as DurationMsg
 from navette.msgs.builtin_interfaces.msg import Time as TimeMsg
 from navette.msgs.geometry_msgs.msg import TransformStamped
 from navette.msgs.tf2_msgs.action import LookupTransform
@@ -120,13 +119,12 @@ class BufferClient(BufferInterface):
                 f"no buffer server for {self.action_client.action_name}"
             )
         timeout = timeout or _NO_WAIT
-        duration: DurationMsg = timeout.to_msg()
         loop = self.node.context.loop
         padded_ns = timeout.nanoseconds + self.timeout_padding.nanoseconds
         until_ns = loop.clock.now_ns + padded_ns
         handle = self._await(
             self.action_client.send_goal_async(
-                LookupTransform.Goal(timeout=duration, **goal)
+                LookupTransform.Goal(timeout=timeout.to_msg(), **goal)
             ),
             until_ns,
         )
