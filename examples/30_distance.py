@@ -35,7 +35,7 @@ class Trip(navette.Node):
         super().__init__("trip", context=context)
         self.odom_type = self.declare_parameter("odom_type", "gps").value
         if self.odom_type not in ("gps", "vel"):
-            raise ValueError(f"odom_type {self.odom_type!r}: wanted gps or vel")
+            raise ValueError(f"odom_type {self.odom_type!r}: expected gps or vel")
         self.odometer = Odometer(max_gap_ns=2_000_000_000)
         self.publisher = self.create_publisher(Float64, "~/distance", 10)
         self.create_subscription(Gps, "/gnss_driver/odometry", self.on_gps, 1)

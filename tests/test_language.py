@@ -224,7 +224,9 @@ def test_a_parameter_carries_its_unit_in_its_name(record: type[Params]) -> None:
         where = f"{record.__name__}.{name}"
         if unit:
             assert unit in SUFFIXES, f"{where}: unit {unit!r} is not in SUFFIXES"
-            assert name.endswith(SUFFIXES[unit]), f"{where}: wanted {SUFFIXES[unit]!r}"
+            assert name.endswith(SUFFIXES[unit]), (
+                f"{where}: expected {SUFFIXES[unit]!r}"
+            )
         elif hints[name] in (float, tuple[float, ...]):
             known = any(re.fullmatch(each, name) for each in DIMENSIONLESS)
             assert known, f"{where}: declare its unit, or add it to DIMENSIONLESS"

@@ -98,7 +98,7 @@ def read_chunk(file: RecordFile, chunk: Chunk) -> bytes:
         return file.read(chunk.position, chunk.length)
     head = file.head(chunk.position)
     if head.opcode != Opcode.CHUNK:
-        raise file.error(chunk.position, f"record {head.opcode}, wanted a chunk")
+        raise file.error(chunk.position, f"record {head.opcode}, expected a chunk")
     _, _, size, crc, compression, data = chunk_head(file, head)
     try:
         unpacked = unpack(compression, file.read(data, head.end - data), size)

@@ -65,7 +65,7 @@ class BagFile(BinaryFile):
                 position, f"record of {size} bytes; the file ends at {self.size}"
             )
         if wanted is not None and op != wanted:
-            raise self.error(position, f"record {op}, wanted {wanted.name.lower()}")
+            raise self.error(position, f"record {op}, expected {wanted.name.lower()}")
         return Record(op, fields, position, begin, begin + size)
 
     def data(self, record: Record) -> bytes:

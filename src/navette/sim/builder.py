@@ -104,4 +104,4 @@ def _standing(centre: tuple[float, float], height: float, yaw: float) -> Transfo
 
 def _check_positive(what: str, values: Sequence[float]) -> None:
     if min(values) <= 0:
-        raise InvalidValueError(f"{what} of {tuple(values)} m: wanted sizes > 0")
+        raise InvalidValueError(f"{what} of {tuple(values)} m: expected sizes > 0")

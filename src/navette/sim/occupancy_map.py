@@ -111,18 +111,18 @@ def _read_yaml(path: Path) -> _MapFile:
         raise FileFormatError(path, "'image' must name a file")
     origin = values.get("origin", [0.0, 0.0, 0.0])
     if not isinstance(origin, list) or len(origin) != 3:
-        raise FileFormatError(path, f"'origin' is {origin!r}; wanted [x, y, yaw]")
+        raise FileFormatError(path, f"'origin' is {origin!r}; expected [x, y, yaw]")
     x, y, yaw = (_number(path, "origin", value) for value in origin)
     resolution = _number(path, "resolution", values.get("resolution"))
     if resolution <= 0:
-        raise FileFormatError(path, f"'resolution' is {resolution:g}; wanted > 0 m")
+        raise FileFormatError(path, f"'resolution' is {resolution:g}; must be > 0 m")
     threshold = _number(path, "occupied_thresh", values.get("occupied_thresh", 0.65))
     free = _number(path, "free_thresh", values.get("free_thresh", 0.0))
     if not 0 <= free < threshold <= 1:
         raise FileFormatError(
             path,
             f"'free_thresh' is {free:g} and 'occupied_thresh' {threshold:g}; "
-            "wanted 0 <= free_thresh < occupied_thresh <= 1",
+            "expected 0 <= free_thresh < occupied_thresh <= 1",
         )
     return _MapFile(
         image=path.parent / image,
@@ -135,9 +135,9 @@ def _read_yaml(path: Path) -> _MapFile:
 
 def _number(path: Path, key: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise FileFormatError(path, f"{key!r} is {value!r}; wanted a number")
+        raise FileFormatError(path, f"{key!r} is {value!r}; expected a number")
     if not math.isfinite(value):
-        raise FileFormatError(path, f"{key!r} is {value!r}; wanted a finite number")
+        raise FileFormatError(path, f"{key!r} is {value!r}; expected a finite number")
     return float(value)
 
 

@@ -90,7 +90,7 @@ class SimParams(Params):
         if abs(steps - round(steps)) > 1e-6:
             raise ParameterError(
                 f"parameter 'timestep_s': {self.timestep_s!r} is not allowed; "
-                f"wanted {CONTROL_PERIOD_S} s divided by a whole number"
+                f"expected {CONTROL_PERIOD_S} s divided by a whole number"
             )
 
 

@@ -77,7 +77,8 @@ class Geometry:
     def __post_init__(self) -> None:
         if _largest_measure(self.shape) > _LARGEST_M:
             raise InvalidValueError(
-                f"geometry {self.name!r}: {self.shape}: wanted at most {_LARGEST_M:g} m"
+                f"geometry {self.name!r}: {self.shape}: must be at most "
+                f"{_LARGEST_M:g} m"
             )
 
 

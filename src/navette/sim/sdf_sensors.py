@@ -85,7 +85,7 @@ def _rate(node: XmlNode, default: float) -> float:
     """Read the update rate; SDF's 0 ("as fast as possible") means the default."""
     rate = node.number("update_rate", 0.0)
     if rate < 0 or rate > 1000:
-        raise node.error(f"<update_rate> is {rate:g}; wanted 0 to 1000 Hz")
+        raise node.error(f"<update_rate> is {rate:g}; expected 0 to 1000 Hz")
     return rate or default
 
 
@@ -105,7 +105,7 @@ def _lidar(
         horizontal.positive("samples", 640.0) * horizontal.positive("resolution", 1.0)
     )
     if not 1 <= samples <= MAX_BEAMS:
-        raise horizontal.error(f"{samples} samples; wanted 1 to {MAX_BEAMS}")
+        raise horizontal.error(f"{samples} samples; expected 1 to {MAX_BEAMS}")
     angle_min = horizontal.number("min_angle", 0.0)
     angle_max = horizontal.number("max_angle", 0.0)
     if angle_max < angle_min or angle_max - angle_min > math.tau + 1e-6:
@@ -169,7 +169,7 @@ def _stddev(node: XmlNode | None) -> float:
         return 0.0
     stddev = noise.number("stddev", 0.0)
     if stddev < 0:
-        raise noise.error(f"<stddev> is {stddev:g}; wanted >= 0")
+        raise noise.error(f"<stddev> is {stddev:g}; must be >= 0")
     return stddev
 
 

@@ -123,7 +123,7 @@ def _read_plane(node: XmlNode) -> Plane:
 def _positive3(node: XmlNode) -> tuple[float, float, float]:
     x, y, z = node.numbers(3)
     if min(x, y, z) <= 0:
-        raise node.error(f"{x:g} {y:g} {z:g}: wanted three numbers > 0")
+        raise node.error(f"{x:g} {y:g} {z:g}: expected three numbers > 0")
     return (x, y, z)
 
 
@@ -157,7 +157,7 @@ def _read_friction(collision: XmlNode) -> float | None:
         return None
     friction = node.number("mu")
     if friction < 0:
-        raise node.error(f"<mu> is {friction:g}; wanted >= 0")
+        raise node.error(f"<mu> is {friction:g}; must be >= 0")
     return friction
 
 

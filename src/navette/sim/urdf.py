@@ -235,7 +235,7 @@ def _inertial(link: XmlNode) -> Inertial | None:
     mass = node.need("mass")
     kilograms = mass.parse_numbers(mass.need_attribute("value"), 1)[0]
     if kilograms <= 0:
-        raise mass.error(f"{kilograms:g} kg; wanted > 0")
+        raise mass.error(f"{kilograms:g} kg; must be > 0")
     inertia = node.need("inertia")
     xx, yy, zz, xy, xz, yz = (
         inertia.parse_numbers(inertia.attributes.get(key, "0"), 1)[0]

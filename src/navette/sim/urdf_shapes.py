@@ -83,5 +83,5 @@ def _shape(geometry: XmlNode, unsupported: Unsupported) -> Shape | None:
 def _positive(node: XmlNode, key: str, count: int) -> tuple[float, ...]:
     values = node.parse_numbers(node.need_attribute(key), count)
     if min(values) <= 0:
-        raise node.error(f"{key} {node.attributes[key]!r}: wanted > 0")
+        raise node.error(f"{key} {node.attributes[key]!r}: must be > 0")
     return values

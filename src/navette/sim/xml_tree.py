@@ -81,14 +81,14 @@ class XmlNode:
         child = self.find(tag) if default is not None else self.need(tag)
         if child is None or not child.text.strip():
             if default is None:
-                raise self.error(f"<{tag}> is empty; wanted a number")
+                raise self.error(f"<{tag}> is empty; expected a number")
             return default
         return child.numbers(1)[0]
 
     def positive(self, tag: str, default: float | None = None) -> float:
         value = self.number(tag, default)
         if value <= 0:
-            raise self.error(f"<{tag}> is {value:g}; wanted > 0")
+            raise self.error(f"<{tag}> is {value:g}; must be > 0")
         return value
 
     def numbers(self, count: int) -> tuple[float, ...]:
@@ -101,9 +101,9 @@ class XmlNode:
         except ValueError:
             raise self.error(f"{text.strip()!r} are not numbers") from None
         if len(values) != count:
-            raise self.error(f"{len(values)} numbers; wanted {count}")
+            raise self.error(f"{len(values)} numbers; expected {count}")
         if not all(map(math.isfinite, values)):
-            raise self.error(f"{text.strip()!r}: wanted finite numbers")
+            raise self.error(f"{text.strip()!r}: expected finite numbers")
         return values
 
 

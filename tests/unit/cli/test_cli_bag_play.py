@@ -172,7 +172,7 @@ def test_piped_it_is_plain(bag: Path) -> None:
     ("words", "printed"),
     [
         (["--topics", "/scan"], "unknown topic '/scan'; known: /chatter"),
-        (["-r", "0"], "rate 0.0: wanted"),
+        (["-r", "0"], "rate 0.0: expected"),
         (["-s", "99"], "start offset 99 s: the bag has only 60.000 s"),
     ],
 )

@@ -111,7 +111,7 @@ def test_urdf_links_without_joints_are_named(
         (
             "<robot name='r'><link name='a'><visual><geometry><box size='1 2'/>"
             "</geometry></visual></link></robot>",
-            "2 numbers; wanted 3",
+            "2 numbers; expected 3",
         ),
     ],
 )
@@ -149,7 +149,7 @@ def test_map_becomes_wall_boxes(tmp_path: Path) -> None:
     ("line", "reason"),
     [
         ("image: gone.pgm", "cannot be read"),
-        ("resolution: -1", "wanted > 0"),
+        ("resolution: -1", "must be > 0"),
         ("origin: [0, 0]", "'origin'"),
         ("mode: funny", "mode 'funny'"),
         ("resolution: .nan", "finite"),

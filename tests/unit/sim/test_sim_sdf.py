@@ -277,7 +277,7 @@ def test_state_is_ignored(tmp_path: Path) -> None:
                 "<link name='a'><collision name='c'><geometry><box><size>0 1 1</size>"
                 "</box></geometry></collision></link>"
             ),
-            "wanted three numbers > 0",
+            "expected three numbers > 0",
         ),
         (
             _model(
@@ -307,7 +307,7 @@ def test_state_is_ignored(tmp_path: Path) -> None:
             ),
             "needs <left_joint> and <right_joint>",
         ),
-        ("<gravity>1 2</gravity>", "2 numbers; wanted 3"),
+        ("<gravity>1 2</gravity>", "2 numbers; expected 3"),
     ],
 )
 def test_broken_files_are_clear_errors(tmp_path: Path, body: str, reason: str) -> None:

@@ -131,7 +131,7 @@ class Tape:
 
     def control(self, *, play: bool, speed: float, seek_ns: int | None) -> None:
         if speed <= 0:
-            raise InvalidValueError(f"rate {speed}: wanted more")
+            raise InvalidValueError(f"rate {speed}: expected more")
         self.asked.append((play, speed, seek_ns))
         status = PlaybackStatus.PLAYING if play else PlaybackStatus.PAUSED
         place_ns = self.now.position_ns if seek_ns is None else seek_ns

@@ -74,7 +74,7 @@ def _numbers(value: str, text: str) -> tuple[float, float]:
         share /= 100.0
     if not (0.0 <= absolute < math.inf and 0.0 <= share <= 1.0):
         raise InvalidValueError(
-            f"tolerance {text!r}: wanted 0 or more, and a share of 0 to 100 %"
+            f"tolerance {text!r}: expected 0 or more, and a share of 0 to 100 %"
         )
     return absolute, share
 

@@ -32,11 +32,11 @@ class PlayOptions:
         check_rate(self.rate)
         if not (math.isfinite(self.start_offset_s) and self.start_offset_s >= 0):
             raise InvalidValueError(
-                f"start offset {self.start_offset_s!r}: wanted 0 seconds or more"
+                f"start offset {self.start_offset_s!r}: expected 0 seconds or more"
             )
         if self.duration_s is not None and not 0 < self.duration_s < math.inf:
             raise InvalidValueError(
-                f"duration {self.duration_s!r}: wanted more than 0 seconds, finite"
+                f"duration {self.duration_s!r}: must be more than 0 seconds, finite"
             )
         for name in ("regex", "exclude"):
             try:
@@ -88,6 +88,6 @@ def check_rate(rate: float) -> float:
     """
     if not MIN_RATE <= rate <= MAX_RATE:
         raise InvalidValueError(
-            f"rate {rate!r}: wanted {MIN_RATE:g} to {MAX_RATE:g} times real time"
+            f"rate {rate!r}: expected {MIN_RATE:g} to {MAX_RATE:g} times real time"
         )
     return float(rate)

@@ -115,7 +115,8 @@ class ControlNode(StageNode):
         frame = msg.header.frame_id
         if msg.poses and frame != self.params.map_frame:
             self.get_logger().error(
-                f"path in frame {frame!r}; wanted map_frame, {self.params.map_frame!r}"
+                f"path in frame {frame!r}; expected map_frame, "
+                f"{self.params.map_frame!r}"
             )
             self._follower.reset(ControlState.UNKNOWN_FRAME)
             return

@@ -38,7 +38,7 @@ def obstacle_points(
     """
     if cost.size != spec.width * spec.height:
         raise InvalidValueError(
-            f"costmap of {cost.size} cells: wanted {spec.width} x {spec.height}"
+            f"costmap of {cost.size} cells: expected {spec.width} x {spec.height}"
         )
     map_T_origin = map_T_grid @ spec.origin
     origin_T_around = map_T_origin.inverse() @ around

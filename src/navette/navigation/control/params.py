@@ -136,12 +136,12 @@ class ControlParams(Params):
         if max(self.cruise_speed_mps, self.reverse_speed_mps) > self.max_speed_mps:
             raise ParameterError(
                 f"cruise_speed_mps {self.cruise_speed_mps:g} and reverse_speed_mps "
-                f"{self.reverse_speed_mps:g}: wanted <= max_speed_mps "
+                f"{self.reverse_speed_mps:g}: must be <= max_speed_mps "
                 f"{self.max_speed_mps:g}"
             )
         if self.lookahead_min_m > self.lookahead_m:
             raise ParameterError(
-                f"lookahead_min_m {self.lookahead_min_m:g}: wanted <= lookahead_m "
+                f"lookahead_min_m {self.lookahead_min_m:g}: must be <= lookahead_m "
                 f"{self.lookahead_m:g}"
             )
         try:

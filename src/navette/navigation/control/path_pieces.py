@@ -97,12 +97,12 @@ def split_path(poses: NDArray[np.float64], params: ControlParams) -> list[Piece]
 def _check(poses: NDArray[np.float64]) -> None:
     if poses.ndim != 2 or poses.shape[1] != 3 or not np.all(np.isfinite(poses)):
         raise InvalidValueError(
-            f"path of shape {poses.shape}: wanted finite poses (N, 3) x, y, yaw"
+            f"path of shape {poses.shape}: expected finite poses (N, 3) x, y, yaw"
         )
     span = float(np.abs(np.diff(poses[:, :2], axis=0)).sum())
     if np.abs(poses[:, :2]).max(initial=0.0) > FARTHEST_M or span > _LONGEST_M:
         raise InvalidValueError(
-            f"path of {span:g} m: wanted at most {_LONGEST_M:g} m, "
+            f"path of {span:g} m: must be at most {_LONGEST_M:g} m, "
             f"coordinates up to ±{FARTHEST_M:g} m"
         )
 

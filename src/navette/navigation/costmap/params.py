@@ -53,10 +53,10 @@ class CostmapParams(Params):
         if not 1 <= cells <= 4000:
             raise ParameterError(
                 f"parameter 'size_m': {self.size_m} m at a resolution of "
-                f"{self.resolution_m} m is {cells:.0f} cells; wanted 1 to 4000"
+                f"{self.resolution_m} m is {cells:.0f} cells; expected 1 to 4000"
             )
         if self.inflation_radius_m > self.size_m:
             raise ParameterError(
-                f"parameter 'inflation_radius_m': {self.inflation_radius_m} m; wanted "
-                f"at most size_m, {self.size_m} m"
+                f"parameter 'inflation_radius_m': {self.inflation_radius_m} m; must "
+                f"be at most size_m, {self.size_m} m"
             )

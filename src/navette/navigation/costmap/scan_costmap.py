@@ -39,12 +39,12 @@ class PlanarScan:
         if not (math.isfinite(self.angle_min) and math.isfinite(self.angle_increment)):
             raise InvalidValueError(
                 f"scan: angle_min {self.angle_min}, angle_increment "
-                f"{self.angle_increment}; wanted finite values"
+                f"{self.angle_increment}; expected finite values"
             )
         if not 0.0 <= self.range_min < self.range_max:
             raise InvalidValueError(
                 f"scan: range_min {self.range_min}, range_max {self.range_max}; "
-                f"wanted 0 <= range_min < range_max"
+                f"expected 0 <= range_min < range_max"
             )
 
 

@@ -127,11 +127,11 @@ class MapMemoryParams(Params):
                 raise ParameterError(f"parameter 'footprint_m': {error}") from None
         if self.max_size_m < self.size_m:
             raise ParameterError(
-                f"parameter 'max_size_m': {self.max_size_m} m; wanted at least size_m, "
-                f"{self.size_m} m"
+                f"parameter 'max_size_m': {self.max_size_m} m; must be at least "
+                f"size_m, {self.size_m} m"
             )
         if self.max_size_m / self.resolution_m > 20_000:
             raise ParameterError(
                 f"parameter 'max_size_m': {self.max_size_m} m at {self.resolution_m} m "
-                f"per cell; wanted at most 20000 cells an edge"
+                f"per cell; must be at most 20000 cells an edge"
             )

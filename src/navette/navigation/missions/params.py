@@ -27,11 +27,11 @@ class MissionParams(Params):
     def check(self) -> None:
         if len(self.goals_m) % 2:
             raise ParameterError(
-                f"parameter 'goals_m': {len(self.goals_m)} numbers; wanted pairs x, y"
+                f"parameter 'goals_m': {len(self.goals_m)} numbers; expected pairs x, y"
             )
         if not all(map(math.isfinite, self.goals_m)):
             raise ParameterError(
-                f"parameter 'goals_m': {self.goals_m}; wanted finite numbers"
+                f"parameter 'goals_m': {self.goals_m}; expected finite numbers"
             )
 
     def goal_points(self) -> list[tuple[float, float]]:

@@ -120,7 +120,7 @@ class GoalSequence:
             InvalidValueError: not finite.
         """
         if not (math.isfinite(x) and math.isfinite(y)):
-            raise InvalidValueError(f"goal ({x}, {y}): wanted finite metres")
+            raise InvalidValueError(f"goal ({x}, {y}): expected finite metres")
         self._pending.append((float(x), float(y)))
 
     def start_next(self, now_ns: int) -> Point | None:

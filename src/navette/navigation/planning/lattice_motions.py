@@ -46,11 +46,11 @@ class Motions:
 
     def __post_init__(self) -> None:
         if self.headings < 8:
-            raise InvalidValueError(f"{self.headings} headings: wanted at least 8")
+            raise InvalidValueError(f"{self.headings} headings: must be at least 8")
         for name in ("step_m", "reach_m", "sample_m"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0):
-                raise InvalidValueError(f"{name} {value!r}: wanted a value > 0")
+                raise InvalidValueError(f"{name} {value!r}: expected a value > 0")
 
     @property
     def heading_step(self) -> float:

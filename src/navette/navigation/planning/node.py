@@ -105,7 +105,7 @@ class PlannerNode(StageNode):
         if msg.header.frame_id != self.params.map_frame:
             self.get_logger().error(
                 f"map in frame {msg.header.frame_id!r}: "
-                f"wanted map_frame, {self.params.map_frame!r}",
+                f"expected map_frame, {self.params.map_frame!r}",
                 throttle_duration_sec=5.0,
             )
             return
@@ -196,7 +196,7 @@ class PlannerNode(StageNode):
         if map_T_frame is None:
             self._navigator.refuse_goal(goal, Outcome.UNKNOWN_FRAME)
             self.get_logger().error(
-                f"goal in unknown frame {header.frame_id!r}; wanted a frame on /tf"
+                f"goal in unknown frame {header.frame_id!r}; expected a frame on /tf"
             )
         else:
             self._navigator.set_goal(_moved(goal, map_T_frame), self._now_ns)

@@ -131,5 +131,5 @@ class PlannerParams(Params):
         if self.path_end_tolerance_m > self.goal_tolerance_m:
             raise ParameterError(
                 f"parameter 'path_end_tolerance_m': {self.path_end_tolerance_m!r} is "
-                f"not allowed; wanted <= goal_tolerance_m ({self.goal_tolerance_m:g})"
+                f"not allowed; must be <= goal_tolerance_m ({self.goal_tolerance_m:g})"
             )

@@ -132,7 +132,7 @@ def planning_grid(
     """Prepare an occupancy grid (H, W): −1 unknown, 0 free … 100 occupied."""
     if occupancy.shape != spec.shape:
         raise InvalidValueError(
-            f"occupancy grid of shape {occupancy.shape}: wanted {spec.shape}"
+            f"occupancy grid of shape {occupancy.shape}: expected {spec.shape}"
         )
     return _prepared(
         occupancy,

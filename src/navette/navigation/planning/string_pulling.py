@@ -73,7 +73,7 @@ def _checked(
     if cost.dtype != np.uint8 or line.ndim != 2 or len(line) < 1 or not inside:
         raise InvalidValueError(
             f"line of shape {line.shape} on a {cost.dtype} grid of {height} x {width} "
-            f"cells: wanted (N, 2) points u, v inside a uint8 grid"
+            f"cells: expected (N, 2) points u, v inside a uint8 grid"
         )
     return np.ascontiguousarray(cost), line
 

@@ -50,10 +50,10 @@ class EdgeTable:
 
     def __post_init__(self) -> None:
         if not 0 <= self.weight <= 1000:
-            raise InvalidValueError(f"edge weight {self.weight!r}: wanted 0 to 1000")
+            raise InvalidValueError(f"edge weight {self.weight!r}: expected 0 to 1000")
         if not 1 <= self.lethal_from <= LETHAL:
             raise InvalidValueError(
-                f"lethal_from {self.lethal_from!r}: wanted 1 to {LETHAL}"
+                f"lethal_from {self.lethal_from!r}: expected 1 to {LETHAL}"
             )
 
     @cached_property
@@ -113,12 +113,12 @@ def with_rim(cost: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """
     if cost.ndim != 2 or cost.dtype != np.uint8:
         raise InvalidValueError(
-            f"cost grid of shape {cost.shape}, {cost.dtype}: wanted 2-D uint8"
+            f"cost grid of shape {cost.shape}, {cost.dtype}: expected 2-D uint8"
         )
     height, width = cost.shape
     if max(height, width) > 32_000:
         raise InvalidValueError(
-            f"cost grid of {height} x {width} cells: wanted at most 32000 a side"
+            f"cost grid of {height} x {width} cells: must be at most 32000 a side"
         )
     rimmed = np.empty((height + 2, width + 2), np.uint8)
     rimmed[0] = rimmed[-1] = rimmed[:, 0] = rimmed[:, -1] = LETHAL

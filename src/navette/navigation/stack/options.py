@@ -31,15 +31,17 @@ class RunOptions:
 
     def __post_init__(self) -> None:
         if not self.speed > 0:
-            raise InvalidValueError(f"speed {self.speed!r}: wanted above 0, or max")
+            raise InvalidValueError(f"speed {self.speed!r}: expected above 0, or max")
         if self.seed < 0:
-            raise InvalidValueError(f"seed {self.seed!r}: wanted 0 or more")
+            raise InvalidValueError(f"seed {self.seed!r}: expected 0 or more")
         if self.max_time_s is not None and not 0 < self.max_time_s < math.inf:
             raise InvalidValueError(
-                f"max time {self.max_time_s!r}: wanted more than 0 seconds, finite"
+                f"max time {self.max_time_s!r}: must be more than 0 seconds, finite"
             )
         if self.start is not None and not all(map(math.isfinite, self.start)):
-            raise InvalidValueError(f"start {tuple(self.start)}: wanted finite numbers")
+            raise InvalidValueError(
+                f"start {tuple(self.start)}: expected finite numbers"
+            )
 
     @property
     def ends_with_goals(self) -> bool:

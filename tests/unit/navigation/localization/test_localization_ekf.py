@@ -124,7 +124,7 @@ def test_noise_is_15_variances_or_the_full_matrix() -> None:
     np.testing.assert_array_equal(planar_covariance(variances, "noise"), expected)
     whole = tuple(np.diag(variances).ravel().tolist())
     np.testing.assert_array_equal(planar_covariance(whole, "noise"), expected)
-    with pytest.raises(InvalidValueError, match="noise: 3 numbers; wanted 15"):
+    with pytest.raises(InvalidValueError, match="noise: 3 numbers; expected 15"):
         planar_covariance((1.0, 2.0, 3.0), "noise")
     with pytest.raises(InvalidValueError, match="without negative eigenvalues"):
         planar_covariance((-1.0,) * 15, "noise")
@@ -138,14 +138,14 @@ def config(*names: str) -> tuple[bool, ...]:
 @pytest.mark.parametrize(
     ("values", "text"),
     [
-        ({"two_d_mode": False}, "wanted true"),
-        ({"world_frame": "earth"}, "'earth'; wanted the odom_frame 'odom'"),
+        ({"two_d_mode": False}, "expected true"),
+        ({"world_frame": "earth"}, "'earth'; expected the odom_frame 'odom'"),
         ({"odom0": "/odom"}, "no entry is used of /odom"),
-        ({"odom0": "/odom", "odom0_config": (True,)}, "1 booleans; wanted 15"),
+        ({"odom0": "/odom", "odom0_config": (True,)}, "1 booleans; expected 15"),
         ({"odom0": "/odom", "odom0_config": config("x", "z")}, "z is chosen.*planar"),
         ({"imu0": "/imu", "imu0_config": config("x")}, "x is chosen.*not provide it"),
-        ({"process_noise_covariance": (1.0,)}, "1 numbers; wanted 15"),
-        ({"gps0": "/fix", "gps0_datum_deg": (91.0, 0.0)}, "wanted latitude"),
+        ({"process_noise_covariance": (1.0,)}, "1 numbers; expected 15"),
+        ({"gps0": "/fix", "gps0_datum_deg": (91.0, 0.0)}, "expected latitude"),
         ({"odom0_pose_rejection_threshold": 0.0}, "rejection_threshold"),
     ],
 )

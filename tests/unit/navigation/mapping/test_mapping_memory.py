@@ -197,7 +197,7 @@ def test_occupancy_returns_a_copy() -> None:
     ("values", "text"),
     [
         ({"fusion": "mean"}, "must be one of overwrite, max, log_odds"),
-        ({"max_size_m": 5.0}, "'max_size_m': 5.0 m; wanted at least size_m, 10.0 m"),
+        ({"max_size_m": 5.0}, "'max_size_m': 5.0 m; must be at least size_m, 10.0 m"),
         ({"max_size_m": 1e6}, "at most 20000 cells"),
         ({"update_period_s": 0.0}, "'update_period_s'"),
     ],

@@ -35,7 +35,7 @@ class Odometer:
 
     def __init__(self, max_gap_ns: int) -> None:
         if max_gap_ns <= 0:
-            raise InvalidValueError(f"max_gap_ns {max_gap_ns}: wanted more than 0")
+            raise InvalidValueError(f"max_gap_ns {max_gap_ns}: must be more than 0")
         self.max_gap_ns = max_gap_ns
         self.reset()
 

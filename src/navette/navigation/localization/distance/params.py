@@ -60,5 +60,5 @@ class DistanceParams(Params):
             raise ParameterError(
                 f"parameter 'topic_type': {self.topic_type} has no "
                 f"{'velocity' if self.by_velocity else 'position'}, which odom_type "
-                f"{self.odom_type!r} sums; wanted one of {', '.join(able)}"
+                f"{self.odom_type!r} sums; expected one of {', '.join(able)}"
             )

@@ -182,12 +182,12 @@ class EkfParams(Params):
     def check(self) -> None:
         if not self.two_d_mode:
             raise ParameterError(
-                "parameter 'two_d_mode': wanted true, the filter is planar"
+                "parameter 'two_d_mode': expected true, the filter is planar"
             )
         if self.world_frame not in (self.odom_frame, self.map_frame):
             raise ParameterError(
-                f"parameter 'world_frame': {self.world_frame!r}; wanted the odom_frame "
-                f"{self.odom_frame!r} or the map_frame {self.map_frame!r}"
+                f"parameter 'world_frame': {self.world_frame!r}; expected the "
+                f"odom_frame {self.odom_frame!r} or the map_frame {self.map_frame!r}"
             )
         for name in ("process_noise_covariance", "initial_estimate_covariance"):
             try:
@@ -196,23 +196,23 @@ class EkfParams(Params):
                 raise ParameterError(str(error)) from None
         if len(self.initial_state) != len(SPATIAL):
             raise ParameterError(
-                f"parameter 'initial_state': {len(self.initial_state)} numbers; wanted "
-                f"{len(SPATIAL)}, for {' '.join(SPATIAL)}"
+                f"parameter 'initial_state': {len(self.initial_state)} numbers; "
+                f"expected {len(SPATIAL)}, for {' '.join(SPATIAL)}"
             )
         for source in self.used:
             self._check_config(source)
         datum = self.gps0_datum_deg
         if datum and not (len(datum) == 2 and GeoPoint(*datum).is_valid):
             raise ParameterError(
-                f"parameter 'gps0_datum_deg': {list(datum)}; wanted latitude (±90) and "
-                "longitude in degrees"
+                f"parameter 'gps0_datum_deg': {list(datum)}; expected latitude "
+                "(±90) and longitude in degrees"
             )
 
     def _check_config(self, source: str) -> None:
         config = self.config_of(source)
         if len(config) != len(SPATIAL):
             raise ParameterError(
-                f"parameter '{source}_config': {len(config)} booleans; wanted "
+                f"parameter '{source}_config': {len(config)} booleans; expected "
                 f"{len(SPATIAL)}, for {' '.join(SPATIAL)}"
             )
         given = GIVEN.get(source, _POSE)
@@ -222,10 +222,10 @@ class EkfParams(Params):
                 why = "does not provide it" if name in NAMES else "is planar"
                 raise ParameterError(
                     f"parameter '{source}_config': {name} is chosen; the input {why}; "
-                    f"wanted some of {' '.join(given)}"
+                    f"expected some of {' '.join(given)}"
                 )
         if not chosen:
             raise ParameterError(
                 f"parameter '{source}_config': no entry is used of "
-                f"{getattr(self, source)}; wanted some of {' '.join(given)}"
+                f"{getattr(self, source)}; expected some of {' '.join(given)}"
             )

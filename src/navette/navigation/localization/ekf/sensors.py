@@ -234,7 +234,7 @@ class GnssInput(FilterInput):
         place = GeoPoint(msg.latitude, msg.longitude, msg.altitude)
         if not place.is_valid:
             raise InvalidValueError(
-                f"{place}: wanted a latitude and a longitude in range"
+                f"{place}: expected a latitude and a longitude in range"
             )
         antenna = self.frames.base_in(msg.header.frame_id).inverse().translation
         if self._plane is None:

@@ -32,7 +32,7 @@ def planar_covariance(values: tuple[float, ...], name: str) -> Array:
     spatial = len(SPATIAL)
     if len(values) not in (spatial, spatial**2):
         raise InvalidValueError(
-            f"{name}: {len(values)} numbers; wanted {spatial} variances or all "
+            f"{name}: {len(values)} numbers; expected {spatial} variances or all "
             f"{spatial**2} entries, for {', '.join(SPATIAL)}"
         )
     array = np.array(values, dtype=np.float64)
@@ -40,7 +40,7 @@ def planar_covariance(values: tuple[float, ...], name: str) -> Array:
     planar: Array = full[np.ix_(PLANAR, PLANAR)]
     if not is_covariance(planar):
         raise InvalidValueError(
-            f"{name}: wanted a symmetric matrix without negative eigenvalues"
+            f"{name}: expected a symmetric matrix without negative eigenvalues"
         )
     return planar
 

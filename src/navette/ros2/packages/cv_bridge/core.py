@@ -158,7 +158,7 @@ class CvBridge:
             )
         if cvim.ndim not in (2, 3):
             raise CvBridgeError(
-                f"image of shape {cvim.shape}: wanted (height, width) or "
+                f"image of shape {cvim.shape}: expected (height, width) or "
                 "(height, width, channels)"
             )
         channels = cvim.shape[2] if cvim.ndim == 3 else 1
