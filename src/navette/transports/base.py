@@ -118,8 +118,6 @@ class TransportObserver:
 class PublisherPort(ABC):
     """Port of one publisher on a transport."""
 
-    __slots__ = ()
-
     @property
     def initial_sequence(self) -> int:
         """Last sequence number sent under this gid by an earlier publisher."""
@@ -145,8 +143,6 @@ class PublisherPort(ABC):
 
 class SubscriptionPort(ABC):
     """Port of one subscription on a transport."""
-
-    __slots__ = ()
 
     @property
     @abstractmethod

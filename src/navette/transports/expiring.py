@@ -53,8 +53,6 @@ class Lifespans:
         warn: called with a publisher whose samples have expired on arrival.
     """
 
-    __slots__ = ("_first_ns", "_publishers", "_warn")
-
     def __init__(
         self,
         publishers: Mapping[bytes, Endpoint],

@@ -31,15 +31,6 @@ from navette.transports.service_ports import ReplySink, RequestSink
 class InProcessPublisher(PublisherPort):
     """Calls the sinks of the matched subscriptions, in order of matching."""
 
-    __slots__ = (
-        "_history",
-        "_lifespan_ns",
-        "_shared_sinks",
-        "_sinks",
-        "_transport",
-        "endpoint",
-    )
-
     def __init__(self, endpoint: Endpoint, transport: "InProcessTransport") -> None:
         self.endpoint = endpoint
         self._transport = transport
@@ -103,8 +94,6 @@ def _copied(message: Any) -> Any:
 class InProcessSubscription(SubscriptionPort):
     """Holds the sink that the matched publishers call."""
 
-    __slots__ = ("_transport", "endpoint", "shared", "sink")
-
     def __init__(
         self,
         endpoint: Endpoint,
@@ -128,8 +117,6 @@ class InProcessSubscription(SubscriptionPort):
 
 class _Topic:
     """Endpoints and type of one topic name."""
-
-    __slots__ = ("publishers", "subscriptions", "type_name")
 
     def __init__(self, type_name: str) -> None:
         self.type_name = type_name

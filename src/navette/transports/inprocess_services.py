@@ -22,8 +22,6 @@ from navette.transports.service_ports import (
 class InProcessService(ServicePort):
     """Holds the sink that the clients of the service call."""
 
-    __slots__ = ("_table", "endpoint", "sink")
-
     def __init__(
         self, endpoint: Endpoint, sink: RequestSink, table: "ServiceTable"
     ) -> None:
@@ -52,8 +50,6 @@ class InProcessService(ServicePort):
 
 class InProcessClient(ClientPort):
     """Calls the sinks of the compatible servers, oldest first."""
-
-    __slots__ = ("_table", "endpoint", "servers", "sink")
 
     def __init__(
         self, endpoint: Endpoint, sink: ReplySink, table: "ServiceTable"

@@ -51,8 +51,6 @@ ReplySink = Callable[[Reply], None]
 class ServicePort(ABC):
     """Port of one server on a transport."""
 
-    __slots__ = ()
-
     @abstractmethod
     def reply(self, request_id: RequestId, message: Any) -> None:
         """Send a reply as it is now; it is dropped if the client has closed."""
@@ -68,8 +66,6 @@ class ServicePort(ABC):
 
 class ClientPort(ABC):
     """Port of one client on a transport."""
-
-    __slots__ = ()
 
     @property
     def initial_sequence(self) -> int:

@@ -20,8 +20,6 @@ _NORM_TOLERANCE = 1e-3
 class _Chain:
     """Frames from target and from source to the common ancestor (excluded)."""
 
-    __slots__ = ("_from_source", "_from_target")
-
     def __init__(
         self, from_target: list[FrameHistory], from_source: list[FrameHistory]
     ) -> None:

@@ -12,16 +12,6 @@ _DROP_BATCH = 64
 class FrameHistory:
     """Samples in order of their stamps; a static frame has one sample for all times."""
 
-    __slots__ = (
-        "_length_ns",
-        "_parents",
-        "_stamps",
-        "_start",
-        "_transforms",
-        "child",
-        "is_static",
-    )
-
     def __init__(self, child: str, length_ns: int, *, is_static: bool) -> None:
         self.child = child
         self.is_static = is_static

@@ -30,8 +30,6 @@ class Missing(NamedTuple):
 class _FromPublisher:
     """What a subscription has received of one publisher of the lock-step."""
 
-    __slots__ = ("after", "last", "needed", "samples", "total")
-
     def __init__(self) -> None:
         self.samples: dict[int, Item] = {}  # by sequence number
         self.total = 0  # samples that the publisher has reported
@@ -74,8 +72,6 @@ class SubscriptionInfo(NamedTuple):
 
 class BufferedSubscription:
     """Samples of one subscription; :meth:`take` is called from any thread."""
-
-    __slots__ = ("_buffer", "_is_known", "_number", "_outside", "_publishers", "info")
 
     def __init__(
         self, buffer: "SampleBuffer", number: int, info: SubscriptionInfo

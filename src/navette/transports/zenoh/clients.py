@@ -29,8 +29,6 @@ class ZenohClient(ClientPort):
     (decision 0018).
     """
 
-    __slots__ = ("_entity", "_is_open", "_owner", "_sink", "last", "matches")
-
     def __init__(self, owner: PortOwner, entity: ZenohEntity, sink: ReplySink) -> None:
         self.matches = entity.matches
         #: Newest sequence number, also of requests that had no remote server.

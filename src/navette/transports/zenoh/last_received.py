@@ -14,8 +14,6 @@ class LastReceived:
     not miss the first messages on that topic.
     """
 
-    __slots__ = ("time_ns",)
-
     def __init__(self) -> None:
         self.time_ns = -_TOKEN_DELAY_NS
 

@@ -23,18 +23,6 @@ class Matches:
         refused: gids of publishers whose QoS is incompatible.
     """
 
-    __slots__ = (
-        "_on_asserted",
-        "_topics",
-        "asserting",
-        "by_gid",
-        "endpoint",
-        "refused",
-        "remotes",
-        "sessions",
-        "type_hash",
-    )
-
     def __init__(
         self,
         endpoint: Endpoint,

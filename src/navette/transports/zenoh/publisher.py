@@ -29,20 +29,6 @@ class ZenohPublisher(PublisherPort):
             sample is dropped then.
     """
 
-    __slots__ = (
-        "_count_sent",
-        "_declare",
-        "_entity",
-        "_is_open",
-        "_keeps_samples",
-        "_lock",
-        "_owner",
-        "_publisher",
-        "_put",
-        "last",
-        "matches",
-    )
-
     def __init__(
         self,
         owner: PortOwner,

@@ -19,8 +19,6 @@ class SequenceFilter:
         listed: gids of the publishers in the graph; changes meanwhile.
     """
 
-    __slots__ = ("_listed", "_next", "_outlier")
-
     def __init__(self, listed: Container[bytes]) -> None:
         self._listed = listed
         #: Publisher → the sequence number that follows its newest sample.

@@ -38,8 +38,6 @@ class ZenohService(ServicePort):
     #: A server numbers nothing.
     last = 0
 
-    __slots__ = ("_key", "_owner", "_sink", "_undeclare", "matches", "waiting")
-
     def __init__(
         self,
         owner: PortOwner,

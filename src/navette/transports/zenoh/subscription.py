@@ -31,19 +31,6 @@ class ZenohSubscription(SubscriptionPort):
     #: A subscription sends nothing.
     last = 0
 
-    __slots__ = (
-        "_buffered",
-        "_filter",
-        "_is_open",
-        "_lifespans",
-        "_lock",
-        "_message_class",
-        "_owner",
-        "_sink",
-        "_subscriber",
-        "matches",
-    )
-
     def __init__(
         self,
         owner: PortOwner,
