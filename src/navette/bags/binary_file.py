@@ -29,7 +29,6 @@ class BinaryFile:
             ) from error
 
     def read(self, position: int, length: int) -> bytes:
-        """Read exactly ``length`` bytes."""
         if position < 0 or length < 0 or position + length > self.size:
             raise self.error(
                 position, f"{length} bytes expected, but the file ends at {self.size}"
@@ -65,11 +64,9 @@ class BinaryFile:
         return None
 
     def error(self, position: int, reason: str) -> FileFormatError:
-        """Return an error with file and offset."""
         return FileFormatError(self.path, f"byte {position}: {reason}")
 
     def close(self) -> None:
-        """Close the file."""
         self._stream.close()
 
 

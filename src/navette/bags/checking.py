@@ -30,8 +30,6 @@ class Severity(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One problem of a recording."""
-
     severity: Severity
     text: str
 
@@ -202,7 +200,6 @@ def _check_chunk(
 
 
 def _check_index(reader: ChunkedReader, findings: _Findings) -> None:
-    """Compare the chunks of the index with those of the records."""
     scanned = reader.scanned()
     for problem in scanned.problems:
         findings.error("records", problem)

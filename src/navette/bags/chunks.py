@@ -65,7 +65,6 @@ class ChunkQuery(NamedTuple):
     last_ns: int
 
     def may_be_in(self, chunk: Chunk) -> bool:
-        """Whether the chunk may contain selected messages."""
         if chunk.end_ns < self.first_ns or chunk.start_ns > self.last_ns:
             return False
         if self.channels is None or chunk.channels is None:
@@ -73,7 +72,6 @@ class ChunkQuery(NamedTuple):
         return not self.channels.isdisjoint(chunk.channels)
 
     def takes(self, entry: Entry) -> bool:
-        """Whether the message is selected."""
         if not self.first_ns <= entry.stamp_ns <= self.last_ns:
             return False
         return self.channels is None or entry.channel in self.channels
@@ -120,7 +118,6 @@ class ChunkMerge:
     def messages(
         self, chunks: Sequence[Chunk], query: ChunkQuery
     ) -> Iterator[tuple[Entry, bytes]]:
-        """Iterate over the selected messages: position and bytes."""
         wanted = [chunk for chunk in chunks if query.may_be_in(chunk)]
         waiting = deque(sorted(wanted, key=lambda c: (c.start_ns, c.number)))
         heap: list[_Open] = []

@@ -37,7 +37,6 @@ class MessageFilter:
     """Python expression over ``topic`` (name), ``t`` (s), ``m`` (message)."""
 
     def takes(self, topic: BagTopic) -> bool:
-        """Whether the topic is selected."""
         if self.exclude and _search(self.exclude, topic.name):
             return False
         if not (self.topics or self.types or self.regex):

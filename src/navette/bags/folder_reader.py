@@ -133,7 +133,6 @@ class FolderReader(BagReader):
         return topic
 
     def topic_of(self, topic: BagTopic) -> BagTopic:
-        """Return the topic of the folder for a topic of a file."""
         return self._topic_of[topic]
 
     @property

@@ -114,7 +114,6 @@ class McapFile:
         return number
 
     def add_message(self, channel: int, stamp_ns: int, payload: bytes) -> None:
-        """Add a message with log and publish time ``stamp_ns``."""
         self._sequences[channel] = sequence = self._sequences[channel] + 1
         length = _MESSAGE_HEAD + len(payload)
         index = self._index.setdefault(channel, [])
@@ -201,7 +200,6 @@ class McapFile:
         self._write(summary + _record(footer) + MAGIC)
 
     def _message_indexes(self, position: int) -> tuple[bytes, dict[int, int]]:
-        """Return the message index records of the chunk."""
         parts: list[bytes] = []
         offsets: dict[int, int] = {}
         for channel, index in self._index.items():
@@ -250,7 +248,6 @@ class McapFile:
         )
 
     def _add_to_both(self, record: bytes) -> None:
-        """Add a record to the chunk and to the summary."""
         self._parts.append(record)
         self.chunk_size += len(record)
         self._index_size += len(record) + _PER_CHANNEL

@@ -55,15 +55,12 @@ def read_index(file: RecordFile) -> McapIndex:
             file.path, "is not an MCAP file: the magic bytes are missing"
         )
     try:
-        index = _read_summary(file)
+        index, problem = _read_summary(file), "there is no summary"
     except (FileFormatError, DecodeError) as error:
-        index = None
-        problems = [f"the summary cannot be read ({reason_of(error)})"]
-    else:
-        problems = [] if index is not None else ["there is no summary"]
+        index, problem = None, f"the summary cannot be read ({reason_of(error)})"
     if index is None:
         index = scan(file)
-        index.problems[:0] = problems
+        index.problems.insert(0, problem)
     return index
 
 
@@ -123,7 +120,6 @@ def _is_complete(index: McapIndex, statistics: Statistics) -> bool:
 
 
 def _read_header(file: RecordFile, index: McapIndex) -> int:
-    """Check the header; return the position after it."""
     head = file.head(len(MAGIC))
     if head.opcode != Opcode.HEADER:
         index.problems.append("there is no header")
@@ -229,7 +225,6 @@ class _Walk:
                 self._index.counts[channel] += len(stamps)
 
     def _look_into(self, chunk: Chunk) -> None:
-        """Search a chunk for schemas and channels."""
         try:
             data = read_chunk(self._file, chunk)
             for opcode, begin, end in records_in(self._file.path, chunk, data):

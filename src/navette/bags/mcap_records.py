@@ -42,7 +42,6 @@ class RecordFile(BinaryFile):
     """Record-wise access to an MCAP file."""
 
     def head(self, position: int) -> Head:
-        """Read the record header at a position."""
         opcode, length = HEAD.unpack(self.read(position, HEAD.size))
         begin = position + HEAD.size
         if length > self.size - begin:
@@ -52,7 +51,6 @@ class RecordFile(BinaryFile):
         return Head(opcode, position, begin, begin + length)
 
     def content(self, head: Head, limit: int = LARGEST) -> bytes:
-        """Read the content of a record."""
         if head.end - head.begin > limit:
             raise self.error(head.position, f"record of {head.end - head.begin} bytes")
         return self.read(head.begin, head.end - head.begin)

@@ -23,7 +23,6 @@ class FileFacts:
     count: int = 0
 
     def add(self, stamp_ns: int) -> None:
-        """Count a message."""
         self.start_ns = min(self.start_ns, stamp_ns) if self.count else stamp_ns
         self.end_ns = max(self.end_ns, stamp_ns) if self.count else stamp_ns
         self.count += 1

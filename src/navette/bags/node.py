@@ -116,7 +116,6 @@ class RecorderNode(StageNode):
 
     @property
     def message_count(self) -> int:
-        """Messages recorded so far."""
         return self._message_count
 
     @property
@@ -126,7 +125,6 @@ class RecorderNode(StageNode):
 
     @property
     def topics(self) -> list[str]:
-        """Subscribed topics, sorted."""
         return sorted({topic for topic, _ in self._recorded} - self.undefined.keys())
 
     def close(self) -> None:

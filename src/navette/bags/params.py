@@ -63,5 +63,4 @@ class RecorderParams(Params):
         )
 
     def check(self) -> None:
-        """Check that the patterns compile."""
         self.selection  # noqa: B018 - raises

@@ -91,7 +91,6 @@ class Folder:
         return self.files[-1]
 
     def note(self, recorded: RecordedTopic) -> None:
-        """Count a message of the topic."""
         self._counts[recorded] += 1
 
     def write_metadata(self) -> None:

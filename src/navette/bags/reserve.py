@@ -42,7 +42,6 @@ class Reserve:
             self.size += self._file.write(os.urandom(wanted - self.size))
 
     def release(self) -> None:
-        """Release the space."""
         if self._file is not None:
             self._file.close()
         self._file, self.size = None, 0

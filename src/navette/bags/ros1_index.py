@@ -65,15 +65,12 @@ def read_index(file: BagFile) -> BagIndex:
             file.path, "is not a ROS 1 bag: the magic bytes are missing"
         )
     try:
-        index = _read_index_section(file)
+        index, problem = _read_index_section(file), "the bag is not indexed"
     except (FileFormatError, DecodeError, struct.error) as error:
-        index = None
-        problems = [f"the index cannot be read ({reason_of(error)})"]
-    else:
-        problems = [] if index is not None else ["the bag is not indexed"]
+        index, problem = None, f"the index cannot be read ({reason_of(error)})"
     if index is None:
         index = scan(file)
-        index.problems[:0] = problems
+        index.problems.insert(0, problem)
     return index
 
 

@@ -24,8 +24,6 @@ Fields = dict[bytes, bytes]
 
 
 class Op(IntEnum):
-    """Kinds of records."""
-
     MESSAGE = 2
     BAG_HEADER = 3
     INDEX = 4
@@ -45,8 +43,6 @@ class Record(NamedTuple):
 
 
 class BagFile(BinaryFile):
-    """Record-wise access to a ROS 1 bag."""
-
     def record(self, position: int, *, wanted: Op | None = None) -> Record:
         """Read the record header at a position; the data is not read."""
         (length,) = _UINT32.unpack(self.read(position, 4))
@@ -69,7 +65,6 @@ class BagFile(BinaryFile):
         return Record(op, fields, position, begin, begin + size)
 
     def data(self, record: Record) -> bytes:
-        """Read the data of a record."""
         return self.read(record.begin, record.end - record.begin)
 
 
@@ -97,24 +92,20 @@ def parse_fields(header: bytes | memoryview) -> Fields:
 
 
 def uint8(fields: Fields, name: bytes) -> int:
-    """Read a one-byte field."""
     return _field(fields, name, 1)[0]
 
 
 def uint32(fields: Fields, name: bytes) -> int:
-    """Read a four-byte field."""
     number: int = _UINT32.unpack(_field(fields, name, 4))[0]
     return number
 
 
 def uint64(fields: Fields, name: bytes) -> int:
-    """Read an eight-byte field."""
     number: int = _UINT64.unpack(_field(fields, name, 8))[0]
     return number
 
 
 def time_ns(fields: Fields, name: bytes) -> int:
-    """Read a time field, in nanoseconds."""
     seconds, rest = _TIME.unpack(_field(fields, name, 8))
     stamp: int = seconds * 1_000_000_000 + rest
     return stamp

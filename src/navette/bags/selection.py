@@ -40,7 +40,6 @@ class TopicSelection:
                 ) from None
 
     def takes(self, topic: str, type_name: str) -> bool:
-        """Whether the topic (full name) of this type is recorded."""
         if topic in self.topics:
             return True
         if self.exclude and re.search(self.exclude, topic):

@@ -17,8 +17,6 @@ _BATCH = 65536
 
 @dataclass(frozen=True)
 class TopicSummary:
-    """Statistics of one topic."""
-
     topic: BagTopic
     count: int
     rate_hz: float | None

@@ -39,7 +39,6 @@ class ContactMonitor:
 
     @property
     def count(self) -> int:
-        """Number of contact episodes so far."""
         return len(self.episodes)
 
     def reset(self) -> None:

@@ -38,12 +38,10 @@ class Robot:
 
 
 def world_names() -> list[str]:
-    """Names of the built-in worlds."""
     return sorted(path.stem for path in _WORLDS.glob("*.sdf"))
 
 
 def robot_names() -> list[str]:
-    """Names of the built-in robots."""
     return sorted(path.parent.name for path in _ROBOTS.glob("*/model.sdf"))
 
 

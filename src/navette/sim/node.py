@@ -39,78 +39,29 @@ class SimNode(StageNode):
     PARAMS = SimParams
     FIXED_AT_START = FIXED_AT_START
     INPUTS = (
-        Input(
-            topic=topics.CMD_VEL.name,
-            type=topics.CMD_VEL.type,
-            role="commanded velocity; clamped to the limits, zero after the timeout",
+        Input.of(
+            topics.CMD_VEL,
+            "commanded velocity; clamped to the limits, zero after the timeout",
             callback="on_cmd_vel",
         ),
     )
     OUTPUTS = (
-        Output(
-            topic=topics.CLOCK.name, type=topics.CLOCK.type, role="time", rate_hz=100.0
-        ),
-        Output(
-            topic=topics.LIDAR.name, type=topics.LIDAR.type, role="scan", rate_hz=10
-        ),
-        Output(
-            topic=topics.IMU.name,
-            type=topics.IMU.type,
-            role="orientation, turn rate, specific force",
-        ),
-        Output(
-            topic=topics.CAMERA.name, type=topics.CAMERA.type, role="image", rate_hz=30
-        ),
-        Output(
-            topic=topics.CAMERA_INFO.name,
-            type=topics.CAMERA_INFO.type,
-            role="intrinsics of the camera",
-            rate_hz=30,
-        ),
-        Output(
-            topic=topics.ODOMETRY.name,
-            type=topics.ODOMETRY.type,
-            role="estimated pose and velocity",
+        Output.of(topics.CLOCK, "time", rate_hz=100.0),
+        Output.of(topics.LIDAR, "scan", rate_hz=10),
+        Output.of(topics.IMU, "orientation, turn rate, specific force"),
+        Output.of(topics.CAMERA, "image", rate_hz=30),
+        Output.of(topics.CAMERA_INFO, "intrinsics of the camera", rate_hz=30),
+        Output.of(topics.ODOMETRY, "estimated pose and velocity", rate_hz=50),
+        Output.of(
+            topics.GROUND_TRUTH,
+            "true pose of the axle midpoint in the world frame",
             rate_hz=50,
         ),
-        Output(
-            topic=topics.GROUND_TRUTH.name,
-            type=topics.GROUND_TRUTH.type,
-            role="true pose of the axle midpoint in the world frame",
-            rate_hz=50,
-        ),
-        Output(
-            topic=topics.TF.name,
-            type=topics.TF.type,
-            role="moving frames",
-            rate_hz=50,
-        ),
-        Output(
-            topic=topics.TF_STATIC.name,
-            type=topics.TF_STATIC.type,
-            role="fixed frames",
-            depth=1,
-            latched=True,
-        ),
-        Output(
-            topic=topics.CONTACTS.name,
-            type=topics.CONTACTS.type,
-            role="start of each contact with an obstacle",
-        ),
-        Output(
-            topic=topics.ROBOT_DESCRIPTION.name,
-            type=topics.ROBOT_DESCRIPTION.type,
-            role="URDF of the robot",
-            depth=1,
-            latched=True,
-        ),
-        Output(
-            topic=topics.WORLD_DESCRIPTION.name,
-            type=topics.WORLD_DESCRIPTION.type,
-            role="URDF of the world",
-            depth=1,
-            latched=True,
-        ),
+        Output.of(topics.TF, "moving frames", rate_hz=50),
+        Output.of(topics.TF_STATIC, "fixed frames"),
+        Output.of(topics.CONTACTS, "start of each contact with an obstacle"),
+        Output.of(topics.ROBOT_DESCRIPTION, "URDF of the robot"),
+        Output.of(topics.WORLD_DESCRIPTION, "URDF of the world"),
     )
 
     _forget_graph: Callable[[], None] | None = None  # also if construction failed
@@ -288,7 +239,6 @@ class SimNode(StageNode):
         self.publish(topics.ODOMETRY.name, message)
 
     def _odometry(self) -> tuple[Transform3, Motion, PlanarCovariances | None]:
-        """Return the estimated pose and motion of the base, and their covariances."""
         if self.params.odometry == "true":
             return self.simulator.pose(), self.simulator.motion(), None
         wheels = self.simulator.wheel_odometry()
@@ -298,7 +248,6 @@ class SimNode(StageNode):
         return Transform3.from_pose2(wheels.pose), motion, covariances
 
     def _believed_pose(self) -> Transform3:
-        """Return the estimated pose of the base."""
         if self.params.odometry == "true":
             return self.simulator.pose()
         return Transform3.from_pose2(self.simulator.wheel_odometry().pose)

@@ -36,7 +36,6 @@ class RobotState:
         return self._root_pose() @ self._root_T_base
 
     def place(self, world_T_base: Transform3) -> None:
-        """Set the robot's pose, at rest."""
         at = self._robot.qpos
         pose = world_T_base @ self._base_T_root
         x, y, z, w = pose.rotation

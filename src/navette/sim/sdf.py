@@ -22,12 +22,7 @@ from navette.sim.scene import (
     Scene,
 )
 from navette.sim.sdf_poses import PoseGraph, RawPose, read_pose
-from navette.sim.sdf_sensors import (
-    is_drive_plugin,
-    is_replaced_plugin,
-    read_drive,
-    read_sensors,
-)
+from navette.sim.sdf_sensors import find_drive, note_plugin, read_sensors
 from navette.sim.sdf_shapes import read_geometries, read_inertial
 from navette.sim.xml_tree import Unsupported, XmlNode, parse_xml
 
@@ -129,13 +124,8 @@ def _note_unknown(world: XmlNode, unsupported: Unsupported) -> None:
     for node in world.children:
         if node.tag not in _IGNORED_IN_WORLD:
             unsupported.note(f"<{node.tag}> in <{world.tag}>", node)
-        elif node.tag == "plugin" and not is_replaced_plugin(node):
-            unsupported.note(_plugin_text(node), node)
-
-
-def _plugin_text(node: XmlNode) -> str:
-    name = node.attributes.get("name") or node.attributes.get("filename", "")
-    return f"plugin {name!r}"
+        elif node.tag == "plugin":
+            note_plugin(node, unsupported)
 
 
 def _read_model(node: XmlNode, unsupported: Unsupported) -> Model:
@@ -149,7 +139,7 @@ def _read_model(node: XmlNode, unsupported: Unsupported) -> Model:
             unsupported.note(f"<{child.tag}> in <model>", child)
     links = [_read_link(child, graph, unsupported) for child in node.all("link")]
     joints = [_read_joint(child, graph, unsupported) for child in node.all("joint")]
-    drive = _find_drive(node, unsupported)
+    drive = find_drive(node.all("plugin"), unsupported)
     for inner in nested:
         model_T_inner = graph.pose_of(inner.name, node)
         links += [_lift_link(link, inner.name, model_T_inner) for link in inner.links]
@@ -260,16 +250,6 @@ def _read_limits(element: XmlNode) -> tuple[float, float] | None:
     if lower > upper:
         raise node.error(f"lower {lower:g} is above upper {upper:g}")
     return (lower, upper)
-
-
-def _find_drive(node: XmlNode, unsupported: Unsupported) -> DiffDrive | None:
-    drive = None
-    for plugin in node.all("plugin"):
-        if is_drive_plugin(plugin):
-            drive = drive or read_drive(plugin)
-        elif not is_replaced_plugin(plugin):
-            unsupported.note(_plugin_text(plugin), plugin)
-    return drive
 
 
 def _lift_link(link: Link, inner: str, model_T_inner: Transform3) -> Link:

@@ -2,6 +2,7 @@
 """SDF sensors and drive plugins (Gazebo classic, Ignition, gz)."""
 
 import math
+from collections.abc import Iterable
 from typing import TypedDict
 
 from navette.geometry import Transform3
@@ -173,14 +174,33 @@ def _stddev(node: XmlNode | None) -> float:
     return stddev
 
 
-def is_drive_plugin(plugin: XmlNode) -> bool:
+def find_drive(
+    plugins: Iterable[XmlNode], unsupported: Unsupported
+) -> DiffDrive | None:
+    """Read the first drive; note plugins that have no counterpart in Navette."""
+    drive = None
+    for plugin in plugins:
+        if _is_drive(plugin):
+            drive = drive or read_drive(plugin)
+        else:
+            note_plugin(plugin, unsupported)
+    return drive
+
+
+def note_plugin(plugin: XmlNode, unsupported: Unsupported) -> None:
+    if not _is_replaced(plugin):
+        name = plugin.attributes.get("name") or plugin.attributes.get("filename", "")
+        unsupported.note(f"plugin {name!r}", plugin)
+
+
+def _is_drive(plugin: XmlNode) -> bool:
     text = _plugin_name(plugin)
     return any(key in text for key in ("diffdrive", "diff-drive", "diff_drive")) or (
         "skid_steer" in text or "skidsteer" in text
     )
 
 
-def is_replaced_plugin(plugin: XmlNode) -> bool:
+def _is_replaced(plugin: XmlNode) -> bool:
     text = _plugin_name(plugin).rpartition("::")[2]
     return text in _REPLACED or any(key in _plugin_name(plugin) for key in _REPLACED)
 

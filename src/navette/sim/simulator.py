@@ -134,7 +134,6 @@ class Simulator:
         return self._ramp.command(linear, angular, self.now_ns)
 
     def step(self, count: int = 1) -> None:
-        """Advance by ``count`` physics steps."""
         end = self._steps + count
         control = max(1, CONTROL_PERIOD_NS // self._step_ns)
         watch = max(1, _WATCH_PERIOD_NS // self._step_ns)
@@ -219,11 +218,9 @@ class Simulator:
         return self.state.pose()
 
     def motion(self) -> Motion:
-        """Velocity of the base in its own frame."""
         return self.state.motion()
 
     def link_in_base(self, name: str) -> Transform3:
-        """``base_T_link`` now."""
         self._refresh()
         return self.state.link_in_base(name)
 
@@ -233,14 +230,12 @@ class Simulator:
         return self._probe.measure(self._data)
 
     def scan(self, index: int = 0) -> Scan:
-        """Current scan of lidar ``index``."""
         self._refresh()
         return self.lidars[index].scan(
             self.compiled.model, self._data, self.now_ns, self._lidar_rng[index]
         )
 
     def imu(self, index: int = 0) -> ImuReading:
-        """Current reading of IMU ``index``."""
         self._refresh()
         return self.imus[index].read(
             self.state, self.compiled.model, self._data, self.now_ns, self._imu_rng

@@ -10,7 +10,6 @@ from pathlib import Path
 from navette.errors import FileFormatError
 from navette.geometry import Transform3, quaternion_from_rpy
 from navette.sim.scene import (
-    DiffDrive,
     Geometry,
     Inertial,
     Joint,
@@ -20,12 +19,7 @@ from navette.sim.scene import (
     Scene,
 )
 from navette.sim.sdf_poses import PoseGraph
-from navette.sim.sdf_sensors import (
-    is_drive_plugin,
-    is_replaced_plugin,
-    read_drive,
-    read_sensors,
-)
+from navette.sim.sdf_sensors import find_drive, read_sensors
 from navette.sim.sdf_shapes import merge_geometries
 from navette.sim.urdf_shapes import Materials, read_urdf_geometry
 from navette.sim.xml_tree import Unsupported, XmlNode, parse_xml
@@ -89,7 +83,8 @@ def _read(path: Path) -> Model:
         _read_link(node, poses, materials, graph, root, unsupported)
         for node in root.all("link")
     )
-    drive = _read_drive(root, unsupported)
+    plugins = (p for node in root.all("gazebo") for p in node.all("plugin"))
+    drive = find_drive(plugins, unsupported)
     unsupported.report()
     return Model(name=root.name(), links=links, joints=joints, drive=drive)
 
@@ -242,15 +237,3 @@ def _inertial(link: XmlNode) -> Inertial | None:
         for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
     )
     return Inertial(kilograms, _origin(node), (xx, yy, zz, xy, xz, yz))
-
-
-def _read_drive(root: XmlNode, unsupported: Unsupported) -> DiffDrive | None:
-    drive = None
-    for extension in root.all("gazebo"):
-        for plugin in extension.all("plugin"):
-            if is_drive_plugin(plugin):
-                drive = drive or read_drive(plugin)
-            elif not is_replaced_plugin(plugin):
-                name = plugin.attributes.get("name", "")
-                unsupported.note(f"plugin {name!r}", plugin)
-    return drive

@@ -37,7 +37,6 @@ class XmlNode:
     children: list["XmlNode"] = field(default_factory=list)
 
     def error(self, reason: str) -> FileFormatError:
-        """Return an error about this element, with file and line."""
         return FileFormatError(self.path, f"<{self.tag}>: {reason}", self.line)
 
     def all(self, tag: str) -> Iterator["XmlNode"]:

@@ -107,7 +107,6 @@ class Hub:
         _HANDLERS[type(request)](self, session, request)
 
     def done(self, client: int) -> None:
-        """Count one request of a client as finished by the program."""
         session = self._sessions.get(client)
         if session is not None:
             session.pending -= 1

@@ -75,7 +75,6 @@ class LastValueCache:
             self._streams.add(channel)
 
     def last(self, channel: int) -> tuple[int, bytes] | None:
-        """Return stamp (ns) and message, or None."""
         topic = self._topics.get(channel)
         return None if topic is None else topic.last
 

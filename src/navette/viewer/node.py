@@ -114,7 +114,6 @@ class ViewerNode(StageNode):
 
     @property
     def port(self) -> int:
-        """The TCP port on which the server listens."""
         return self._server.port
 
     @property
@@ -127,7 +126,6 @@ class ViewerNode(StageNode):
 
     @property
     def client_count(self) -> int:
-        """Number of connected clients."""
         return self._hub.clients
 
     def close(self) -> None:
@@ -279,13 +277,11 @@ class ViewerNode(StageNode):
             self._server.call(self._hub.done, client)
 
     def _call(self, function: Callable[..., None], *args: Any) -> None:
-        """Run a method of the hub on the socket thread."""
         self._server.call(function, *args)
 
     # -- internals -----------------------------------------------------------------
 
     def _monitor_nodes(self) -> ParameterRequests:
-        """Set up node monitoring and access to the parameters of all nodes."""
         wall = Stopwatch()
 
         def now_s() -> float:

@@ -63,7 +63,6 @@ class Outbox:
             self.dropped += 1
 
     def forget(self, stream: Hashable) -> None:
-        """Drop the queued frames of a stream."""
         if self._streams.pop(stream, None) is not None:
             self._turns = deque(turn for turn in self._turns if turn != stream)
 

@@ -110,7 +110,6 @@ class ParameterRequests:
             end()
 
     def describe(self, client: int) -> None:
-        """Send the known descriptions of parameters."""
         texts = [text for node in self._nodes() for text in _texts_of(node)]
         texts += self._remote.texts.values()
         self._call(self._hub.set_parameter_texts, texts, client)

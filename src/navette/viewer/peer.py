@@ -24,7 +24,6 @@ class Peer:
         self._filled = asyncio.Event()
 
     def wake(self) -> None:
-        """Check the outbox for frames to send."""
         self._filled.set()
         if self._outbox.overflowed:
             # The client does not read, so a closing handshake would never complete.
@@ -37,7 +36,6 @@ class Peer:
         self.check_pending()
 
     def check_pending(self) -> None:
-        """Check again how many requests are unfinished."""
         self._answered.set()
 
     async def wait_for_answers(self) -> None:

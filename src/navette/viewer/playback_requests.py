@@ -22,7 +22,6 @@ class PlaybackRequests:
         self._request_id = ""  # of the request that the next report answers
 
     def begin(self) -> None:
-        """Report every change from now on."""
         if self._playback is not None:
             self._playback.on_change(self._report)
 
@@ -40,7 +39,6 @@ class PlaybackRequests:
                 self._report(False)
 
     def step(self) -> None:
-        """Publish the recording's next message."""
         if self._playback is not None:
             self._playback.step()
 

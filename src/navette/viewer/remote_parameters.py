@@ -180,7 +180,6 @@ class RemoteParameters:
         self._changed(received)
 
     def drop(self, node: str, names: Iterable[str]) -> None:
-        """Drop parameters that a node deleted."""
         gone = [WireParameter(wire_name(node, name), None) for name in names]
         for wire in gone:
             self.values.pop(wire.name, None)
@@ -189,7 +188,6 @@ class RemoteParameters:
     # -- setting ---------------------------------------------------------------
 
     def serves(self, node: str) -> bool:
-        """Whether the node serves its parameters."""
         return node in self._nodes
 
     def set(self, wire: WireParameter, done: Callable[[str], None]) -> None:

@@ -30,8 +30,6 @@ _NS_PER_S = 1_000_000_000
 
 
 class Level(IntEnum):
-    """Severity of a status message."""
-
     INFO = 0
     WARNING = 1
     ERROR = 2

@@ -54,7 +54,6 @@ class ServiceCalls:
 
     @property
     def pending(self) -> int:
-        """Number of calls without a response so far."""
         return len(self._pending)
 
     def call(
@@ -91,7 +90,6 @@ class ServiceCalls:
             self._finish(call, None, f"no response in {call.timeout_s:g} s")
 
     def retain(self, service: str) -> None:
-        """Keep the client of a service between calls."""
         self._retained.add(service)
 
     def release(self, service: str) -> None:

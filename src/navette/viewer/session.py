@@ -89,7 +89,6 @@ class Session:
 
     @property
     def wants_node_reports(self) -> bool:
-        """Whether the client needs data that nodes of other processes must provide."""
         return self.wants_nodes or self.all_parameters or bool(self.parameter_names)
 
     def wants_parameter(self, name: str) -> bool:

@@ -38,7 +38,6 @@ def topics_of(
 
 
 def graph_of(ends: Iterable[TopicEnd]) -> ConnectionGraph:
-    """Return the publishing and subscribing nodes by topic."""
     published: dict[str, set[str]] = {}
     subscribed: dict[str, set[str]] = {}
     for end in ends:

@@ -38,8 +38,6 @@ class FieldSummary:
 
 @dataclass
 class TopicComparison:
-    """Result for one topic."""
-
     name: str
     type_name: str
     compared: int = 0
@@ -59,8 +57,6 @@ class TopicComparison:
 
 @dataclass
 class Comparison:
-    """Result for all topics."""
-
     topics: list[TopicComparison]
     unexpected: tuple[str, ...] = ()
     """Topics of the other recording only; not counted as a difference."""

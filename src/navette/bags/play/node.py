@@ -184,7 +184,6 @@ class PlayerNode(Node):
         self._changed(jumped=True)
 
     def seek_by(self, delta_ns: int) -> None:
-        """Seek relative to the current position."""
         self.seek(self.player.position_ns(self._now_ns()) + delta_ns)
 
     def control(self, *, play: bool, rate: float, seek_ns: int | None) -> None:
@@ -225,7 +224,6 @@ class PlayerNode(Node):
         return self.context.clock.now_ns
 
     def _changed(self, *, jumped: bool = False) -> None:
-        """Reschedule the next message."""
         self._jump()
         self._arm()
         if self.on_change is not None:
@@ -309,8 +307,6 @@ class PlayerNode(Node):
 
 
 class _Without:
-    """A source without one of its topics."""
-
     def __init__(self, source: Source, name: str) -> None:
         self._source = source
         self.topics = tuple(t for t in source.topics if t.name != name)

@@ -23,8 +23,6 @@ _MAX_LATE_NS = 1_000_000_000
 
 
 class PlayState(Enum):
-    """State of the player."""
-
     PLAYING = "playing"
     PAUSED = "paused"
     ENDED = "ended"
@@ -79,7 +77,6 @@ class Player:
         return self._head.rate
 
     def position_ns(self, now_ns: int) -> int:
-        """Position in the recording."""
         return max(self.begin_ns, min(self.end_ns, self._head.at(now_ns)))
 
     def due_ns(self) -> int | None:
@@ -93,7 +90,6 @@ class Player:
     # -- playing ---------------------------------------------------------------
 
     def start(self, now_ns: int) -> None:
-        """Start, or restart."""
         self._go_to(now_ns, self.begin_ns)
         self.passes += 1
         self._ended = False

@@ -35,11 +35,9 @@ class Playhead:
         return self._now_ns - (-ahead * self._den // self._num)
 
     def place(self, now_ns: int, bag_ns: int) -> None:
-        """Set the position."""
         self._now_ns, self._bag_ns = now_ns, bag_ns
 
     def set_moving(self, now_ns: int, *, moves: bool) -> None:
-        """Play or pause from now on."""
         self.place(now_ns, self.at(now_ns))
         self.moves = moves
 

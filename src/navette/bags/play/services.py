@@ -26,8 +26,6 @@ Answer = Callable[[Controls, Any, Any], Any]
 
 
 def _doing(action: Callable[[Controls], object]) -> Answer:
-    """Run an action and return an empty response."""
-
     def answer(controls: Controls, request: Any, response: Any) -> Any:
         action(controls)
         return response

@@ -3,11 +3,12 @@
 import dataclasses
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from navette.errors import NavetteError, ParameterError, UnknownNameError
 from navette.msgs import get_interface
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
+from navette.msgs.topics import StackTopic
 from navette.params import Params
 from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
@@ -31,6 +32,18 @@ class _Topic:
     #: Whether late subscribers receive the last samples (transient local).
     latched: bool = False
     best_effort: bool = False
+
+    @classmethod
+    def of(cls, topic: StackTopic, role: str, **options: Any) -> Self:
+        """Take name, type, depth and durability from the table of topics."""
+        return cls(
+            topic=topic.name,
+            type=topic.type,
+            role=role,
+            depth=topic.depth,
+            latched=topic.latched,
+            **options,
+        )
 
     @property
     def qos(self) -> QoSProfile:
