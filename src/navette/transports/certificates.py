@@ -1,7 +1,8 @@
 """Certificates for mutual TLS: an authority, and a certificate for each machine.
 
 X.509 version 3 (RFC 5280) with P-256 keys; both key usages, because every process
-listens and connects.
+listens and connects. Importing this module raises MissingPartError if the package
+``cryptography`` is not installed.
 """
 
 import datetime
@@ -10,13 +11,19 @@ import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from navette.errors import InvalidValueError, MissingPartError
 
-if TYPE_CHECKING:
+try:
     from cryptography import x509
+    from cryptography.hazmat.primitives import hashes, serialization
     from cryptography.hazmat.primitives.asymmetric import ec
+    from cryptography.x509.oid import ExtendedKeyUsageOID as Usage
+except ImportError as error:
+    raise MissingPartError(
+        "creating keys requires the package cryptography: "
+        "pip install 'navette[security]'"
+    ) from error
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 
@@ -36,7 +43,6 @@ def create_keys(
 
     Raises:
         InvalidValueError: a name is invalid or has keys already.
-        MissingPartError: the ``cryptography`` package is not installed.
     """
     for name in names:
         if not _NAME.fullmatch(name):
@@ -55,8 +61,8 @@ class _Authority:
     def __init__(
         self,
         folder: Path,
-        key: "ec.EllipticCurvePrivateKey",
-        certificate: "x509.Certificate",
+        key: ec.EllipticCurvePrivateKey,
+        certificate: x509.Certificate,
     ) -> None:
         self._folder = folder
         self._key = key
@@ -65,15 +71,6 @@ class _Authority:
     @classmethod
     def of(cls, folder: Path, now: datetime.datetime, days: int) -> "_Authority":
         """Return the authority of the folder, created if there is none."""
-        try:
-            from cryptography import x509
-            from cryptography.hazmat.primitives import hashes, serialization
-            from cryptography.hazmat.primitives.asymmetric import ec
-        except ImportError as error:
-            raise MissingPartError(
-                "creating keys requires the package cryptography: "
-                "pip install 'navette[security]'"
-            ) from error
         if (folder / "ca.key").is_file():
             data = (folder / "ca.key").read_bytes()
             key = serialization.load_pem_private_key(data, None)
@@ -97,11 +94,6 @@ class _Authority:
 
     def issue(self, name: str, now: datetime.datetime, days: int) -> Path:
         """Create a key and its certificate."""
-        from cryptography import x509
-        from cryptography.hazmat.primitives import hashes
-        from cryptography.hazmat.primitives.asymmetric import ec
-        from cryptography.x509.oid import ExtendedKeyUsageOID as Usage
-
         key = ec.generate_private_key(ec.SECP256R1())
         names = [
             x509.DNSName(name),
@@ -125,21 +117,17 @@ class _Authority:
         return folder
 
 
-def _name(text: str) -> "x509.Name":
-    from cryptography import x509
-
+def _name(text: str) -> x509.Name:
     return x509.Name([x509.NameAttribute(x509.NameOID.COMMON_NAME, text)])
 
 
 def _begin(
-    subject: "x509.Name",
-    issuer: "x509.Name",
-    key: "ec.EllipticCurvePrivateKey",
+    subject: x509.Name,
+    issuer: x509.Name,
+    key: ec.EllipticCurvePrivateKey,
     now: datetime.datetime,
     days: int,
-) -> "x509.CertificateBuilder":
-    from cryptography import x509
-
+) -> x509.CertificateBuilder:
     # The clock of a robot may be slow.
     early = now - datetime.timedelta(hours=1)
     return (
@@ -153,16 +141,12 @@ def _begin(
     )
 
 
-def _pem(certificate: "x509.Certificate") -> bytes:
-    from cryptography.hazmat.primitives import serialization
-
+def _pem(certificate: x509.Certificate) -> bytes:
     return certificate.public_bytes(serialization.Encoding.PEM)
 
 
-def _write_key(path: Path, key: "ec.EllipticCurvePrivateKey") -> None:
+def _write_key(path: Path, key: ec.EllipticCurvePrivateKey) -> None:
     """Write a key readable by its owner only, from the first byte on."""
-    from cryptography.hazmat.primitives import serialization
-
     text = key.private_bytes(
         serialization.Encoding.PEM,
         serialization.PrivateFormat.PKCS8,
