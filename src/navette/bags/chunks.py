@@ -10,6 +10,7 @@ from collections import Counter, OrderedDict, deque
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
+from operator import attrgetter
 from typing import NamedTuple
 
 from navette.bags.bag import Damage, OnDamage
@@ -166,7 +167,7 @@ class ChunkMerge:
             self._on_damage(Damage(error.path, chunk.position, error.reason))
             return
         if entries:
-            entries.sort(key=_stamp_of)
+            entries.sort(key=attrgetter("stamp_ns"))
             heappush(heap, _Open(entries[0].stamp_ns, chunk.number, 0, chunk, entries))
         else:
             self._forget(chunk)
@@ -183,7 +184,3 @@ class ChunkMerge:
 
     def _forget(self, chunk: Chunk) -> None:
         self._size -= len(self._cached.pop(chunk.number, b""))
-
-
-def _stamp_of(entry: Entry) -> int:
-    return entry.stamp_ns

@@ -26,7 +26,8 @@ from mcap.records import (
     SummaryOffset,
 )
 
-MAGIC = b"\x89MCAP0\r\n"
+from navette.bags.mcap_records import MAGIC
+
 COMPRESSIONS = ("zstd", "lz4", "none")
 # Opcode, content length; channel, sequence, log time, publish time (ns).
 _MESSAGE = struct.Struct("<BQHIQQ")
@@ -68,7 +69,8 @@ class McapFile:
         self._chunk_counts: list[dict[int, int]] = []
         self._parts: list[bytes] = []
         self._index: dict[int, list[int]] = {}
-        self._index_size = _INDEX_BASE
+        #: Upper bound of the bytes that :meth:`finish` writes after the last chunk.
+        self.index_size = _INDEX_BASE
         #: Size of the current chunk, bytes.
         self.chunk_size = 0
         self._write(MAGIC + _record(Header(profile=profile, library=library)))
@@ -82,11 +84,6 @@ class McapFile:
     def size(self) -> int:
         """Bytes written, plus the uncompressed current chunk."""
         return self._position + self.chunk_size
-
-    @property
-    def index_size(self) -> int:
-        """Upper bound of the bytes that :meth:`finish` writes after the last chunk."""
-        return self._index_size
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Return the schema id for :meth:`add_channel`."""
@@ -156,7 +153,7 @@ class McapFile:
                 uncompressed_size=chunk.uncompressed_size,
             )
         )
-        self._index_size += _CHUNK_INDEX_BASE + _PER_CHANNEL * len(offsets)
+        self.index_size += _CHUNK_INDEX_BASE + _PER_CHANNEL * len(offsets)
         counts = {channel: len(index) // 2 for channel, index in self._index.items()}
         self._chunk_counts.append(counts)
         self._parts, self._index, self.chunk_size = [], {}, 0
@@ -250,7 +247,7 @@ class McapFile:
     def _add_to_both(self, record: bytes) -> None:
         self._parts.append(record)
         self.chunk_size += len(record)
-        self._index_size += len(record) + _PER_CHANNEL
+        self.index_size += len(record) + _PER_CHANNEL
 
     def _write(self, data: bytes) -> None:
         self._stream.write(data)

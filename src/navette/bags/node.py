@@ -103,8 +103,9 @@ class RecorderNode(StageNode):
         self._recorded: set[tuple[str, str]] = set()
         #: Selected topics whose type is not defined yet.
         self.undefined: dict[str, str] = {}
-        self._message_count = 0
-        self._payload_bytes = 0
+        self.message_count = 0
+        #: Bytes of the messages recorded so far, before compression.
+        self.payload_bytes = 0
         self._refreshing = False
         self._early: deque[tuple[RecordedTopic, bytes]] = deque(maxlen=_MOST_EARLY)
         self._flush_timer = self._new_flush_timer()
@@ -113,15 +114,6 @@ class RecorderNode(StageNode):
             self.create_service(Trigger, "~/snapshot", self._on_snapshot)
         self._stop_listening = self.context.graph.on_change(self._on_graph_change)
         self.refresh()
-
-    @property
-    def message_count(self) -> int:
-        return self._message_count
-
-    @property
-    def payload_bytes(self) -> int:
-        """Bytes of the messages recorded so far, before compression."""
-        return self._payload_bytes
 
     @property
     def topics(self) -> list[str]:
@@ -211,8 +203,8 @@ class RecorderNode(StageNode):
         if recorded.count == 0:
             self._announce(recorded)
         recorded.count += 1
-        self._message_count += 1
-        self._payload_bytes += len(payload)
+        self.message_count += 1
+        self.payload_bytes += len(payload)
         try:
             self._recording.write(recorded, self._clock.now_ns, payload)
         except OSError as error:

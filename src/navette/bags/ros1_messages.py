@@ -58,11 +58,5 @@ class Ros1Type:
             ) from error
 
 
-@lru_cache(maxsize=256)
-def ros1_type(name: str, text: str) -> Ros1Type:
-    """Return the type of a name and a definition; cached, since it takes milliseconds.
-
-    Raises:
-        FileFormatError: the definition cannot be read.
-    """
-    return Ros1Type(name, text)
+# Cached, since reading a definition takes milliseconds.
+ros1_type = lru_cache(maxsize=256)(Ros1Type)

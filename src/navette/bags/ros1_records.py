@@ -16,7 +16,6 @@ from navette.errors import DecodeError, FileFormatError
 
 MAGIC = b"#ROSBAG V2.0\n"
 _UINT32 = struct.Struct("<I")
-_UINT64 = struct.Struct("<Q")
 _TIME = struct.Struct("<II")
 _LARGEST_HEADER = 1 << 20
 
@@ -96,13 +95,11 @@ def uint8(fields: Fields, name: bytes) -> int:
 
 
 def uint32(fields: Fields, name: bytes) -> int:
-    number: int = _UINT32.unpack(_field(fields, name, 4))[0]
-    return number
+    return int.from_bytes(_field(fields, name, 4), "little")
 
 
 def uint64(fields: Fields, name: bytes) -> int:
-    number: int = _UINT64.unpack(_field(fields, name, 8))[0]
-    return number
+    return int.from_bytes(_field(fields, name, 8), "little")
 
 
 def time_ns(fields: Fields, name: bytes) -> int:

@@ -11,6 +11,7 @@ from navette.bags.bag import BagReader, BagTopic
 from navette.errors import NavetteError
 from navette.msgs import get_interface, type_hash
 from navette.msgs.definition_sections import read_definition
+from navette.msgs.registration import differs
 
 _BATCH = 65536
 
@@ -166,13 +167,7 @@ def is_installed(topic: BagTopic) -> bool:
             return topic.type_hash == type_hash(topic.type_name)
         if not topic.definition:
             return True
-        return _same_fields(topic)
+        specs = read_definition(topic.type_name, topic.definition)
+        return not any(differs(spec) for spec in specs)
     except NavetteError:
         return False
-
-
-def _same_fields(topic: BagTopic) -> bool:
-    from navette.msgs.registration import differs
-
-    specs = read_definition(topic.type_name, topic.definition)
-    return not any(differs(spec) for spec in specs)

@@ -15,7 +15,8 @@ from io import FileIO
 from pathlib import Path
 from typing import IO, cast
 
-from navette.bags.mcap_file import COMPRESSIONS, MAGIC, McapFile
+from navette.bags.mcap_file import COMPRESSIONS, McapFile
+from navette.bags.mcap_records import MAGIC
 from navette.bags.reserve import Reserve
 from navette.errors import FileFormatError, InvalidValueError
 

@@ -16,10 +16,6 @@ class Playhead:
         self.moves = False
         self._set_ratio(rate)
 
-    @property
-    def rate(self) -> float:
-        return self._rate
-
     def at(self, now_ns: int) -> int:
         """Return the position in the recording at this time."""
         if not self.moves:
@@ -52,5 +48,5 @@ class Playhead:
         self._set_ratio(rate)
 
     def _set_ratio(self, rate: float) -> None:
-        self._rate = check_rate(rate)
-        self._num, self._den = self._rate.as_integer_ratio()
+        self.rate = check_rate(rate)
+        self._num, self._den = self.rate.as_integer_ratio()
