@@ -215,7 +215,6 @@ class StdlibHandler(logging.Handler):
     """Handler that passes records of ``logging.getLogger`` (algorithms) to a hub.
 
     Args:
-        hub: receives the records.
         running_node: returns the full name of the node whose callback runs, or "". The
             record belongs to that node (``/rosout``, level).
     """

@@ -114,7 +114,6 @@ class AsyncParameterClient:
         parameters: Sequence[Parameter[Any] | ParameterMsg],
         callback: DoneCallback | None = None,
     ) -> Future[Any]:
-        """Set all parameters or none."""
         messages = _messages(parameters)
         return self._request("set_parameters_atomically", callback, parameters=messages)
 
@@ -147,7 +146,6 @@ class AsyncParameterClient:
         use_wildcard: bool = False,
         callback: DoneCallback | None = None,
     ) -> Future[Any]:
-        """As :meth:`load_parameter_file`, but set all parameters or none."""
         found = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters_atomically(list(found.values()), callback)
 

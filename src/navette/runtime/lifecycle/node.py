@@ -236,9 +236,7 @@ class LifecycleNode(LifecycleNodeMixin, Node):
     """A managed node.
 
     Args:
-        node_name: name in the graph.
         enable_communication_interface: whether to serve the lifecycle's services.
-        kwargs: as for :class:`Node`.
     """
 
     def __init__(

@@ -81,10 +81,6 @@ class StageNode(Node):
 
     Input messages are shared with other subscribers: callbacks must not change them.
 
-    Args:
-        node_name: name in the graph.
-        kwargs: as for :class:`Node`.
-
     Raises:
         ParameterError: a parameter value given for this node is not allowed, or the
             node has no such parameter; lists the existing ones.

@@ -32,17 +32,12 @@ def get_package_prefix(package_name: str) -> str:
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
-    """Return the share directory of a package as text.
-
-    Raises:
-        PackageNotFoundError: the package does not exist.
-        ValueError: the name is not valid.
-    """
+    """Return the share directory as text; raise as :func:`get_package_prefix`."""
     return str(_share(package_name, warn=print_warning))
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:
-    """Return the share directory; raise as :func:`get_package_share_directory`."""
+    """Return the share directory; raise as :func:`get_package_prefix`."""
     return _share(package_name, warn=print_warning)
 
 

@@ -224,7 +224,6 @@ class StereoCameraModel:
         return self.left.cx() - self.right.cx()
 
     def tfFrame(self) -> str | None:
-        """Return the frame of the left camera."""
         return self.left.tfFrame()
 
     def project3dToPixel(self, point: Sequence[float]) -> tuple[Pixel, Pixel]:

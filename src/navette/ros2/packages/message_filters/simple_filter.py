@@ -35,11 +35,7 @@ class SimpleFilter:
 class Subscriber(SimpleFilter):
     """Filter whose input is a subscription; has the subscription's attributes too.
 
-    Args:
-        node: the node that subscribes.
-        msg_type, topic: as for ``create_subscription``.
-        qos_profile: profile or depth.
-        kwargs: as for ``create_subscription``.
+    The arguments are those of ``node.create_subscription``.
     """
 
     def __init__(

@@ -88,8 +88,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
     on the order of arrival.
 
     Args:
-        fs: the input filters.
-        queue_size: number of waiting messages per input.
+        fs, queue_size: as for :class:`TimeSynchronizer`.
         slop: longest time between the stamps of a set, in s; 0 matches no set.
         allow_headerless: use the time of arrival, which depends on delays, for messages
             without a stamp; otherwise these are dropped.
