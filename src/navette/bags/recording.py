@@ -6,7 +6,6 @@ from pathlib import Path
 
 from navette.bags.bag import BagTopic
 from navette.bags.metadata import FileFacts, write_metadata
-from navette.bags.qos import qos_text
 from navette.bags.writer import BagWriter
 from navette.errors import FileFormatError
 
@@ -41,14 +40,7 @@ class SingleFile:
     def write(self, recorded: RecordedTopic, stamp_ns: int, payload: bytes) -> None:
         channel = self._channels.get(recorded)
         if channel is None:
-            topic = recorded.topic
-            channel = self._channels[recorded] = self._writer.add_channel(
-                topic.name,
-                topic.type_name,
-                topic.definition,
-                type_hash=topic.type_hash,
-                qos=qos_text(topic.qos),
-            )
+            channel = self._channels[recorded] = self._writer.add_topic(recorded.topic)
         self._writer.write(channel, stamp_ns, payload)
         self.facts.add(stamp_ns)
 

@@ -15,8 +15,10 @@ from io import FileIO
 from pathlib import Path
 from typing import IO, cast
 
+from navette.bags.bag import BagTopic
 from navette.bags.mcap_file import COMPRESSIONS, McapFile
 from navette.bags.mcap_records import MAGIC
+from navette.bags.qos import qos_text
 from navette.bags.reserve import Reserve
 from navette.errors import FileFormatError, InvalidValueError
 
@@ -86,6 +88,17 @@ class BagWriter:
             self._schemas[type_name, definition] = schema
         metadata = {"offered_qos_profiles": qos, "topic_type_hash": type_hash}
         return self._mcap.add_channel(topic, encoding, schema, metadata)
+
+    def add_topic(self, topic: BagTopic) -> int:
+        """Add a channel for a topic of a recording."""
+        return self.add_channel(
+            topic.name,
+            topic.type_name,
+            topic.definition,
+            type_hash=topic.type_hash,
+            qos=qos_text(topic.qos),
+            encoding=topic.encoding,
+        )
 
     def write(self, channel: int, stamp_ns: int, payload: bytes) -> None:
         """Append a message: CDR with its 4-byte header, and the time of reception."""

@@ -6,7 +6,6 @@ from pathlib import Path
 from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.mcap_file import COMPRESSIONS
 from navette.bags.opening import holds_bag, is_bag
-from navette.bags.qos import qos_text
 from navette.bags.rosbags_writers import Db3Writer, Ros1Writer
 from navette.bags.topic_writer import TopicWriter
 from navette.bags.writer import BagWriter
@@ -27,14 +26,7 @@ class McapWriter(TopicWriter):
         self._writer = BagWriter(self._part, compression=compression)
 
     def _add(self, topic: BagTopic) -> int:
-        return self._writer.add_channel(
-            topic.name,
-            topic.type_name,
-            topic.definition,
-            type_hash=topic.type_hash,
-            qos=qos_text(topic.qos),
-            encoding=topic.encoding,
-        )
+        return self._writer.add_topic(topic)
 
     def write(self, message: BagMessage) -> None:
         channel = self.channel_of(message.topic)

@@ -168,15 +168,9 @@ def read_inertial(link: XmlNode, graph: PoseGraph, link_name: str) -> Inertial:
         return Inertial(1.0, Transform3.identity(), (1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
     link_T_com = graph.resolve_in(link_name, read_pose(node))
     inertia = node.find("inertia")
+    defaults = {"ixx": 1.0, "iyy": 1.0, "izz": 1.0, "ixy": 0.0, "ixz": 0.0, "iyz": 0.0}
     xx, yy, zz, xy, xz, yz = (
-        inertia.number(key, 1.0 if key[1] == key[2] else 0.0) if inertia else default
-        for key, default in (
-            ("ixx", 1.0),
-            ("iyy", 1.0),
-            ("izz", 1.0),
-            ("ixy", 0.0),
-            ("ixz", 0.0),
-            ("iyz", 0.0),
-        )
+        inertia.number(key, default) if inertia else default
+        for key, default in defaults.items()
     )
     return Inertial(node.positive("mass", 1.0), link_T_com, (xx, yy, zz, xy, xz, yz))

@@ -255,13 +255,9 @@ class _Fields:
 
     def _identifier(self, name: str, value: object) -> int:
         if isinstance(value, bool) or not isinstance(value, int):
-            raise DecodeError(
-                f"{self._where}: {name!r} has {value!r:.80}, not a number"
-            )
+            raise self._wrong(name, value, "a number")
         if not 0 <= value < _U32:
-            raise DecodeError(
-                f"{self._where}: {name!r} has {value!r:.80}, not a uint32"
-            )
+            raise self._wrong(name, value, "a uint32")
         return value
 
     def _wrong(self, name: str, value: object, wanted: str) -> DecodeError:
