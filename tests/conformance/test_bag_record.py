@@ -248,7 +248,7 @@ def test_a_robot_keeps_driving_when_its_disk_is_full(tmp_path: Path) -> None:
 def test_invalid_uses(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("", "utf-8")
     for arguments, reason in (
-        ([], "name topics, or --all"),
+        ([], "give topics, --all"),
         (["-a", "-o", "a.mcap"], "exists already"),
         (["-a", "-x", "["], "is not a regular expression"),
         (["-a", "--compression", "bz2", "-o", "b"], "compression"),
