@@ -295,8 +295,7 @@ class Hub:
                 session.send_status(f"advertise: {problem}")
                 continue
             session.client_channels[channel.id] = channel
-            session.pending += 1
-            self._forward(self._program.open_publisher, session.id, channel)
+            self._request(session, self._program.open_publisher, channel)
 
     def _unadvertise(self, session: Session, request: frames.Unadvertise) -> None:
         for channel_id in request.channel_ids:
@@ -305,8 +304,7 @@ class Hub:
                     f"unadvertise: unknown channel id {channel_id}", Level.WARNING
                 )
                 continue
-            session.pending += 1
-            self._forward(self._program.close_publisher, session.id, channel_id)
+            self._request(session, self._program.close_publisher, channel_id)
 
     def _publish(self, session: Session, request: frames.Publish) -> None:
         if request.channel_id not in session.client_channels:
@@ -314,28 +312,19 @@ class Hub:
                 f"publish: channel {request.channel_id} is not advertised"
             )
             return
-        session.pending += 1
-        self._forward(
-            self._program.publish_from_client,
-            session.id,
-            request.channel_id,
-            request.data,
+        self._request(
+            session, self._program.publish_from_client, request.channel_id, request.data
         )
 
     def _get_parameters(self, session: Session, request: frames.GetParameters) -> None:
-        session.pending += 1
-        self._forward(
-            self._program.request_parameters,
-            session.id,
-            request.names,
-            request.request_id,
+        self._request(
+            session, self._program.request_parameters, request.names, request.request_id
         )
 
     def _set_parameters(self, session: Session, request: frames.SetParameters) -> None:
-        session.pending += 1
-        self._forward(
+        self._request(
+            session,
             self._program.change_parameters,
-            session.id,
             request.parameters,
             request.request_id,
         )
@@ -363,8 +352,7 @@ class Hub:
     def _watch_nodes(self, session: Session, request: frames.WatchNodes) -> None:
         session.wants_nodes = request.wanted
         if request.wanted:
-            session.pending += 1
-            self._forward(self._program.request_parameter_texts, session.id)
+            self._request(session, self._program.request_parameter_texts)
 
     def _fetch_asset(self, session: Session, request: frames.FetchAsset) -> None:
         try:
@@ -387,20 +375,24 @@ class Hub:
         self, session: Session, request: frames.ControlPlayback
     ) -> None:
         if self._can_play(session):
-            self._forward(self._program.control_playback, session.id, request)
+            self._request(session, self._program.control_playback, request)
 
     def _step_playback(self, session: Session, _request: frames.StepPlayback) -> None:
         if self._can_play(session):
-            self._forward(self._program.step_playback, session.id)
+            self._request(session, self._program.step_playback)
 
     def _can_play(self, session: Session) -> bool:
         if not self._plays:
             session.send_status(
                 "playback control: the server does not play a recording"
             )
-            return False
+        return self._plays
+
+    def _request(
+        self, session: Session, command: Callable[..., None], *args: Any
+    ) -> None:
         session.pending += 1
-        return True
+        self._forward(command, session.id, *args)
 
     # -- internals ----------------------------------------------------------------
 
