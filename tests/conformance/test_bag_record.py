@@ -249,7 +249,7 @@ def test_invalid_uses(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("", "utf-8")
     for arguments, reason in (
         ([], "give topics, --all"),
-        (["-a", "-o", "a.mcap"], "exists already"),
+        (["-a", "-o", "a.mcap"], "already exists"),
         (["-a", "-x", "["], "is not a regular expression"),
         (["-a", "--compression", "bz2", "-o", "b"], "compression"),
     ):
