@@ -45,44 +45,37 @@ class ControlNode(StageNode):
 
     PARAMS = ControlParams
     INPUTS = (
-        Input(
-            topic=topics.PATH.name,
-            type=topics.PATH.type,
-            role="path to follow; an empty path stops",
+        Input.of(
+            topics.PATH,
+            "path to follow; an empty path stops",
             callback="on_path",
         ),
-        Input(
-            topic=topics.ODOMETRY.name,
-            type=topics.ODOMETRY.type,
-            role="pose and velocity",
+        Input.of(
+            topics.ODOMETRY,
+            "pose and velocity",
             rate_hz=10.0,
             timeout_s=0.14,
             callback="on_odometry",
         ),
-        Input(
-            topic=topics.COSTMAP.name,
-            type=topics.COSTMAP.type,
-            role="obstacles to keep clear of",
+        Input.of(
+            topics.COSTMAP,
+            "obstacles to keep clear of",
             rate_hz=10.0,
             timeout_s=0.19,
             callback="on_costmap",
         ),
-        Input(
-            topic=topics.PLANNER_STATUS.name,
-            type=topics.PLANNER_STATUS.type,
-            role="liveliness of the planner",
+        Input.of(
+            topics.PLANNER_STATUS,
+            "liveliness of the planner",
             rate_hz=2.0,
             timeout_s=2.0,
-            depth=1,
-            latched=True,
             callback="on_planner_status",
         ),
     )
     OUTPUTS = (
-        Output(
-            topic=topics.CMD_VEL.name,
-            type=topics.CMD_VEL.type,
-            role="velocity command",
+        Output.of(
+            topics.CMD_VEL,
+            "velocity command",
             rate_hz=20.0,
         ),
         status_output(topics.CONTROL_STATUS.name),

@@ -23,20 +23,18 @@ class CostmapNode(StageNode):
 
     PARAMS = CostmapParams
     INPUTS: ClassVar = (
-        Input(
-            topic=topics.LIDAR.name,
-            type=topics.LIDAR.type,
-            role="laser scan",
+        Input.of(
+            topics.LIDAR,
+            "laser scan",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_scan",
         ),
     )
     OUTPUTS: ClassVar = (
-        Output(
-            topic=topics.COSTMAP.name,
-            type=topics.COSTMAP.type,
-            role="costs around the sensor",
+        Output.of(
+            topics.COSTMAP,
+            "costs around the sensor",
             rate_hz=10.0,
         ),
     )

@@ -35,30 +35,25 @@ class MapMemoryNode(StageNode):
 
     PARAMS = MapMemoryParams
     INPUTS: ClassVar = (
-        Input(
-            topic=topics.COSTMAP.name,
-            type=topics.COSTMAP.type,
-            role="costs around the sensor",
+        Input.of(
+            topics.COSTMAP,
+            "costs around the sensor",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_costmap",
         ),
-        Input(
-            topic=topics.ODOMETRY.name,
-            type=topics.ODOMETRY.type,
-            role="pose and velocity",
+        Input.of(
+            topics.ODOMETRY,
+            "pose and velocity",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
         ),
     )
     OUTPUTS: ClassVar = (
-        Output(
-            topic=topics.MAP.name,
-            type=topics.MAP.type,
-            role="map of everything seen so far",
-            depth=1,
-            latched=True,
+        Output.of(
+            topics.MAP,
+            "map of everything seen so far",
         ),
     )
 

@@ -28,36 +28,28 @@ class MissionNode(StageNode):
 
     PARAMS = MissionParams
     INPUTS = (
-        Input(
-            topic=topics.PLANNER_STATUS.name,
-            type=topics.PLANNER_STATUS.type,
-            role="progress and result of the goal",
+        Input.of(
+            topics.PLANNER_STATUS,
+            "progress and result of the goal",
             rate_hz=2.0,
-            depth=1,
-            latched=True,
             callback="on_planner_status",
         ),
-        Input(
-            topic=topics.ODOMETRY.name,
-            type=topics.ODOMETRY.type,
-            role="position, for path length and distance left",
+        Input.of(
+            topics.ODOMETRY,
+            "position, for path length and distance left",
             rate_hz=10.0,
             callback="on_odometry",
         ),
-        Input(
-            topic=topics.MAP.name,
-            type=topics.MAP.type,
-            role="availability of a map",
-            depth=1,
-            latched=True,
+        Input.of(
+            topics.MAP,
+            "availability of a map",
             callback="on_map",
         ),
     )
     OUTPUTS = (
-        Output(
-            topic=topics.GOAL_POINT.name,
-            type=topics.GOAL_POINT.type,
-            role="the next goal",
+        Output.of(
+            topics.GOAL_POINT,
+            "the next goal",
         ),
     )
 

@@ -47,40 +47,33 @@ class PlannerNode(StageNode):
 
     PARAMS = PlannerParams
     INPUTS: ClassVar = (
-        Input(
-            topic=topics.MAP.name,
-            type=topics.MAP.type,
-            role="map of everything seen so far",
-            depth=1,
-            latched=True,
+        Input.of(
+            topics.MAP,
+            "map of everything seen so far",
             callback="on_map",
         ),
-        Input(
-            topic=topics.ODOMETRY.name,
-            type=topics.ODOMETRY.type,
-            role="pose and velocity",
+        Input.of(
+            topics.ODOMETRY,
+            "pose and velocity",
             rate_hz=10.0,
             timeout_s=0.5,
             callback="on_odometry",
         ),
-        Input(
-            topic=topics.GOAL_POINT.name,
-            type=topics.GOAL_POINT.type,
-            role="goal position",
+        Input.of(
+            topics.GOAL_POINT,
+            "goal position",
             callback="on_goal_point",
         ),
-        Input(
-            topic=topics.GOAL_POSE.name,
-            type=topics.GOAL_POSE.type,
-            role="goal position and heading",
+        Input.of(
+            topics.GOAL_POSE,
+            "goal position and heading",
             callback="on_goal_pose",
         ),
     )
     OUTPUTS: ClassVar = (
-        Output(
-            topic=topics.PATH.name,
-            type=topics.PATH.type,
-            role="path to follow; empty = stop",
+        Output.of(
+            topics.PATH,
+            "path to follow; empty = stop",
         ),
         status_output(topics.PLANNER_STATUS.name),
     )

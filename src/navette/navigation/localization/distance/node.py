@@ -27,20 +27,17 @@ class OdomIntegratorNode(StageNode):
     PARAMS = DistanceParams
     FIXED_AT_START = ("topic", "topic_type", "queue_size")
     INPUTS: ClassVar = (
-        Input(
-            topic=topics.GNSS.name,
-            type=topics.GNSS.type,
-            role="position and velocity; parameters select topic and type",
+        Input.of(
+            topics.GNSS,
+            "position and velocity; parameters select topic and type",
             rate_hz=100.0,
-            depth=1,
             callback="on_message",
         ),
     )
     OUTPUTS: ClassVar = (
-        Output(
-            topic=topics.DISTANCE.name,
-            type=topics.DISTANCE.type,
-            role="distance travelled, m; 0.0 before the first message",
+        Output.of(
+            topics.DISTANCE,
+            "distance travelled, m; 0.0 before the first message",
             rate_hz=10.0,
         ),
     )

@@ -60,14 +60,15 @@ class EkfNode(StageNode):
         _input("gps0", "sensor_msgs/msg/NavSatFix", "position of the antenna"),
     )
     OUTPUTS: ClassVar = (
-        Output(
-            topic=topics.ODOMETRY.name,
-            type=topics.ODOMETRY.type,
-            role="estimated pose and velocity",
+        Output.of(
+            topics.ODOMETRY,
+            "estimated pose and velocity",
             rate_hz=30.0,
         ),
-        Output(
-            topic=topics.TF.name, type=topics.TF.type, role="the same", rate_hz=30.0
+        Output.of(
+            topics.TF,
+            "the same",
+            rate_hz=30.0,
         ),
     )
 
