@@ -70,7 +70,7 @@ def _read_sensor(
     if kind in _LIDAR_TYPES:
         return _lidar(node, kind, common, unsupported)
     if kind == "camera":
-        return _camera(node, common)
+        return _camera(node, common, unsupported)
     if kind == "imu":
         return _imu(node, common)
     if kind == "contact":
@@ -132,7 +132,7 @@ def _lidar(
     )
 
 
-def _camera(node: XmlNode, common: _Common) -> CameraSensor:
+def _camera(node: XmlNode, common: _Common, unsupported: Unsupported) -> CameraSensor:
     body = node.need("camera")
     image, clip = body.find("image"), body.find("clip")
     width = round(image.positive("width", 320.0)) if image else 320
@@ -144,6 +144,8 @@ def _camera(node: XmlNode, common: _Common) -> CameraSensor:
         raise body.error(
             f"<horizontal_fov> is {fov:g}; a pinhole camera requires less than pi"
         )
+    if _stddev(body) > 0:
+        unsupported.note("noise of a camera", body)
     return CameraSensor(
         **common,
         rate_hz=_rate(node, 30.0),

@@ -237,6 +237,23 @@ def test_unsupported_elements_are_logged_once_per_kind(
         assert kind in text
 
 
+def test_noise_of_a_camera_is_checked_and_not_supported(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    def read(stddev: float) -> None:
+        noise = f"<noise><type>gaussian</type><stddev>{stddev}</stddev></noise>"
+        camera = f"<sensor name='c' type='camera'><camera>{noise}</camera></sensor>"
+        _read(tmp_path, _model(f"<link name='a'>{camera}</link>"))
+
+    with caplog.at_level(logging.WARNING):
+        read(0.0)
+        assert not caplog.messages
+        read(0.1)
+    assert "noise of a camera" in caplog.text
+    with pytest.raises(FileFormatError, match="<stddev> is -1; must be >= 0"):
+        read(-1.0)
+
+
 def test_common_includes_are_built_in(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
