@@ -38,6 +38,7 @@ from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
+from navette.viewer.listening import Listeners, listen
 from navette.viewer.node_monitor import NodeMonitor
 from navette.viewer.parameter_requests import ParameterRequests
 from navette.viewer.params import ViewerParams
@@ -58,6 +59,7 @@ class ViewerNode(StageNode):
     Args:
         playback: a recording that is played here: clients see its time and control it.
         asset_folders: folder of each package name in ``package://<name>/…`` URIs.
+        listeners: sockets that listen already, instead of the parameters host and port.
 
     Raises:
         InvalidValueError: the port is in use or the address cannot be bound.
@@ -73,6 +75,7 @@ class ViewerNode(StageNode):
         playback: Playback | None = None,
         asset_folders: Mapping[str, Path] | None = None,
         parameter_overrides: Sequence[Parameter[Any]] | None = None,
+        listeners: Listeners | None = None,
     ) -> None:
         super().__init__(
             "viewer", context=context, parameter_overrides=parameter_overrides
@@ -95,7 +98,7 @@ class ViewerNode(StageNode):
         self._playback = PlaybackRequests(playback, self._hub, self._call)
         try:
             self._parameters = self._monitor_nodes()
-            self._server = self._make_server()
+            self._server = self._make_server(listeners)
             self._server.start()
         except BaseException:
             super().destroy_node()
@@ -336,7 +339,7 @@ class ViewerNode(StageNode):
             and end.node_full_name not in here
         }
 
-    def _make_server(self) -> ViewerServer:
+    def _make_server(self, listeners: Listeners | None) -> ViewerServer:
         params = self.params
         data = importlib.resources.files("navette.viewer") / "data"
         scripts = {
@@ -353,8 +356,7 @@ class ViewerNode(StageNode):
                 self._health,
             ),
             AccessPolicy(params.host, params.allowed_origins, params.allowed_hosts),
-            host=params.host,
-            port=params.port,
+            listeners=listeners or listen(params.host, params.port),
             now_ns=self._now_ns,
             on_period=self._monitor.on_period,
             time_rate_hz=params.time_rate_hz,

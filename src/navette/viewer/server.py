@@ -6,8 +6,8 @@ An asyncio loop in its own thread owns the hub and all sockets. Other threads us
 
 import asyncio
 import contextlib
-import errno
 import logging
+import socket
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -20,9 +20,9 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
-from navette.errors import InvalidValueError, NavetteError
 from navette.viewer.frames import SUBPROTOCOLS
 from navette.viewer.hub import Hub
+from navette.viewer.listening import Listeners, port_of
 from navette.viewer.liveness import PERIOD_S
 from navette.viewer.offers import OfferQueue
 from navette.viewer.outbox import Outbox
@@ -45,8 +45,7 @@ class ViewerServer:
     """Serves a hub and a site on one port, in its own thread.
 
     Args:
-        host: address to bind.
-        port: TCP port; 0 takes a free one, see :attr:`port`.
+        listeners: listening sockets, which are closed with the server.
         now_ns: the program's time; called on the socket thread.
         on_period: called on the socket thread every ``PERIOD_S`` of wall time.
     """
@@ -57,8 +56,7 @@ class ViewerServer:
         site: Site,
         policy: AccessPolicy,
         *,
-        host: str,
-        port: int,
+        listeners: Listeners,
         now_ns: Callable[[], int],
         on_period: Callable[[], None],
         time_rate_hz: float,
@@ -67,8 +65,8 @@ class ViewerServer:
         self._hub = hub
         self._site = site
         self._policy = policy
-        self._host = host
-        self.port = port
+        self._listeners = listeners
+        self.port = port_of(listeners)
         self._now_ns = now_ns
         self._on_period = on_period
         self._tick_s = 1.0 / time_rate_hz
@@ -85,11 +83,7 @@ class ViewerServer:
     # -- any thread ------------------------------------------------------------
 
     def start(self) -> None:
-        """Listen; return when clients can connect.
-
-        Raises:
-            InvalidValueError: the address cannot be bound.
-        """
+        """Serve; return when the first clients are accepted."""
         self._thread.start()
         self._started.result()
 
@@ -98,6 +92,8 @@ class ViewerServer:
         if self._thread.is_alive():
             self._loop.call_soon_threadsafe(self._stop.set)
             self._thread.join()
+        for listener in self._listeners:
+            listener.close()
 
     def call(self, function: Callable[..., None], *args: Any) -> None:
         """Run a hub method on the socket thread and send what it queued."""
@@ -119,25 +115,23 @@ class ViewerServer:
         except OSError as error:
             if self._started.done():
                 raise
-            self._started.set_exception(self._explain(error))
+            self._started.set_exception(error)
         finally:
             self._loop.close()
             self._started.cancel()  # start() must not block forever
 
-    def _explain(self, error: OSError) -> NavetteError:
-        where = f"viewer: cannot listen on {self._host} port {self.port}"
-        if error.errno == errno.EADDRINUSE:
-            return InvalidValueError(
-                f"{where}: the port is in use; stop the program that uses it or "
-                "choose another port"
-            )
-        return InvalidValueError(f"{where}: {error.strerror or error}")
-
     async def _serve(self) -> None:
-        server = await serve(
+        servers = [await self._accept(each) for each in self._listeners]
+        self._started.set_result(None)
+        self._tick()
+        self._run_period()
+        await self._stop.wait()
+        await self._end(servers)
+
+    async def _accept(self, listener: socket.socket) -> Server:
+        return await serve(
             self._client,
-            self._host,
-            self.port,
+            sock=listener,
             subprotocols=[Subprotocol(name) for name in SUBPROTOCOLS],
             process_request=self._answer,
             compression=None,  # costs more time than loopback gains
@@ -148,21 +142,17 @@ class ViewerServer:
             server_header=None,
             logger=_log,
         )
-        self.port = _port_of(server)
-        self._started.set_result(None)
-        self._tick()
-        self._run_period()
-        await self._stop.wait()
-        await self._end(server)
 
-    async def _end(self, server: Server) -> None:
+    async def _end(self, servers: list[Server]) -> None:
         """Close all connections; abort clients that do not complete the handshake."""
-        server.close()
-        ended = asyncio.create_task(server.wait_closed())
-        await asyncio.wait([ended], timeout=_CLOSE_S)
+        ended = []
+        for server in servers:
+            server.close()
+            ended.append(asyncio.create_task(server.wait_closed()))
+        await asyncio.wait(ended, timeout=_CLOSE_S)
         for peer in self._peers:
             peer.abort()
-        await ended
+        await asyncio.gather(*ended)
 
     def _answer(
         self, connection: ServerConnection, request: Request
@@ -249,7 +239,3 @@ def _response(answer: HttpResponse) -> Response:
     )
     status = HTTPStatus(answer.status)
     return Response(status.value, status.phrase, headers, answer.body)
-
-
-def _port_of(server: Server) -> int:
-    return int(next(iter(server.sockets)).getsockname()[1])
