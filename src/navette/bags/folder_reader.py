@@ -12,10 +12,15 @@ import yaml
 from navette.bags.bag import BagMessage, BagReader, BagTopic, OnDamage
 from navette.bags.qos import parse_qos
 from navette.errors import FileFormatError
+from navette.untrusted.budget import METADATA as METADATA_BUDGET
+from navette.untrusted.files import open_regular
+from navette.untrusted.yaml_input import BoundedLoader, line_of, load_yaml, problem_of
 
 METADATA = "metadata.yaml"
-_LARGEST_METADATA = 16 << 20
-_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+class _MetadataLoader(BoundedLoader):
+    BUDGET = METADATA_BUDGET
 
 
 @dataclass(frozen=True)
@@ -40,13 +45,14 @@ def read_metadata(folder: Path) -> Metadata:
     """
     path = folder / METADATA
     try:
-        if path.stat().st_size > _LARGEST_METADATA:
-            raise FileFormatError(path, "is too large for metadata")
-        found = yaml.load(path.read_text("utf-8", "replace"), _LOADER)
+        with open_regular(path) as file:
+            data = file.read(METADATA_BUDGET.octets + 1)
+        found = load_yaml(data.decode("utf-8", "replace"), _MetadataLoader)
     except OSError as error:
         raise FileFormatError(path, f"cannot be read: {error.strerror}") from error
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise FileFormatError(path, f"is not YAML: {error}") from error
+    except yaml.YAMLError as error:
+        reason = f"is not YAML: {problem_of(error)}"
+        raise FileFormatError(path, reason, line_of(error)) from error
     try:
         return _parse(found["rosbag2_bagfile_information"])
     except (KeyError, TypeError, AttributeError, ValueError) as error:

@@ -6,6 +6,9 @@ from typing import Any
 
 import yaml
 
+from navette.untrusted.budget import QOS
+from navette.untrusted.yaml_input import BoundedLoader, load_yaml
+
 _INFINITE_NS = 2**63 - 1
 
 
@@ -75,7 +78,6 @@ _NAMES = {
         "best_available",
     ),
 }
-_LONGEST_TEXT = 1 << 16
 _MOST_OFFERS = 1000
 
 
@@ -85,11 +87,11 @@ def parse_qos(text: object) -> tuple[OfferedQos, ...]:
     Invalid values become the default: QoS is a hint and never a reason to refuse a bag.
     """
     if isinstance(text, str):
-        if not text or len(text) > _LONGEST_TEXT:
+        if not text:
             return ()
         try:
-            text = yaml.load(text, _LOADER)
-        except (yaml.YAMLError, ValueError, RecursionError):
+            text = load_yaml(text, _QosLoader)
+        except yaml.YAMLError:
             return ()
     if not isinstance(text, list):
         return ()
@@ -97,7 +99,8 @@ def parse_qos(text: object) -> tuple[OfferedQos, ...]:
     return tuple(_offer(each) for each in offers if isinstance(each, dict))
 
 
-_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+class _QosLoader(BoundedLoader):
+    BUDGET = QOS
 
 
 def _offer(found: Mapping[str, Any]) -> OfferedQos:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from navette.errors import InvalidValueError
+from navette.errors import FileFormatError, InvalidValueError
 
 MOST_BYTES = 4 * 1024 * 1024  # of text on standard input
 
@@ -33,11 +33,12 @@ def from_yaml(text: str) -> Any:
     """
     import yaml
 
+    from navette.untrusted.yaml_input import load_yaml, problem_of
+
     try:
-        return yaml.safe_load(text)
+        return load_yaml(text)
     except yaml.YAMLError as error:
-        reason = getattr(error, "problem", None) or str(error)
-        raise InvalidValueError(f"{text!r} is not YAML: {reason}") from None
+        raise InvalidValueError(f"{text!r} is not YAML: {problem_of(error)}") from None
 
 
 def from_yaml_file(path: Path) -> list[Any]:
@@ -48,13 +49,16 @@ def from_yaml_file(path: Path) -> list[Any]:
     """
     import yaml
 
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    from navette.untrusted.budget import DOCUMENT
+    from navette.untrusted.files import read_bounded
+    from navette.untrusted.yaml_input import load_all_yaml
+
     try:
-        with path.open(encoding="utf-8") as file:
-            documents = [each for each in yaml.load_all(file, loader) if each]
-    except OSError as error:
-        raise InvalidValueError(f"{path}: {error.strerror}") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        data = read_bounded(path, DOCUMENT)
+        documents = [each for each in load_all_yaml(data) if each]
+    except FileFormatError as error:
+        raise InvalidValueError(str(error)) from None
+    except yaml.YAMLError as error:
         raise InvalidValueError(f"{path} is not YAML: {error}") from None
     if not documents:
         raise InvalidValueError(f"{path} contains no messages")

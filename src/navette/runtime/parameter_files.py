@@ -8,16 +8,15 @@ from typing import Any
 import yaml
 
 from navette.errors import FileFormatError, ParameterError
-
-_MAX_BYTES = 4 * 1024 * 1024
-_MAX_DEPTH = 32
-_MAX_VALUES = 100_000
+from navette.untrusted.budget import DOCUMENT
+from navette.untrusted.files import read_bounded
+from navette.untrusted.yaml_input import BoundedLoader, line_of, load_yaml, problem_of
 
 NodeParameters = list[tuple[str, dict[str, Any]]]
 """(node pattern such as ``/ns/node`` or ``/**``, flat name → value), in file order."""
 
 
-class RosLoader(yaml.SafeLoader):
+class RosLoader(BoundedLoader):
     """YAML loader with ROS 2's scalars: ``1e5`` is a double, dates are strings.
 
     Keys are always text, so that a parameter may be named ``y``.
@@ -69,7 +68,7 @@ def parse_value(text: str) -> Any:
         ParameterError: a YAML mapping or another value that parameters cannot have.
     """
     try:
-        value = yaml.load(text, Loader=RosLoader)
+        value = load_yaml(text, RosLoader)
     except yaml.YAMLError:
         return text
     if value is None:
@@ -89,11 +88,8 @@ def read_parameter_file(path: Path | str) -> NodeParameters:
     """
     path = Path(path)
     try:
-        size = path.stat().st_size
-        if size > _MAX_BYTES:
-            raise FileFormatError(path, f"{size} bytes; allowed: at most {_MAX_BYTES}")
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        text = read_bounded(path, DOCUMENT).decode("utf-8")
+    except UnicodeDecodeError as error:
         raise FileFormatError(path, f"cannot be read: {error}") from error
     return parse_parameters(text, path)
 
@@ -101,36 +97,30 @@ def read_parameter_file(path: Path | str) -> NodeParameters:
 def parse_parameters(text: str, origin: Path | str = "parameters") -> NodeParameters:
     """Read parameters from a text as :func:`read_parameter_file` does from a file."""
     try:
-        document = yaml.load(text, Loader=RosLoader)
+        document = load_yaml(text, RosLoader)
     except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        reason = getattr(error, "problem", None) or str(error)
-        line = mark.line + 1 if mark is not None else None
-        raise FileFormatError(origin, f"not YAML: {reason}", line) from error
-    except RecursionError as error:
-        raise FileFormatError(origin, "nested too deeply") from error
+        reason = f"not YAML: {problem_of(error)}"
+        raise FileFormatError(origin, reason, line_of(error)) from error
     if not isinstance(document, dict):
         raise FileFormatError(origin, "expected 'node_name: ros__parameters: …'")
     reader = _Reader(str(origin))
-    reader.nodes("", document, 0)
+    reader.nodes("", document)
     return reader.found
 
 
 class _Reader:
-    """Traversal of the nested mappings with a limit on depth and number of values."""
+    """Traversal of the nested mappings, whose depth and size the loader limits."""
 
     def __init__(self, origin: str) -> None:
         self.found: NodeParameters = []
         self._origin = origin
-        self._count = 0
 
-    def nodes(self, prefix: str, mapping: dict[Any, Any], depth: int) -> None:
+    def nodes(self, prefix: str, mapping: dict[Any, Any]) -> None:
         """Read namespaces and node names down to ``ros__parameters``."""
-        self._check_depth(depth)
         for key, value in mapping.items():
             if key == "ros__parameters":
                 values: dict[str, Any] = {}
-                self._parameters("", value, values, depth)
+                self._parameters("", value, values)
                 self.found.append((prefix or "/", values))
                 continue
             pattern = f"{prefix}/{str(key).strip('/')}"
@@ -140,12 +130,9 @@ class _Reader:
                     f"{pattern}: expected 'ros__parameters:' below a node name, "
                     f"got {value!r}",
                 )
-            self.nodes(pattern, value, depth + 1)
+            self.nodes(pattern, value)
 
-    def _parameters(
-        self, prefix: str, mapping: Any, values: dict[str, Any], depth: int
-    ) -> None:
-        self._check_depth(depth)
+    def _parameters(self, prefix: str, mapping: Any, values: dict[str, Any]) -> None:
         if mapping is None:
             return
         if not isinstance(mapping, dict):
@@ -155,17 +142,10 @@ class _Reader:
             )
         for key, value in mapping.items():
             name = f"{prefix}{key}"
-            self._count += 1
-            if self._count > _MAX_VALUES:
-                raise FileFormatError(self._origin, f"more than {_MAX_VALUES} values")
             if isinstance(value, dict):
-                self._parameters(f"{name}.", value, values, depth + 1)
+                self._parameters(f"{name}.", value, values)
             else:
                 values[name] = _leaf(name, value, self._origin)
-
-    def _check_depth(self, depth: int) -> None:
-        if depth > _MAX_DEPTH:
-            raise FileFormatError(self._origin, f"nested deeper than {_MAX_DEPTH}")
 
 
 def _leaf(name: str, value: Any, origin: str) -> Any:

@@ -14,7 +14,9 @@ from PIL import Image, UnidentifiedImageError
 from navette.errors import FileFormatError
 from navette.geometry import Pose2, Transform3, quaternion_from_yaw
 from navette.sim.scene import Box, Geometry, Link, Model, Plane, Scene
-from navette.sim.xml_tree import read_bounded
+from navette.untrusted.budget import DOCUMENT
+from navette.untrusted.files import read_bounded
+from navette.untrusted.yaml_input import line_of, load_yaml, problem_of
 
 WALL_HEIGHT_M = 1.0
 MAX_PIXELS = 16_000_000
@@ -94,11 +96,10 @@ def _runs(row: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 def _read_yaml(path: Path) -> _MapFile:
     try:
-        values = yaml.safe_load(read_bounded(path, 1_000_000))
+        values = load_yaml(read_bounded(path, DOCUMENT))
     except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = mark.line + 1 if mark else None
-        raise FileFormatError(path, f"not YAML: {error}", line) from None
+        reason = f"not YAML: {problem_of(error)}"
+        raise FileFormatError(path, reason, line_of(error)) from None
     if not isinstance(values, dict):
         raise FileFormatError(
             path, "a map file must be a mapping with image, resolution, …"

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Safe parsing of robot and world XML, with the line of every element.
 
-World files are untrusted. ``defusedxml`` refuses document types, entities and external
-references; the limits below refuse files that exhaust memory.
+World files are untrusted: see :mod:`navette.untrusted`.
 """
 
 import logging
@@ -11,16 +10,11 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from xml.etree.ElementTree import ParseError
-
-from defusedxml.common import DefusedXmlException
-from defusedxml.ElementTree import DefusedXMLParser
 
 from navette.errors import FileFormatError
-
-MAX_BYTES = 32 * 1024 * 1024
-MAX_ELEMENTS = 400_000
-MAX_DEPTH = 64
+from navette.untrusted import xml_input
+from navette.untrusted.budget import SCENE
+from navette.untrusted.files import read_bounded
 
 _log = logging.getLogger(__name__)
 
@@ -130,53 +124,20 @@ class Unsupported:
             )
 
 
-class _TreeBuilder:
-    """Target of the parser: creates :class:`XmlNode` and enforces the limits."""
+@dataclass(frozen=True)
+class _Nodes:
+    """Creates the nodes of a file."""
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.root: XmlNode | None = None
-        self.expat: object = None
-        self._open: list[XmlNode] = []
-        self._count = 0
+    path: Path
 
-    def start(self, tag: str, attributes: dict[str, str]) -> XmlNode:
-        line = int(getattr(self.expat, "CurrentLineNumber", 0))
-        node = XmlNode(tag.rpartition("}")[2], dict(attributes), line, self.path)
-        self._count += 1
-        if self._count > MAX_ELEMENTS:
-            raise node.error(f"more than {MAX_ELEMENTS} elements")
-        if len(self._open) >= MAX_DEPTH:
-            raise node.error(f"nested deeper than {MAX_DEPTH}")
-        if self._open:
-            self._open[-1].children.append(node)
-        else:
-            self.root = node
-        self._open.append(node)
-        return node
+    def node(self, tag: str, attributes: dict[str, str], line: int) -> XmlNode:
+        return XmlNode(tag, attributes, line, self.path)
 
-    def end(self, tag: str) -> None:
-        self._open.pop()
+    def add(self, parent: XmlNode, child: XmlNode) -> None:
+        parent.children.append(child)
 
-    def data(self, text: str) -> None:
-        if self._open:
-            self._open[-1].text += text
-
-    def close(self) -> XmlNode | None:
-        return self.root
-
-
-def read_bounded(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
-    """Read a file; refuse it if it is missing or too large."""
-    try:
-        size = path.stat().st_size
-        if size > max_bytes:
-            raise FileFormatError(
-                path, f"{size} bytes; at most {max_bytes} are allowed"
-            )
-        return path.read_bytes()
-    except OSError as error:
-        raise FileFormatError(path, f"cannot be read: {error.strerror}") from error
+    def text(self, node: XmlNode, text: str) -> None:
+        node.text = text
 
 
 def parse_xml(path: Path) -> XmlNode:
@@ -185,18 +146,4 @@ def parse_xml(path: Path) -> XmlNode:
     Raises:
         FileFormatError: invalid XML, entities, document types, or too large.
     """
-    builder = _TreeBuilder(path)
-    parser = DefusedXMLParser(target=builder, forbid_dtd=True)
-    builder.expat = parser.parser
-    try:
-        parser.feed(read_bounded(path))
-        root = parser.close()
-    except ParseError as error:
-        raise FileFormatError(
-            path, f"not XML: {error.msg}", error.position[0]
-        ) from None
-    except DefusedXmlException as error:
-        raise FileFormatError(path, f"refused: {type(error).__name__}") from None
-    if not isinstance(root, XmlNode):
-        raise FileFormatError(path, "not XML: no element")
-    return root
+    return xml_input.parse_xml(read_bounded(path, SCENE), path, _Nodes(path), SCENE)

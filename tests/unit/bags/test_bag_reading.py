@@ -207,7 +207,7 @@ def test_folders_of_rosbag2(tmp_path: Path, plugin: Any, mode: str) -> None:
         assert reader.topics[0].type_hash.startswith("RIHS01_")
     (folder / "metadata.yaml").write_text("{[", "utf-8")
     with open_bag(folder) as reader:
-        assert "metadata.yaml: is not YAML" in reader.problems[0]
+        assert "metadata.yaml:2: is not YAML" in reader.problems[0]
         assert len(list(reader.messages())) == 10
     # A single compressed file, without its folder.
     (file,) = [each for each in folder.iterdir() if each.name != "metadata.yaml"]

@@ -7,6 +7,7 @@ import pytest
 from navette.errors import FileFormatError
 from navette.sim import xml_tree
 from navette.sim.xml_tree import parse_xml
+from navette.untrusted import Budget
 
 
 def _write(tmp_path: Path, text: str) -> Path:
@@ -42,12 +43,11 @@ def test_broken_xml_names_the_line(tmp_path: Path) -> None:
 def test_limits_are_enforced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(FileFormatError, match="nested deeper"):
         parse_xml(_write(tmp_path, "<a>" * 100 + "</a>" * 100))
-    monkeypatch.setattr(xml_tree, "MAX_ELEMENTS", 10)
+    monkeypatch.setattr(xml_tree, "SCENE", Budget(octets=1000, items=10))
     with pytest.raises(FileFormatError, match="more than 10 elements"):
         parse_xml(_write(tmp_path, "<a>" + "<b/>" * 20 + "</a>"))
-    path = _write(tmp_path, "<a/>")
-    with pytest.raises(FileFormatError, match="bytes"):
-        xml_tree.read_bounded(path, max_bytes=2)
+    with pytest.raises(FileFormatError, match="more than 1000 bytes"):
+        parse_xml(_write(tmp_path, "<a>" + " " * 1000 + "</a>"))
 
 
 def test_missing_file(tmp_path: Path) -> None:

@@ -9,11 +9,12 @@ import yaml
 
 from navette.errors import FileFormatError
 from navette.runtime.parameter_files import RosLoader
+from navette.untrusted.budget import DOCUMENT
+from navette.untrusted.files import read_bounded
+from navette.untrusted.yaml_input import line_of, problem_of
 
 # Keys and list indices that lead to a value: ("services", "robot", "nodes", 0).
 Place = tuple[str | int, ...]
-
-_MAX_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -45,31 +46,28 @@ def read_document(path: Path, expected: str) -> Document:
         FileFormatError: too large, not YAML, not a mapping, a duplicate key, or an
             alias (a few aliases can expand to very large documents).
     """
-    data = path.read_bytes()
-    if len(data) > _MAX_BYTES:
-        raise FileFormatError(path, f"larger than {_MAX_BYTES} bytes")
-    loader = RosLoader(data)
+    data = read_bounded(path, DOCUMENT)
+    loader = None
     try:
+        loader = RosLoader(data)
         _refuse_aliases(path, data)
         root = loader.get_single_node()
         lines = {} if root is None else dict(_lines(path, root, ()))
         content = None if root is None else loader.construct_document(root)
     except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        reason = getattr(error, "problem", None) or str(error)
-        line = None if mark is None else mark.line + 1
-        raise FileFormatError(path, f"not YAML: {reason}", line) from None
-    except RecursionError:
-        raise FileFormatError(path, "nested too deep") from None
+        reason = f"not YAML: {problem_of(error)}"
+        raise FileFormatError(path, reason, line_of(error)) from None
     finally:
-        loader.dispose()
+        if loader is not None:
+            loader.dispose()
     if not isinstance(content, dict):
         raise FileFormatError(path, expected)
     return Document(path, content, lines)
 
 
 def _refuse_aliases(path: Path, data: bytes) -> None:
-    for event in yaml.parse(data, Loader=RosLoader):
+    loader: Any = RosLoader
+    for event in yaml.parse(data, Loader=loader):
         if isinstance(event, yaml.AliasEvent):
             reason = f"YAML alias *{event.anchor}: aliases are not supported"
             raise FileFormatError(path, reason, _line(event))

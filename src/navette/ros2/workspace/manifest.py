@@ -3,12 +3,12 @@
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree.ElementTree import Element, ParseError
-
-from defusedxml.common import DefusedXmlException
-from defusedxml.ElementTree import fromstring
+from xml.etree.ElementTree import Element
 
 from navette.errors import FileFormatError
+from navette.untrusted.budget import DOCUMENT
+from navette.untrusted.files import read_bounded
+from navette.untrusted.xml_input import parse_xml
 
 FILE_NAME = "package.xml"
 _NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]+", re.ASCII)
@@ -33,16 +33,26 @@ class Manifest:
     dependencies: tuple[str, ...]
 
 
+class _Elements:
+    """Creates the elements of a file."""
+
+    def node(self, tag: str, attributes: dict[str, str], line: int) -> Element:
+        return Element(tag, attributes)
+
+    def add(self, parent: Element, child: Element) -> None:
+        parent.append(child)
+
+    def text(self, node: Element, text: str) -> None:
+        node.text = text
+
+
 def read_manifest(path: Path) -> Manifest:
     """Read a package.xml.
 
     Raises:
         FileFormatError: the file is not XML, or has no package with a valid name.
     """
-    try:
-        root = fromstring(path.read_text(encoding="utf-8"))
-    except (ParseError, DefusedXmlException, UnicodeDecodeError) as error:
-        raise FileFormatError(path, f"not readable as XML: {error}") from None
+    root = parse_xml(read_bounded(path, DOCUMENT), path, _Elements())
     if root.tag != "package":
         raise FileFormatError(path, f"<{root.tag}>: expected <package>")
     name = _text(root, "name")

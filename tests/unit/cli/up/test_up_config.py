@@ -127,7 +127,7 @@ def node(extra: str) -> str:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("services: [", "navette.yaml:1: not YAML"),
+        ("services: [", "navette.yaml:2: not YAML"),
         ("[]", "expected 'services:'"),
         ("services: {}", "expected 'services:'"),
         ("servics: {}", "unknown key 'servics'; did you mean 'services'"),

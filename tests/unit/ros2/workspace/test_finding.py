@@ -163,7 +163,7 @@ def test_manifest(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("<package", "not readable as XML"),
+        ("<package", "not XML"),
         ("<!DOCTYPE x [<!ENTITY a 'b'>]><package><name>ab</name></package>", "XML"),
         ("<robot/>", "<robot>: expected <package>"),
         (

@@ -13,6 +13,7 @@ from navette.ros2.packages.launch.launch_description_entity import (
     normalize_to_list_of_entities,
 )
 from navette.ros2.packages.launch.substitution import Parts
+from navette.untrusted.yaml_input import load_yaml
 
 _MOST = 10_000
 
@@ -88,7 +89,7 @@ def _value_sets(text: str) -> Iterable[dict[str, Any]]:
         if not part.strip():
             continue
         try:
-            values = yaml.safe_load(part)
+            values = load_yaml(part)
         except yaml.YAMLError as error:
             raise InvalidValueError(f"ForEach: {part!r}: not YAML: {error}") from None
         if not isinstance(values, dict):

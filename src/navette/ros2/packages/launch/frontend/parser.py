@@ -15,8 +15,9 @@ from navette.ros2.packages.launch.launch_description import LaunchDescription
 from navette.ros2.packages.launch.launch_description_entity import (
     LaunchDescriptionEntity,
 )
+from navette.untrusted.budget import DOCUMENT
+from navette.untrusted.files import read_bounded
 
-MAX_BYTES = 8 * 1024 * 1024
 FORMATS: dict[str, Callable[[bytes, Path], Element]] = {
     ".xml": read_xml,
     ".launch": read_xml,
@@ -53,12 +54,7 @@ def parse_launch_file(path: Path, ending: str | None = None) -> LaunchDescriptio
         InvalidLaunchFileError: names the file, line and tag.
     """
     try:
-        if path.stat().st_size > MAX_BYTES:
-            raise InvalidLaunchFileError(f"{path}: more than {MAX_BYTES} bytes")
-        text = path.read_bytes()
-    except OSError as error:
-        raise InvalidLaunchFileError(f"{path}: {error.strerror}") from error
-    try:
+        text = read_bounded(path, DOCUMENT)
         return parse_launch_text(text, path, ending or path.suffix)
     except FileFormatError as error:
         raise InvalidLaunchFileError(str(error)) from error
