@@ -22,6 +22,7 @@ FLOW = (
     "mapping",
     "planning",
     "control",
+    "arbiter",
     "missions",
 )
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))

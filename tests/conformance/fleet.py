@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import Any
 
 PROGRAMS = Path(__file__).parent / "programs"
-STACK = ("costmap", "map_memory", "planner", "control")
+STACK = ("costmap", "map_memory", "planner", "control", "arbiter")
 PATIENCE_S = 180.0  # reached only by a defect
 
 

@@ -66,9 +66,9 @@ STAGES = (
             "/planner/status",
             "/tf_static",
         ),
-        outputs=("/cmd_vel", "/control/status"),
+        outputs=("/cmd_vel_nav", "/control/status"),
         duration_s=10.0,
-        tolerances=("/cmd_vel=1e-6",),
+        tolerances=("/cmd_vel_nav=1e-6",),
     ),
 )
 

@@ -38,12 +38,23 @@ DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
 COSTMAP = StackTopic("/costmap", "nav_msgs/msg/OccupancyGrid")
 MAP = StackTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, True)
 PATH = StackTopic("/path", "nav_msgs/msg/Path")
+
+# Commands to the wheels: sources, arbiter, locks
+CMD_VEL_NAV = StackTopic("/cmd_vel_nav", "geometry_msgs/msg/Twist")
+CMD_VEL_TELEOP = StackTopic("/cmd_vel_teleop", "geometry_msgs/msg/Twist")
 CMD_VEL = StackTopic("/cmd_vel", "geometry_msgs/msg/Twist")
+EMERGENCY_STOP = StackTopic("/emergency_stop", "std_msgs/msg/Bool")
+EMERGENCY_STOP_RELEASE = StackTopic("/emergency_stop/release", "std_msgs/msg/Empty")
+EMERGENCY_STOP_ACTIVE = StackTopic(
+    "/emergency_stop/active", "std_msgs/msg/Bool", 1, True
+)
+PAUSE_NAVIGATION = StackTopic("/pause_navigation", "std_msgs/msg/Bool")
 
 # Status of a stage
 _STATUS = "diagnostic_msgs/msg/DiagnosticStatus"
 PLANNER_STATUS = StackTopic("/planner/status", _STATUS, 1, True)
 CONTROL_STATUS = StackTopic("/control/status", _STATUS, 1, True)
+COMMANDER = StackTopic("/commander", _STATUS, 1, True)
 
 # Published by a person
 GOAL_POINT = StackTopic("/goal_point", "geometry_msgs/msg/PointStamped")
@@ -63,5 +74,6 @@ CHAIN = (
     ChainLink("costmap", LIDAR, COSTMAP),
     ChainLink("map_memory", COSTMAP, MAP),
     ChainLink("planner", MAP, PATH),
-    ChainLink("control", PATH, CMD_VEL),
+    ChainLink("control", PATH, CMD_VEL_NAV),
+    ChainLink("arbiter", CMD_VEL_NAV, CMD_VEL),
 )

@@ -275,8 +275,13 @@ class Node(GraphQueries, NodeParameters):
         event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[Any]] = Publisher,
+        other_types: Sequence[type] = (),
     ) -> Publisher[MsgT]:
-        """Create a publisher on ``topic`` (relative, private or global; remapped)."""
+        """Create a publisher on ``topic`` (relative, private or global; remapped).
+
+        Args:
+            other_types: further types that the topic may have.
+        """
         return self._node_topics.create_publisher(
             msg_type,
             topic,
@@ -284,6 +289,7 @@ class Node(GraphQueries, NodeParameters):
             event_callbacks=event_callbacks,
             qos_overriding_options=qos_overriding_options,
             publisher_class=publisher_class,
+            other_types=other_types,
         )
 
     def create_subscription(
@@ -299,6 +305,8 @@ class Node(GraphQueries, NodeParameters):
         raw: bool = False,
         content_filter_options: ContentFilterOptions | None = None,
         shared: bool = False,
+        other_types: Sequence[type] = (),
+        ignore_local_publications: bool = False,
     ) -> Subscription[MsgT]:
         """Call ``callback(msg)`` or ``callback(msg, info)`` for every sample.
 
@@ -307,6 +315,9 @@ class Node(GraphQueries, NodeParameters):
             content_filter_options: queue only samples that pass the filter.
             shared: pass the same, uncopied object to all shared subscriptions, which
                 must not modify it.
+            other_types: further types that the topic may have, each of which the node
+                handles in another subscription.
+            ignore_local_publications: receive nothing from publishers of this node.
         """
         return self._node_topics.create_subscription(
             msg_type,
@@ -319,6 +330,8 @@ class Node(GraphQueries, NodeParameters):
             raw=raw,
             content_filter_options=content_filter_options,
             shared=shared,
+            other_types=other_types,
+            ignore_local_publications=ignore_local_publications,
         )
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:

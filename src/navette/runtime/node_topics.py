@@ -1,6 +1,7 @@
 """Create a node's publishers and subscriptions."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from navette.errors import NavetteError
@@ -47,10 +48,11 @@ class NodeTopics:
         event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[Any]] = Publisher,
+        other_types: Sequence[type] = (),
     ) -> Publisher[MsgT]:
         kind = EndpointKind.PUBLISHER
         qos = self._profile(kind, topic, qos_profile, qos_overriding_options)
-        endpoint = self._endpoint(kind, msg_type, topic, qos)
+        endpoint = self._endpoint(kind, msg_type, topic, qos, other_types)
         context = self._entities.context
         watch = EndpointWatch(context, endpoint, event_callbacks, self._logger)
         try:
@@ -80,12 +82,16 @@ class NodeTopics:
         raw: bool = False,
         content_filter_options: ContentFilterOptions | None = None,
         shared: bool = False,
+        other_types: Sequence[type] = (),
+        ignore_local_publications: bool = False,
     ) -> Subscription[MsgT]:
         if not callable(callback):
             raise TypeError(f"topic {topic}: callback {callback!r} is not callable")
         kind = EndpointKind.SUBSCRIPTION
         qos = self._profile(kind, topic, qos_profile, qos_overriding_options)
-        endpoint = self._endpoint(kind, msg_type, topic, qos)
+        endpoint = self._endpoint(kind, msg_type, topic, qos, other_types)
+        if ignore_local_publications:
+            endpoint = replace(endpoint, ignores_own_node=True)
         context = self._entities.context
         watch = EndpointWatch(context, endpoint, event_callbacks, self._logger)
         subscription: Subscription[MsgT] = Subscription(
@@ -128,7 +134,14 @@ class NodeTopics:
         return overridden(self._parameters, kind.name.lower(), full_name, qos, options)
 
     def _endpoint(
-        self, kind: EndpointKind, msg_type: type, topic: str, qos: QoSProfile
+        self,
+        kind: EndpointKind,
+        msg_type: type,
+        topic: str,
+        qos: QoSProfile,
+        other_types: Sequence[type],
     ) -> Endpoint:
         type_name = interface_name(msg_type, "msg")
-        return self._entities.new_endpoint(kind, type_name, topic, qos)
+        others = tuple(interface_name(other, "msg") for other in other_types)
+        endpoint = self._entities.new_endpoint(kind, type_name, topic, qos)
+        return replace(endpoint, other_types=others) if others else endpoint

@@ -6,7 +6,7 @@ from typing import Any
 
 from navette.geometry import Pose2, Transform3
 from navette.msgs import topics
-from navette.msgs.geometry_msgs.msg import Twist
+from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import String
 from navette.msgs.tf2_msgs.msg import TFMessage
@@ -42,6 +42,7 @@ class SimNode(StageNode):
         Input.of(
             topics.CMD_VEL,
             "commanded velocity; clamped to the limits, zero after the timeout",
+            other_types=("geometry_msgs/msg/TwistStamped",),
             callback="on_cmd_vel",
         ),
     )
@@ -106,13 +107,14 @@ class SimNode(StageNode):
         self._origin_ns = self.get_clock().now_ns
         self._contacts_reported = 0
 
-    def on_cmd_vel(self, msg: Twist) -> None:
+    def on_cmd_vel(self, msg: Twist | TwistStamped) -> None:
         """Apply a command; a non-finite one is refused and the last one stays."""
         self._advance()
-        if not self.simulator.command(msg.linear.x, msg.angular.z):
+        twist = msg.twist if isinstance(msg, TwistStamped) else msg
+        if not self.simulator.command(twist.linear.x, twist.angular.z):
             self.get_logger().error(
-                f"refused /cmd_vel: linear.x {msg.linear.x}, angular.z "
-                f"{msg.angular.z} must be finite",
+                f"refused /cmd_vel: linear.x {twist.linear.x}, angular.z "
+                f"{twist.angular.z} must be finite",
                 throttle_duration_sec=1.0,
             )
 

@@ -63,6 +63,7 @@ def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
         },
         "map_memory": {"footprint_m": flat},
         "planner": {"footprint_m": flat},
+        "arbiter": {"max_speed_mps": speed, "max_turn_rate_radps": yaw_rate},
         "control": {
             "footprint_m": flat,
             "cruise_speed_mps": cruise,

@@ -64,6 +64,10 @@ class Endpoint:
         topic: name of the topic, or of the service for servers and clients.
         type_hash: announced hash of a remote endpoint; empty for a local one, whose
             type is the one of this process.
+        other_types: further types that the topic may have; a node that accepts several
+            types has one subscription for each.
+        ignores_own_node: whether a subscription receives nothing from the publishers
+            of its own node.
     """
 
     kind: EndpointKind
@@ -74,6 +78,8 @@ class Endpoint:
     node_namespace: str
     gid: bytes
     type_hash: str = ""
+    other_types: tuple[str, ...] = ()
+    ignores_own_node: bool = False
 
     @property
     def is_remote(self) -> bool:

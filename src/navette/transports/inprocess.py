@@ -116,10 +116,9 @@ class InProcessSubscription(SubscriptionPort):
 
 
 class _Topic:
-    """Endpoints and type of one topic name."""
+    """Endpoints of one topic name and type."""
 
-    def __init__(self, type_name: str) -> None:
-        self.type_name = type_name
+    def __init__(self) -> None:
         self.publishers: list[InProcessPublisher] = []
         self.subscriptions: list[InProcessSubscription] = []
 
@@ -130,17 +129,29 @@ class _Topic:
         return [s for s in self.subscriptions if _is_compatible(publisher, s)]
 
 
+def _key(endpoint: Endpoint) -> tuple[str, str]:
+    return endpoint.topic, endpoint.type_name
+
+
 def _is_compatible(
     publisher: InProcessPublisher, subscription: InProcessSubscription
 ) -> bool:
-    return not incompatible_policies(publisher.endpoint.qos, subscription.endpoint.qos)
+    ends = publisher.endpoint, subscription.endpoint
+    return not (incompatible_policies(ends[0].qos, ends[1].qos) or _is_ignored(*ends))
+
+
+def _is_ignored(publisher: Endpoint, subscription: Endpoint) -> bool:
+    if not subscription.ignores_own_node:
+        return False
+    return publisher.node_full_name == subscription.node_full_name
 
 
 class InProcessTransport(Transport):
     """Topic table of one context; safe to use from several threads."""
 
     def __init__(self) -> None:
-        self._topics: dict[str, _Topic] = {}
+        #: By name and type.
+        self._topics: dict[tuple[str, str], _Topic] = {}
         self._observers: list[TransportObserver] = []
         self._lock = threading.RLock()
         self._services = ServiceTable(self._lock, self._changed)
@@ -183,13 +194,13 @@ class InProcessTransport(Transport):
 
     def remove_publisher(self, publisher: InProcessPublisher) -> None:
         with self._lock:
-            topic = self._topics.get(publisher.endpoint.topic)
+            topic = self._topics.get(_key(publisher.endpoint))
             if topic is None or publisher not in topic.publishers:
                 return
             topic.publishers.remove(publisher)
             matched = topic.matches(publisher)
             publisher.relink([])
-            self._remove_if_empty(publisher.endpoint.topic, topic)
+            self._remove_if_empty(publisher.endpoint, topic)
             for subscription in matched:
                 for observer in self._observers:
                     observer.unmatched(publisher.endpoint, subscription.endpoint)
@@ -197,7 +208,7 @@ class InProcessTransport(Transport):
 
     def remove_subscription(self, subscription: InProcessSubscription) -> None:
         with self._lock:
-            topic = self._topics.get(subscription.endpoint.topic)
+            topic = self._topics.get(_key(subscription.endpoint))
             if topic is None or subscription not in topic.subscriptions:
                 return
             topic.subscriptions.remove(subscription)
@@ -206,11 +217,11 @@ class InProcessTransport(Transport):
                 if _is_compatible(publisher, subscription):
                     for observer in self._observers:
                         observer.unmatched(publisher.endpoint, subscription.endpoint)
-            self._remove_if_empty(subscription.endpoint.topic, topic)
+            self._remove_if_empty(subscription.endpoint, topic)
             self._changed()
 
     def count_publishers_of(self, subscription: InProcessSubscription) -> int:
-        topic = self._topics.get(subscription.endpoint.topic)
+        topic = self._topics.get(_key(subscription.endpoint))
         if topic is None or subscription not in topic.subscriptions:
             return 0
         return sum(
@@ -238,18 +249,29 @@ class InProcessTransport(Transport):
             service_port.close()
 
     def _topic_for(self, endpoint: Endpoint) -> _Topic:
-        topic = self._topics.setdefault(endpoint.topic, _Topic(endpoint.type_name))
-        if topic.type_name != endpoint.type_name:
-            others = sorted({port.endpoint.node_full_name for port in topic.ports()})
+        topic = self._topics.get(_key(endpoint))
+        if topic is None:
+            self._check_type(endpoint)
+            topic = self._topics[_key(endpoint)] = _Topic()
+        return topic
+
+    def _check_type(self, endpoint: Endpoint) -> None:
+        """Raise if the topic has another type, without an endpoint of this one."""
+        other = {
+            type_name: topic
+            for (name, type_name), topic in self._topics.items()
+            if name == endpoint.topic and type_name not in endpoint.other_types
+        }
+        for type_name, topic in other.items():
+            nodes = sorted({port.endpoint.node_full_name for port in topic.ports()})
             verb = (
                 "publish" if endpoint.kind == EndpointKind.PUBLISHER else "subscribe to"
             )
             raise InvalidValueError(
-                f"topic {endpoint.topic} has the type {topic.type_name} "
-                f"({', '.join(others)}); node {endpoint.node_full_name} cannot {verb} "
+                f"topic {endpoint.topic} has the type {type_name} "
+                f"({', '.join(nodes)}); node {endpoint.node_full_name} cannot {verb} "
                 f"{endpoint.type_name} on it"
             )
-        return topic
 
     def _report_matches(
         self, pairs: list[tuple[InProcessPublisher, InProcessSubscription]]
@@ -257,16 +279,16 @@ class InProcessTransport(Transport):
         for publisher, subscription in pairs:
             ends = publisher.endpoint, subscription.endpoint
             policies = incompatible_policies(ends[0].qos, ends[1].qos)
-            for observer in self._observers:
+            for observer in () if _is_ignored(*ends) else self._observers:
                 if policies:
                     observer.incompatible_qos(*ends, policies)
                 else:
                     observer.matched(*ends)
         self._changed()
 
-    def _remove_if_empty(self, name: str, topic: _Topic) -> None:
+    def _remove_if_empty(self, endpoint: Endpoint, topic: _Topic) -> None:
         if not topic.publishers and not topic.subscriptions:
-            del self._topics[name]
+            del self._topics[_key(endpoint)]
 
     def _changed(self) -> None:
         for observer in self._observers:

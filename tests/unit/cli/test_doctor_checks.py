@@ -88,36 +88,46 @@ def test_a_node_that_does_not_respond() -> None:
 def test_an_unreachable_node_explains_missing_topics() -> None:
     seen = Snapshot(
         nodes=("/planner", "/sim"),
-        endpoints=(pub("/path", "planner"), sub("/cmd_vel", "sim")),
+        endpoints=(pub("/path", "planner"), sub("/cmd_vel_nav", "arbiter")),
         unreached=("/control",),
-        unreached_topics={"/control": ("/cmd_vel", "/control/status")},
+        unreached_topics={"/control": ("/cmd_vel_nav", "/control/status")},
         speed_mps=0.0,
     )
     finding = of(check_nodes(seen), "/control")
     assert finding.text == (
         "is listed by the router, but cannot be reached; the robot is stopped"
     )
-    assert finding.data["publishes"] == ["/cmd_vel", "/control/status"]
+    assert finding.data["publishes"] == ["/cmd_vel_nav", "/control/status"]
     whats = [each.what for each in (*check_nodes(seen), *check_topics(seen))]
     assert whats == ["/control", "nodes", "unread"]
 
 
 def test_a_stage_that_is_missing_between_others() -> None:
+    wheels = (sub("/cmd_vel_nav", "arbiter"), pub("/cmd_vel", "arbiter"))
     seen = Snapshot(
-        nodes=("/planner", "/sim"),
-        endpoints=(pub("/path", "planner"), sub("/cmd_vel", "sim")),
+        nodes=("/planner", "/arbiter", "/sim"),
+        endpoints=(pub("/path", "planner"), *wheels, sub("/cmd_vel", "sim")),
         speed_mps=0.42,
     )
     finding = of(check_nodes(seen), "control")
     assert finding.level is Rating.PROBLEM
     assert finding.text == (
-        "is missing: no node turns /path into /cmd_vel; the robot drives at 0.4 m/s"
+        "is missing: no node turns /path into /cmd_vel_nav; the robot drives at 0.4 m/s"
     )
     assert "navette run navette control" in finding.advice
-    assert "/cmd_vel" not in [each.what for each in check_topics(seen)]
+    assert "/cmd_vel_nav" not in [each.what for each in check_topics(seen)]
     # Driven by hand, without a planner: no stage is missing.
     by_hand = Snapshot(nodes=("/sim",), endpoints=(sub("/cmd_vel", "sim"),))
     assert [each.what for each in check_nodes(by_hand)] == ["nodes"]
+
+
+def test_a_missing_arbiter() -> None:
+    seen = Snapshot(
+        nodes=("/control", "/sim"),
+        endpoints=(pub("/cmd_vel_nav", "control"), sub("/cmd_vel", "sim")),
+    )
+    finding = of(check_nodes(seen), "arbiter")
+    assert "no node turns /cmd_vel_nav into /cmd_vel" in finding.text
 
 
 def test_two_definitions_of_a_type() -> None:

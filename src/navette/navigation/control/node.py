@@ -74,7 +74,7 @@ class ControlNode(StageNode):
     )
     OUTPUTS = (
         Output.of(
-            topics.CMD_VEL,
+            topics.CMD_VEL_NAV,
             "velocity command",
             rate_hz=20.0,
         ),
@@ -163,7 +163,7 @@ class ControlNode(StageNode):
     def destroy_node(self) -> None:
         """Stop the robot, then destroy the node."""
         if self._zeros_left and self.context.ok():
-            self.publish(topics.CMD_VEL.name, Twist())
+            self.publish(topics.CMD_VEL_NAV.name, Twist())
             self._zeros_left = 0
         super().destroy_node()
 
@@ -273,7 +273,7 @@ class ControlNode(StageNode):
             self._zeros_left -= 1
         twist = Twist()
         twist.linear.x, twist.angular.z = output.command
-        self.publish(topics.CMD_VEL.name, twist)
+        self.publish(topics.CMD_VEL_NAV.name, twist)
 
     def _report(self, output: FollowerOutput) -> None:
         """Publish the state at once when it changes, and every few steps."""

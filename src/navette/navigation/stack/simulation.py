@@ -119,7 +119,7 @@ class Simulation:
         Only simulator, recorder and viewer continue; other nodes may depend on the
         failed one.
         """
-        self.stack.control.destroy_node()
+        self.stack.arbiter.destroy_node()
         watchers = (self.sim, self.recorder, self.viewer)
         for node in self.executor.get_nodes():
             if node not in watchers:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from navette.errors import UnknownNameError
+from navette.navigation.arbiter.node import ArbiterNode
 from navette.navigation.control.node import ControlNode
 from navette.navigation.costmap.node import CostmapNode
 from navette.navigation.localization.distance.node import OdomIntegratorNode
@@ -13,7 +14,16 @@ from navette.navigation.planning.node import PlannerNode
 from navette.runtime import Context, StageNode
 from navette.sim.node import SimNode
 
-FLOW = ("sim", "localization", "costmap", "mapping", "planning", "control", "missions")
+FLOW = (
+    "sim",
+    "localization",
+    "costmap",
+    "mapping",
+    "planning",
+    "control",
+    "arbiter",
+    "missions",
+)
 """The stages in data-flow order."""
 
 NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
@@ -24,6 +34,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("map_memory", MapMemoryNode),
     ("planner", PlannerNode),
     ("control", ControlNode),
+    ("arbiter", ArbiterNode),
     ("missions", MissionNode),
 )
 
@@ -52,6 +63,7 @@ class NavigationStack:
     map_memory: MapMemoryNode
     planner: PlannerNode
     control: ControlNode
+    arbiter: ArbiterNode
     missions: MissionNode
 
     @classmethod
@@ -62,5 +74,6 @@ class NavigationStack:
             map_memory=MapMemoryNode(context=context),
             planner=PlannerNode(context=context),
             control=ControlNode(context=context),
+            arbiter=ArbiterNode(context=context),
             missions=MissionNode(context=context),
         )

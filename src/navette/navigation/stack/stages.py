@@ -120,7 +120,16 @@ def control() -> None:
     """Run the controller."""
     from navette.navigation.control.node import ControlNode
 
-    _run_stage("control", ControlNode, "/path, /odom/filtered → /cmd_vel")
+    _run_stage("control", ControlNode, "/path, /odom/filtered → /cmd_vel_nav")
+
+
+@_program
+def arbiter() -> None:
+    """Run the arbiter."""
+    from navette.navigation.arbiter.node import ArbiterNode
+
+    text = "/cmd_vel_nav, /cmd_vel_teleop, /emergency_stop → /cmd_vel"
+    _run_stage("arbiter", ArbiterNode, text)
 
 
 @_program

@@ -32,6 +32,8 @@ class _Topic:
     #: Whether late subscribers receive the last samples (transient local).
     latched: bool = False
     best_effort: bool = False
+    #: Further types that the topic may have; an input receives messages of each.
+    other_types: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, topic: StackTopic, role: str, **options: Any) -> Self:
@@ -64,11 +66,13 @@ class _Topic:
 
 @dataclass(frozen=True, kw_only=True)
 class Input(_Topic):
-    """A subscription; ``callback`` is the name of the method that gets the message."""
+    """A subscription; ``callback`` is the method that gets the message, or its name."""
 
-    callback: str
+    callback: str | Callable[[Any], Any]
     #: Time since the last arrival after which the input is stale; None = no limit.
     timeout_s: float | None = None
+    #: Whether publications of this node are not received.
+    ignores_own: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +109,7 @@ class StageNode(Node):
             raise
 
     def _set_up(self) -> None:
-        self.params = declare_params(self, self.PARAMS)
+        self.params = self.declare_params()
         self._checked_params = self.params
         self._check_unknown_overrides()
         self.add_on_set_parameters_callback(self._check_params)
@@ -121,22 +125,27 @@ class StageNode(Node):
         }
         self.publishers_by_topic: dict[str, Publisher[Any]] = {
             output.topic: self.create_publisher(
-                get_interface(output.type), output.topic, output.qos
+                get_interface(output.type),
+                output.topic,
+                output.qos,
+                other_types=[get_interface(each) for each in output.other_types],
             )
-            for output in self.OUTPUTS
+            for output in self.outputs()
         }
         for declared in self.inputs():
-            self.create_subscription(
-                get_interface(declared.type),
-                declared.topic,
-                self._receiver(declared),
-                declared.qos,
-                shared=True,
-            )
+            self._subscribe(declared, self._receiver(declared))
+
+    def declare_params(self) -> Any:
+        """Declare PARAMS and return the values; extend for parameters beside them."""
+        return declare_params(self, self.PARAMS)
 
     def inputs(self) -> tuple[Input, ...]:
         """Return INPUTS; override if topics or types depend on ``self.params``."""
         return self.INPUTS
+
+    def outputs(self) -> tuple[Output, ...]:
+        """Return OUTPUTS; override if topics or types depend on ``self.params``."""
+        return self.OUTPUTS
 
     def publish(self, topic: str, msg: Any) -> None:
         """Publish on an output; ``topic`` is its name in OUTPUTS, before remapping."""
@@ -171,8 +180,24 @@ class StageNode(Node):
         self._arrivals_ns.clear()
         self.on_time_jump()
 
+    def _subscribe(self, declared: Input, receive: Callable[[Any], Any]) -> None:
+        """Subscribe to each type of an input."""
+        kinds = [get_interface(t) for t in (declared.type, *declared.other_types)]
+        for kind in kinds:
+            self.create_subscription(
+                kind,
+                declared.topic,
+                receive,
+                declared.qos,
+                shared=True,
+                other_types=[other for other in kinds if other is not kind],
+                ignore_local_publications=declared.ignores_own,
+            )
+
     def _receiver(self, declared: Input) -> Callable[[Any], Any]:
-        callback = getattr(self, declared.callback)
+        callback = declared.callback
+        if isinstance(callback, str):
+            callback = getattr(self, callback)
         topic, arrivals = declared.topic, self._arrivals_ns
         clock = self._clock
 

@@ -2,7 +2,7 @@
 "use strict";
 
 // Topics needed to drive: the loss of a publisher of one of them is shown at once.
-const DUTIES = ["/cmd_vel", "/path", "/map", "/costmap", "/odom/filtered", "/odom", "/lidar", "/scan"];
+const DUTIES = ["/cmd_vel_nav", "/cmd_vel", "/path", "/map", "/costmap", "/odom/filtered", "/odom", "/lidar", "/scan"];
 const MUTE_S = 2.5; // reports come every half second
 
 const nodes = {

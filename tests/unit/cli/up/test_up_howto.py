@@ -21,7 +21,7 @@ def test_the_example_is_read(bench: Any) -> None:
     specs = {spec.name: spec for spec in bench.specs()}
     assert list(specs) == ["sim", "robot", "sensors"]
     names = [process.name for process in specs["robot"].processes]
-    assert names == ["costmap", "map_memory", "planner", "control", "pilot"]
+    assert names == ["costmap", "map_memory", "planner", "control", "arbiter", "pilot"]
     pilot = specs["robot"].processes[-1]
     assert pilot.env["ROS_DOMAIN_ID"] == "7"
     assert pilot.argv[-4:] == ("-p", "speed_mps:=0.4", "-r", "cmd:=/cmd_vel")
@@ -36,6 +36,6 @@ def test_the_example_for_a_robot_of_ros_2_is_read(bench: Any) -> None:
     bench.write(yaml_of("ros2.md"))
     (service,) = bench.specs()
     names = [process.name for process in service.processes]
-    assert names == ["costmap", "map_memory", "planner", "control"]
+    assert names == ["costmap", "map_memory", "planner", "control", "arbiter"]
     assert "/lidar:=/scan" in service.processes[0].argv
-    assert any(word.startswith("map_frame:=") for word in service.processes[-1].argv)
+    assert any(word.startswith("map_frame:=") for word in service.processes[-2].argv)

@@ -20,7 +20,7 @@ STRAIGHT = tangent_path(np.array([[0, 0], [3, 0.0]]))
 
 
 class World:
-    """A robot in a graph: /cmd_vel in, odometry and costmap out, planner alive."""
+    """A robot in a graph: /cmd_vel_nav in, odometry and costmap out, planner alive."""
 
     def __init__(self, graph: GraphHarness, **params: object) -> None:
         self.graph = graph
@@ -37,7 +37,7 @@ class World:
                 ],
             )
         )
-        self.commands = graph.collect("/cmd_vel", "geometry_msgs/msg/Twist")
+        self.commands = graph.collect("/cmd_vel_nav", "geometry_msgs/msg/Twist")
         self.status = graph.collect(
             "/control/status", "diagnostic_msgs/msg/DiagnosticStatus", latched=True
         )
@@ -45,7 +45,7 @@ class World:
         timers = ((0.05, self._move), (0.1, self._scan), (0.5, self._plan))
         for period, callback in timers:
             graph.node.create_timer(period, callback)
-        graph.node.create_subscription(Twist, "/cmd_vel", self._obey, 10)
+        graph.node.create_subscription(Twist, "/cmd_vel_nav", self._obey, 10)
 
     def send_path(self, poses: np.ndarray, frame: str = "map") -> None:
         msg = Path()

@@ -162,7 +162,9 @@ def test_a_mission_ends_with_its_goals(results: str, code: int) -> None:
 
 def test_every_stage_is_an_executable() -> None:
     names = [each.name for each in find_package("navette").executables()]
-    assert {"sim", "costmap", "map_memory", "planner", "control"} <= set(names)
+    assert {"sim", "costmap", "map_memory", "planner", "control", "arbiter"} <= set(
+        names
+    )
     for name in names:
         assert read_programs([name])[0].name == name
         assert read_programs(["navette", name, "--x"])[0].arguments == ("--x",)
@@ -189,7 +191,7 @@ def test_a_stage_has_the_same_parameters_as_in_one_process(robot: str) -> None:
     resolved = resolve_scene(RunOptions(robot=robot))
     together = ParameterOverrides()
     resolved.override_parameters(together)
-    for name in ("sim", "costmap", "map_memory", "planner", "control", "missions"):
+    for name in ("sim", "costmap", "map_memory", "planner", "control", "arbiter"):
         alone = stages._profile(resolved, name).for_node("/any/name")
         expected = together.for_node(f"/{name}")
         assert {k: v.value for k, v in alone.items()} == {

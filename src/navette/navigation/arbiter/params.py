@@ -1,0 +1,82 @@
+"""Parameters of the arbiter; sources and locks are named as in twist_mux."""
+
+from dataclasses import dataclass
+
+from navette.msgs import topics
+from navette.params import Params, param
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArbiterParams(Params):
+    """Output of the arbiter; ``topics.NAME`` and ``locks.NAME`` are parameters too."""
+
+    use_stamped: bool = param(
+        False, "publish /cmd_vel as TwistStamped instead of Twist"
+    )
+    base_frame: str = param("base_link", "frame of stamped commands")
+    max_speed_mps: float = param(
+        0.0, "limit of every command; 0: no limit", unit="m/s", at_least=0.0
+    )
+    max_turn_rate_radps: float = param(
+        0.0, "limit of every command; 0: no limit", unit="rad/s", at_least=0.0
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CommandSourceParams(Params):
+    """A source of commands: ``topics.NAME.topic``, ``.timeout``, …"""
+
+    topic: str = param("", "topic of its commands; empty = none")
+    timeout: float = param(
+        0.5, "age in seconds at which a command expires; 0: never", at_least=0.0
+    )
+    priority: int = param(
+        10, "the source with the highest priority commands", at_least=0, at_most=255
+    )
+    hold: float = param(
+        0.0,
+        "seconds for which the robot stays stopped after the last command expired, "
+        "before a source of lower priority commands again",
+        at_least=0.0,
+    )
+    over_limit: str = param(
+        "refuse",
+        "what to do with a command over the limits: refuse it, or scale it",
+        choices=("refuse", "scale"),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CommandLockParams(Params):
+    """A lock: ``locks.NAME.topic``, ``.timeout``, ``.priority``."""
+
+    topic: str = param("", "topic of its state, std_msgs/msg/Bool; empty = none")
+    timeout: float = param(
+        0.0, "seconds without a message after which it is locked; 0: never",
+        at_least=0.0,
+    )  # fmt: skip
+    priority: int = param(
+        100, "masks every source of a lower priority", at_least=0, at_most=255
+    )
+
+
+SOURCES: dict[str, CommandSourceParams] = {
+    "navigation": CommandSourceParams(topic=topics.CMD_VEL_NAV.name, priority=10),
+    # Programs that publish the arbiter's output themselves.
+    "external": CommandSourceParams(
+        topic=topics.CMD_VEL.name, priority=50, hold=1.0, over_limit="scale"
+    ),
+    "operator": CommandSourceParams(
+        topic=topics.CMD_VEL_TELEOP.name, priority=100, hold=1.0, over_limit="scale"
+    ),
+}
+"""The sources without any parameter."""
+
+LOCKS: dict[str, CommandLockParams] = {
+    "pause": CommandLockParams(topic=topics.PAUSE_NAVIGATION.name, priority=20),
+    # The state of the robot's own emergency stop.
+    "emergency_stop": CommandLockParams(
+        topic=topics.EMERGENCY_STOP_ACTIVE.name, priority=255
+    ),
+}
+"""The locks without any parameter."""
