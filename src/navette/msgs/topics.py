@@ -38,6 +38,11 @@ DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
 COSTMAP = StackTopic("/costmap", "nav_msgs/msg/OccupancyGrid")
 MAP = StackTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, True)
 PATH = StackTopic("/path", "nav_msgs/msg/Path")
+PLAN = StackTopic("/plan", "nav_msgs/msg/Path")
+SPEED_LIMIT = StackTopic("/speed_limit", "nav2_msgs/msg/SpeedLimit")
+COLLISION_MONITOR_STATE = StackTopic(
+    "/collision_monitor_state", "nav2_msgs/msg/CollisionMonitorState", 1
+)
 
 # Commands to the wheels: sources, arbiter, locks
 CMD_VEL_NAV = StackTopic("/cmd_vel_nav", "geometry_msgs/msg/Twist")

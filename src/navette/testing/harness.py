@@ -27,6 +27,7 @@ from navette.runtime import (
     ReliabilityPolicy,
     VirtualClock,
 )
+from navette.testing.goal_probe import GoalProbe
 
 N = TypeVar("N", bound=Node)
 
@@ -127,6 +128,23 @@ class GraphHarness:
         )
         self.node.create_subscription(kind, topic, receive, qos)
         return probe
+
+    def send_goal(self, action: Any, name: str, goal: Any) -> GoalProbe:
+        """Send a goal to an action server; the probe collects what it returns."""
+        return GoalProbe(self.node, action, name, goal)
+
+    def call(self, service: Any, name: str, request: Any) -> Any:
+        """Call a service and return its response.
+
+        Raises:
+            InvalidValueError: no response within 10 s of virtual time.
+        """
+        client = self.node.create_client(service, name)
+        future = client.call_async(request)
+        if not self.run_until(future.done, 10.0):
+            raise InvalidValueError(f"no response from service {name} within 10 s")
+        self.node.destroy_client(client)
+        return future.result()
 
     def run_for(self, seconds: float) -> None:
         """Run all events of a span of virtual time."""

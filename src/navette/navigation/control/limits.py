@@ -16,6 +16,30 @@ class VelocityCommand(NamedTuple):
 STOP = VelocityCommand(0.0, 0.0)
 
 
+class SpeedCap(NamedTuple):
+    """Temporary limits (m/s) of the speed forward and in reverse."""
+
+    forward: float
+    reverse: float
+
+    def applied_to(self, command: VelocityCommand) -> VelocityCommand:
+        """Return the command, slowed down on its arc if it exceeds a limit."""
+        limit = self.forward if command.speed > 0 else self.reverse
+        if abs(command.speed) <= limit:
+            return command
+        factor = limit / abs(command.speed)
+        return VelocityCommand(command.speed * factor, command.turn_rate * factor)
+
+    @classmethod
+    def percentage(cls, percent: float, params: ControlParams) -> "SpeedCap":
+        """Return a share of the speeds on a free path."""
+        share = percent / 100
+        return cls(share * params.cruise_speed_mps, share * params.reverse_speed_mps)
+
+
+NO_CAP = SpeedCap(math.inf, math.inf)
+
+
 def clamp(command: VelocityCommand, params: ControlParams) -> VelocityCommand:
     """Return the nearest allowed command of the same curvature.
 

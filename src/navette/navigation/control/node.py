@@ -6,17 +6,20 @@ and then none, so that an operator can drive. When destroyed it publishes a zero
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from navette.errors import InvalidValueError
-from navette.geometry import Pose2, yaw_of
+from navette.geometry import Pose2
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
-from navette.msgs.geometry_msgs.msg import Pose, Twist
+from navette.msgs.geometry_msgs.msg import Twist
+from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.navigation.control.command_gate import InputAges
+from navette.navigation.control.limits import NO_CAP, SpeedCap
 from navette.navigation.control.obstacles import obstacle_points
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
@@ -26,9 +29,14 @@ from navette.navigation.control.records import (
     FollowerInputs,
     FollowerOutput,
 )
+from navette.navigation.control.servers.follow_path import (
+    FollowContext,
+    FollowPathServer,
+)
 from navette.navigation.control.states import ControlState
 from navette.navigation.grids import grid_from_message
 from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.path_messages import Poses, poses_of
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.time import stamp_to_ns
@@ -71,6 +79,11 @@ class ControlNode(StageNode):
             timeout_s=2.0,
             callback="on_planner_status",
         ),
+        Input.of(
+            topics.SPEED_LIMIT,
+            "temporary speed limit; 0: none",
+            callback="on_speed_limit",
+        ),
     )
     OUTPUTS = (
         Output.of(
@@ -79,6 +92,10 @@ class ControlNode(StageNode):
             rate_hz=20.0,
         ),
         status_output(topics.CONTROL_STATUS.name),
+        Output.of(
+            topics.COLLISION_MONITOR_STATE,
+            "what the collision check does to the commands, on change",
+        ),
     )
 
     _zeros_left = 0  # destroy_node() may run before __init__ ends
@@ -88,7 +105,11 @@ class ControlNode(StageNode):
         params: ControlParams = self.params
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
         self._follower = PathFollower(params)
+        self._speed_limits = NO_CAP
         self._path = np.empty((0, 3))
+        self._follows_goal = False  # the path is that of a follow_path goal …
+        self._method = ""  # … which may name a steering method
+        self._collision_action = CollisionMonitorState.DO_NOTHING
         self._costmap: OccupancyGrid | None = None  # newest, not placed yet
         self._base_T_costmap: tuple[str, Pose2] | None = None  # with its frame
         self._costmap_ns = self._placed_ns = _NEVER  # arrivals of newest and placed
@@ -99,12 +120,19 @@ class ControlNode(StageNode):
         self._ticks_to_report = 0
         self._status = StatusReporter(self, topics.CONTROL_STATUS.name)
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
+        context = FollowContext(
+            params=lambda: self.params,
+            frame_on_map=lambda frame_id: self._tracker.frame_on_map(frame_id),
+            follow=self._follow_goal,
+            stop=self._stop_goal,
+        )
+        self._follow_server = FollowPathServer(self, context, lambda: True)
 
     def on_path(self, msg: Path) -> None:
         """Follow a new path, or report why it is refused."""
         self._planner_ns = self._now_ns
-        self._zeros_left = self.params.idle_zeros
-        self._path = np.empty((0, 3))
+        self._follow_server.interrupt(f"preempted by a path on {topics.PATH.name}")
+        self._begin(goal=False)
         frame = msg.header.frame_id
         if msg.poses and frame != self.params.map_frame:
             self.get_logger().error(
@@ -113,7 +141,7 @@ class ControlNode(StageNode):
             )
             self._follower.reset(ControlState.UNKNOWN_FRAME)
             return
-        self._set_path(_poses(msg))
+        self._try_path(poses_of(msg))
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the newest message for the next step."""
@@ -130,9 +158,25 @@ class ControlNode(StageNode):
         self._planner_ns = self._now_ns
         before, self._planner_state = self._planner_state, msg.message
         restarted = msg.message == _NO_GOAL_YET and before not in ("", _NO_GOAL_YET)
-        if restarted and self._follower.has_path:
+        if restarted and self._follower.has_path and not self._follows_goal:
             self.get_logger().warning("the planner restarted: path dropped")
             self.on_path(Path())
+
+    def on_speed_limit(self, msg: SpeedLimit) -> None:
+        """Limit the speed, in percent or m/s; 0: no limit."""
+        limit = msg.speed_limit
+        if not (math.isfinite(limit) and limit >= 0):
+            self.get_logger().error(
+                f"speed limit {limit!r} not used; must be finite and >= 0 (0: none)"
+            )
+            return
+        if limit == 0:
+            self._speed_limits = NO_CAP
+        elif msg.percentage:
+            self._speed_limits = SpeedCap.percentage(limit, self.params)
+        else:
+            self._speed_limits = SpeedCap(limit, limit)
+        self._follower.limit_speed(self._speed_limits)
 
     def on_params_changed(self, old: ControlParams) -> None:
         """Follow the same path with the new parameters."""
@@ -145,15 +189,15 @@ class ControlNode(StageNode):
             self.destroy_timer(self._timer)
             self._timer = self.create_timer(1 / params.rate_hz, self._tick)
         drove = self._follower.has_path
-        self._follower = PathFollower(params)
-        self._placed_ns = _NEVER
+        self._new_follower(params)
         if drove:
-            self._set_path(self._path)
+            self._try_path(self._path)
 
     def on_time_jump(self) -> None:
         """Drop all inputs, stop, and wait for the next path."""
         self._tracker.reset()
-        self._follower = PathFollower(self.params)
+        self._follow_server.interrupt("the clock was set back")
+        self._new_follower(self.params)
         self._path = np.empty((0, 3))
         self._costmap = self._odometry = None
         self._costmap_ns = self._placed_ns = _NEVER
@@ -171,14 +215,43 @@ class ControlNode(StageNode):
     def _now_ns(self) -> int:
         return self.get_clock().now_ns
 
-    def _set_path(self, poses: np.ndarray[Any, np.dtype[np.float64]]) -> None:
+    def _new_follower(self, params: ControlParams) -> None:
+        """Replace the follower; obstacles are placed for it before it moves."""
+        if self._method:
+            params = replace(params, method=self._method)
+        self._follower = PathFollower(params)
+        self._follower.limit_speed(self._speed_limits)
+        self._placed_ns = _NEVER
+
+    def _begin(self, *, goal: bool, method: str = "") -> None:
+        """Forget the last path before a new one."""
+        self._follows_goal = goal
+        if method != self._method:
+            self._method = method
+            self._new_follower(self.params)
+        self._zeros_left = self.params.idle_zeros
+        self._path = np.empty((0, 3))
+
+    def _try_path(self, poses: Poses) -> None:
         try:
-            self._follower.set_path(poses)
+            self._set_path(poses)
         except InvalidValueError as error:
             self.get_logger().error(str(error))
             self._follower.reset(ControlState.INVALID_PATH)
-            return
+
+    def _set_path(self, poses: Poses) -> None:
+        self._follower.set_path(poses)
         self._path = poses
+
+    def _follow_goal(self, poses: Poses, method: str) -> None:
+        """Follow the path of a goal with a steering method; empty: the configured."""
+        self._begin(goal=True, method=method)
+        self._set_path(poses)
+
+    def _stop_goal(self) -> None:
+        if self._follows_goal:
+            self._begin(goal=False)
+            self._follower.reset()
 
     def _tick(self) -> None:
         """Locate the robot, place the costmap, step the follower, publish."""
@@ -190,6 +263,9 @@ class ControlNode(StageNode):
         output = self._follower.step(inputs, 1 / self.params.rate_hz)
         self._send(output)
         self._report(output)
+        self._report_collision(output)
+        fresh = inputs.ages.odometry_s <= self.params.odometry_timeout_s
+        self._follow_server.step(output, inputs, fresh=fresh)
 
     def _locate(self) -> None:
         if self._odometry is not None and self._tracker.update(self._odometry):
@@ -200,7 +276,8 @@ class ControlNode(StageNode):
         return InputAges(
             odometry_s=self._age_s(self._located_ns),
             costmap_s=self._age_s(self._placed_ns),
-            planner_s=self._age_s(self._planner_ns),
+            # The client of a goal need not be alive: its path has an end.
+            planner_s=0.0 if self._follows_goal else self._age_s(self._planner_ns),
         )
 
     def _age_s(self, arrival_ns: int) -> float:
@@ -292,20 +369,31 @@ class ControlNode(StageNode):
             clearance_m=output.clearance_m,
         )
 
+    def _report_collision(self, output: FollowerOutput) -> None:
+        """Publish what the collision check does to the command when it changes."""
+        action = _collision_action(output, self.params.slow_clearance_m)
+        if action == self._collision_action:
+            return
+        self._collision_action = action
+        name = "footprint" if action != CollisionMonitorState.DO_NOTHING else ""
+        self.publish(
+            topics.COLLISION_MONITOR_STATE.name,
+            CollisionMonitorState(action_type=action, polygon_name=name),
+        )
+
+
+def _collision_action(output: FollowerOutput, slow_clearance_m: float) -> int:
+    if output.state is ControlState.BLOCKED:
+        return CollisionMonitorState.STOP
+    if output.collision_scale < 1.0:
+        return CollisionMonitorState.APPROACH
+    if output.state.moves and output.clearance_m < slow_clearance_m:
+        return CollisionMonitorState.SLOWDOWN
+    return CollisionMonitorState.DO_NOTHING
+
 
 def _level(state: ControlState) -> bytes:
     if state.moves or state in (ControlState.IDLE, ControlState.REACHED):
         return StatusReporter.OK
     warnings = (ControlState.BLOCKED, ControlState.OFF_PATH, ControlState.MISSED_GOAL)
     return StatusReporter.WARN if state in warnings else StatusReporter.ERROR
-
-
-def _pose(msg: Pose) -> Pose2:
-    q = msg.orientation
-    return Pose2(msg.position.x, msg.position.y, yaw_of((q.x, q.y, q.z, q.w)))
-
-
-def _poses(msg: Path) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return poses (N, 3) x, y, yaw of a path."""
-    rows = [_pose(stamped.pose) for stamped in msg.poses]
-    return np.array(rows, np.float64).reshape(-1, 3)

@@ -128,6 +128,21 @@ class ControlParams(Params):
         2.0, "no /path or /planner/status for this long stops the robot; 0: never",
         unit="s", at_least=0.0,
     )  # fmt: skip
+    failure_tolerance_s: float = param(
+        2.0,
+        "follow_path fails after this long blocked, off the path or with stale inputs",
+        unit="s", at_least=0.0,
+    )  # fmt: skip
+    progress_distance_m: float = param(
+        0.3, "motion that counts as progress of follow_path", unit="m", above=0.0
+    )
+    progress_angle_rad: float = param(
+        0.3, "turn that counts as progress of follow_path", unit="rad", above=0.0
+    )
+    progress_timeout_s: float = param(
+        10.0, "follow_path fails after this long without progress; 0: never", unit="s",
+        at_least=0.0,
+    )  # fmt: skip
     idle_zeros: int = param(
         5, "zero commands published after the robot came to rest", at_least=1
     )

@@ -10,7 +10,9 @@ from navette.navigation.control.command_gate import CommandGate
 from navette.navigation.control.controller_parts import ControllerParts
 from navette.navigation.control.drive import PieceDrive
 from navette.navigation.control.limits import (
+    NO_CAP,
     STOP,
+    SpeedCap,
     VelocityCommand,
     approach,
     brake,
@@ -42,6 +44,7 @@ class PathFollower:
         self._params = params
         self._gate = CommandGate(params)
         self._parts = ControllerParts.of(params)
+        self._speed_limits = NO_CAP
         self.reset()
 
     def reset(self, rest: ControlState = ControlState.IDLE) -> None:
@@ -53,6 +56,7 @@ class PathFollower:
         self._rest: ControlState | None = rest
         self._last: VelocityCommand | None = None
         self._clearance = math.inf
+        self._scale = 1.0
         self._blocked = False
 
     @property
@@ -87,6 +91,10 @@ class PathFollower:
         """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
         self._parts.collision.set_obstacles(points, half_cell)
 
+    def limit_speed(self, limits: SpeedCap) -> None:
+        """Drive no faster than these limits, from the next step on."""
+        self._speed_limits = limits
+
     def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
         """Return the command for the next ``dt`` seconds.
 
@@ -100,6 +108,9 @@ class PathFollower:
         last = clamp(last, self._params)
         self._parts.turn_gain.update(last.turn_rate, inputs.turn_rate, dt)
         decision = self._steer(inputs)
+        decision = decision._replace(
+            command=self._speed_limits.applied_to(decision.command)
+        )
         if decision.state.rests:
             return self._stop(decision.state)
         if decision.brakes:
@@ -143,6 +154,7 @@ class PathFollower:
         self, pose: Pose2, decision: StepDecision, command: VelocityCommand
     ) -> tuple[VelocityCommand, bool]:
         """Scale the command to what the obstacles allow; True if that is a stop."""
+        self._scale = 1.0
         if not self._params.collision_check:
             return command, False
         # While blocked, check the full decision: the first small command from rest is
@@ -157,7 +169,7 @@ class PathFollower:
             if self._active is not None:
                 self._active.reconsider()
             return STOP, True
-        scale = min(1.0, scale)
+        self._scale = scale = min(1.0, scale)
         return VelocityCommand(command.speed * scale, command.turn_rate * scale), False
 
     def _stop(self, state: ControlState) -> FollowerOutput:
@@ -181,4 +193,5 @@ class PathFollower:
             drive.at.heading_error if drive else 0.0,
             left,
             self._clearance,
+            self._scale,
         )

@@ -45,6 +45,7 @@ class FollowerOutput(NamedTuple):
     heading_error_rad: float
     distance_left_m: float
     clearance_m: float
+    collision_scale: float  # share of the command that the obstacles allow
 
 
 class StepDecision(NamedTuple):

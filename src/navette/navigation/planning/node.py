@@ -13,28 +13,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
+from navette.geometry import Pose2, yaw_of
 from navette.msgs import topics
-from navette.msgs.geometry_msgs.msg import (
-    Point,
-    PointStamped,
-    Pose,
-    PoseStamped,
-    Quaternion,
-)
-from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
+from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
+from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.std_msgs.msg import Header
 from navette.navigation.grids import GridSpec, grid_from_message
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import Poses
-from navette.navigation.planning.planner import Goal
+from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMotion
-from navette.runtime import Input, Output, StageNode, ns_to_stamp
+from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
+from navette.runtime import Input, Output, StageNode
 from navette.runtime.stage.odometry import PoseTracker
+from navette.runtime.stage.path_messages import path_message
 from navette.runtime.stage.status import StatusReporter, status_output
-from navette.runtime.tf import TransformException
 
 # Period of checking the age of the odometry.
 _WATCH_PERIOD_S = 0.1
@@ -75,6 +70,10 @@ class PlannerNode(StageNode):
             topics.PATH,
             "path to follow; empty = stop",
         ),
+        Output.of(
+            topics.PLAN,
+            "each planned path, also on request; not followed",
+        ),
         status_output(topics.PLANNER_STATUS.name),
     )
 
@@ -91,6 +90,14 @@ class PlannerNode(StageNode):
         self._logged = ""
         self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
         self.create_timer(_WATCH_PERIOD_S, self.on_watch)
+        context = PlanningContext(
+            params=lambda: self.params,
+            planner=self._planner_with_map,
+            robot=self._fresh_pose,
+            frame_on_map=lambda frame_id: self._tracker.frame_on_map(frame_id),
+            publish_plan=self._publish_plan,
+        )
+        self._path_server = PathServer(self, context, lambda: True)
         self._report()
 
     def on_map(self, msg: OccupancyGrid) -> None:
@@ -177,6 +184,12 @@ class PlannerNode(StageNode):
         pose = self._tracker.latest
         return None if pose is None else RobotMotion(pose, *self._tracker.velocity)
 
+    def _planner_with_map(self) -> Planner | None:
+        return None if self._map is None else self._navigator.planner
+
+    def _fresh_pose(self) -> Pose2 | None:
+        return None if self._is_stale() else self._tracker.latest
+
     def _is_stale(self) -> bool:
         if self._odometry_ns is None:
             return True
@@ -198,32 +211,24 @@ class PlannerNode(StageNode):
 
     def _frame_on_map(self, frame_id: str) -> Pose2 | None:
         """Return the present map_T_frame, or None for an unknown frame."""
-        params, tracker = self.params, self._tracker
+        map_frame = self.params.map_frame
         if not frame_id:
-            self.get_logger().warning(
-                f"goal without a frame: {params.map_frame!r} is assumed"
-            )
-            return Pose2(0.0, 0.0, 0.0)
-        if frame_id == params.map_frame:
-            return Pose2(0.0, 0.0, 0.0)
-        try:
-            return tracker.buffer.lookup(params.map_frame, frame_id, 0).to_pose2()
-        except TransformException:
-            pass  # not connected to the map: try the frames of the robot
-        try:
-            base_T_frame = tracker.buffer.lookup(params.base_frame, frame_id, 0)
-        except TransformException:
-            return None
-        return tracker.latest and tracker.latest @ base_T_frame.to_pose2()
+            self.get_logger().warning(f"goal without a frame: {map_frame!r} is assumed")
+        return self._tracker.frame_on_map(frame_id or map_frame)
 
     def _publish_news(self) -> None:
         poses = self._navigator.take_path()
         if poses is not None:
-            stamp_ns = self._now_ns
-            self.publish(
-                topics.PATH.name, path_message(poses, self.params.map_frame, stamp_ns)
-            )
+            message = path_message(poses, self.params.map_frame, self._now_ns)
+            self.publish(topics.PATH.name, message)
+            if len(poses):
+                self._publish_plan(poses)
         self._report()
+
+    def _publish_plan(self, poses: Poses) -> None:
+        if self.has_listeners(topics.PLAN.name):
+            message = path_message(poses, self.params.map_frame, self._now_ns)
+            self.publish(topics.PLAN.name, message)
 
     def _report(self) -> None:
         report = self._navigator.report
@@ -257,19 +262,6 @@ class PlannerNode(StageNode):
             logger.info(
                 f"{goal}: {report.message}" if report.goal_id else "no goal yet"
             )
-
-
-def path_message(poses: Poses, frame_id: str, stamp_ns: int) -> Path:
-    """Return poses (N, 3) x, y, yaw as a message with z = 0."""
-    header = Header(stamp=ns_to_stamp(stamp_ns), frame_id=frame_id)
-    stamped = []
-    for x, y, yaw in poses.tolist():
-        qx, qy, qz, qw = quaternion_from_yaw(yaw)
-        pose = Pose(
-            position=Point(x=x, y=y), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw)
-        )
-        stamped.append(PoseStamped(header=header, pose=pose))
-    return Path(header=header, poses=stamped)
 
 
 def _moved(goal: Goal, map_T_frame: Pose2) -> Goal:

@@ -103,6 +103,26 @@ class PoseTracker:
         transform = self._static(self.base_frame, frame_id)
         return None if transform is None else transform.to_pose2()
 
+    def frame_on_map(self, frame_id: str) -> Pose2 | None:
+        """Return the present pose of a frame in the map frame; None if unknown.
+
+        Frames of the robot that are not connected to the map on /tf are placed with
+        the pose of the odometry.
+        """
+        if frame_id == self.map_frame:
+            return _HERE
+        if frame_id == self.base_frame:
+            return self.latest
+        try:
+            return self.buffer.lookup(self.map_frame, frame_id, 0).to_pose2()
+        except TransformException:
+            pass  # not connected to the map: try the frames of the robot
+        try:
+            base_T_frame = self.buffer.lookup(self.base_frame, frame_id, 0)
+        except TransformException:
+            return None
+        return self.latest and self.latest @ base_T_frame.to_pose2()
+
     def reset(self) -> None:
         """Delete the history: a new run, or a jump backward in time."""
         self._history.clear()

@@ -1,0 +1,1 @@
+"""Servers of the control node: Nav2's actions."""

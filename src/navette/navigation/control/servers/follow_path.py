@@ -1,0 +1,158 @@
+"""Nav2's controller server: the action follow_path."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+from navette.msgs.nav2_msgs.action import FollowPath
+from navette.navigation.control.follow_monitor import FollowMonitor
+from navette.navigation.control.params import METHODS, ControlParams
+from navette.navigation.control.records import FollowerInputs, FollowerOutput
+from navette.navigation.control.states import ControlState
+from navette.runtime.node import Node
+from navette.runtime.stage.goal_server import DriveGoalServer
+from navette.runtime.stage.path_messages import Poses, moved, poses_of
+
+# Names of Nav2's default parameters; the empty name selects the only one.
+_CONTROLLERS = ("", "FollowPath", *METHODS)
+_GOAL_CHECKERS = ("", "general_goal_checker", "goal_checker")
+_PROGRESS_CHECKERS = ("", "progress_checker")
+
+Result = FollowPath.Result
+
+
+@dataclass(frozen=True)
+class FollowContext:
+    """What the server uses of the control node.
+
+    Attributes:
+        params: the present parameters.
+        frame_on_map: pose of a frame in the map frame; None if unknown.
+        follow: starts to follow poses (N, 3), map, with a steering method; raises
+            InvalidValueError if they are not a path.
+        stop: stops the robot if it follows a path of ``follow``.
+    """
+
+    params: Callable[[], ControlParams]
+    frame_on_map: Callable[[str], Pose2 | None]
+    follow: Callable[[Poses, str], None]
+    stop: Callable[[], None]
+
+
+class FollowPathServer:
+    """Follows the path of a goal with the follower of the control node.
+
+    :meth:`step` is called after each step of the follower.
+    """
+
+    def __init__(
+        self, node: Node, context: FollowContext, accepts: Callable[[], bool]
+    ) -> None:
+        self._node = node
+        self._context = context
+        self._goals = DriveGoalServer(
+            node, FollowPath, "follow_path", self._on_goal, accepts=accepts
+        )
+        self._monitor: FollowMonitor | None = None
+
+    @property
+    def is_active(self) -> bool:
+        """Whether a goal commands the follower."""
+        return self._goals.is_active
+
+    def step(
+        self, output: FollowerOutput, inputs: FollowerInputs, *, fresh: bool
+    ) -> None:
+        """Publish feedback; end the goal if it is reached, failed or cancelled.
+
+        Args:
+            output: the follower's newest output.
+            inputs: from which it was computed.
+            fresh: whether the pose and motion in them are recent.
+        """
+        if self._monitor is None or not self._goals.is_active:
+            return
+        now_ns = self._now_ns
+        if not self._goals.is_ending:
+            self._goals.publish_feedback(
+                distance_to_goal=output.distance_left_m, speed=abs(output.command.speed)
+            )
+            self._decide(self._monitor, output.state, inputs.pose if fresh else None)
+        motion = (inputs.speed, inputs.turn_rate) if fresh else None
+        self._goals.check_rest(motion, now_ns)
+
+    def interrupt(self, reason: str) -> None:
+        """Abort the goal at once: something else commands the follower."""
+        self._goals.abort(Result(error_code=Result.UNKNOWN, error_msg=reason))
+
+    def stop(self, reason: str) -> None:
+        """Stop the robot and abort the goal when it is at rest."""
+        if self._goals.is_active:
+            self._end(Result(error_code=Result.UNKNOWN, error_msg=reason))
+
+    def _decide(
+        self, monitor: FollowMonitor, state: ControlState, pose: Pose2 | None
+    ) -> None:
+        if self._goals.cancel_requested:
+            self._end(Result(error_msg="cancelled"))
+        elif state is ControlState.REACHED:
+            self._end(Result())
+        elif state is ControlState.MISSED_GOAL:
+            text = "the path ended farther from its end than goal_tolerance_m"
+            self._fail("FAILED_TO_MAKE_PROGRESS", text)
+        else:
+            failure = monitor.check(state, pose, self._now_ns)
+            if failure is not None:
+                self._fail(*failure)
+
+    def _on_goal(self, goal: Any) -> None:
+        self._monitor = FollowMonitor(self._context.params(), self._now_ns)
+        unknown = _unknown_plugin(goal)
+        if unknown is not None:
+            self._fail(*unknown)
+            return
+        frame_id = goal.path.header.frame_id or self._context.params().map_frame
+        map_T_frame = self._context.frame_on_map(frame_id)
+        if map_T_frame is None:
+            text = f"path in unknown frame {frame_id!r}; expected a frame on /tf"
+            self._fail("TF_ERROR", text)
+            return
+        poses = poses_of(goal.path)
+        if len(poses) == 0 or not np.isfinite(poses).all():
+            self._fail("INVALID_PATH", "the path is empty or not finite")
+            return
+        method = goal.controller_id if goal.controller_id in METHODS else ""
+        try:
+            self._context.follow(moved(poses, map_T_frame), method)
+        except InvalidValueError as error:
+            self._fail("INVALID_PATH", str(error))
+
+    def _fail(self, code: str, reason: str) -> None:
+        self._node.get_logger().warning(f"follow_path: {code}: {reason}")
+        self._end(Result(error_code=getattr(Result, code), error_msg=reason))
+
+    def _end(self, result: Any) -> None:
+        """Stop the robot; the result follows when it is at rest."""
+        self._context.stop()
+        self._goals.end_at_rest(result, self._now_ns)
+
+    @property
+    def _now_ns(self) -> int:
+        return self._node.get_clock().now().nanoseconds
+
+
+def _unknown_plugin(goal: Any) -> tuple[str, str] | None:
+    """Return error code and reason if the goal names an unknown plugin."""
+    for field, known, code in (
+        ("controller_id", _CONTROLLERS, "INVALID_CONTROLLER"),
+        ("goal_checker_id", _GOAL_CHECKERS, "UNKNOWN"),
+        ("progress_checker_id", _PROGRESS_CHECKERS, "UNKNOWN"),
+    ):
+        name = getattr(goal, field)
+        if name not in known:
+            return code, f"{field} {name!r}: unknown; known: {', '.join(known[1:])}"
+    return None

@@ -1,0 +1,1 @@
+"""Servers of the planner node: Nav2's actions and services."""

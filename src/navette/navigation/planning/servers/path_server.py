@@ -1,0 +1,182 @@
+"""Nav2's planner server: compute_path_to_pose, …_through_poses, is_path_valid.
+
+The requests are answered from the newest map. They have no effect on the goal that is
+being driven.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from navette.geometry import Pose2
+from navette.msgs.geometry_msgs.msg import PoseStamped
+from navette.msgs.nav2_msgs.action import ComputePathThroughPoses, ComputePathToPose
+from navette.msgs.nav2_msgs.srv import IsPathValid
+from navette.msgs.nav_msgs.msg import Path
+from navette.navigation.planning.outcome import Outcome
+from navette.navigation.planning.params import METHODS, PlannerParams
+from navette.navigation.planning.path_queries import blocked_poses, plan_through
+from navette.navigation.planning.path_shape import Poses
+from navette.navigation.planning.planner import Goal, Planner
+from navette.runtime import Stopwatch
+from navette.runtime.node import Node
+from navette.runtime.stage.goal_server import serve_query
+from navette.runtime.stage.path_messages import moved, path_message, pose_of, poses_of
+from navette.runtime.time import Duration
+
+DEFAULT_PLANNER = "GridBased"
+"""Name of the configured planner, as in Nav2's default parameters."""
+
+_ERRORS = {
+    Outcome.START_BLOCKED: "START_OCCUPIED",
+    Outcome.START_OUTSIDE_MAP: "START_OUTSIDE_MAP",
+    Outcome.GOAL_BLOCKED: "GOAL_OCCUPIED",
+    Outcome.GOAL_OUTSIDE_MAP: "GOAL_OUTSIDE_MAP",
+    Outcome.GOAL_NOT_FINITE: "GOAL_OUTSIDE_MAP",
+    Outcome.NO_PATH: "NO_VALID_PATH",
+    Outcome.SEARCH_LIMIT: "TIMEOUT",
+}
+
+
+@dataclass(frozen=True)
+class PlanningContext:
+    """What the servers of the planner use of its node.
+
+    Attributes:
+        params: the present parameters.
+        planner: planner on the newest map; None before the first.
+        robot: pose of the robot; None if unknown or stale.
+        frame_on_map: pose of a frame in the map frame; None if unknown.
+        publish_plan: publishes a planned path (N, 3), map.
+    """
+
+    params: Callable[[], PlannerParams]
+    planner: Callable[[], Planner | None]
+    robot: Callable[[], Pose2 | None]
+    frame_on_map: Callable[[str], Pose2 | None]
+    publish_plan: Callable[[Poses], None]
+
+    def path(self, msg: Path) -> Poses | None:
+        """Return the poses (N, 3) of a path in the map frame.
+
+        None: the frame is unknown, or a value is not finite.
+        """
+        map_T_frame = self.frame_on_map(msg.header.frame_id or self.params().map_frame)
+        poses = poses_of(msg)
+        if map_T_frame is None or not np.isfinite(poses).all():
+            return None
+        return moved(poses, map_T_frame)
+
+
+class _RequestError(Exception):
+    """A request without a path: the name of Nav2's error code, and the reason."""
+
+    def __init__(self, code: str, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+
+
+class PathServer:
+    """The actions that compute paths, and the service that checks one."""
+
+    def __init__(
+        self, node: Node, context: PlanningContext, accepts: Callable[[], bool]
+    ) -> None:
+        self._context = context
+        self._node = node
+        serve_query(
+            node,
+            ComputePathToPose,
+            "compute_path_to_pose",
+            lambda goal: self._answer(ComputePathToPose.Result, goal, [goal.goal]),
+            accepts=accepts,
+        )
+        serve_query(
+            node,
+            ComputePathThroughPoses,
+            "compute_path_through_poses",
+            lambda goal: self._answer(ComputePathThroughPoses.Result, goal, goal.goals),
+            accepts=accepts,
+        )
+        node.create_service(IsPathValid, "is_path_valid", self._check_path)
+
+    def _answer(self, result_type: Any, goal: Any, goals: list[PoseStamped]) -> Any:
+        """Return the result of a compute_path action, whose goals are ``goals``."""
+        timer = Stopwatch()
+        result = result_type()
+        try:
+            poses = self._plan(goal, goals)
+        except _RequestError as error:
+            self._node.get_logger().warning(f"path request: {error.code}: {error}")
+            result.error_code = getattr(result_type, error.code)
+            result.error_msg = str(error)
+            return result
+        map_frame = self._context.params().map_frame
+        now_ns = self._node.get_clock().now().nanoseconds
+        result.path = path_message(poses, map_frame, now_ns)
+        result.planning_time = Duration(seconds=timer.elapsed_s).to_msg()
+        self._context.publish_plan(poses)
+        return result
+
+    def _plan(self, goal: Any, goals: list[PoseStamped]) -> Poses:
+        planner = self._planner(goal.planner_id)
+        if not goals:
+            raise _RequestError("NO_VIAPOINTS_GIVEN", "no goals given")
+        start = self._on_map(goal.start, "start") if goal.use_start else self._robot()
+        targets = [Goal(*self._on_map(each, "goal")) for each in goals]
+        route = plan_through(planner, start, targets)
+        if route.outcome.has_path:
+            return route.poses
+        target = targets[route.leg]
+        which = f"goal {route.leg + 1} of {len(goals)}" if len(goals) > 1 else "goal"
+        raise _RequestError(
+            _ERRORS[route.outcome],
+            f"{route.outcome} (start ({start.x:.6g}, {start.y:.6g}), {which} "
+            f"({target.x:.6g}, {target.y:.6g}))",
+        )
+
+    def _planner(self, planner_id: str) -> Planner:
+        params = self._context.params()
+        if planner_id not in ("", DEFAULT_PLANNER, *METHODS):
+            known = ", ".join((DEFAULT_PLANNER, *METHODS))
+            raise _RequestError(
+                "INVALID_PLANNER",
+                f"planner_id {planner_id!r} is unknown; known: {known}",
+            )
+        planner = self._context.planner()
+        if planner is None:
+            raise _RequestError("TIMEOUT", "no map has arrived yet")
+        if planner_id in ("", DEFAULT_PLANNER, params.method):
+            return planner
+        return planner.with_params(replace(params, method=planner_id))
+
+    def _robot(self) -> Pose2:
+        robot = self._context.robot()
+        if robot is None:
+            raise _RequestError(
+                "TF_ERROR", "the robot's pose is unknown or stale: no recent odometry"
+            )
+        return robot
+
+    def _on_map(self, msg: PoseStamped, name: str) -> Pose2:
+        frame_id = msg.header.frame_id or self._context.params().map_frame
+        map_T_frame = self._context.frame_on_map(frame_id)
+        if map_T_frame is None:
+            raise _RequestError(
+                "TF_ERROR",
+                f"{name} in unknown frame {frame_id!r}; expected a frame on /tf",
+            )
+        pose = pose_of(msg.pose)
+        return map_T_frame @ pose if np.isfinite(pose).all() else pose
+
+    def _check_path(self, request: Any, response: Any) -> Any:
+        context = self._context
+        planner, poses = context.planner(), context.path(request.path)
+        if planner is None or poses is None or len(poses) == 0:
+            return response
+        blocked = blocked_poses(planner, poses, context.robot())
+        response.is_valid = len(blocked) == 0
+        response.invalid_pose_indices = blocked.tolist()
+        return response

@@ -1,0 +1,170 @@
+"""Action server of a stage with one active goal, as Nav2's SimpleActionServer."""
+
+from collections.abc import Callable
+from typing import Any
+
+from navette.runtime.action.goal_states import CancelResponse, GoalEvent, GoalResponse
+from navette.runtime.action.server import ActionServer
+from navette.runtime.action.server_goal_handle import ServerGoalHandle
+from navette.runtime.node import Node
+
+PREEMPTED = "preempted by a new goal"
+
+# Measured motion that counts as rest, and the longest wait for it: a robot whose
+# odometry reports motion although it is commanded zero must not block its client.
+_REST_MPS, _REST_RADPS = 0.03, 0.05
+_LONGEST_STOP_NS = 2_000_000_000
+
+
+class GoalServer:
+    """Action server whose owner steps the goal; a new goal preempts the active one.
+
+    The preempted goal is aborted. Its result has ``error_msg`` set and no error code,
+    as in Nav2. The owner ends the goal with :meth:`finish` or :meth:`cancel`, also from
+    within ``on_goal``.
+
+    Args:
+        node: the node that offers the action.
+        action: the action's type, with ``error_code`` and ``error_msg`` in its result.
+        name: the action's name.
+        on_goal: called with the request of each accepted goal.
+        accepts: whether goals are accepted now; default: always.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action: Any,
+        name: str,
+        on_goal: Callable[[Any], None],
+        *,
+        accepts: Callable[[], bool] = lambda: True,
+    ) -> None:
+        self._action = action
+        self._on_goal = on_goal
+        self._goal: ServerGoalHandle | None = None
+        self._server = ActionServer(
+            node,
+            action,
+            name,
+            lambda goal: None,  # goals are stepped by the owner instead
+            goal_callback=lambda goal: (
+                GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT
+            ),
+            handle_accepted_callback=self._accept,
+            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+        )
+
+    @property
+    def is_active(self) -> bool:
+        """Whether a goal is active."""
+        return self._goal is not None
+
+    @property
+    def cancel_requested(self) -> bool:
+        """Whether the client requested that the active goal is cancelled."""
+        return self._goal is not None and self._goal.is_cancel_requested
+
+    def publish_feedback(self, **fields: Any) -> None:
+        """Publish feedback on the active goal."""
+        if self._goal is not None:
+            self._goal.publish_feedback(self._action.Feedback(**fields))
+
+    def finish(self, result: Any) -> None:
+        """End the goal: succeeded without an error code, otherwise aborted."""
+        goal = self._take()
+        if goal is not None:
+            end = goal.abort if result.error_code else goal.succeed
+            end(result)
+
+    def abort(self, result: Any) -> None:
+        """End the goal as aborted, also without an error code."""
+        goal = self._take()
+        if goal is not None:
+            goal.abort(result)
+
+    def cancel(self, result: Any) -> None:
+        """End the goal as cancelled on the client's request."""
+        goal = self._take()
+        if goal is not None:
+            goal.canceled(result)
+
+    def _take(self) -> ServerGoalHandle | None:
+        goal, self._goal = self._goal, None
+        return goal
+
+    def _accept(self, goal: ServerGoalHandle) -> None:
+        self.abort(self._action.Result(error_msg=PREEMPTED))
+        if not goal.is_cancel_requested:
+            goal.update_state(GoalEvent.EXECUTE)
+        self._goal = goal
+        self._on_goal(goal.request)
+
+
+def serve_query(
+    node: Node,
+    action: Any,
+    name: str,
+    answer: Callable[[Any], Any],
+    *,
+    accepts: Callable[[], bool] = lambda: True,
+) -> GoalServer:
+    """Offer an action whose result ``answer(goal)`` computes at once.
+
+    The result is there before a request to cancel could arrive.
+    """
+    server = GoalServer(
+        node, action, name, lambda goal: server.finish(answer(goal)), accepts=accepts
+    )
+    return server
+
+
+class DriveGoalServer(GoalServer):
+    """Action server of goals that drive: the result follows when the robot is at rest.
+
+    The owner commands zero velocity while :attr:`is_ending` and calls
+    :meth:`check_rest` at every step. A new goal ends the old one at once.
+    """
+
+    _ending: Callable[[], None] | None = None
+    _deadline_ns = 0
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether the goal has a result and the robot is not known to be at rest."""
+        return self._ending is not None
+
+    def end_at_rest(self, result: Any, now_ns: int) -> None:
+        """Store the result: cancelled if requested, otherwise as :meth:`finish`."""
+        if self._goal is None or self._ending is not None:
+            return
+        end = self.cancel if self.cancel_requested else self.finish
+        self._ending = lambda: end(result)
+        self._deadline_ns = now_ns + _LONGEST_STOP_NS
+
+    def check_rest(self, motion: tuple[float, float] | None, now_ns: int) -> None:
+        """Publish the stored result once the robot is at rest.
+
+        Args:
+            motion: measured speed (m/s) and turn rate (rad/s); None without recent
+                odometry. The result is then published after two seconds.
+            now_ns: time of the node's clock.
+        """
+        if self._ending is None:
+            return
+        resting = (
+            motion is not None
+            and abs(motion[0]) <= _REST_MPS
+            and abs(motion[1]) <= _REST_RADPS
+        )
+        if resting or not 0 <= self._deadline_ns - now_ns <= _LONGEST_STOP_NS:
+            self._ending()
+
+    def _take(self) -> ServerGoalHandle | None:
+        self._ending = None
+        return super()._take()
+
+    def _accept(self, goal: ServerGoalHandle) -> None:
+        if self._ending is not None:
+            self._ending()
+        super()._accept(goal)
