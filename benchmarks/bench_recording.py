@@ -38,7 +38,7 @@ class Writers:
         self.stream = [("/lidar" if i % 4 == 0 else "/odom") for i in range(COUNT)]
 
     def with_navette(self) -> None:
-        writer = BagWriter(self.folder / "navette.mcap")
+        writer = BagWriter(self.folder / "navette.mcap", overwrite=True)
         channels = {}
         for topic, message in self.kinds.items():
             name = type(message)._type_name_
@@ -107,7 +107,7 @@ def drive(record: Path | None) -> None:
     simulation = Simulation(
         RunOptions(
             world="course", goals=SEVEN_GOALS.goals, headless=True,
-            speed=float("inf"), max_time_s=SECONDS, record=record,
+            speed=float("inf"), max_time_s=SECONDS, record=record, overwrite=True,
         )
     )  # fmt: skip
     simulation.run()

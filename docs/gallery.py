@@ -129,7 +129,9 @@ RUNS = {
 
 def record(run: Run, bag: Path) -> tuple[Footprint, str, bool]:
     """Drive, with a bag; returns footprint, map frame and whether all were reached."""
-    options = RunOptions(**run.options, headless=True, speed=math.inf, record=bag)
+    options = RunOptions(
+        **run.options, headless=True, speed=math.inf, record=bag, overwrite=True
+    )
     scene: Scene | None = run.world.scene() if run.world else None
     simulation = Simulation(options, scene=scene)
     simulation.run()

@@ -57,7 +57,8 @@ class McapFile:
         library: str,
         compression: str = "zstd",
     ) -> None:
-        self._stream = stream
+        #: Target of all bytes; may be replaced between two writes.
+        self.stream = stream
         self._position = 0
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
@@ -175,13 +176,18 @@ class McapFile:
         self._position = _end(chunks[-1]) if chunks else self._data_start
         return self._position
 
+    @property
+    def written(self) -> int:
+        """Bytes passed to the stream."""
+        return self._position
+
     def finish(self, stream: IO[bytes] | None = None) -> None:
         """End the last chunk and write the summary; the stream stays open.
 
         Args:
             stream: replaces the stream for the rest of the file, if given.
         """
-        self._stream = stream or self._stream
+        self.stream = stream or self.stream
         self.end_chunk()
         self._write(_record(DataEnd(data_section_crc=0)))
         summary_start = self._position
@@ -250,7 +256,7 @@ class McapFile:
         self.index_size += len(record) + _PER_CHANNEL
 
     def _write(self, data: bytes) -> None:
-        self._stream.write(data)
+        self.stream.write(data)
         self._position += len(data)
 
 

@@ -23,6 +23,7 @@ from navette.bags.recording import (
     Snapshots,
     SplitFiles,
 )
+from navette.bags.replacing import make_way
 from navette.errors import FileFormatError, UnknownNameError
 from navette.msgs import definition_text, get_interface, type_hash
 from navette.msgs.std_srvs.srv import SetBool, Trigger
@@ -63,8 +64,8 @@ class RecorderNode(StageNode):
     ``~/snapshot`` (Trigger), which writes the last seconds.
 
     Args:
-        path: the ``.mcap`` file; an existing bag is replaced. For split files and
-            snapshots: a new folder.
+        path: the new ``.mcap`` file. For split files and snapshots: a new folder.
+        overwrite: replace an existing bag that no other process records.
 
     Raises:
         FileFormatError: the file cannot be created; names path and reason.
@@ -84,6 +85,7 @@ class RecorderNode(StageNode):
         self,
         path: Path | str,
         *,
+        overwrite: bool = False,
         context: Context | None = None,
         parameter_overrides: Sequence[Parameter[Any]] | None = None,
     ) -> None:
@@ -96,7 +98,7 @@ class RecorderNode(StageNode):
             "recorder", context=context, parameter_overrides=parameter_overrides
         )
         try:
-            self._recording = _open(self.path, self.params)
+            self._recording = _open(self.path, self.params, overwrite=overwrite)
         except FileFormatError:
             self.destroy_node()
             raise
@@ -207,7 +209,7 @@ class RecorderNode(StageNode):
         self.payload_bytes += len(payload)
         try:
             self._recording.write(recorded, self._clock.now_ns, payload)
-        except OSError as error:
+        except (OSError, FileFormatError) as error:
             self._end_early(error)
 
     def _waits_for_clock(self, recorded: RecordedTopic, payload: bytes) -> bool:
@@ -271,19 +273,24 @@ class RecorderNode(StageNode):
         """Run ``work``; a disk error ends the recording, not the run."""
         try:
             work()
-        except OSError as error:
+        except (OSError, FileFormatError) as error:
             self._end_early(error)
 
-    def _end_early(self, error: OSError) -> None:
+    def _end_early(self, error: OSError | FileFormatError) -> None:
         assert self._recording is not None, "the recorder has a file"
         self._recording.abandon()
         self._recording = None
-        reason = error.strerror or str(error)
+        reason = getattr(error, "strerror", None) or str(error)
         self.error = FileFormatError(self.path, f"recording ended: {reason}")
         self.get_logger().error(str(self.error))
 
 
-def _open(path: Path, params: RecorderParams) -> Recording:
+def _open(path: Path, params: RecorderParams, *, overwrite: bool) -> Recording:
+    in_folder = params.snapshot_duration_s or (
+        params.max_bag_size_bytes or params.max_bag_duration_s
+    )
+    if in_folder:
+        make_way(path, overwrite=overwrite)
     if params.snapshot_duration_s:
         return Snapshots(
             path,
@@ -298,7 +305,7 @@ def _open(path: Path, params: RecorderParams) -> Recording:
             max_size=params.max_bag_size_bytes,
             max_duration_ns=round(params.max_bag_duration_s * 1e9),
         )
-    return SingleFile(path, compression=params.compression)
+    return SingleFile(path, compression=params.compression, overwrite=overwrite)
 
 
 def _offer(endpoint: Endpoint) -> OfferedQos:

@@ -27,9 +27,11 @@ class SingleFile:
     All methods except :meth:`abandon` raise ``OSError`` if the disk is full or gone.
     """
 
-    def __init__(self, path: Path, *, compression: str = "zstd") -> None:
+    def __init__(
+        self, path: Path, *, compression: str = "zstd", overwrite: bool = False
+    ) -> None:
         self.path = path
-        self._writer = BagWriter(path, compression=compression)
+        self._writer = BagWriter(path, compression=compression, overwrite=overwrite)
         self._channels: dict[RecordedTopic, int] = {}
         self.facts = FileFacts(path.name)
 

@@ -10,17 +10,18 @@ chunk. Messages that are not in a finished chunk are lost with the process, so f
 often.
 """
 
+import os
 from contextlib import suppress
-from io import FileIO
+from io import BufferedWriter, BytesIO, FileIO
 from pathlib import Path
 from typing import IO, cast
 
 from navette.bags.bag import BagTopic
 from navette.bags.mcap_file import COMPRESSIONS, McapFile
-from navette.bags.mcap_records import MAGIC
 from navette.bags.qos import qos_text
+from navette.bags.recording_file import RecordingFile
 from navette.bags.reserve import Reserve
-from navette.errors import FileFormatError, InvalidValueError
+from navette.errors import InvalidValueError
 
 _CHUNK_BYTES = 256 * 1024
 # Larger than any chunk: a chunk and its index are written in one call.
@@ -31,36 +32,38 @@ _MOST_SACRIFICED = 4
 
 
 class BagWriter:
-    """Writes one ``.mcap`` file; an existing bag is replaced.
+    """Writes one new ``.mcap`` file.
 
     Args:
         compression: of the chunks: ``zstd``, ``lz4`` or ``none``.
+        overwrite: replace an existing bag that no other process records.
 
     Raises:
         InvalidValueError: another compression.
-        FileFormatError: the file cannot be created, or exists and is not a bag; names
+        FileFormatError: the file cannot be created, exists, or is being recorded; names
             path and reason.
 
-    All methods except :meth:`abandon` raise ``OSError`` if the disk is full or gone.
+    All methods except :meth:`abandon` raise ``OSError`` if the disk is full or gone, or
+    if another program has replaced, removed or truncated the file.
     """
 
-    def __init__(self, path: Path, *, compression: str = "zstd") -> None:
+    def __init__(
+        self, path: Path, *, compression: str = "zstd", overwrite: bool = False
+    ) -> None:
         if compression not in COMPRESSIONS:
             raise InvalidValueError(
                 f"compression {compression!r} of .mcap; "
                 f"known: {', '.join(COMPRESSIONS)}"
             )
         self.path = path
-        try:
-            if _is_something_else(path):
-                raise FileFormatError(path, "exists, is not a bag and is not replaced")
-            self._file = path.open("wb", buffering=_BUFFER_BYTES)
-        except OSError as error:
-            reason = error.strerror or str(error)
-            raise FileFormatError(path, f"cannot be written: {reason}") from error
+        start = BytesIO()
         self._mcap = McapFile(
-            self._file, profile="ros2", library=_LIBRARY, compression=compression
+            start, profile="ros2", library=_LIBRARY, compression=compression
         )
+        self._file = RecordingFile(path, start.getvalue(), overwrite=overwrite)
+        self._stream = BufferedWriter(self._file.raw, _BUFFER_BYTES)
+        self._mcap.stream = self._stream
+        self._flushed = self._mcap.written
         self._schemas: dict[tuple[str, str], int] = {}
         self._reserve = Reserve(path.parent)
 
@@ -118,45 +121,49 @@ class BagWriter:
 
     def flush(self) -> None:
         """Finish the chunk and write it, so that it survives this process."""
+        self._file.check(self._flushed)
         self._mcap.end_chunk()
-        self._file.flush()
+        self._stream.flush()
+        self._flushed = self._mcap.written
         self._reserve.grow(self._mcap.index_size)
 
     def close(self) -> None:
         """Write the index and close; a second call has no effect."""
-        if not self._file.closed:
+        if not self._stream.closed:
+            self._file.check(self._flushed)
             self._reserve.release()
             self._mcap.finish()
-            self._file.close()
+            self._stream.close()
 
     def abandon(self) -> None:
         """Close after an ``OSError``; flushed messages stay readable.
 
         Space for the index is reserved from the start, also for a full disk.
         """
-        if self._file.closed:
+        if self._stream.closed:
             self._reserve.release()
             return
+        # The file itself, not its name, which may refer to another file by now.
+        own = os.dup(self._file.raw.fileno())
         with suppress(OSError):  # the same error again
-            self._file.close()
+            self._stream.close()
         self._reserve.release()
-        with suppress(OSError):  # readable without an index
-            self._finish_what_is_there()
+        with suppress(OSError), FileIO(own, "r+") as file:  # readable without an index
+            self._finish_what_is_there(file)
 
-    def _finish_what_is_there(self) -> None:
-        size = self.path.stat().st_size
-        with self.path.open("r+b", buffering=0) as file:
-            for _ in range(_MOST_SACRIFICED):
-                size = self._mcap.keep(size)
-                file.truncate(size)
-                file.seek(size)
-                try:
-                    self._mcap.finish(cast(IO[bytes], _Whole(file)))
-                except OSError:
-                    size -= 1  # drop the chunk that ends there next
-                else:
-                    return
-            file.truncate(self._mcap.keep(size))
+    def _finish_what_is_there(self, file: FileIO) -> None:
+        size = os.fstat(file.fileno()).st_size
+        for _ in range(_MOST_SACRIFICED):
+            size = self._mcap.keep(size)
+            file.truncate(size)
+            file.seek(size)
+            try:
+                self._mcap.finish(cast(IO[bytes], _Whole(file)))
+            except OSError:
+                size -= 1  # drop the chunk that ends there next
+            else:
+                return
+        file.truncate(self._mcap.keep(size))
 
 
 class _Whole:
@@ -170,11 +177,3 @@ class _Whole:
         while rest:
             rest = rest[self._file.write(rest) :]
         return len(data)
-
-
-def _is_something_else(path: Path) -> bool:
-    """Whether the path is an existing file that is not a recording."""
-    if not path.is_file() or path.stat().st_size == 0:
-        return False
-    with path.open("rb") as file:
-        return file.read(len(MAGIC)) != MAGIC

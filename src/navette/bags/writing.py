@@ -1,11 +1,10 @@
 """Write a recording in any of the supported formats."""
 
-import shutil
 from pathlib import Path
 
 from navette.bags.bag import BagMessage, BagTopic
 from navette.bags.mcap_file import COMPRESSIONS
-from navette.bags.opening import holds_bag, is_bag
+from navette.bags.replacing import make_way
 from navette.bags.rosbags_writers import Db3Writer, Ros1Writer
 from navette.bags.topic_writer import TopicWriter
 from navette.bags.writer import BagWriter
@@ -21,9 +20,8 @@ class McapWriter(TopicWriter):
 
     def __init__(self, path: Path, *, compression: str = "zstd") -> None:
         super().__init__(path)
-        self._part = path.with_name(f".{path.name}.part")
-        self._part.unlink(missing_ok=True)
-        self._writer = BagWriter(self._part, compression=compression)
+        self._part = path.with_name(f".{path.name}.new")
+        self._writer = BagWriter(self._part, compression=compression, overwrite=True)
 
     def _add(self, topic: BagTopic) -> int:
         return self._writer.add_topic(topic)
@@ -84,13 +82,7 @@ def open_writer(
         InvalidValueError: unknown storage or compression.
     """
     storage = storage_of(path, storage)
-    if path.exists():
-        if not overwrite:
-            raise FileFormatError(path, "exists already; --overwrite replaces it")
-        if not is_bag(path) or (path.is_file() and not holds_bag(path)):
-            raise FileFormatError(path, "exists, is not a bag and is not replaced")
-        if path.is_dir():
-            shutil.rmtree(path)
+    make_way(path, overwrite=overwrite)
     if not path.absolute().parent.is_dir():
         raise FileFormatError(path, "cannot be written: the folder does not exist")
     if storage == "mcap":

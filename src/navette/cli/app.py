@@ -73,10 +73,16 @@ Seed = Annotated[
 ]
 Record = Annotated[
     Path | None,
-    Option(metavar="FILE.mcap", help="Record all topics except raw images."),
+    Option(
+        metavar="FILE.mcap",
+        help="Record all topics except raw images to a file.",
+    ),
 ]
 RecordImages = Annotated[
     bool, Option("--record-images", help="Also record raw images.")
+]
+Overwrite = Annotated[
+    bool, Option("--overwrite", help="Replace an existing recording of that name.")
 ]
 ParamsFile = Annotated[
     list[Path] | None,
@@ -151,6 +157,7 @@ def sim(
     seed: Seed = 0,
     record: Record = None,
     record_images: RecordImages = False,
+    overwrite: Overwrite = False,
     params: ParamsFile = None,
     max_time: MaxTime = None,
     as_json: Json = False,
@@ -174,6 +181,7 @@ def sim(
         seed=seed,
         record=record,
         record_images=record_images,
+        overwrite=overwrite,
         params_files=tuple(params or ()),
         max_time_s=max_time,
         port=port,

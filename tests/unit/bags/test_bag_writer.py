@@ -159,17 +159,26 @@ def test_a_file_that_cannot_be_created_is_named(tmp_path: Path) -> None:
         BagWriter(tmp_path)
 
 
-def test_a_bag_is_replaced_but_nothing_else_is(tmp_path: Path) -> None:
+def test_a_bag_is_replaced_on_request_and_nothing_else_is(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
-    path.touch()
-    for count in (10, 20):
-        write_greetings(path, count)
-    assert path.read_bytes() == (write_greetings(tmp_path / "b", 20).path.read_bytes())
+    path.touch()  # an empty file is not a recording
+    before = write_greetings(path, 10).path.read_bytes()
+    with pytest.raises(FileFormatError, match=r"run.mcap: exists already; --overwrite"):
+        BagWriter(path)
+    assert path.read_bytes() == before
+    BagWriter(path, overwrite=True).close()
+    BagWriter(tmp_path / "b").close()
+    assert path.read_bytes() == (tmp_path / "b").read_bytes()
     notes = tmp_path / "notes.txt"
     notes.write_text("precious")
-    with pytest.raises(FileFormatError, match=r"notes.txt: exists, is not a bag"):
-        BagWriter(notes)
+    for overwrite in (False, True):
+        with pytest.raises(FileFormatError, match=r"notes.txt: exists, is not a bag"):
+            BagWriter(notes, overwrite=overwrite)
     assert notes.read_text() == "precious"
+    with pytest.raises(FileFormatError, match="/dev/null: exists, is not a bag"):
+        BagWriter(Path("/dev/null"), overwrite=True)
+    left = {each.name for each in tmp_path.iterdir()}
+    assert left == {"b", "notes.txt", "run.mcap"}
 
 
 def test_closing_twice_has_no_effect(tmp_path: Path) -> None:

@@ -143,7 +143,11 @@ def record(
     patterns = [exclude] if exclude else []
     patterns += [f"^{re.escape(_full(each))}$" for each in exclude_topics or ()]
     in_folder = bool(max_bag_size or max_bag_duration or snapshot_duration)
-    path = _path(output, in_folder=in_folder, overwrite=overwrite)
+    path = _path(output, in_folder=in_folder)
+    if path.exists() and not overwrite:
+        from navette.errors import FileFormatError
+
+        raise FileFormatError(path, "already exists; --overwrite replaces it")
     parameters: dict[str, Any] = {
         "topics": [_full(each) for each in topics or ()],
         "types": list(topic_types or ()),
@@ -161,32 +165,20 @@ def record(
     }
     if all_:
         parameters |= {"topics": [], "types": [], "regex": ""}
-    raise click.exceptions.Exit(_record(path, parameters))
+    raise click.exceptions.Exit(_record(path, parameters, overwrite=overwrite))
 
 
 def _full(topic: str) -> str:
     return topic if topic.startswith("/") else f"/{topic}"
 
 
-def _path(output: str, *, in_folder: bool, overwrite: bool) -> Path:
-    """Return the path of the bag; an existing bag is an error or removed."""
-    import shutil
-
-    from navette.bags.opening import is_bag
-    from navette.errors import FileFormatError
-
+def _path(output: str, *, in_folder: bool) -> Path:
+    """Return the path of the bag: a folder, or a file with the suffix."""
     path = Path(output or _dated())
     if in_folder:
         path = path.with_suffix("") if path.suffix == ".mcap" else path
     elif path.suffix != ".mcap":
         path = path.with_name(f"{path.name}.mcap")
-    if path.exists():
-        if not overwrite:
-            raise FileFormatError(path, "already exists; --overwrite replaces it")
-        if not is_bag(path):
-            raise FileFormatError(path, "exists and is not a bag; not overwritten")
-        if path.is_dir():
-            shutil.rmtree(path)
     return path
 
 
@@ -199,7 +191,7 @@ def _dated() -> str:
     return now.strftime("navette_%Y_%m_%d-%H_%M_%S")
 
 
-def _record(path: Path, parameters: dict[str, Any]) -> int:
+def _record(path: Path, parameters: dict[str, Any], *, overwrite: bool) -> int:
     from contextlib import ExitStack
 
     from navette.bags.node import RecorderNode
@@ -213,7 +205,10 @@ def _record(path: Path, parameters: dict[str, Any]) -> int:
     ]
     with connect() as node, ExitStack() as stack:
         recorder = RecorderNode(
-            path, context=node.context, parameter_overrides=overrides
+            path,
+            overwrite=overwrite,
+            context=node.context,
+            parameter_overrides=overrides,
         )
         stack.callback(recorder.close)
         node.executor.add_node(recorder)

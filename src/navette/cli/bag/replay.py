@@ -43,7 +43,10 @@ World = Annotated[
 Robot = Annotated[str | None, Option(help="Robot whose parameters the stages use.")]
 Record = Annotated[
     Path | None,
-    Option(metavar="OUT.mcap", help="Record the output of the nodes."),
+    Option(metavar="OUT.mcap", help="Record the output of the nodes to a new file."),
+]
+Overwrite = Annotated[
+    bool, Option("--overwrite", help="Replace an existing recording of that name.")
 ]
 Golden = Annotated[
     Path | None,
@@ -91,6 +94,7 @@ def replay(
     world: World = None,
     robot: Robot = None,
     record: Record = None,
+    overwrite: Overwrite = False,
     golden: Golden = None,
     tolerance: Tolerance = None,
     time_tolerance: TimeTolerance = 0.0,
@@ -125,6 +129,7 @@ def replay(
             source,
             [_maker(name) for name in nodes],
             record=record,
+            overwrite=overwrite,
             overrides=_robot_parameters(world, robot),
             arguments=_arguments(parameters or [], params_files or []),
             also=inputs or (),

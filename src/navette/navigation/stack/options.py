@@ -13,7 +13,8 @@ class RunOptions:
     """Options of one run of the simulated robot.
 
     ``world`` and ``robot`` are built-in names or files. ``speed`` is a factor of real
-    time; infinity means as fast as possible.
+    time; infinity means as fast as possible. ``record`` is a new file; ``overwrite``
+    replaces an existing recording.
     """
 
     world: str = "arena"
@@ -25,6 +26,7 @@ class RunOptions:
     seed: int = 0
     record: Path | None = None
     record_images: bool = False
+    overwrite: bool = False
     params_files: tuple[Path, ...] = field(default=())
     max_time_s: float | None = None
     port: int = 8765

@@ -58,7 +58,8 @@ class Replay:
         source: an open bag; the caller closes it.
         makers: create the nodes, each in the given context (which is also the default
             context meanwhile).
-        record: file for the nodes' outputs.
+        record: new file for the nodes' outputs.
+        overwrite: replace an existing recording.
         overrides: adds parameters that need not apply to any node (a robot's). Without
             them, nodes use the recorded values, if available.
         arguments: ROS arguments, such as ``["--ros-args", "-p", "a:=1"]``.
@@ -75,6 +76,7 @@ class Replay:
         makers: Sequence[MakeNode],
         *,
         record: Path | None = None,
+        overwrite: bool = False,
         overrides: Callable[[ParameterOverrides], None] = lambda overrides: None,
         arguments: Sequence[str] = (),
         also: Sequence[str] = (),
@@ -98,7 +100,9 @@ class Replay:
             by_user.check_used_by(self.nodes)
             self.outputs = self._topics_of(EndpointKind.PUBLISHER)
             self.inputs = self._choose_inputs(source, also)
-            self.recorder = None if record is None else self._record(record)
+            self.recorder = (
+                None if record is None else self._record(record, overwrite=overwrite)
+            )
             self.player = PlayerNode(
                 source,
                 _with_topics(options, self.inputs),
@@ -182,13 +186,16 @@ class Replay:
                 f"add --input {topic}"
             )
 
-    def _record(self, path: Path) -> RecorderNode:
+    def _record(self, path: Path, *, overwrite: bool) -> RecorderNode:
         if not self.outputs:
             names = ", ".join(node.get_name() for node in self.nodes)
             raise InvalidValueError(f"nothing to record: {names} publishes nothing")
         topics: Parameter[Any] = Parameter("topics", value=list(self.outputs))
         recorder = RecorderNode(
-            path, context=self.context, parameter_overrides=[topics]
+            path,
+            overwrite=overwrite,
+            context=self.context,
+            parameter_overrides=[topics],
         )
         self._stack.callback(recorder.close)
         return recorder

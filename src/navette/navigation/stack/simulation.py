@@ -81,7 +81,9 @@ class Simulation:
         self.recorder = (
             None
             if options.record is None
-            else RecorderNode(options.record, context=context)
+            else RecorderNode(
+                options.record, overwrite=options.overwrite, context=context
+            )
         )
         self.sim = SimNode(self.resolved.scene, start=options.start, context=context)
         # Before the missions, so that it reports the last goal before they end the run.

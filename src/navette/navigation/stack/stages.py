@@ -189,11 +189,17 @@ def recorder() -> None:
     """Record every topic in a bag."""
     parser = _parser("recorder", "Records the topics into a bag.")
     parser.add_argument("file", type=Path, metavar="FILE.mcap")
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace an existing recording"
+    )
     given = _parse(parser)
     from navette.bags.node import RecorderNode
 
     _run(
-        lambda context: RecorderNode(given.file, context=context), ParameterOverrides()
+        lambda context: RecorderNode(
+            given.file, overwrite=given.overwrite, context=context
+        ),
+        ParameterOverrides(),
     )
 
 
