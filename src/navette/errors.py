@@ -4,6 +4,7 @@ NavetteError
 ├── InvalidValueError (ValueError)      a value is out of range or malformed
 │   ├── ParameterError                  a parameter: unknown, mistyped, out of range
 │   ├── InvalidNameError                a node, topic or frame name
+│   ├── InvalidInputError               a received message: carries the named reason
 │   └── MessageError                    a message field: type, range, length
 ├── UnknownNameError (LookupError)      no such type, frame, robot or world
 ├── FileFormatError (ValueError)        a malformed file: carries path and line
@@ -34,6 +35,24 @@ class ParameterError(InvalidValueError):
 
 class InvalidNameError(InvalidValueError):
     """A node, topic, namespace or frame name breaks the naming rules."""
+
+
+class InvalidInputError(InvalidValueError):
+    """A received message or request cannot be used.
+
+    Raised in a callback of a stage's input, it drops the message: the stage logs the
+    reason once, counts it in ``/diagnostics`` and continues.
+
+    Args:
+        reason: name of the kind of fault, such as ``not_finite``; the names of the
+            stages' own checks are in the reference, "Dropped inputs".
+        detail: field, value, and what is allowed.
+    """
+
+    def __init__(self, reason: str, detail: str) -> None:
+        super().__init__(f"{reason}: {detail}")
+        self.reason = reason
+        self.detail = detail
 
 
 class MessageError(InvalidValueError, TypeError, AssertionError):

@@ -60,6 +60,7 @@ _STATUS = "diagnostic_msgs/msg/DiagnosticStatus"
 PLANNER_STATUS = StackTopic("/planner/status", _STATUS, 1, True)
 CONTROL_STATUS = StackTopic("/control/status", _STATUS, 1, True)
 COMMANDER = StackTopic("/commander", _STATUS, 1, True)
+DIAGNOSTICS = StackTopic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 
 # Published by a person
 GOAL_POINT = StackTopic("/goal_point", "geometry_msgs/msg/PointStamped")

@@ -83,6 +83,7 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         "endpoint",
         "event_handlers",
         "msg_type",
+        "on_undecodable",
         "ports",
         "qos_profile",
         "raw",
@@ -110,6 +111,8 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         self.raw = raw
         self.shared = shared
         self.runs_during_calls = False
+        #: Called for each sample that cannot be decoded; the transport logs it.
+        self.on_undecodable: Callable[[], None] | None = None
         self.ports: list[SubscriptionPort] = []
         self.event_handlers: list[EventHandler] = watch.event_handlers
         # Number of samples queued without inspection; 0 with a content filter.
@@ -258,7 +261,12 @@ class Subscription(Destroyable, Entity, Generic[MsgT]):
         """Return the message; None if it expired or cannot be decoded."""
         if message.__class__ is Expiring:
             message = message.at(self._loop.clock.now_ns)
-        return message.decode() if message.__class__ is Encoded else message
+        if message.__class__ is not Encoded:
+            return message
+        decoded = message.decode()
+        if decoded is None and self.on_undecodable is not None:
+            self.on_undecodable()
+        return decoded
 
     def _opened(self, message: Any, *, raw: bool) -> Any:
         """Return the message or its bytes; None if it expired or cannot be decoded."""

@@ -108,15 +108,10 @@ class SimNode(StageNode):
         self._contacts_reported = 0
 
     def on_cmd_vel(self, msg: Twist | TwistStamped) -> None:
-        """Apply a command; a non-finite one is refused and the last one stays."""
+        """Apply a command; an invalid one is dropped and the last one stays."""
         self._advance()
         twist = msg.twist if isinstance(msg, TwistStamped) else msg
-        if not self.simulator.command(twist.linear.x, twist.angular.z):
-            self.get_logger().error(
-                f"refused /cmd_vel: linear.x {twist.linear.x}, angular.z "
-                f"{twist.angular.z} must be finite",
-                throttle_duration_sec=1.0,
-            )
+        self.simulator.command(twist.linear.x, twist.angular.z)
 
     def on_params_changed(self, old: SimParams) -> None:
         self.simulator.change_params(self.params)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from navette.errors import InvalidValueError
+from navette.errors import InvalidInputError, InvalidValueError
 from navette.geometry import Pose2
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
@@ -130,18 +130,25 @@ class ControlNode(StageNode):
 
     def on_path(self, msg: Path) -> None:
         """Follow a new path, or report why it is refused."""
-        self._planner_ns = self._now_ns
-        self._follow_server.interrupt(f"preempted by a path on {topics.PATH.name}")
-        self._begin(goal=False)
+        self._replace_path()
         frame = msg.header.frame_id
         if msg.poses and frame != self.params.map_frame:
-            self.get_logger().error(
+            raise InvalidInputError(
+                "unknown_frame",
                 f"path in frame {frame!r}; expected map_frame, "
-                f"{self.params.map_frame!r}"
+                f"{self.params.map_frame!r}",
             )
-            self._follower.reset(ControlState.UNKNOWN_FRAME)
-            return
         self._try_path(poses_of(msg))
+
+    def on_input_dropped(self, topic: str, msg: Any, error: InvalidInputError) -> None:
+        """Stop for an invalid path: the previous one is obsolete."""
+        if topic == topics.PATH.name:
+            self._replace_path()
+            is_frame = error.reason == "unknown_frame"
+            state = (
+                ControlState.UNKNOWN_FRAME if is_frame else ControlState.INVALID_PATH
+            )
+            self._follower.reset(state)
 
     def on_odometry(self, msg: Odometry) -> None:
         """Store the newest message for the next step."""
@@ -166,10 +173,10 @@ class ControlNode(StageNode):
         """Limit the speed, in percent or m/s; 0: no limit."""
         limit = msg.speed_limit
         if not (math.isfinite(limit) and limit >= 0):
-            self.get_logger().error(
-                f"speed limit {limit!r} not used; must be finite and >= 0 (0: none)"
+            raise InvalidInputError(
+                "out_of_range",
+                f"speed_limit is {limit!r}; must be finite and >= 0 (0: none)",
             )
-            return
         if limit == 0:
             self._speed_limits = NO_CAP
         elif msg.percentage:
@@ -222,6 +229,12 @@ class ControlNode(StageNode):
         self._follower = PathFollower(params)
         self._follower.limit_speed(self._speed_limits)
         self._placed_ns = _NEVER
+
+    def _replace_path(self) -> None:
+        """Forget the last path for one of the topic."""
+        self._planner_ns = self._now_ns
+        self._follow_server.interrupt(f"preempted by a path on {topics.PATH.name}")
+        self._begin(goal=False)
 
     def _begin(self, *, goal: bool, method: str = "") -> None:
         """Forget the last path before a new one."""
@@ -314,9 +327,8 @@ class ControlNode(StageNode):
             cells, spec = grid_from_message(msg)
         except InvalidValueError as error:
             # The last valid costmap ages until the robot stops.
-            self.get_logger().error(
-                f"costmap not used: {error}", throttle_duration_sec=1.0
-            )
+            invalid = InvalidInputError("out_of_range", str(error))
+            self.drop_input(topics.COSTMAP.name, invalid)
             return
         points = obstacle_points(
             cells,

@@ -1,15 +1,14 @@
 """The costmap node: scan in, costmap out.
 
 Before the first scan the node publishes nothing, then one costmap for each scan, in the
-scan's frame and with its stamp. An invalid scan is logged and produces no costmap, so
-that the costmap becomes stale downstream.
+scan's frame and with its stamp. An invalid scan is dropped, so that the costmap
+becomes stale downstream.
 """
 
 from typing import Any, ClassVar
 
 import numpy as np
 
-from navette.errors import InvalidValueError
 from navette.msgs import topics
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.costmap.params import CostmapParams
@@ -48,17 +47,13 @@ class CostmapNode(StageNode):
 
     def on_scan(self, msg: LaserScan) -> None:
         """Publish the scan's costmap."""
-        try:
-            scan = PlanarScan(
-                np.asarray(msg.ranges),
-                msg.angle_min,
-                msg.angle_increment,
-                msg.range_min,
-                msg.range_max,
-            )
-        except InvalidValueError as error:
-            self.get_logger().error(f"scan not used: {error}", throttle_duration_sec=5)
-            return
+        scan = PlanarScan(
+            np.asarray(msg.ranges),
+            msg.angle_min,
+            msg.angle_increment,
+            msg.range_min,
+            msg.range_max,
+        )
         cells = self._costmap.build(scan)
         stamp_ns = stamp_to_ns(msg.header.stamp)
         frame_id = msg.header.frame_id

@@ -23,6 +23,7 @@ _ORIGIN = Pose2(0.0, 0.0, 0.0)
 # access foreign memory. Grids outside these limits (metres) never reach a kernel.
 _RESOLUTIONS = (1e-3, 100.0)
 _FARTHEST = 1e9
+_FARTHEST_CELL = 1e15
 
 
 @dataclass(frozen=True)
@@ -76,8 +77,8 @@ class GridSpec:
         """
         dx, dy = x - self.origin.x, y - self.origin.y
         c, s = math.cos(self.origin.yaw), math.sin(self.origin.yaw)
-        column = math.floor((c * dx + s * dy) / self.resolution)
-        row = math.floor((c * dy - s * dx) / self.resolution)
+        column = _index((c * dx + s * dy) / self.resolution)
+        row = _index((c * dy - s * dx) / self.resolution)
         return row, column
 
     def center_of(self, row: int, column: int) -> tuple[float, float]:
@@ -95,6 +96,11 @@ class GridSpec:
     def contains(self, row: int, column: int) -> bool:
         """Whether the cell lies in the grid."""
         return 0 <= row < self.height and 0 <= column < self.width
+
+
+def _index(cells: float) -> int:
+    """Round down; a number too large for an index, or NaN, gives one outside."""
+    return math.floor(min(max(-_FARTHEST_CELL, cells), _FARTHEST_CELL))
 
 
 class GridFrame(NamedTuple):

@@ -8,7 +8,7 @@ or transforms they are dropped and the map does not change.
 import math
 from typing import Any, ClassVar
 
-from navette.errors import InvalidValueError
+from navette.errors import InvalidInputError, InvalidValueError
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
@@ -132,7 +132,8 @@ class MapMemoryNode(StageNode):
     def _place_waiting(self) -> None:
         ready, dropped = self._waiting.take(self._tracker, self._now_ns())
         for lost in dropped:
-            self._warn(f"{lost.reason} (stamp {lost.stamp_ns / 1e9:.3f} s)")
+            at = f"stamp {lost.stamp_ns / 1e9:.3f} s"
+            self._drop("no_pose", f"{lost.reason} ({at})")
         for each in ready:
             costmap = self._placed(each)
             if costmap is not None:
@@ -142,14 +143,13 @@ class MapMemoryNode(StageNode):
         frame_id = ready.item.header.frame_id
         base_T_sensor = self._tracker.transform_to_base(frame_id)
         if base_T_sensor is None:
-            self._warn(f"no transform from its frame {frame_id!r} to the base")
-            return None
+            return None  # counted by the tracker
         map_T_sensor = ready.map_T_base @ base_T_sensor
         try:
             cells, spec = grid_from_message(ready.item)
             there = placed(spec, map_T_sensor)
         except InvalidValueError as error:
-            self._warn(str(error))
+            self._drop("out_of_range", str(error))
             return None
         return PlacedCostmap(
             cells,
@@ -177,10 +177,8 @@ class MapMemoryNode(StageNode):
         message = grid_to_message(memory.occupancy(), memory.spec, frame_id, stamp_ns)
         self.publish(topics.MAP.name, message)
 
-    def _warn(self, reason: str) -> None:
-        self.get_logger().warning(
-            f"costmap not used: {reason}", throttle_duration_sec=5.0
-        )
+    def _drop(self, reason: str, detail: str) -> None:
+        self.drop_input(topics.COSTMAP.name, InvalidInputError(reason, detail))
 
     def _now_ns(self) -> int:
         return self.get_clock().now().nanoseconds

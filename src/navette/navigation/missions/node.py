@@ -44,6 +44,7 @@ class MissionNode(StageNode):
             topics.MAP,
             "availability of a map",
             callback="on_map",
+            checks_contents=False,
         ),
     )
     OUTPUTS = (

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.errors import InvalidValueError
+from navette.errors import InvalidInputError, InvalidValueError
 from navette.geometry import Pose2, yaw_of
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
@@ -103,17 +103,15 @@ class PlannerNode(StageNode):
     def on_map(self, msg: OccupancyGrid) -> None:
         """Store the map; a path that it blocks is replaced at once."""
         if msg.header.frame_id != self.params.map_frame:
-            self.get_logger().error(
-                f"map in frame {msg.header.frame_id!r}: "
-                f"expected map_frame, {self.params.map_frame!r}",
-                throttle_duration_sec=5.0,
+            raise InvalidInputError(
+                "unknown_frame",
+                f"map in frame {msg.header.frame_id!r}; expected map_frame, "
+                f"{self.params.map_frame!r}",
             )
-            return
         try:
             occupancy, spec = grid_from_message(msg)
         except InvalidValueError as error:
-            self.get_logger().error(str(error), throttle_duration_sec=5.0)
-            return
+            raise InvalidInputError("out_of_range", str(error)) from None
         self._map = occupancy, spec
         self._navigator.set_map(occupancy, spec)
         self.on_timer()
@@ -136,6 +134,20 @@ class PlannerNode(StageNode):
         position, q = msg.pose.position, msg.pose.orientation
         yaw = yaw_of((q.x, q.y, q.z, q.w))
         self._set_goal(msg.header, Goal(position.x, position.y, yaw))
+
+    def on_input_dropped(self, topic: str, msg: Any, error: InvalidInputError) -> None:
+        """Refuse an invalid goal, and stop."""
+        if topic == topics.GOAL_POINT.name:
+            goal = Goal(msg.point.x, msg.point.y)
+        elif topic == topics.GOAL_POSE.name:
+            goal = Goal(msg.pose.position.x, msg.pose.position.y)
+        else:
+            return
+        outside = error.reason == "out_of_range"
+        self._navigator.refuse_goal(
+            goal, Outcome.GOAL_OUTSIDE_MAP if outside else Outcome.GOAL_NOT_FINITE
+        )
+        self._publish_news()
 
     def on_timer(self) -> None:
         """Step the navigator."""

@@ -3,9 +3,13 @@
 from bisect import bisect_right
 from collections import deque
 
+from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3, yaw_of
+from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime.node import Node
+from navette.runtime.stage.input_check import FARTHEST
+from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.tf import Buffer, TransformException, TransformListener
 from navette.runtime.time import stamp_to_ns
 
@@ -25,6 +29,7 @@ class PoseTracker:
         base_frame: the frame that navigation controls.
         map_frame: the frame of the poses.
         history_s: how long poses are kept for :meth:`pose_at`, in s.
+        topic: the node's input, under which a stage counts unusable messages.
     """
 
     def __init__(
@@ -33,12 +38,14 @@ class PoseTracker:
         base_frame: str,
         map_frame: str,
         history_s: float = 5.0,
+        topic: str = topics.ODOMETRY.name,
     ) -> None:
         self.base_frame = base_frame
         self.map_frame = map_frame
         self.buffer = Buffer()
         self.buffer.attach(node)
         self._node = node
+        self._topic = topic
         self._history_ns = round(history_s * 1e9)
         self._history: deque[tuple[int, Pose2]] = deque()
         self._velocity = (0.0, 0.0)
@@ -75,7 +82,10 @@ class PoseTracker:
             map_T_base = map_T_odom @ map_T_base
         total = sum(map_T_base)
         if total - total != 0.0:  # inf or nan
-            self._warn("odometry is not finite")
+            self._drop("not_finite", "odometry is not finite")
+            return False
+        if not _is_near(map_T_base):
+            self._drop("out_of_range", f"pose {map_T_base} in {self.map_frame!r}")
             return False
         self._store(stamp_to_ns(odometry.header.stamp), map_T_base)
         twist = odometry.twist.twist
@@ -101,7 +111,13 @@ class PoseTracker:
     def transform_to_base(self, frame_id: str) -> Pose2 | None:
         """Return base_T_frame of a frame fixed to the robot, or None."""
         transform = self._static(self.base_frame, frame_id)
-        return None if transform is None else transform.to_pose2()
+        if transform is None:
+            return None
+        base_T_frame = transform.to_pose2()
+        if not _is_near(base_T_frame):
+            self._drop("out_of_range", f"transform {base_T_frame} to {frame_id!r}")
+            return None
+        return base_T_frame
 
     def frame_on_map(self, frame_id: str) -> Pose2 | None:
         """Return the present pose of a frame in the map frame; None if unknown.
@@ -157,7 +173,7 @@ class PoseTracker:
         except TransformException as error:
             if self._moving_listener is None:
                 self._moving_listener = TransformListener(self.buffer, self._node)
-            self._warn(str(error))
+            self._drop("unknown_frame", str(error))
             return None
 
     def _static(self, target: str, source: str) -> Transform3 | None:
@@ -166,13 +182,21 @@ class PoseTracker:
         try:
             return self.buffer.lookup(target, source, 0)
         except TransformException as error:
-            self._warn(str(error))
+            self._drop("unknown_frame", str(error))
             return None
 
-    def _warn(self, reason: str) -> None:
-        self._node.get_logger().warning(
-            f"odometry not used: {reason}", throttle_duration_sec=5.0
-        )
+    def _drop(self, reason: str, detail: str) -> None:
+        if isinstance(self._node, StageNode):
+            self._node.drop_input(self._topic, InvalidInputError(reason, detail))
+        else:
+            self._node.get_logger().warning(
+                f"odometry not used: {detail}", throttle_duration_sec=5.0
+            )
+
+
+def _is_near(pose: Pose2) -> bool:
+    """Whether cells and distances can be computed with it."""
+    return max(abs(pose.x), abs(pose.y)) <= FARTHEST
 
 
 def _velocity_of_base(

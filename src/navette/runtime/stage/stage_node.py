@@ -1,12 +1,18 @@
 """Base class of Navette's nodes: topics and parameters are declared as data."""
 
 import dataclasses
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, ClassVar, Self
 
-from navette.errors import NavetteError, ParameterError, UnknownNameError
-from navette.msgs import get_interface
+from navette.errors import (
+    InvalidInputError,
+    NavetteError,
+    ParameterError,
+    UnknownNameError,
+)
+from navette.msgs import get_interface, type_name
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.msgs.topics import StackTopic
 from navette.params import Params
@@ -15,7 +21,10 @@ from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from navette.runtime.ros_clock import JumpThreshold, TimeJump
+from navette.runtime.stage.dropped_inputs import DroppedInputs
+from navette.runtime.stage.input_check import input_check
 from navette.runtime.stage.params import declare_params
+from navette.runtime.subscription import Subscription
 from navette.runtime.time import Duration
 
 
@@ -73,6 +82,9 @@ class Input(_Topic):
     timeout_s: float | None = None
     #: Whether publications of this node are not received.
     ignores_own: bool = False
+    #: Whether the contents must be valid, not only the stamp; False if the callback
+    #: uses a part of them and checks that itself.
+    checks_contents: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,6 +96,11 @@ class StageNode(Node):
     """Node that declares PARAMS, subscribes to INPUTS and publishes OUTPUTS.
 
     Input messages are shared with other subscribers: callbacks must not change them.
+    Messages that cannot be used (NaN, a stamp before 1970, a grid of the wrong length)
+    are dropped before the callback, and those for which the callback raises
+    InvalidInputError: logged once per topic and reason, counted in
+    :attr:`dropped_inputs` and on ``/diagnostics``, and not an arrival for
+    :meth:`is_stale`.
 
     Raises:
         ParameterError: a parameter value given for this node is not allowed, or the
@@ -115,6 +132,7 @@ class StageNode(Node):
         self.add_on_set_parameters_callback(self._check_params)
         self.add_post_set_parameters_callback(self._apply_params)
         self._arrivals_ns: dict[str, int] = {}
+        self._dropped = DroppedInputs(self)
         backward = JumpThreshold(
             min_forward=None, min_backward=Duration(nanoseconds=-1)
         )
@@ -167,6 +185,24 @@ class StageNode(Node):
             return arrival_ns is None
         return self._clock.now_ns - arrival_ns > timeout_ns
 
+    @property
+    def dropped_inputs(self) -> Mapping[tuple[str, str], int]:
+        """Number of dropped messages by (topic, reason)."""
+        return self._dropped.counts
+
+    def drop_input(self, topic: str, error: InvalidInputError) -> None:
+        """Count a message as dropped that turns out to be unusable after its callback.
+
+        ``topic`` is its name in INPUTS.
+        """
+        self._dropped.add(topic, error)
+
+    def on_input_dropped(self, topic: str, msg: Any, error: InvalidInputError) -> None:
+        """Override to react to a message that was dropped, for example with a status.
+
+        ``topic`` is its name in INPUTS.
+        """
+
     def on_time_jump(self) -> None:
         """Override to reset the node after the clock jumped backward.
 
@@ -184,7 +220,7 @@ class StageNode(Node):
         """Subscribe to each type of an input."""
         kinds = [get_interface(t) for t in (declared.type, *declared.other_types)]
         for kind in kinds:
-            self.create_subscription(
+            subscription: Subscription[Any] = self.create_subscription(
                 kind,
                 declared.topic,
                 receive,
@@ -193,19 +229,42 @@ class StageNode(Node):
                 other_types=[other for other in kinds if other is not kind],
                 ignore_local_publications=declared.ignores_own,
             )
+            undecodable = InvalidInputError(
+                "undecodable", f"its bytes are not a {type_name(kind)}"
+            )
+            subscription.on_undecodable = partial(
+                self._dropped.add, declared.topic, undecodable
+            )
 
     def _receiver(self, declared: Input) -> Callable[[Any], Any]:
         callback = declared.callback
         if isinstance(callback, str):
             callback = getattr(self, callback)
         topic, arrivals = declared.topic, self._arrivals_ns
+        checks = {
+            get_interface(each): input_check(each, contents=declared.checks_contents)
+            for each in (declared.type, *declared.other_types)
+        }
         clock = self._clock
 
         def receive(msg: Any) -> Any:
-            arrivals[topic] = clock.now_ns
-            return callback(msg)
+            before_ns = arrivals.get(topic)
+            try:
+                checks[msg.__class__](msg)
+                arrivals[topic] = clock.now_ns
+                return callback(msg)
+            except InvalidInputError as error:
+                self._restore_arrival(topic, before_ns)
+                self._dropped.add(topic, error)
+                self.on_input_dropped(topic, msg, error)
 
         return receive
+
+    def _restore_arrival(self, topic: str, arrival_ns: int | None) -> None:
+        if arrival_ns is None:
+            self._arrivals_ns.pop(topic, None)
+        else:
+            self._arrivals_ns[topic] = arrival_ns
 
     def _check_unknown_overrides(self) -> None:
         for name, override in self._overrides.items():

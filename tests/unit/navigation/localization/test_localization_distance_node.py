@@ -124,14 +124,16 @@ def test_jumps_are_logged_and_add_nothing() -> None:
         logs = graph.collect("/rosout", "rcl_interfaces/msg/Log")
         for second, x in ((10, 0.0), (11, 1.0), (5, 50.0), (60, 900.0)):
             node.on_message(gps(second * SECOND, x))
-        node.on_message(gps(61 * SECOND, math.nan))
+        graph.publish("/gnss_driver/odometry", gps(61 * SECOND, math.nan))
         graph.run_for(0.1)
         assert node.distance == 1.0
+        assert node.dropped_inputs == {("/gnss_driver/odometry", "not_finite"): 1}
         texts = [log.msg for log in logs.messages]
         assert texts == [
             "time went back: counting continues from 5.000 s",
             "gap in time: counting continues from 60.000 s",
-            "message at 61.000 s not used: no fix, or not a number",
+            "refused /gnss_driver/odometry: not_finite: (nan, 5000000.0, 0.0); must be "
+            "finite numbers (more of this kind are only counted, on /diagnostics)",
         ]
 
 

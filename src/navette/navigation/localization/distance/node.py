@@ -4,9 +4,11 @@ The node publishes 0.0 before the first message, then the distance so far, ten t
 second, also without new messages.
 """
 
+import math
 from dataclasses import replace
 from typing import Any, ClassVar
 
+from navette.errors import InvalidInputError
 from navette.geometry.geodesy import GeoPoint
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import TwistStamped
@@ -17,6 +19,7 @@ from navette.msgs.std_msgs.msg import Float64
 from navette.navigation.localization.distance.odometer import Odometer, Step
 from navette.navigation.localization.distance.params import DistanceParams
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
+from navette.runtime.stage.input_check import FARTHEST
 
 _PERIOD_S = 0.1
 
@@ -32,6 +35,7 @@ class OdomIntegratorNode(StageNode):
             "position and velocity; parameters select topic and type",
             rate_hz=100.0,
             callback="on_message",
+            checks_contents=False,  # only position or velocity is used
         ),
     )
     OUTPUTS: ClassVar = (
@@ -63,11 +67,11 @@ class OdomIntegratorNode(StageNode):
         """Add the distance since the previous message."""
         stamp_ns = stamp_to_ns(msg.header.stamp)
         if self.params.by_velocity:
-            step = self._odometer.step_velocity(_velocity(msg), stamp_ns)
+            step = self._odometer.step_velocity(_checked(_velocity(msg)), stamp_ns)
         elif isinstance(msg, NavSatFix):
-            step = self._step_fix(msg, stamp_ns)
+            step = self._odometer.step_place(_place(msg), stamp_ns)
         else:
-            step = self._odometer.step_position(_position(msg), stamp_ns)
+            step = self._odometer.step_position(_checked(_position(msg)), stamp_ns)
         self._log(step, stamp_ns)
 
     def on_timer(self) -> None:
@@ -79,22 +83,36 @@ class OdomIntegratorNode(StageNode):
         self._odometer.max_gap_ns = self.params.max_gap_ns
         self._odometer.pause()
 
-    def _step_fix(self, fix: NavSatFix, stamp_ns: int) -> Step:
-        if fix.status.status == NavSatStatus.STATUS_NO_FIX:
-            return Step.REFUSED
-        place = GeoPoint(fix.latitude, fix.longitude, fix.altitude)
-        return self._odometer.step_place(place, stamp_ns)
-
     def _log(self, step: Step, stamp_ns: int) -> None:
         if step is Step.REFUSED:
-            self.get_logger().warning(
-                f"message at {stamp_ns / 1e9:.3f} s not used: no fix, or not a number",
-                throttle_duration_sec=5.0,
+            raise InvalidInputError(
+                "out_of_range", f"message at {stamp_ns / 1e9:.3f} s: the sum overflows"
             )
-        elif step in (Step.GAP, Step.WENT_BACK):
+        if step in (Step.GAP, Step.WENT_BACK):
             self.get_logger().info(
                 f"{step.value}: counting continues from {stamp_ns / 1e9:.3f} s"
             )
+
+
+def _place(fix: NavSatFix) -> GeoPoint:
+    if fix.status.status == NavSatStatus.STATUS_NO_FIX:
+        raise InvalidInputError("no_fix", "status.status is STATUS_NO_FIX")
+    place = GeoPoint(fix.latitude, fix.longitude, fix.altitude)
+    if not place.is_valid:
+        raise InvalidInputError(
+            "out_of_range", f"{place}: expected a latitude and a longitude in range"
+        )
+    return place
+
+
+def _checked(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+    if not all(map(math.isfinite, vector)):
+        raise InvalidInputError("not_finite", f"{vector}; must be finite numbers")
+    if max(map(abs, vector)) > FARTHEST:
+        raise InvalidInputError(
+            "out_of_range", f"{vector}; must be within ±{FARTHEST:g}"
+        )
+    return vector
 
 
 def _position(msg: Any) -> tuple[float, float, float]:

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from navette.errors import NavetteError, ParameterError, TransformError
+from navette.errors import InvalidInputError, ParameterError, TransformError
 from navette.geometry import Transform3
 from navette.msgs import topics
 from navette.msgs.tf2_msgs.msg import TFMessage
@@ -43,7 +43,13 @@ _WARNING_PERIOD_NS = 5_000_000_000
 
 def _input(source: str, type_name: str, role: str) -> Input:
     role = f"{role}; the parameter of that name sets the topic"
-    return Input(topic=source, type=type_name, role=role, callback=f"on_{source}")
+    return Input(
+        topic=source,
+        type=type_name,
+        role=role,
+        callback=f"on_{source}",
+        checks_contents=False,  # only the fields that its configuration uses
+    )
 
 
 class EkfNode(StageNode):
@@ -194,10 +200,18 @@ class EkfNode(StageNode):
             )
             self._reset()
         try:
-            for measurement in self._sensors[source].measurements(msg, stamp_ns):
-                self._fused(source, stamp_ns, self._filter.step(measurement))
-        except NavetteError as error:
-            self._warn(source, f"{source} not used: {error}")
+            # The sensors check their results.
+            with np.errstate(all="ignore"):
+                for measurement in self._sensors[source].measurements(msg, stamp_ns):
+                    self._fused(source, stamp_ns, self._filter.step(measurement))
+        except InvalidInputError as error:
+            raise InvalidInputError(
+                error.reason, f"{source} not used: {error.detail}"
+            ) from None
+        except TransformError as error:
+            raise InvalidInputError(
+                "unknown_frame", f"{source} not used: {error}"
+            ) from None
 
     def _fused(self, source: str, stamp_ns: int, fused: Fused) -> None:
         if fused is not Fused.USED:

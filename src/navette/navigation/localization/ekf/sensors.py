@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from navette.errors import InvalidValueError
+from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3, yaw_of
 from navette.geometry.geodesy import GeoPoint, LocalPlane
 from navette.geometry.se3 import multiply, rotate
@@ -33,6 +33,8 @@ from navette.navigation.localization.ekf.state import AX, VX, VYAW, YAW, Array, 
 
 _LOG = logging.getLogger(__name__)
 _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])  # x, y, and turning about z, of six
+# A larger value (m, m/s, …) would make later corrections overflow.
+_LARGEST = 1e9
 
 
 class Frames(Protocol):
@@ -69,7 +71,7 @@ class FilterInput(ABC):
         """Convert a message to measurements.
 
         Raises:
-            InvalidValueError: not finite, or an invalid covariance.
+            InvalidInputError: not finite, out of range, or an invalid covariance.
             TransformError: its frame is not connected.
         """
 
@@ -193,8 +195,9 @@ class ImuInput(FilterInput):
     def _heading(self, msg: Imu, stamp_ns: int, imu_R_base: Any) -> Measurement:
         covariance = np.asarray(msg.orientation_covariance, float).reshape(3, 3)
         if covariance[0, 0] == -1.0:
-            raise InvalidValueError(
-                "orientation_covariance[0] is -1: it measures no orientation"
+            raise InvalidInputError(
+                "no_orientation",
+                "orientation_covariance[0] is -1: it measures no orientation",
             )
         yaw = yaw_of(multiply(_quaternion(msg.orientation), imu_R_base))
         reading = Reading(stamp_ns, np.array([0.0, 0.0, yaw]), np.zeros((3, 3)))
@@ -230,11 +233,11 @@ class GnssInput(FilterInput):
 
     def measurements(self, msg: NavSatFix, stamp_ns: int) -> Iterator[Measurement]:
         if msg.status.status == NavSatStatus.STATUS_NO_FIX:
-            raise InvalidValueError("it has no fix")
+            raise InvalidInputError("no_fix", "it has no fix")
         place = GeoPoint(msg.latitude, msg.longitude, msg.altitude)
         if not place.is_valid:
-            raise InvalidValueError(
-                f"{place}: expected a latitude and a longitude in range"
+            raise InvalidInputError(
+                "out_of_range", f"{place}: expected a latitude and a longitude in range"
             )
         antenna = self.frames.base_in(msg.header.frame_id).inverse().translation
         if self._plane is None:
@@ -259,11 +262,19 @@ KINDS: dict[str, type[FilterInput]] = {
 
 def _check(reading: Reading) -> None:
     if not np.all(np.isfinite(reading.values)):
-        raise InvalidValueError(f"{reading.values.tolist()} are not finite")
-    if not reading.is_valid:
-        raise InvalidValueError(
+        raise InvalidInputError(
+            "not_finite", f"{reading.values.tolist()} are not finite"
+        )
+    if np.any(np.abs(reading.values) > _LARGEST):
+        raise InvalidInputError(
+            "out_of_range",
+            f"{reading.values.tolist()}; must be within ±{_LARGEST:g}",
+        )
+    if not (reading.is_valid and np.all(np.abs(reading.covariance) <= _LARGEST**2)):
+        raise InvalidInputError(
+            "invalid_covariance",
             f"its covariance {reading.covariance.tolist()} is not finite, not "
-            "symmetric, or has negative eigenvalues"
+            f"symmetric, has negative eigenvalues, or exceeds {_LARGEST**2:g}",
         )
 
 
@@ -276,7 +287,9 @@ def _planar(covariance: Any) -> Array:
 def _quaternion(q: Any) -> tuple[float, float, float, float]:
     if not 0.9 < math.hypot(q.x, q.y, q.z, q.w) < 1.1:
         values = [q.x, q.y, q.z, q.w]
-        raise InvalidValueError(f"its orientation {values} is not a unit quaternion")
+        raise InvalidInputError(
+            "invalid_orientation", f"its orientation {values} is not a unit quaternion"
+        )
     return (q.x, q.y, q.z, q.w)
 
 

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from navette.ros2.packages.diagnostic_updater._diagnostic_status_wrapper import (
     DiagnosticStatusWrapper,
@@ -116,7 +117,9 @@ class Updater(DiagnosticTaskVector):
     def __init__(self, node: Node, period: float = 1.0) -> None:
         super().__init__()
         self.node = node
-        self.publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 1)
+        self.publisher = node.create_publisher(
+            DiagnosticArray, topics.DIAGNOSTICS.name, 1
+        )
         self.period_parameter = _PERIOD
         self.use_fqn_parameter = _USE_FQN
         self.verbose = False
