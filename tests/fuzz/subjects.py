@@ -1,0 +1,167 @@
+"""The nodes under test and the valid messages that are spoiled for them.
+
+Nodes come from the stack's table of stages, inputs and services from the nodes
+themselves: a new stage, topic or service is tested without a change here.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+from navette.msgs import Message, get_interface
+from navette.msgs.copying import copy_message
+from navette.navigation.stack import RunOptions
+from navette.navigation.stack.simulation import Simulation
+from navette.navigation.stack.stack import NODE_CLASSES
+from navette.runtime import Context, Node, ns_to_stamp
+from navette.sim import World, load_robot
+from navette.sim.node import SimNode
+from navette.testing import GraphHarness
+
+_EKF_INPUTS = {
+    "odom0": "/odom/filtered",
+    "odom1": "/wheels",
+    "pose0": "/initialpose",
+    "twist0": "/twist",
+    "imu0": "/imu",
+    "gps0": "/fix",
+}
+_USED = {
+    "odom0": (0, 1, 5),
+    "odom1": (6, 11),
+    "pose0": (0, 1, 5),
+    "twist0": (6, 11),
+    "imu0": (5, 11, 12),
+}
+_EKF: dict[str, Any] = {
+    **_EKF_INPUTS,
+    **{
+        f"{source}_config": [index in used for index in range(15)]
+        for source, used in _USED.items()
+    },
+    "imu0_relative": True,
+    "world_frame": "map",
+}
+
+#: Parameters with which a stage is tested, by the name of its node; without an entry
+#: the stage is tested with its defaults.
+VARIANTS: dict[str, tuple[dict[str, Any], ...]] = {
+    "ekf": (_EKF,),
+    "odom_integrator": (
+        {},
+        {"topic": "/odom/filtered", "topic_type": "nav_msgs/msg/Odometry"},
+        {"topic": "/fix", "topic_type": "sensor_msgs/msg/NavSatFix"},
+        {
+            "topic": "/twist",
+            "topic_type": "geometry_msgs/msg/TwistStamped",
+            "odom_type": "vel",
+        },
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A stage with the parameters of its test."""
+
+    name: str
+    node_class: Any
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+    def make(self, context: Context, **given: Any) -> Node:
+        """Create the node; ``given`` are further parameters."""
+        values = {**self.parameters, **given}
+        if values:
+            context.overrides.add(self.name, values, "fuzz")
+        if self.node_class is SimNode:
+            node: Node = SimNode(_scene(), context=context)
+            return node
+        made: Node = self.node_class(context=context)
+        return made
+
+    def __str__(self) -> str:
+        kind = str(self.parameters.get("topic_type", ""))
+        return f"{self.name}-{kind.rpartition('/')[2]}" if kind else self.name
+
+
+SUBJECTS = [
+    Subject(name, node_class, parameters)
+    for name, node_class in NODE_CLASSES
+    for parameters in VARIANTS.get(name, ({},))
+]
+
+
+@cache
+def _scene() -> Any:
+    robot = load_robot("turtlebot3_burger").model
+    return World("fuzz").add_walls((6.0, 6.0)).add_robot(robot).scene()
+
+
+@cache
+def recorded() -> dict[str, Message]:
+    """Return the last message of every topic of a short drive, by topic."""
+    options = RunOptions(
+        goals=((-3.0, -7.0),), headless=True, speed=math.inf, max_time_s=3.0
+    )
+    run = Simulation(options)
+    last: dict[str, Message] = {}
+    try:
+        listener = Node("listener", context=run.context)
+        run.executor.add_node(listener)
+        topics = run.context.graph.topics()
+        for topic, types in topics.items():
+            listener.create_subscription(
+                get_interface(types[0]),
+                topic,
+                lambda msg, topic=topic: last.__setitem__(topic, msg),
+                10,
+            )
+        run.run()
+    finally:
+        run.close()
+    return last
+
+
+def valid_message(topic: str, message_class: type[Message]) -> Message:
+    """Return a valid message: that of a drive, or the defaults of the type."""
+    by_topic = recorded()
+    if type(by_topic.get(topic)) is message_class:
+        return copy_message(by_topic[topic])
+    for msg in by_topic.values():
+        if type(msg) is message_class:
+            return copy_message(msg)
+    return message_class()
+
+
+def stamped(msg: Message, now_ns: int) -> Message:
+    """Return the message with the present time in its header, if it has one."""
+    header: Any = getattr(msg, "header", None)
+    if header is not None and hasattr(header, "stamp"):
+        header.stamp = ns_to_stamp(now_ns)
+    for transform in getattr(msg, "transforms", []):
+        transform.header.stamp = ns_to_stamp(now_ns)
+    return msg
+
+
+@contextmanager
+def running(
+    subject: Subject, **parameters: Any
+) -> Iterator[tuple[GraphHarness, Node, Callable[[], None]]]:
+    """Run a node with valid inputs; the function sends each of its inputs once."""
+    with GraphHarness() as graph:
+        node = graph.add(subject.make(graph.context, **parameters))
+        inputs = {
+            subscription.topic_name: valid_message(
+                subscription.topic_name, subscription.msg_type
+            )
+            for subscription in node.subscriptions
+        }
+
+        def feed() -> None:
+            for topic, msg in inputs.items():
+                graph.publish(topic, stamped(msg, graph.now_ns), latched=True)
+
+        yield graph, node, feed
