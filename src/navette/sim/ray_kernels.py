@@ -13,15 +13,16 @@ sizes), ``position`` (3, m) and ``rotation`` (3, 3: world_R_shape), world frame.
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from navette.storage.kernels import kernel
 
 PLANE, BOX, SPHERE, CYLINDER, CAPSULE, ELLIPSOID, OTHER = range(7)
 
 _Floats = NDArray[np.float64]
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _quadratic(a: float, b: float, c: float) -> tuple[float, float]:
     """Roots of a t² + 2 b t + c in ascending order; NaN without real roots."""
     d = b * b - a * c
@@ -31,7 +32,7 @@ def _quadratic(a: float, b: float, c: float) -> tuple[float, float]:
     return (-b - root) / a, (-b + root) / a
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _hit_box(ox, oy, oz, dx, dy, dz, hx, hy, hz):  # type: ignore[no-untyped-def]
     """Slab method; from inside, the distance to the exit."""
     near, far = -np.inf, np.inf
@@ -49,7 +50,7 @@ def _hit_box(ox, oy, oz, dx, dy, dz, hx, hy, hz):  # type: ignore[no-untyped-def
     return near if near >= 0.0 else far
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _hit_ball(ox, oy, oz, dx, dy, dz, rx, ry, rz):  # type: ignore[no-untyped-def]
     """Ellipsoid or sphere, scaled to a unit ball."""
     ox, oy, oz = ox / rx, oy / ry, oz / rz
@@ -62,7 +63,7 @@ def _hit_ball(ox, oy, oz, dx, dy, dz, rx, ry, rz):  # type: ignore[no-untyped-de
     return t1 if t1 >= 0.0 else np.inf
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _hit_round(ox, oy, oz, dx, dy, dz, r, h, flat):  # type: ignore[no-untyped-def]
     """Cylinder (flat ends) or capsule (round ends) about z."""
     best = np.inf
@@ -88,7 +89,7 @@ def _hit_round(ox, oy, oz, dx, dy, dz, r, h, flat):  # type: ignore[no-untyped-d
     return best
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _hit(kind, sx, sy, sz, ox, oy, oz, dx, dy, dz):  # type: ignore[no-untyped-def]
     """Distance to the first intersection, in the shape's frame; inf without one."""
     if kind == BOX:
@@ -105,7 +106,7 @@ def _hit(kind, sx, sy, sz, ox, oy, oz, dx, dy, dz):  # type: ignore[no-untyped-d
     return -oz / dz if dz < -1e-12 and oz >= 0.0 else np.inf
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _half_box(kind, size):  # type: ignore[no-untyped-def]
     """Half edges of the box around a shape, in its frame."""
     if kind in (BOX, ELLIPSOID):
@@ -117,7 +118,7 @@ def _half_box(kind, size):  # type: ignore[no-untyped-def]
     return size[0], size[0], size[0]
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _seen_from(  # type: ignore[no-untyped-def]
     origin, world_R_view, position, world_R_shape, view_R_shape, centre
 ):
@@ -133,7 +134,7 @@ def _seen_from(  # type: ignore[no-untyped-def]
             view_R_shape[i, j] = total
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _eye(view_R_shape, centre):  # type: ignore[no-untyped-def]
     """The view's origin in the shape's frame."""
     m, c = view_R_shape, centre
@@ -144,7 +145,7 @@ def _eye(view_R_shape, centre):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True)
+@kernel
 def cast_fan(  # type: ignore[no-untyped-def]
     kind, size, position, rotation, origin, world_R_fan, angles, reach, distance
 ):
@@ -180,7 +181,7 @@ def cast_fan(  # type: ignore[no-untyped-def]
             _cast_beams(kind[g], size[g], m, c, angles, begin, last, distance)
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _bearing(kind, size, m, c, reach):  # type: ignore[no-untyped-def]
     """Centre and half width (rad) of the angles a shape can cover; half < 0: none."""
     if kind == PLANE:
@@ -197,7 +198,7 @@ def _bearing(kind, size, m, c, reach):  # type: ignore[no-untyped-def]
     return math.atan2(c[1], c[0]), math.asin(around / away)
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _cast_beams(  # type: ignore[no-untyped-def]
     kind, size, m, c, angles, first, last, distance
 ):
@@ -212,7 +213,7 @@ def _cast_beams(  # type: ignore[no-untyped-def]
             distance[i] = t
 
 
-@njit(cache=True)
+@kernel
 def cast_image(  # type: ignore[no-untyped-def]
     kind, size, position, rotation, origin, world_R_camera, focal, near, far,
     depth, shape,
@@ -251,7 +252,7 @@ def cast_image(  # type: ignore[no-untyped-def]
                     shape[row, column] = g
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _cover(  # type: ignore[no-untyped-def]
     m, centre, hx, hy, hz, focal, near, height, width
 ):

@@ -4,9 +4,9 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from navette.sim.ray_kernels import BOX, CAPSULE, CYLINDER, ELLIPSOID, PLANE, SPHERE
+from navette.storage.kernels import kernel
 
 _AMBIENT = 0.55
 _DIFFUSE = 0.45
@@ -16,7 +16,7 @@ _HAZE_PER_M = 0.01  # rate at which objects fade into the horizon
 _MOST_HAZE = 0.6
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _normal(kind, size, x, y, z):  # type: ignore[no-untyped-def]
     """Outward unit normal at a point on a shape, in its frame; zero if unknown."""
     if kind == PLANE:
@@ -42,7 +42,7 @@ def _normal(kind, size, x, y, z):  # type: ignore[no-untyped-def]
     return x / length, y / length, z / length
 
 
-@njit(cache=True)
+@kernel
 def shade(  # type: ignore[no-untyped-def]
     kind, size, position, rotation, colour, origin, world_R_camera, focal,
     depth, shape, sun, sky, horizon, image,
@@ -84,7 +84,7 @@ def shade(  # type: ignore[no-untyped-def]
                 image[row, column, i] = np.uint8(255.0 * min(1.0, tint) + 0.5)
 
 
-@njit(cache=True, inline="never")
+@kernel(inline="never")
 def _light(kind, size, position, rotation, spot, sun):  # type: ignore[no-untyped-def]
     """Brightness of a point of a shape."""
     x, y, z = 0.0, 0.0, 0.0

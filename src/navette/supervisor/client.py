@@ -10,13 +10,13 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from navette.errors import NavetteError
 from navette.supervisor.guard import without_tokens
 from navette.supervisor.project import (
     INFO_NAME,
     Project,
+    SupervisorError,
+    create_state,
     is_locked,
-    make_private,
     read_info,
     socket_path,
     state_root,
@@ -26,10 +26,6 @@ from navette.supervisor.service_config import ServiceConfig
 _TIMEOUT_S = 15.0
 _START_TIMEOUT_S = 30.0
 LOG_NAME = "supervisor.log"
-
-
-class SupervisorError(NavetteError):
-    """The supervisor is unreachable, or refused a request."""
 
 
 class SupervisorClient:
@@ -178,9 +174,8 @@ def start_supervisor(project: Project, path: Path) -> None:
     Raises:
         SupervisorError: it did not start; includes its output.
     """
-    make_private(project.state)
+    log = create_state(project) / LOG_NAME
     reading, writing = os.pipe()
-    log = project.state / LOG_NAME
     with log.open("wb") as output:
         subprocess.run(
             [

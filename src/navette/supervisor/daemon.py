@@ -23,8 +23,8 @@ from navette.supervisor.process_manager import ProcessManager
 from navette.supervisor.project import (
     INFO_NAME,
     Project,
+    create_state,
     lock_path,
-    make_private,
     read_info,
     try_lock,
 )
@@ -41,8 +41,7 @@ _LINGER_S = 0.5
 
 def main(folder: Path, socket: Path, ready: int) -> None:
     """Supervise the project of a folder until no service is left."""
-    state = Project(folder).state
-    make_private(state)
+    state = create_state(Project(folder))
     lock = os.open(lock_path(state), os.O_RDWR | os.O_CREAT, 0o600)
     if not _locked(lock, socket):
         os.write(ready, b"taken")  # another supervisor was faster

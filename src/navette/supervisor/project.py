@@ -7,18 +7,23 @@ import fcntl
 import hashlib
 import json
 import os
-import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from navette.errors import FileFormatError
+from navette.errors import FileFormatError, NavetteError
+from navette.storage.folders import can_write, private_folder, temporary_folder
 
 FILE_NAME = "navette.yaml"
 INFO_NAME = "supervisor.json"
 STATE_VARIABLE = "NAVETTE_STATE_DIR"
-_PRIVATE = 0o700
 _MAX_SOCKET_PATH = 100  # bytes; the smallest limit of any system is 104
+
+
+class SupervisorError(NavetteError):
+    """The supervisor is unreachable, or refused a request."""
 
 
 @dataclass(frozen=True)
@@ -64,12 +69,20 @@ def find_project(start: Path, file: Path | None = None) -> Project:
 
 
 def state_root() -> Path:
-    """Return ``NAVETTE_STATE_DIR``, or Navette's folder for state of the user."""
+    """Return ``NAVETTE_STATE_DIR``, or Navette's folder for state of the user.
+
+    Where that cannot be written, a folder among the temporary files.
+
+    Raises:
+        SupervisorError: there is no writable folder.
+    """
     given = os.environ.get(STATE_VARIABLE)
     if given:
         return Path(given).expanduser()
     home = os.environ.get("XDG_STATE_HOME") or "~/.local/state"
-    return Path(home).expanduser() / "navette"
+    usual = Path(home).expanduser() / "navette"
+    with _folder_errors():
+        return usual if can_write(usual) else temporary_folder() / "state"
 
 
 def socket_path(state: Path) -> Path:
@@ -78,25 +91,40 @@ def socket_path(state: Path) -> Path:
     Paths of sockets are limited in length.
 
     Raises:
-        FileFormatError: other users have access to its folder.
+        SupervisorError: there is no folder for it that only this user can write.
     """
-    digest = hashlib.sha256(str(state).encode()).hexdigest()[:20]
-    bases = (os.environ.get("XDG_RUNTIME_DIR") or "", tempfile.gettempdir(), "/tmp")
-    folders = [Path(base) / f"navette-{os.getuid()}" for base in bases if base]
-    fitting = (f for f in folders if len(f"{f}/{digest}.sock") <= _MAX_SOCKET_PATH)
-    folder = next(fitting, folders[-1])
-    folder.mkdir(mode=_PRIVATE, exist_ok=True)
-    found = folder.lstat()
-    if found.st_uid != os.getuid() or found.st_mode & 0o077:
-        raise FileFormatError(
-            folder, "accessible to other users; remove it or set its mode to 700"
-        )
-    return folder / f"{digest}.sock"
+    name = f"{hashlib.sha256(str(state).encode()).hexdigest()[:20]}.sock"
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    with _folder_errors():
+        if runtime and can_write(Path(runtime)):
+            path = Path(runtime) / f"navette-{os.getuid()}" / name
+            if len(str(path)) <= _MAX_SOCKET_PATH:
+                return private_folder(path.parent) / name
+        path = temporary_folder() / name
+        if len(str(path)) <= _MAX_SOCKET_PATH:
+            return path
+        return private_folder(Path("/tmp", f"navette-{os.getuid()}")) / name
 
 
-def make_private(folder: Path) -> None:
-    """Create a folder that only this user can access."""
-    folder.mkdir(mode=_PRIVATE, parents=True, exist_ok=True)
+def create_state(project: Project) -> Path:
+    """Create the state folder of a project.
+
+    Raises:
+        SupervisorError: it cannot be written, or other users can write it.
+    """
+    with _folder_errors():
+        return private_folder(project.state)
+
+
+@contextmanager
+def _folder_errors() -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise SupervisorError(
+            f"no folder for the supervisor's log and socket: {error}; set "
+            f"{STATE_VARIABLE} and XDG_RUNTIME_DIR to folders that you can write"
+        ) from error
 
 
 def read_info(state: Path) -> dict[str, Any] | None:

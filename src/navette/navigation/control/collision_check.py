@@ -10,12 +10,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
 from navette.navigation.control.limits import VelocityCommand
 from navette.navigation.control.params import ControlParams
+from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ class CollisionCheck:
         )
 
 
-@njit("float64(float64[:, ::1], float64, float64)", cache=True)
+@kernel(signature="float64(float64[:, ::1], float64, float64)")
 def signed_distance(outline: Array, x: float, y: float) -> float:
     """Return the distance (m) of (x, y) to the polygon (K, 2), negative inside."""
     best = np.inf
@@ -131,10 +131,9 @@ def signed_distance(outline: Array, x: float, y: float) -> float:
     return -distance if inside else distance
 
 
-@njit(
-    "float64(float64[:, ::1], float64[:, ::1], float64, float64, float64, float64,"
-    " float64)",
-    cache=True,
+@kernel(
+    signature="float64(float64[:, ::1], float64[:, ::1], float64, float64, float64,"
+    " float64, float64)",
 )
 def body_distance(
     points: Array,
@@ -157,10 +156,9 @@ def body_distance(
     return best
 
 
-@njit(
-    "UniTuple(float64, 2)(float64[:, ::1], float64[:, ::1], float64[::1], int64,"
-    " float64[::1])",
-    cache=True,
+@kernel(
+    signature="UniTuple(float64, 2)(float64[:, ::1], float64[:, ::1], float64[::1],"
+    " int64, float64[::1])",
 )
 def free_motion(
     points: Array, outline: Array, motion: Array, poses: int, body: Array

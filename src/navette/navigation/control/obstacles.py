@@ -4,12 +4,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.navigation.grids import GridSpec
+from navette.storage.kernels import kernel
 
 
 def obstacle_points(
@@ -53,7 +53,7 @@ def obstacle_points(
     )
 
 
-@njit(cache=True)
+@kernel
 def _gather(
     cost: Any,
     lethal: int,

@@ -11,10 +11,10 @@ which is 0 for a perpendicular hit.
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.navigation.grids.checks import kernel_array
+from navette.storage.kernels import kernel
 
 
 def grazing_margins(
@@ -58,7 +58,7 @@ def grazing_margins(
     return margins
 
 
-@njit(cache=True)
+@kernel
 def _margins_kernel(
     ranges: Any,
     directions: Any,
@@ -79,7 +79,7 @@ def _margins_kernel(
             margins[i] = min(clearance / squarest - clearance, most)
 
 
-@njit(cache=True)
+@kernel
 def _sine(
     ranges: Any, directions: Any, i: int, j: int, range_min: float, range_max: float
 ) -> float:

@@ -11,10 +11,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from navette.geometry import Pose2
 from navette.navigation.grids.spec import LETHAL, UNKNOWN, Cells, GridSpec
+from navette.storage.kernels import kernel
 
 # Source coordinates along a row advance in fixed point: exact and fast.
 FRACTION_BITS = 32
@@ -70,7 +70,7 @@ def _cell_transform(outer: GridSpec, inner: GridSpec) -> Affine:
     )
 
 
-@njit(cache=True)
+@kernel
 def row_range(source: Cells, alignment: Alignment, rows: int) -> tuple[int, int]:
     """First and last row (exclusive) of the target that the source can overlap."""
     height, width = source.shape
@@ -82,7 +82,7 @@ def row_range(source: Cells, alignment: Alignment, rows: int) -> tuple[int, int]
     return max(0, math.floor(low)), min(rows, math.ceil(high) + 1)
 
 
-@njit(cache=True)
+@kernel
 def _limits(start: float, step: float, size: int, low: float, high: float) -> Any:
     """[low, high] narrowed to the t with 0 <= start + t · step < size."""
     if abs(step) < 1e-12:
@@ -93,7 +93,7 @@ def _limits(start: float, step: float, size: int, low: float, high: float) -> An
     return max(low, min(at_zero, at_size)), min(high, max(at_zero, at_size))
 
 
-@njit(cache=True)
+@kernel
 def pull_row(
     source: Cells, alignment: Alignment, row: int, lethal_as: np.int8, pulled: Cells
 ) -> tuple[int, int]:
@@ -134,19 +134,19 @@ def pull_row(
     return first, last
 
 
-@njit(cache=True)
+@kernel
 def _replace_lethal(row: Cells, lethal_as: np.int8) -> None:
     lethal = np.int8(LETHAL)
     for c in range(row.size):
         row[c] = lethal_as if row[c] >= lethal else row[c]
 
 
-@njit(cache=True)
+@kernel
 def _is_in(fu: int, fv: int, width: int, height: int) -> bool:
     return 0 <= fu < width * ONE and 0 <= fv < height * ONE
 
 
-@njit(cache=True)
+@kernel
 def has_lethal(row: Cells) -> bool:
     highest = np.int8(UNKNOWN)
     for c in range(row.size):
@@ -154,7 +154,7 @@ def has_lethal(row: Cells) -> bool:
     return bool(highest >= LETHAL)
 
 
-@njit(cache=True)
+@kernel
 def cell_at(transform: Affine, row: int, column: int) -> tuple[int, int]:
     """(row, column) of the outer cell that contains the centre of an inner cell."""
     a, b, u0, v0 = transform

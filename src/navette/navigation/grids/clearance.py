@@ -4,13 +4,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint
 from navette.navigation.grids.checks import grid_array, kernel_array
 from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
+from navette.storage.kernels import kernel
 
 # Of a cell, in cells: an obstacle may fill its cell to the corners.
 HALF_DIAGONAL = math.sqrt(0.5)
@@ -121,7 +121,7 @@ def body_clearance(
     return clearance
 
 
-@njit(cache=True)
+@kernel
 def distance_at(grid: DistanceGrid, x: float, y: float) -> float:
     """Distance (m) at a point of the grid's frame, bilinear between cell centres.
 
@@ -133,7 +133,7 @@ def distance_at(grid: DistanceGrid, x: float, y: float) -> float:
     return metres
 
 
-@njit(cache=True)
+@kernel
 def pose_clearance(
     grid: DistanceGrid, body: Body, x: float, y: float, yaw: float, enough_m: float
 ) -> float:
@@ -157,7 +157,7 @@ def pose_clearance(
     return least - margin
 
 
-@njit(cache=True)
+@kernel
 def pose_is_clear(
     grid: DistanceGrid, body: Body, x: float, y: float, yaw: float, needed_m: float
 ) -> bool:
@@ -179,7 +179,7 @@ def pose_is_clear(
     return True
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def _to_cells(
     frame: GridFrame, x: float, y: float, yaw: float
 ) -> tuple[float, float, float, float]:
@@ -192,7 +192,7 @@ def _to_cells(
     return (u, v, frame.cos * cos + frame.sin * sin, frame.cos * sin - frame.sin * cos)
 
 
-@njit(cache=True)
+@kernel
 def _interpolate(
     distance_m: NDArray[np.float32], u: float, v: float, outside_m: float
 ) -> float:
@@ -213,7 +213,7 @@ def _interpolate(
     return (1.0 - fv) * low + fv * high
 
 
-@njit(cache=True)
+@kernel
 def _clearances(
     grid: DistanceGrid,
     body: Body,

@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from navette.navigation.grids.alignment import Affine, align, cell_at
 from navette.navigation.grids.checks import at_least, grid_array
 from navette.navigation.grids.spec import FREE, LETHAL, Cells, GridSpec
+from navette.storage.kernels import kernel
 
 _ANY = -128  # least int8: every cell counts, unknown ones too
 
@@ -87,7 +87,7 @@ def _window(spec: GridSpec, center: tuple[float, float], radius_m: float) -> _Wi
     )
 
 
-@njit(cache=True)
+@kernel
 def _unmatched(
     grid: Cells, window: _Window, other: Cells, other_T_grid: Affine, least: np.int8
 ) -> int:
@@ -109,7 +109,7 @@ def _unmatched(
     return count
 
 
-@njit(cache=True)
+@kernel
 def _lethal_near(grid: Cells, row: int, column: int) -> bool:
     """Whether a lethal cell is among the nine around (row, column)."""
     height, width = grid.shape

@@ -10,11 +10,11 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.navigation.grids.checks import at_least, kernel_array
+from navette.storage.kernels import kernel
 
 # Columns per block: a few registers that stay in the first-level cache.
 BLOCK = 64
@@ -89,13 +89,13 @@ def make_scratch(shape: tuple[int, ...], radius_cells: int) -> Scratch:
     )
 
 
-@njit(cache=True)
+@kernel
 def _first_row(occupied: Any, row: Any, far: Any, zero: Any) -> None:
     for c in range(row.size):
         row[c] = far if occupied[c] == 0 else zero
 
 
-@njit(cache=True)
+@kernel
 def _step_down(
     above: Any, occupied: Any, row: Any, far: Any, zero: Any, one: Any
 ) -> None:
@@ -105,14 +105,14 @@ def _step_down(
         row[c] = further if occupied[c] == 0 else zero
 
 
-@njit(cache=True)
+@kernel
 def _step_up(below: Any, row: Any, one: Any) -> None:
     for c in range(row.size):
         further = row.dtype.type(below[c] + one)
         row[c] = further if further < row[c] else row[c]
 
 
-@njit(cache=True)
+@kernel
 def column_distances(occupied: Occupied, scratch: Scratch) -> None:
     """Phase 1: distance to the nearest obstacle in the same column, cells.
 
@@ -132,7 +132,7 @@ def column_distances(occupied: Occupied, scratch: Scratch) -> None:
         _step_up(columns[r + 1], columns[r], one)
 
 
-@njit(cache=True)
+@kernel
 def _block_minimum(padded: Any, radius: int, limit: Any, block: Any) -> None:
     """Phase 2 for ``block``; ``padded`` has ``radius`` more cells on each side."""
     T = padded.dtype.type
@@ -163,7 +163,7 @@ def _block_minimum(padded: Any, radius: int, limit: Any, block: Any) -> None:
             return
 
 
-@njit(cache=True)
+@kernel
 def row_squares(scratch: Scratch, r: int) -> NDArray[Any]:
     """Phase 2: squared distances (W,) of row ``r``, in ``scratch.row``."""
     radius, padded, row = scratch.radius, scratch.padded, scratch.row
@@ -181,7 +181,7 @@ def row_squares(scratch: Scratch, r: int) -> NDArray[Any]:
     return row
 
 
-@njit(cache=True)
+@kernel
 def _field_kernel(
     occupied: Occupied,
     scratch: Scratch,

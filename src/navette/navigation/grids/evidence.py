@@ -4,7 +4,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
@@ -18,6 +17,7 @@ from navette.navigation.grids.alignment import (
 )
 from navette.navigation.grids.checks import grid_array, output_array
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, Cells, GridSpec
+from navette.storage.kernels import kernel
 
 LogOdds = NDArray[np.float32]
 
@@ -66,7 +66,7 @@ def accumulate(
     _accumulate_kernel(field, cells, align(target_spec, source_spec), weights)
 
 
-@njit(cache=True)
+@kernel
 def _accumulate_kernel(
     field: LogOdds, source: Cells, alignment: Alignment, weights: _Weights
 ) -> None:
@@ -85,7 +85,7 @@ def _accumulate_kernel(
                 _push_hits(field, source, alignment, weights, r)
 
 
-@njit(cache=True)
+@kernel
 def _push_hits(
     field: LogOdds, source: Cells, alignment: Alignment, weights: _Weights, r: int
 ) -> None:
@@ -104,7 +104,7 @@ def _push_hits(
                 field[row, column] = _added(field[row, column], step, weights.limit)
 
 
-@njit(cache=True)
+@kernel
 def _is_free(source: Cells, row: int, column: int) -> bool:
     height, width = source.shape
     if not (0 <= row < height and 0 <= column < width):
@@ -112,7 +112,7 @@ def _is_free(source: Cells, row: int, column: int) -> bool:
     return bool(FREE <= source[row, column] < LETHAL)
 
 
-@njit(cache=True)
+@kernel
 def _added(current: Any, step: Any, limit: Any) -> Any:
     total = step if math.isnan(current) else current + step
     return min(max(total, -limit), limit)

@@ -4,7 +4,6 @@ import math
 from typing import Any, Literal
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
@@ -16,6 +15,7 @@ from navette.navigation.grids.distance import (
     row_squares,
 )
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, Cells
+from navette.storage.kernels import kernel
 
 InflationMethod = Literal["linear", "exponential"]
 
@@ -108,7 +108,7 @@ def inflate(
     return inflated
 
 
-@njit(cache=True)
+@kernel
 def _inflate_kernel(
     cost: Cells,
     lethal: NDArray[np.uint8],
@@ -122,7 +122,7 @@ def _inflate_kernel(
         _raise_row(cost[r], table, lowest, row_squares(scratch, r), inflated[r])
 
 
-@njit(cache=True)
+@kernel
 def _raise_row(
     cost: Cells,
     table: NDArray[np.int8],

@@ -4,7 +4,6 @@ import math
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
@@ -19,6 +18,7 @@ from navette.navigation.grids.alignment import (
 )
 from navette.navigation.grids.checks import grid_array, output_array
 from navette.navigation.grids.spec import LETHAL, Cells, GridSpec
+from navette.storage.kernels import kernel
 
 MergeMode = Literal["overwrite", "max"]
 
@@ -73,7 +73,7 @@ def merge(
     _merge_kernel(grid, cells, align(target_spec, source_spec), rule)
 
 
-@njit(cache=True)
+@kernel
 def _merge_kernel(
     target: Cells, source: Cells, alignment: Alignment, rule: _MergeRule
 ) -> None:
@@ -97,7 +97,7 @@ def _merge_kernel(
                 _push_lethal(target, source[r], alignment.target_T_source, r)
 
 
-@njit(cache=True)
+@kernel
 def _push_lethal(
     target: Cells, source_row: Cells, target_T_source: Affine, r: int
 ) -> None:
@@ -109,13 +109,13 @@ def _push_lethal(
                 target[row, column] = LETHAL
 
 
-@njit(cache=True)
+@kernel
 def _overwrite_row(target: Cells, pulled: Cells) -> None:
     for c in range(target.size):
         target[c] = pulled[c] if pulled[c] >= 0 else target[c]
 
 
-@njit(cache=True)
+@kernel
 def _keep_lethal_row(target: Cells, pulled: Cells) -> None:
     lethal = np.int8(LETHAL)
     for c in range(target.size):
@@ -123,7 +123,7 @@ def _keep_lethal_row(target: Cells, pulled: Cells) -> None:
         target[c] = known if target[c] < lethal else target[c]
 
 
-@njit(cache=True)
+@kernel
 def _chord(
     v: float, center: float, radius: float, first: int, last: int
 ) -> tuple[int, int]:
@@ -139,7 +139,7 @@ def _chord(
     return near, max(min(far, last), near)
 
 
-@njit(cache=True)
+@kernel
 def _max_row(target: Cells, pulled: Cells) -> None:
     for c in range(target.size):
         target[c] = pulled[c] if pulled[c] > target[c] else target[c]

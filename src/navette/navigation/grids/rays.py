@@ -4,7 +4,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
@@ -17,6 +16,7 @@ from navette.navigation.grids.spec import (
     GridSpec,
     grid_frame,
 )
+from navette.storage.kernels import kernel
 
 
 class _Beams(NamedTuple):
@@ -103,7 +103,7 @@ def trace_beams(
     return hits
 
 
-@njit(cache=True)
+@kernel
 def _trace_kernel(
     cost: Cells, frame: GridFrame, beams: _Beams, ends: NDArray[np.int64]
 ) -> int:
@@ -138,7 +138,7 @@ def _trace_kernel(
     return hits
 
 
-@njit(cache=True)
+@kernel
 def _exit(start: float, speed: float, size: int) -> float:
     """Time at which a point that moves from ``start`` at ``speed`` leaves [0, size)."""
     if speed > 0.0:
@@ -148,7 +148,7 @@ def _exit(start: float, speed: float, size: int) -> float:
     return np.inf
 
 
-@njit(cache=True)
+@kernel
 def _free_line(
     flat: Cells, width: int, r0: int, c0: int, r1: int, c1: int, share: float
 ) -> None:

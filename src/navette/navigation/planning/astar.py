@@ -10,7 +10,6 @@ Diagonal moves need both orthogonal neighbours free.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.navigation.planning.bucket_queue import (
@@ -29,6 +28,7 @@ from navette.navigation.planning.traversal import (
     SearchGrid,
     require_inside,
 )
+from navette.storage.kernels import kernel
 
 # A record per cell: stamp << 48 | g << 4 | closed << 3 | direction. The stamp decreases
 # with every query, so records of earlier queries compare as more expensive than any
@@ -109,7 +109,7 @@ class _Query(NamedTuple):
     records: NDArray[np.int64]
 
 
-@njit(cache=True)
+@kernel
 def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
     """Search the grid; return (g of the goal or −1, the pool).
 
@@ -143,7 +143,7 @@ def _search(grid: Any, query: Any, queue: Any, pool: Any) -> Any:
     return (best if best < _NEVER else np.int64(-1)), pool
 
 
-@njit(cache=True, forceinline=True)
+@kernel(forceinline=True)
 def _expand(
     grid: Any,
     query: Any,
@@ -190,7 +190,7 @@ def _expand(
     return best
 
 
-@njit(cache=True, forceinline=True)
+@kernel(forceinline=True)
 def _octile(rows: Any, columns: Any) -> Any:
     """Return the least cost over free cells: the heuristic."""
     rows = rows if rows >= 0 else -rows
@@ -200,7 +200,7 @@ def _octile(rows: Any, columns: Any) -> Any:
     return STRAIGHT * columns + _OBLIQUE * rows
 
 
-@njit(cache=True)
+@kernel
 def _trace(records: Any, stride: int, start_index: int, goal_index: int) -> Any:
     """Return cells (N, 2) of the unrimmed grid, start first."""
     steps = (-stride, stride, -1, 1, -stride - 1, -stride + 1, stride - 1, stride + 1)

@@ -9,7 +9,6 @@ free.
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.navigation.planning.traversal import (
@@ -19,6 +18,7 @@ from navette.navigation.planning.traversal import (
     require_inside,
     steps_cost,
 )
+from navette.storage.kernels import kernel
 
 
 def search(
@@ -53,7 +53,7 @@ def search(
     return cells, steps_cost(cells, cost, table)
 
 
-@njit(cache=True)
+@kernel
 def _flood(
     closed: Any, stride: int, start: int, goal: int, parent: Any, queue: Any
 ) -> None:

@@ -10,8 +10,9 @@ The functions compile into the searches that use them.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from navette.storage.kernels import kernel
 
 USED, FREE, WAITING = 0, 1, 2
 _NEXT = 0x7FFFFFFF
@@ -53,7 +54,7 @@ def new_pool() -> NDArray[np.int64]:
     return np.zeros(1 << 12, np.int64)
 
 
-@njit(cache=True, forceinline=True)
+@kernel(forceinline=True)
 def reserve(pool: Any, queue: Any, pushes: int) -> Any:
     """Return the pool, or a larger copy, with room for ``pushes`` more."""
     if queue.state[USED] + pushes <= pool.size:
@@ -64,7 +65,7 @@ def reserve(pool: Any, queue: Any, pushes: int) -> Any:
     return larger
 
 
-@njit(cache=True, forceinline=True)
+@kernel(forceinline=True)
 def push(pool: Any, queue: Any, bucket: int, item: int) -> None:
     """Add ``item`` (31 bits) to the bucket; call :func:`reserve` before."""
     heads, state = queue.heads, queue.state
@@ -80,7 +81,7 @@ def push(pool: Any, queue: Any, bucket: int, item: int) -> None:
     state[WAITING] += 1
 
 
-@njit(cache=True, forceinline=True)
+@kernel(forceinline=True)
 def pop(pool: Any, queue: Any, bucket: int) -> Any:
     """Remove and return the newest item of the bucket, or −1 if it is empty."""
     heads, state = queue.heads, queue.state

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.navigation.planning.bucket_queue import (
@@ -26,6 +25,7 @@ from navette.navigation.planning.traversal import (
     SearchGrid,
     require_inside,
 )
+from navette.storage.kernels import kernel
 
 UNREACHED = 1 << 60
 """Cost to go of a cell without a path to a goal."""
@@ -112,7 +112,7 @@ class _Wave(NamedTuple):
     stop: int
 
 
-@njit(cache=True)
+@kernel
 def _spread(grid: Any, seeds: Any, wave: Any, queue: Any, pool: Any) -> Any:
     """Lower the field from the seeds (N, 3) row, column, cost outwards.
 
@@ -159,7 +159,7 @@ def _spread(grid: Any, seeds: Any, wave: Any, queue: Any, pool: Any) -> Any:
             push(pool, queue, g >> shift, item)
 
 
-@njit(cache=True, forceinline=True)
+@kernel(forceinline=True)
 def _corner(grid: Any, index: int, k: int) -> bool:
     """Return whether diagonal move ``k`` passes a closed orthogonal neighbour."""
     cost, stride, straight, _ = grid
@@ -171,7 +171,7 @@ def _corner(grid: Any, index: int, k: int) -> bool:
     )
 
 
-@njit(cache=True)
+@kernel
 def _descend(grid: Any, field: Any, index: int, path: Any) -> int:
     """Fill ``path`` with cells along which ``field`` falls by exactly the step's cost.
 

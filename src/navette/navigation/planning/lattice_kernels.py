@@ -7,7 +7,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.navigation.grids import Body, DistanceGrid, pose_clearance, pose_is_clear
@@ -19,6 +18,7 @@ from navette.navigation.planning.bucket_queue import (
     reserve,
 )
 from navette.navigation.planning.dijkstra import UNREACHED
+from navette.storage.kernels import kernel
 
 SHIFT = 10
 BUCKETS = 1 << 13
@@ -80,7 +80,7 @@ class Tree(NamedTuple):
     queue: BucketQueue
 
 
-@njit(cache=True)
+@kernel
 def grow(
     scene: Any,
     moves: Any,
@@ -128,7 +128,7 @@ def grow(
     return best_node, expanded
 
 
-@njit(cache=True)
+@kernel
 def _add_root(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     """Create the root; return its bucket."""
     tree.position[0, 0], tree.position[0, 1] = start[0], start[1]
@@ -141,7 +141,7 @@ def _add_root(scene: Any, tree: Any, start: Any, escaping: bool) -> int:
     return _estimate(nothing, ahead) >> SHIFT
 
 
-@njit(cache=True)
+@kernel
 def _branch(
     scene: Any,
     moves: Any,
@@ -197,13 +197,13 @@ def _branch(
     return used, first
 
 
-@njit(cache=True)
+@kernel
 def _estimate(g: int, ahead: int) -> int:
     """Return f, the estimated cost of a path through this pose."""
     return g + (int(HEURISTIC_WEIGHT * ahead) if ahead < UNREACHED else 0)
 
 
-@njit(cache=True)
+@kernel
 def _step_cost(moves: Any, before: int, m: int, factor: float) -> int:
     cost = moves.costs[m] * factor
     if before >= 0 and moves.directions[before] * moves.directions[m] < 0:
@@ -211,7 +211,7 @@ def _step_cost(moves: Any, before: int, m: int, factor: float) -> int:
     return int(cost)
 
 
-@njit(cache=True)
+@kernel
 def _fits(
     scene: Any, moves: Any, m: int, x: float, y: float, yaw: float, needed_m: float
 ) -> bool:
@@ -231,12 +231,12 @@ def _fits(
     return True
 
 
-@njit(cache=True)
+@kernel
 def _clearance(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> float:
     return pose_clearance(scene.grid, scene.body, x, y, yaw, enough_m)
 
 
-@njit(cache=True)
+@kernel
 def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
     """Return (cost to go, cost factor) at a point; the factor is −1 outside.
 
@@ -261,14 +261,14 @@ def _cell_values(scene: Any, x: float, y: float) -> tuple[int, float]:
     return int((a + (b - a) * u) * (1.0 - v) + (c + (d - c) * u) * v), factor
 
 
-@njit(cache=True)
+@kernel
 def _to_cells(frame: Any, x: float, y: float) -> tuple[float, float]:
     dx, dy = x - frame[0], y - frame[1]
     u = (frame[2] * dx + frame[3] * dy) / frame[4]
     return u, (frame[2] * dy - frame[3] * dx) / frame[4]
 
 
-@njit(cache=True)
+@kernel
 def _bin(tree: Any, frame: Any, x: float, y: float, heading: int, headings: int) -> int:
     u, v = _to_cells(frame, x, y)
     row, column = int(v / tree.bin_cells), int(u / tree.bin_cells)
@@ -276,7 +276,7 @@ def _bin(tree: Any, frame: Any, x: float, y: float, heading: int, headings: int)
     return at
 
 
-@njit(cache=True)
+@kernel
 def _arrival(scene: Any, goal: Any, x: float, y: float, yaw: float) -> int:
     """Return the cost in units of ending here; NOWHERE outside the goal.
 

@@ -9,11 +9,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.navigation.grids import DistanceGrid, distance_at, grid_frame
 from navette.navigation.planning.planning_grid import PlanningGrid
+from navette.storage.kernels import kernel
 
 Poses = NDArray[np.float64]
 Points = NDArray[np.float64]
@@ -120,7 +120,7 @@ def path_cost(
     )
 
 
-@njit(cache=True)
+@kernel
 def _smooth(
     points: Any, grid: DistanceGrid, keep_m: float, rounds: int, clear: Any
 ) -> None:

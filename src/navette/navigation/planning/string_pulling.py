@@ -11,11 +11,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.navigation.planning.traversal import STRAIGHT, EdgeTable
+from navette.storage.kernels import kernel
 
 Points = NDArray[np.float64]
 
@@ -78,7 +78,7 @@ def _checked(
     return np.ascontiguousarray(cost), line
 
 
-@njit(cache=True)
+@kernel
 def _line_cost(cost: Any, line: Any, factor: Any) -> float:
     total = 0.0
     for i in range(line.shape[0] - 1):
@@ -100,7 +100,7 @@ def _cut(line: Points) -> Points:
     return np.concatenate([fine, line[-1:]])
 
 
-@njit(cache=True)
+@kernel
 def _pull_once(cost: Any, fine: Any, factor: Any, paid: Any, kept: Any) -> int:
     """Fill ``kept`` with as few of the points as possible; return their number.
 
@@ -119,7 +119,7 @@ def _pull_once(cost: Any, fine: Any, factor: Any, paid: Any, kept: Any) -> int:
     return count
 
 
-@njit(cache=True)
+@kernel
 def _furthest(cost: Any, fine: Any, paid: Any, anchor: int, factor: Any) -> int:
     """Return the furthest point of a straight segment by doubling, then bisection."""
     last = fine.shape[0] - 1
@@ -141,7 +141,7 @@ def _furthest(cost: Any, fine: Any, paid: Any, anchor: int, factor: Any) -> int:
     return good
 
 
-@njit(cache=True)
+@kernel
 def _shorter(
     cost: Any, fine: Any, paid: Any, anchor: int, reached: int, factor: Any
 ) -> bool:
@@ -156,7 +156,7 @@ def _shorter(
     return bool(straight <= (paid[reached] - paid[anchor]) * (1.0 + 1e-9))
 
 
-@njit(cache=True)
+@kernel
 def _segment_cost(
     cost: Any, u0: float, v0: float, u1: float, v1: float, factor: Any
 ) -> Any:

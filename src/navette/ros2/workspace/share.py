@@ -7,14 +7,12 @@ package's files and to the moved files in their new places.
 """
 
 import hashlib
-import os
 import shutil
 import tempfile
 from pathlib import Path, PurePosixPath
 
 from navette.ros2.workspace.setup_py import SetupPy, read_setup_py
-
-_CACHE_VARIABLE = "XDG_CACHE_HOME"
+from navette.storage.folders import cache_folder
 
 
 def share_directory(name: str, folder: Path) -> Path:
@@ -51,12 +49,14 @@ def _linked(name: str, folder: Path, moved: dict[PurePosixPath, Path]) -> Path:
     children = sorted(c for c in folder.iterdir() if not c.name.startswith("."))
     plan = repr((str(folder), [c.name for c in children], sorted(moved.items())))
     digest = hashlib.sha256(plan.encode()).hexdigest()[:20]
-    view = _cache() / digest / name
+    cache = cache_folder("share")
+    if cache is None:
+        return folder
+    view = cache / digest / name
     if view.is_dir():
         return view
-    view.parent.parent.mkdir(parents=True, exist_ok=True)
     # Created elsewhere and renamed, so that other processes never see a part of it.
-    making = Path(tempfile.mkdtemp(dir=view.parent.parent))
+    making = Path(tempfile.mkdtemp(dir=cache))
     (making / name).mkdir()
     for child in children:
         _link(child, making / name / child.name)
@@ -93,8 +93,3 @@ def _link(target: Path, place: Path) -> None:
             shutil.copytree(target, place)
         else:
             shutil.copy2(target, place)
-
-
-def _cache() -> Path:
-    home = os.environ.get(_CACHE_VARIABLE) or os.environ.get("LOCALAPPDATA")
-    return (Path(home) if home else Path.home() / ".cache") / "navette" / "share"
