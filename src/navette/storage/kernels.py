@@ -15,7 +15,7 @@ import os
 import pickle
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any, ParamSpec, TypeVar, overload
@@ -179,13 +179,14 @@ def _delete_unused(folder: Path, now: float) -> None:
 def _describe_type(numba_type: Any) -> Iterator[str]:
     """Yield what identifies a type; the names of named tuples omit their fields."""
     yield str(numba_type)
+    if not isinstance(numba_type, types.BaseTuple):
+        return
+    members: Any = numba_type
     if isinstance(numba_type, types.BaseNamedTuple):
-        record = numba_type.instance_class
+        record = members.instance_class
         yield f"{record.__module__}.{record.__qualname__}{record._fields}"
-    if isinstance(numba_type, types.BaseTuple):
-        members: Iterable[Any] = numba_type
-        for each in members:
-            yield from _describe_type(each)
+    for each in members:
+        yield from _describe_type(each)
 
 
 @functools.cache
