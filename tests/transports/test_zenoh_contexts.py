@@ -216,6 +216,30 @@ def test_events_report_remote_endpoints(network: Network) -> None:
     network.until(lambda: types == [1] and other == [1], "the other type")
 
 
+def test_a_node_may_handle_several_types_of_a_topic(network: Network) -> None:
+    here, there = network.node("here"), network.node("there")
+    received: list[Any] = []
+    types: list[int] = []
+    events = SubscriptionEventCallbacks(incompatible_type=types.append)
+    for kind, other in ((String, Float64), (Float64, String)):
+        here.create_subscription(
+            kind, "t", received.append, 10, event_callbacks=events, other_types=[other]
+        )
+    text = there.create_publisher(String, "t", 10)
+    guest = network.node("guest")
+    number = guest.create_publisher(Float64, "t", 10)
+    ready = [text, number]
+    network.until(
+        lambda: all(each.get_subscription_count() == 1 for each in ready), "a match"
+    )
+    text.publish(String(data="a"))
+    network.until(lambda: len(received) == 1, "the text")
+    number.publish(Float64(data=1.0))
+    network.until(lambda: len(received) == 2, "the number")
+    assert received == [String(data="a"), Float64(data=1.0)]
+    assert types == []
+
+
 def test_destroyed_endpoints_leave_nothing_behind(network: Network) -> None:
     here, there = network.node("here"), network.node("there")
     for _ in range(3):

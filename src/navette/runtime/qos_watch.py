@@ -3,6 +3,7 @@
 import threading
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from typing import Any, ParamSpec
 
 from navette.runtime.context import Context
@@ -24,6 +25,8 @@ from navette.transports import (
 )
 
 P = ParamSpec("P")
+
+_TYPE_WARNING_DELAY_NS = 1_000_000_000
 
 
 class EndpointWatch:
@@ -179,6 +182,18 @@ class EndpointWatch:
         if callback is not None:
             self._notify(callback, info, "incompatible_type")
         elif self._callbacks.use_default_callbacks:
+            # Later: the remote node may handle several types, one after another.
+            loop = self._context.loop
+            check = partial(self._warn_of_type, local, remote)
+            due_ns = loop.clock.now_ns + _TYPE_WARNING_DELAY_NS
+            loop.call_at(due_ns, check, "type check", local.node_full_name)
+
+    def _warn_of_type(self, local: Endpoint, remote: Endpoint) -> None:
+        """Warn, unless the remote node has an endpoint of this type too."""
+        found = self._context.graph.endpoints(
+            remote.topic, kind=remote.kind, node=remote.node_full_name
+        )
+        if local.type_name not in {each.type_name for each in found}:
             self._logger.warning(_type_warning(local, remote))
 
     def _on_lost(self, subscription: Endpoint, count: int) -> None:

@@ -8,7 +8,7 @@ from navette.geometry import Pose2, Transform3
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
 from navette.msgs.rosgraph_msgs.msg import Clock
-from navette.msgs.std_msgs.msg import String
+from navette.msgs.std_msgs.msg import Bool, Empty, String
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.runtime import Input, Output, StageNode, Timer
 from navette.sim import messages
@@ -45,6 +45,16 @@ class SimNode(StageNode):
             other_types=("geometry_msgs/msg/TwistStamped",),
             callback="on_cmd_vel",
         ),
+        Input.of(
+            topics.EMERGENCY_STOP,
+            "true stops the robot, whatever is commanded",
+            callback="on_emergency_stop",
+        ),
+        Input.of(
+            topics.EMERGENCY_STOP_RELEASE,
+            "lets the robot obey commands again",
+            callback="on_release",
+        ),
     )
     OUTPUTS = (
         Output.of(topics.CLOCK, "time", rate_hz=100.0),
@@ -61,6 +71,7 @@ class SimNode(StageNode):
         Output.of(topics.TF, "moving frames", rate_hz=50),
         Output.of(topics.TF_STATIC, "fixed frames"),
         Output.of(topics.CONTACTS, "start of each contact with an obstacle"),
+        Output.of(topics.EMERGENCY_STOP_ACTIVE, "whether the robot is stopped"),
         Output.of(topics.ROBOT_DESCRIPTION, "URDF of the robot"),
         Output.of(topics.WORLD_DESCRIPTION, "URDF of the world"),
     )
@@ -90,6 +101,7 @@ class SimNode(StageNode):
         self._child_frame = p.odometry_child_frame or p.base_frame
         self._base_T_child = self.frames.fixed_pose(self._child_frame)
         self._contacts_reported = 0
+        self._is_stopped = False
         self._sleepers: list[tuple[Timer, tuple[str, ...]]] = []
         self._publish_latched()
         self._create_timers()
@@ -110,8 +122,26 @@ class SimNode(StageNode):
     def on_cmd_vel(self, msg: Twist | TwistStamped) -> None:
         """Apply a command; an invalid one is dropped and the last one stays."""
         self._advance()
+        if self._is_stopped:
+            return
         twist = msg.twist if isinstance(msg, TwistStamped) else msg
         self.simulator.command(twist.linear.x, twist.angular.z)
+
+    def on_emergency_stop(self, msg: Bool) -> None:
+        """Stop and ignore commands until the release."""
+        if msg.data:
+            self._advance()
+            self.simulator.command(0.0, 0.0)
+            self._set_stopped(stopped=True)
+
+    def on_release(self, msg: Empty) -> None:
+        """Obey the commands that arrive from now on."""
+        self._set_stopped(stopped=False)
+
+    def _set_stopped(self, *, stopped: bool) -> None:
+        if stopped != self._is_stopped:
+            self._is_stopped = stopped
+            self.publish(topics.EMERGENCY_STOP_ACTIVE.name, Bool(data=stopped))
 
     def on_params_changed(self, old: SimParams) -> None:
         self.simulator.change_params(self.params)
@@ -138,6 +168,7 @@ class SimNode(StageNode):
         self.publish(topics.TF_STATIC.name, TFMessage(transforms=transforms))
         compiled = self.simulator.compiled
         robot = describe_robot(compiled, self.frames)
+        self.publish(topics.EMERGENCY_STOP_ACTIVE.name, Bool(data=False))
         self.publish(topics.ROBOT_DESCRIPTION.name, String(data=robot))
         world = describe_world(compiled, p.map_frame)
         self.publish(topics.WORLD_DESCRIPTION.name, String(data=world))

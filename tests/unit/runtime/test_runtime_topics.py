@@ -6,7 +6,7 @@ import pytest
 
 from navette.errors import CallbackError, InvalidValueError, MessageError
 from navette.msgs import serialize
-from navette.msgs.std_msgs.msg import Float64, String
+from navette.msgs.std_msgs.msg import Bool, Float64, String
 from navette.runtime import (
     Context,
     DurabilityPolicy,
@@ -115,6 +115,38 @@ def test_another_type_on_the_topic_raises_and_leaves_no_endpoint(
     with pytest.raises(InvalidValueError, match="cannot publish std_msgs/msg/Float"):
         graph.node.create_publisher(Float64, "t", 10)
     assert graph.context.graph.endpoints() == before
+
+
+def test_a_topic_may_have_the_types_that_its_endpoints_expect(
+    graph: GraphHarness,
+) -> None:
+    texts, numbers = [], []
+    early = graph.node.create_publisher(Float64, "t", 10)
+    for kind, other, got in ((String, Float64, texts), (Float64, String, numbers)):
+        graph.node.create_subscription(kind, "t", got.append, 10, other_types=[other])
+    graph.node.create_publisher(String, "t", 10).publish(String(data="a"))
+    early.publish(Float64(data=1.0))
+    graph.run_for(0.0)
+    assert (texts, numbers) == ([String(data="a")], [Float64(data=1.0)])
+    with pytest.raises(InvalidValueError, match="has the type"):
+        graph.node.create_publisher(Bool, "t", 10)
+
+
+def test_a_subscription_may_ignore_publishers_of_its_own_node(
+    graph: GraphHarness,
+) -> None:
+    received: list[String] = []
+    subscription = graph.node.create_subscription(
+        String, "t", received.append, 10, ignore_local_publications=True
+    )
+    own = graph.node.create_publisher(String, "t", 10)
+    other = graph.add(Node("other", context=graph.context))
+    own.publish(String(data="own"))
+    other.create_publisher(String, "t", 10).publish(String(data="other"))
+    graph.run_for(0.0)
+    assert received == [String(data="other")]
+    assert subscription.get_publisher_count() == 1
+    assert own.get_subscription_count() == 0
 
 
 def test_late_subscriber_gets_the_latched_map(graph: GraphHarness) -> None:

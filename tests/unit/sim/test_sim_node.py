@@ -9,7 +9,8 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.geometry import Pose2
-from navette.msgs.geometry_msgs.msg import Twist, Vector3
+from navette.msgs.geometry_msgs.msg import Twist, TwistStamped, Vector3
+from navette.msgs.std_msgs.msg import Bool, Empty
 from navette.runtime import Context, Executor, Node, Parameter, VirtualClock
 from navette.runtime.stage.odometry import PoseTracker
 from navette.sim import Scene, World, load_robot, load_world
@@ -196,6 +197,37 @@ def test_commands_drive_and_time_out() -> None:
     assert run.sim.simulator.motion().linear[0] == pytest.approx(0.5, abs=0.05)
     run.spin(1.0)
     assert abs(run.sim.simulator.motion().linear[0]) < 0.01
+
+
+def test_both_types_of_command_drive() -> None:
+    run = _run(World().scene())
+    plain = run.ears.create_publisher(Twist, "/cmd_vel", 10)
+    stamped = run.ears.create_publisher(TwistStamped, "/cmd_vel", 10)
+    plain.publish(Twist(linear=Vector3(x=0.2)))
+    run.spin(0.4)
+    stamped.publish(TwistStamped(twist=Twist(linear=Vector3(x=0.4))))
+    run.spin(0.4)
+    assert run.sim.simulator.motion().linear[0] == pytest.approx(0.4, abs=0.02)
+
+
+def test_the_emergency_stop_beats_every_command_until_its_release() -> None:
+    run = _run(World().scene())
+    run.listen("/emergency_stop/active")
+    stop = run.ears.create_publisher(Bool, "/emergency_stop", 10)
+    release = run.ears.create_publisher(Empty, "/emergency_stop/release", 10)
+    run.drive(0.5, 0.0)
+    run.spin(1.0)
+    stop.publish(Bool(data=True))
+    run.spin(0.5)
+    assert abs(run.sim.simulator.motion().linear[0]) < 0.01
+    stop.publish(Bool(data=False))  # not a release
+    run.spin(2.0)
+    assert abs(run.sim.simulator.motion().linear[0]) < 0.01
+    release.publish(Empty())
+    run.spin(1.0)
+    assert run.sim.simulator.motion().linear[0] == pytest.approx(0.5, abs=0.02)
+    states = [msg.data for msg in run.received["/emergency_stop/active"]]
+    assert states == [False, True, False]
 
 
 def test_bad_commands_are_refused_and_logged() -> None:

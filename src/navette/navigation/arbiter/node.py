@@ -52,18 +52,21 @@ class ArbiterNode(StageNode):
             topics.CMD_VEL_NAV,
             "commands of control and of behaviors (`topics.navigation`)",
             other_types=(_STAMPED,),
+            checks_contents=False,  # an invalid command is zero, not the last one
             callback="on_command",
         ),
         Input.of(
             topics.CMD_VEL_TELEOP,
             "commands of the operator (`topics.operator`)",
             other_types=(_STAMPED,),
+            checks_contents=False,  # an invalid command is zero, not the last one
             callback="on_command",
         ),
         Input.of(
             topics.CMD_VEL,
             "commands of programs beside the arbiter (`topics.external`)",
             other_types=(_STAMPED,),
+            checks_contents=False,  # an invalid command is zero, not the last one
             callback="on_command",
         ),
         Input.of(topics.PAUSE_NAVIGATION, "lock (`locks.pause`)", callback="on_lock"),
@@ -116,7 +119,8 @@ class ArbiterNode(StageNode):
         return super().declare_params()
 
     def inputs(self) -> tuple[Input, ...]:
-        command, lock = self.INPUTS[0], self.INPUTS[3]
+        usual = {each.topic: each for each in self.INPUTS}
+        command, lock = usual[topics.CMD_VEL.name], usual[topics.PAUSE_NAVIGATION.name]
         return (
             *(
                 replace(
@@ -128,10 +132,15 @@ class ArbiterNode(StageNode):
                 for name, each in self._sources.items()
             ),
             *(
-                replace(lock, topic=each.topic, callback=partial(self.on_lock, name))
+                replace(
+                    usual.get(each.topic, lock),
+                    topic=each.topic,
+                    callback=partial(self.on_lock, name),
+                )
                 for name, each in self._locks.items()
             ),
-            *self.INPUTS[-2:],
+            usual[topics.EMERGENCY_STOP.name],
+            usual[topics.EMERGENCY_STOP_RELEASE.name],
         )
 
     def outputs(self) -> tuple[Output, ...]:

@@ -2,7 +2,9 @@
 
 The node publishes no command before its first path. With a path it publishes at every
 step, zeros while an input is stale. At rest it publishes ``idle_zeros`` zero commands
-and then none, so that an operator can drive. When destroyed it publishes a zero.
+and then none. While the arbiter masks its commands (an operator drives, or a stop is
+engaged) the node is paused: it publishes none and keeps the path. When destroyed it
+publishes a zero.
 """
 
 import math
@@ -25,6 +27,7 @@ from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
 from navette.navigation.control.prediction import advanced
 from navette.navigation.control.records import (
+    PAUSED,
     UNKNOWN_POSE,
     FollowerInputs,
     FollowerOutput,
@@ -35,6 +38,7 @@ from navette.navigation.control.servers.follow_path import (
 )
 from navette.navigation.control.states import ControlState
 from navette.navigation.grids import grid_from_message
+from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import Poses, poses_of
 from navette.runtime.stage.stage_node import Input, Output, StageNode
@@ -84,6 +88,11 @@ class ControlNode(StageNode):
             "temporary speed limit; 0: none",
             callback="on_speed_limit",
         ),
+        Input.of(
+            topics.COMMANDER,
+            "who commands; none: control does",
+            callback="on_commander",
+        ),
     )
     OUTPUTS = (
         Output.of(
@@ -117,6 +126,8 @@ class ControlNode(StageNode):
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
         self._planner_ns = _NEVER
         self._planner_state = ""
+        self._is_paused = False
+        self._output_topic = self.resolve_topic_name(topics.CMD_VEL_NAV.name)
         self._ticks_to_report = 0
         self._status = StatusReporter(self, topics.CONTROL_STATUS.name)
         self._timer = self.create_timer(1 / params.rate_hz, self._tick)
@@ -184,6 +195,14 @@ class ControlNode(StageNode):
         else:
             self._speed_limits = SpeedCap(limit, limit)
         self._follower.limit_speed(self._speed_limits)
+
+    def on_commander(self, msg: DiagnosticStatus) -> None:
+        """Pause while the commands do not reach the wheels."""
+        is_masked = Commander.of(msg).masks(self._output_topic)
+        if is_masked != self._is_paused:
+            self._is_paused = is_masked
+            self._follower.pause()
+            self._tick()
 
     def on_params_changed(self, old: ControlParams) -> None:
         """Follow the same path with the new parameters."""
@@ -270,6 +289,9 @@ class ControlNode(StageNode):
         """Locate the robot, place the costmap, step the follower, publish."""
         self._locate()
         self._place_costmap()
+        if self._is_paused and self._follower.has_path:
+            self._report(PAUSED)
+            return
         speed, turn_rate = self._tracker.velocity
         pose = self._pose_now() or UNKNOWN_POSE
         inputs = FollowerInputs(pose, speed, turn_rate, self._ages())
@@ -404,8 +426,11 @@ def _collision_action(output: FollowerOutput, slow_clearance_m: float) -> int:
     return CollisionMonitorState.DO_NOTHING
 
 
+_NORMAL = (ControlState.IDLE, ControlState.PAUSED, ControlState.REACHED)
+
+
 def _level(state: ControlState) -> bytes:
-    if state.moves or state in (ControlState.IDLE, ControlState.REACHED):
+    if state.moves or state in _NORMAL:
         return StatusReporter.OK
     warnings = (ControlState.BLOCKED, ControlState.OFF_PATH, ControlState.MISSED_GOAL)
     return StatusReporter.WARN if state in warnings else StatusReporter.ERROR

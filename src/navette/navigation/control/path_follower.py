@@ -87,6 +87,11 @@ class PathFollower:
         self._last, self._clearance = last, clearance
         self._activate(_START_WINDOW_M)
 
+    def pause(self) -> None:
+        """Continue later from the robot's motion then, not from the last command."""
+        self._last = None
+        self._parts.steering.reset()
+
     def set_obstacles(self, points: NDArray[np.float64], half_cell: float) -> None:
         """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
         self._parts.collision.set_obstacles(points, half_cell)

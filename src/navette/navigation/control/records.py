@@ -48,6 +48,18 @@ class FollowerOutput(NamedTuple):
     collision_scale: float  # share of the command that the obstacles allow
 
 
+PAUSED = FollowerOutput(
+    VelocityCommand(0.0, 0.0),
+    ControlState.PAUSED,
+    cross_track_m=math.nan,
+    heading_error_rad=math.nan,
+    distance_left_m=math.nan,
+    clearance_m=math.nan,
+    collision_scale=1.0,
+)
+"""Output while another source commands."""
+
+
 class StepDecision(NamedTuple):
     """Command of a piece before acceleration limits and obstacles are applied."""
 

@@ -9,6 +9,7 @@ class ControlState(StrEnum):
     IDLE = "idle"
     FOLLOWING = "following"
     TURNING = "turning"
+    PAUSED = "paused"
     REACHED = "reached"
     MISSED_GOAL = "missed_goal"
     BLOCKED = "blocked"

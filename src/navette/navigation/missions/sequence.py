@@ -9,7 +9,8 @@ from navette.errors import InvalidValueError
 
 REACHED = "reached"
 TIMED_OUT = "timed_out"
-SKIPPED = "skipped"  # a goal before this one failed and the mission stops there
+CANCELED = "canceled"
+SKIPPED = "skipped"  # a goal before this one ended the mission
 UNFINISHED = "unfinished"  # the run ended before the goal did
 
 FAILURES = frozenset(
@@ -23,6 +24,7 @@ FAILURES = frozenset(
         "goal_not_finite",
         "unknown_frame",
         "stuck",
+        CANCELED,
         TIMED_OUT,
     }
 )
@@ -180,7 +182,7 @@ class GoalSequence:
         assert goal is not None, "only an active goal ends"
         self.outcomes.append(self._outcome(goal, result, now_ns))
         self._active = None
-        if result != REACHED and self.stop_on_failure:
+        if result == CANCELED or (result != REACHED and self.stop_on_failure):
             while self._pending:
                 skipped = self._pending.popleft()
                 self.outcomes.append(GoalOutcome(skipped, SKIPPED, 0.0, 0.0, math.inf))

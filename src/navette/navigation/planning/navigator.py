@@ -64,6 +64,7 @@ class Navigator:
         self._to_publish: Poses | None = None
         self._stepped_ns = self._compared_ns = 0
         self._set_out = False
+        self._paused_ns: int | None = None
 
     def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
         """Replace the map (H, W); the next step checks the path against it."""
@@ -79,12 +80,48 @@ class Navigator:
         self._goal = goal
         self._set_out = False
         self._checker.begin(now_ns)
-        self._set_status(Phase.PLANNING, state=State.WAITING_FOR_ROBOT)
+        if self._paused_ns is not None:
+            self._paused_ns = now_ns
+        phase = Phase.PAUSED if self.is_paused else Phase.PLANNING
+        self._set_status(phase, state=State.WAITING_FOR_ROBOT)
 
     def refuse_goal(self, goal: Goal, why: Outcome) -> None:
         """Count a goal that cannot be planned to (unknown frame), and stop."""
         self._replace_goal(goal)
         self._finish(why)
+
+    def cancel(self) -> bool:
+        """End the goal and stop; return whether there was one."""
+        if self._goal is None:
+            return False
+        self._finish(Outcome.CANCELED)
+        return True
+
+    def pause(self, now_ns: int) -> None:
+        """Keep goal and path while another source moves the robot.
+
+        The time until :meth:`resume` does not count as lack of progress.
+        """
+        if self._paused_ns is None:
+            self._paused_ns = now_ns
+            if self._goal is not None:
+                self._set_status(Phase.PAUSED)
+
+    def resume(self, now_ns: int) -> None:
+        """Continue to the goal; the next step plans from where the robot is."""
+        if self._paused_ns is None:
+            return
+        span_ns = max(0, now_ns - self._paused_ns)
+        self._paused_ns = None
+        self._compared_ns += span_ns
+        self._checker.skip(span_ns)
+        if self._goal is not None:
+            self._plan = self._progress = self._published = None
+            self._set_status(Phase.PLANNING)
+
+    @property
+    def is_paused(self) -> bool:
+        return self._paused_ns is not None
 
     def take_path(self) -> Poses | None:
         """Return poses (N, 3) to publish, empty = stop; None if unchanged."""
@@ -105,7 +142,7 @@ class Navigator:
 
     def note(self, robot: RobotMotion, now_ns: int) -> bool:
         """Update the robot's motion between steps; return whether it just arrived."""
-        if self._goal is None or self._progress is None:
+        if self._goal is None or self._progress is None or self.is_paused:
             return False
         if self._progress.distance_to_end(robot.pose) < _NEAR_END_M:
             self._progress.update(robot.pose)
@@ -121,7 +158,7 @@ class Navigator:
             robot: newest state; None before the first.
             stale: whether that is too old to drive by.
         """
-        if self._goal is None:
+        if self._goal is None or self.is_paused:
             return
         if now_ns < self._stepped_ns:  # the clock was set back
             self._checker.begin(now_ns)

@@ -15,9 +15,15 @@ from numpy.typing import NDArray
 from navette.errors import InvalidInputError, InvalidValueError
 from navette.geometry import Pose2, yaw_of
 from navette.msgs import topics
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.std_msgs.msg import Header
+from navette.msgs.std_srvs.srv import (
+    Trigger,
+    Trigger_Request,
+    Trigger_Response,
+)
 from navette.navigation.grids import GridSpec, grid_from_message
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
@@ -27,6 +33,7 @@ from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMotion
 from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
 from navette.runtime import Input, Output, StageNode
+from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import path_message
 from navette.runtime.stage.status import StatusReporter, status_output
@@ -64,6 +71,11 @@ class PlannerNode(StageNode):
             "goal position and heading",
             callback="on_goal_pose",
         ),
+        Input.of(
+            topics.COMMANDER,
+            "who commands; the goal is paused while it is not navigation",
+            callback="on_commander",
+        ),
     )
     OUTPUTS: ClassVar = (
         Output.of(
@@ -98,6 +110,8 @@ class PlannerNode(StageNode):
             publish_plan=self._publish_plan,
         )
         self._path_server = PathServer(self, context, lambda: True)
+        self._was_stopped = False
+        self.create_service(Trigger, "~/cancel", self.on_cancel)
         self._report()
 
     def on_map(self, msg: OccupancyGrid) -> None:
@@ -149,6 +163,31 @@ class PlannerNode(StageNode):
         )
         self._publish_news()
 
+    def on_cancel(
+        self, request: Trigger_Request, response: Trigger_Response
+    ) -> Trigger_Response:
+        """End the goal (``canceled``) and stop the robot."""
+        response.success = True
+        canceled = self._navigator.cancel()
+        response.message = "goal canceled" if canceled else "no goal was active"
+        self._publish_news()
+        return response
+
+    def on_commander(self, msg: DiagnosticStatus) -> None:
+        """Pause while navigation is masked; then resume, or end the goal."""
+        commander = Commander.of(msg)
+        if commander.masks(self.resolve_topic_name(topics.CMD_VEL_NAV.name)):
+            self._was_stopped |= commander.is_stopped
+            self._navigator.pause(self._now_ns)
+        elif self._navigator.is_paused:
+            params, stopped = self.params, self._was_stopped
+            self._was_stopped = False
+            if (params.after_stop if stopped else params.after_takeover) == "end":
+                self._navigator.cancel()
+            self._navigator.resume(self._now_ns)
+            self.on_timer()
+        self._publish_news()
+
     def on_timer(self) -> None:
         """Step the navigator."""
         self._navigator.step(self._robot(), self._now_ns, stale=self._is_stale())
@@ -177,7 +216,10 @@ class PlannerNode(StageNode):
         had_path = self._navigator.has_path
         self._tracker.reset()
         self._odometry_ns = None
+        was_paused = self._navigator.is_paused
         self._navigator = Navigator(self.params)
+        if was_paused:
+            self._navigator.pause(self._now_ns)
         if self._map is not None:
             self._navigator.set_map(*self._map)
         if had_path:
@@ -287,5 +329,5 @@ def _moved(goal: Goal, map_T_frame: Pose2) -> Goal:
 def _level(report: NavigatorReport) -> bytes:
     if not report.failed:
         return StatusReporter.OK
-    temporary = report.message in _TEMPORARY
-    return StatusReporter.WARN if temporary else StatusReporter.ERROR
+    mild = report.message in (*_TEMPORARY, Outcome.CANCELED)
+    return StatusReporter.WARN if mild else StatusReporter.ERROR

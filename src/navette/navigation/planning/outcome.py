@@ -25,6 +25,7 @@ class Outcome(StrEnum):
     TIMED_OUT = "timed_out"
     STUCK = "stuck"
     STALE_ODOMETRY = "stale_odometry"
+    CANCELED = "canceled"
 
     @property
     def has_path(self) -> bool:

@@ -30,6 +30,12 @@ class ProgressChecker:
         #: Attempts used up since the last progress.
         self.spent = 0
 
+    def skip(self, span_ns: int) -> None:
+        """Leave a span of time out of account."""
+        self._since_ns += span_ns
+        self._goal_since_ns += span_ns
+        self._resting_since_ns = None
+
     def new_path(self) -> None:
         """Count progress from the start of a new path; the timers continue."""
         self._mark_m = 0.0

@@ -23,6 +23,7 @@ class Phase(StrEnum):
     WAITING_FOR_ODOMETRY = "waiting_for_odometry"
     PLANNING = "planning"
     FOLLOWING = "following"
+    PAUSED = "paused"
     REACHED = "reached"
 
 

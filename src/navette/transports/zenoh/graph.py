@@ -212,7 +212,8 @@ class RemoteGraph:
     def _match(self, matches: Matches, key: str, remote: Endpoint) -> None:
         local = matches.endpoint
         if (remote.type_name, remote.type_hash) != (local.type_name, matches.type_hash):
-            self._queue("incompatible_type", local, remote)
+            if remote.type_name not in local.other_types:
+                self._queue("incompatible_type", local, remote)
             return
         publisher, subscription = _in_order(local, remote)
         short = incompatible_policies(publisher.qos, subscription.qos)

@@ -8,6 +8,7 @@ import pytest
 from control_graph import World
 from control_plant import tangent_path
 
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from navette.msgs.geometry_msgs.msg import Twist
 from navette.runtime import Parameter
 from navette.testing import GraphHarness
@@ -206,3 +207,27 @@ def test_the_same_run_twice_gives_the_same_commands() -> None:
             runs.append([(m.linear.x, m.angular.z) for m in world.commands.messages])
     assert runs[0] == runs[1]
     assert runs[0]
+
+
+def test_the_path_is_kept_while_another_source_commands(world: World) -> None:
+    def commander(name: str, masked: str) -> None:
+        values = [KeyValue(key="masked_topics", value=masked)]
+        status = DiagnosticStatus(message=name, values=values)
+        world.graph.publish("/commander", status, latched=True)
+        world.graph.run_for(1e-9)
+
+    world.send_path(STRAIGHT)
+    world.graph.run_for(3.0)
+    commander("operator", "/cmd_vel,/cmd_vel_nav")
+    assert world.state == "paused"
+    count = world.commands.count
+    world._command = Twist()  # the operator holds the robot
+    world.graph.run_for(20.0)
+    assert world.commands.count == count
+    commander("idle", "")
+    assert world.state == "following"
+    assert world.commands.last.linear.x < 0.2, "accelerates from rest"
+    assert world.graph.run_until(lambda: world.state == "reached", 15.0)
+    commander("operator", "/cmd_vel_nav")
+    world.graph.run_for(1.0)
+    assert world.state == "reached", "nothing to pause"

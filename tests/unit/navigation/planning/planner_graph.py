@@ -4,7 +4,7 @@ import numpy as np
 from planning_worlds import empty_map
 
 from navette.geometry import Pose2, quaternion_from_yaw, yaw_of
-from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
+from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from navette.msgs.geometry_msgs.msg import (
     Point,
     PointStamped,
@@ -51,6 +51,12 @@ class World:
         qx, qy, qz, qw = quaternion_from_yaw(yaw)
         msg.pose.orientation = Quaternion(x=qx, y=qy, z=qz, w=qw)
         self.graph.publish("/goal_pose", msg)
+
+    def commander(self, name: str, masked: str = "") -> None:
+        values = [KeyValue(key="masked_topics", value=masked)]
+        status = DiagnosticStatus(message=name, values=values)
+        self.graph.publish("/commander", status, latched=True)
+        self.graph.run_for(0.01)
 
     def ready(self) -> "World":
         self.send_map()

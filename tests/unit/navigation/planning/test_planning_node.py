@@ -13,6 +13,7 @@ from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import (
     TransformStamped,
 )
+from navette.msgs.std_srvs.srv import Trigger
 from navette.runtime import Parameter, StaticTransformBroadcaster
 from navette.testing import GraphHarness
 
@@ -199,3 +200,70 @@ def test_parameters_change_while_it_runs(graph: GraphHarness) -> None:
     world.node.set_parameters([Parameter("path_spacing_m", value=0.05)])
     graph.run_for(0.6)
     assert len(world.paths.last.poses) > 1.9 * len(sparse.poses)
+
+
+def test_a_goal_is_paused_while_navigation_is_masked(graph: GraphHarness) -> None:
+    world = World(graph, progress_timeout_s=2.0, goal_timeout_s=5.0).ready()
+    world.send(8.0, 4.0)
+    graph.run_for(1.0)
+    assert world.message == "following"
+    world.commander("operator", "/cmd_vel_nav")
+    assert world.message == "paused"
+    paths = world.paths.count
+    graph.run_for(30.0)
+    assert (world.message, world.paths.count) == ("paused", paths)
+    world.pose = Pose2(1, 6, 0)  # the operator has driven
+    graph.run_for(1.0)
+    world.commander("idle")
+    assert world.message == "following"
+    assert world.last_path()[0, 1] == pytest.approx(6.0, abs=0.1)
+    assert world.values["replans"] == "1"
+
+
+def test_a_new_goal_waits_until_navigation_commands_again(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.commander("emergency_stop", "/cmd_vel_nav,/cmd_vel_teleop")
+    world.send(8.0, 4.0)
+    graph.run_for(20.0)
+    assert (world.message, world.paths.count) == ("paused", 0)
+    world.commander("idle")
+    assert world.message == "following"
+
+
+@pytest.mark.parametrize(
+    ("commander", "parameter"),
+    [("operator", "after_takeover"), ("emergency_stop", "after_stop")],
+)
+def test_a_paused_goal_may_end_instead(
+    graph: GraphHarness, commander: str, parameter: str
+) -> None:
+    world = World(graph, **{parameter: "end"}).ready()
+    world.send(8.0, 4.0)
+    graph.run_for(0.1)
+    world.commander(commander, "/cmd_vel_nav")
+    assert world.message == "paused"
+    world.commander("idle")
+    assert (world.message, world.values["result"]) == ("canceled", "canceled")
+    assert not world.paths.last.poses
+
+
+def test_another_masked_topic_does_not_pause(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    world.send(8.0, 4.0)
+    world.commander("navigation", "/dance")
+    assert world.message == "following"
+
+
+def test_a_service_cancels_the_goal(graph: GraphHarness) -> None:
+    world = World(graph).ready()
+    client = graph.node.create_client(Trigger, "/planner/cancel")
+    world.send(8.0, 4.0)
+    graph.run_for(1.0)
+    answer = client.call_async(Trigger.Request())
+    graph.run_for(0.01)
+    assert answer.result().message == "goal canceled"
+    assert (world.message, world.values["result"]) == ("canceled", "canceled")
+    assert not world.paths.last.poses
+    answer = client.call_async(Trigger.Request())
+    graph.run_for(0.01)
+    assert answer.result().message == "no goal was active"
