@@ -72,7 +72,7 @@ def send_one(graph: GraphHarness, extremes: Extremes, topic: str, kind: Any) -> 
     if draw == 0:
         data, _ = extremes.spoiled_bytes(valid)
         graph.publish(topic, valid, latched=True)
-        graph._publishers[topic].publish_encoded(data)
+        graph._publishers[topic, kind].publish_encoded(data)
     elif draw == 1:
         graph.publish(topic, extremes.message(kind), latched=True)
     else:

@@ -84,7 +84,8 @@ class GraphHarness:
             start_parameter_services=False,
         )  # publishes and collects for the test
         self.executor.add_node(self.node)
-        self._publishers: dict[str, Publisher[Any]] = {}
+        #: By topic and type.
+        self._publishers: dict[tuple[str, type], Publisher[Any]] = {}
 
     def add(self, node: N) -> N:
         """Add a node that was created in :attr:`context`, and return it."""
@@ -97,11 +98,11 @@ class GraphHarness:
 
     def publish(self, topic: str, message: Any, *, latched: bool = False) -> None:
         """Publish a message; the publisher continues to exist."""
-        publisher = self._publishers.get(topic)
+        publisher = self._publishers.get((topic, type(message)))
         if publisher is None:
             qos = QoSProfile(depth=100, durability=_durability(latched=latched))
             publisher = self.node.create_publisher(type(message), topic, qos)
-            self._publishers[topic] = publisher
+            self._publishers[topic, type(message)] = publisher
         publisher.publish(message)
 
     def publish_every(
