@@ -62,6 +62,13 @@ CONTROL_STATUS = StackTopic("/control/status", _STATUS, 1, True)
 COMMANDER = StackTopic("/commander", _STATUS, 1, True)
 DIAGNOSTICS = StackTopic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
 
+# From missions to the planner
+PLANNER_GOAL = StackTopic("/planner/goal_pose", "geometry_msgs/msg/PoseStamped")
+
+# The behaviour tree that runs
+BEHAVIOR_TREE = StackTopic("/behavior_tree", "std_msgs/msg/String", 1, True)
+BEHAVIOR_TREE_LOG = StackTopic("/behavior_tree_log", "nav2_msgs/msg/BehaviorTreeLog")
+
 # Published by a person
 GOAL_POINT = StackTopic("/goal_point", "geometry_msgs/msg/PointStamped")
 GOAL_POSE = StackTopic("/goal_pose", "geometry_msgs/msg/PoseStamped")

@@ -1,30 +1,48 @@
-"""The node ``missions``: send goals to the planner, one after another.
+"""The node ``missions``: goals in, navigation by a behaviour tree, results out.
 
-The node publishes its first goal when /goal_point has a subscriber, a planner status
-has arrived and, with ``wait_for_map``, a map. Each goal is published once.
+Goals come from the actions ``navigate_to_pose``, ``navigate_through_poses`` and
+``follow_waypoints``, from people on /goal_point and /goal_pose, and from the list of
+parameter ``goals_m``. Goals of topics and of the list become goals of
+``navigate_to_pose``. The first goal of the list is sent when a planner listens and,
+with ``wait_for_map``, a map has arrived; each is sent once.
 """
 
+import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
+
+from py_trees.display import unicode_tree
 
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
-from navette.msgs.geometry_msgs.msg import PointStamped
+from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped, Quaternion
+from navette.msgs.nav2_msgs.action import NavigateToPose
+from navette.msgs.nav2_msgs.msg import BehaviorTreeLog, BehaviorTreeStatusChange
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
+from navette.msgs.std_msgs.msg import String
+from navette.navigation.missions.navigation import TreeNavigator
 from navette.navigation.missions.params import MissionParams
+from navette.navigation.missions.robot.node import NodeRobot
 from navette.navigation.missions.sequence import (
+    CANCELED,
     GoalOutcome,
     GoalSequence,
     PlannerReport,
     Point,
 )
+from navette.navigation.missions.servers.node import NavigationServers
+from navette.navigation.missions.tree.behaviour import TreeNode
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 from navette.runtime.time import ns_to_stamp
 
+ANY_HEADING = Quaternion(x=0.0, y=0.0, z=0.0, w=0.0)
+_COLOUR = re.compile("\x1b\\[[0-9;]*m")
+
 
 class MissionNode(StageNode):
-    """Send a list of goals; more can be added at any time."""
+    """Navigate to goals; more can be added at any time."""
 
     PARAMS = MissionParams
     INPUTS = (
@@ -46,11 +64,43 @@ class MissionNode(StageNode):
             callback="on_map",
             checks_contents=False,
         ),
+        Input.of(
+            topics.GOAL_POINT,
+            "goal position of a person",
+            callback="on_goal_point",
+            ignores_own=True,
+        ),
+        Input.of(
+            topics.GOAL_POSE,
+            "goal position and heading of a person",
+            callback="on_goal_pose",
+            ignores_own=True,
+        ),
     )
     OUTPUTS = (
         Output.of(
+            topics.PLANNER_GOAL,
+            "goal for the planner; an orientation of zeros means any heading",
+        ),
+        Output.of(
             topics.GOAL_POINT,
-            "the next goal",
+            "each goal, for viewers and a planner of the user",
+        ),
+        Output.of(
+            topics.GOAL_POSE,
+            "each goal with a heading, for viewers and a planner of the user",
+        ),
+        Output.of(
+            topics.PATH,
+            "empty = stop, when a goal is cancelled",
+        ),
+        Output.of(
+            topics.BEHAVIOR_TREE,
+            "the behaviour tree with the status of its nodes, as text",
+        ),
+        Output.of(
+            topics.BEHAVIOR_TREE_LOG,
+            "nodes of the behaviour tree whose status changed",
         ),
     )
 
@@ -59,7 +109,7 @@ class MissionNode(StageNode):
         params: MissionParams = self.params
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
         self._odometry: Odometry | None = None  # newest, not used yet
-        self._map_arrived = self._planner_ready = False
+        self._map_arrived = self._planner_reported = False
         #: Called when every goal has a result.
         self.on_done: Callable[[], None] | None = None
         self._sequence = GoalSequence(
@@ -67,16 +117,23 @@ class MissionNode(StageNode):
             timeout_ns=round(params.goal_timeout_s * 1e9),
             stop_on_failure=params.on_failure == "stop",
         )
-        self.create_timer(1 / params.rate_hz, self._check)
+        self._sent = 0  # goals of the list sent so far
+        self._list_goal: _ListGoal | None = None
+        self._robot = NodeRobot(self, self._tracker, self._step)
+        self._navigator = TreeNavigator(self._robot, params.error_code_names)
+        self._load_trees()
+        self._servers = NavigationServers(self, self._robot, self._navigator)
+        self._stepping = False
+        self._timer = self.create_timer(1 / params.rate_hz, self._check)
 
     @property
     def done(self) -> bool:
-        """Whether every goal has a result."""
+        """Whether every goal of the list has a result."""
         return self._sequence.done
 
     @property
     def active_goal(self) -> Point | None:
-        """The active goal (x, y; m, map), if any."""
+        """The active goal of the list (x, y; m, map), if any."""
         return self._sequence.active
 
     @property
@@ -99,14 +156,15 @@ class MissionNode(StageNode):
         self._sequence.add(x, y)
 
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
-        """Forward the planner's status; it may end the active goal."""
-        self._planner_ready = True
+        """Forward the planner's status; it may end the goal."""
+        self._planner_reported = True
         self._update_position()
         values = {pair.key: pair.value for pair in msg.values}
         report = PlannerReport(
             values.get("goal_id", ""), msg.message, values.get("result")
         )
-        self._sequence.on_report(report, self._now_ns)
+        self._robot.on_planner_status(report)
+        self._step()
         self._send_next()
 
     def on_odometry(self, msg: Odometry) -> None:
@@ -117,12 +175,28 @@ class MissionNode(StageNode):
         """Note that the planner has a map."""
         self._map_arrived = True
 
+    def on_goal_point(self, msg: PointStamped) -> None:
+        """Navigate to a point, with any heading."""
+        pose = PoseStamped(header=msg.header)
+        pose.pose.position = msg.point
+        pose.pose.orientation = ANY_HEADING
+        self._robot.note_public(pose)
+        self._send(pose)
+
+    def on_goal_pose(self, msg: PoseStamped) -> None:
+        """Navigate to a pose."""
+        self._robot.note_public(msg)
+        self._send(msg)
+
     def on_params_changed(self, old: MissionParams) -> None:
-        """Append new goals; timeout and failure rule apply from the next goal on."""
+        """Append new goals; other values apply from the next goal on."""
         params: MissionParams = self.params
         if params.goals_m != old.goals_m:
             for goal in params.goal_points():
                 self._sequence.add(*goal)
+        if params.rate_hz != old.rate_hz:
+            self.destroy_timer(self._timer)
+            self._timer = self.create_timer(1 / params.rate_hz, self._check)
         self._sequence.timeout_ns = round(params.goal_timeout_s * 1e9)
         self._sequence.stop_on_failure = params.on_failure == "stop"
 
@@ -130,10 +204,50 @@ class MissionNode(StageNode):
     def _now_ns(self) -> int:
         return self.get_clock().now_ns
 
+    def _load_trees(self) -> None:
+        """Read the default trees, so that an invalid file is refused at the start."""
+        for path in (self.params.to_pose_tree, self.params.through_poses_tree):
+            self._navigator.load(path)
+
     def _check(self) -> None:
         self._update_position()
+        self._robot.poll()
+        self._step()
+        self._servers.publish_feedback()
         self._sequence.check(self._now_ns)
+        self._cancel_timed_out()
         self._send_next()
+
+    def _step(self) -> None:
+        """Tick the tree and publish what changed; also called when a call ends."""
+        if self._stepping:  # a call that ended while the tree was ticked
+            return
+        self._stepping = True
+        try:
+            self._navigator.step()
+        finally:
+            self._stepping = False
+        self._publish_tree()
+
+    def _publish_tree(self) -> None:
+        changes = self._navigator.take_changes()
+        if not changes or self._navigator.run is None:
+            return
+        stamp = ns_to_stamp(self._now_ns)
+        events = [
+            BehaviorTreeStatusChange(
+                timestamp=stamp,
+                node_name=change.node,
+                uid=change.uid,
+                previous_status=change.before,
+                current_status=change.now,
+            )
+            for change in changes
+        ]
+        log = BehaviorTreeLog(timestamp=stamp, event_log=events)
+        self.publish(topics.BEHAVIOR_TREE_LOG.name, log)
+        text = tree_text(self._navigator.run.root)
+        self.publish(topics.BEHAVIOR_TREE.name, String(data=text))
 
     def _update_position(self) -> None:
         odometry, self._odometry = self._odometry, None
@@ -142,19 +256,15 @@ class MissionNode(StageNode):
         pose = self._tracker.latest
         assert pose is not None, "the tracker accepted the odometry"
         self._sequence.move(pose.x, pose.y)
+        self._robot.trail.add(pose)
 
     def _send_next(self) -> None:
-        """Publish the next goal if no goal is active and the planner is ready."""
+        """Send the next goal of the list if none is active and the planner is ready."""
         if self._sequence.done:
             if self._sequence.total and self.on_done is not None:
                 self.on_done()
             return
-        map_ready = self._map_arrived or not self.params.wait_for_map
-        if not (
-            map_ready
-            and self._planner_ready
-            and self.has_listeners(topics.GOAL_POINT.name)
-        ):
+        if self._navigator.active is not None or not self._is_ready():
             return
         goal = self._sequence.start_next(self._now_ns)
         if goal is None:
@@ -163,8 +273,67 @@ class MissionNode(StageNode):
             f"goal {len(self.outcomes) + 1} of {self._sequence.total}: "
             f"({goal[0]:g}, {goal[1]:g})"
         )
-        msg = PointStamped()
-        msg.header.frame_id = self.params.map_frame
-        msg.header.stamp = ns_to_stamp(self._now_ns)
-        msg.point.x, msg.point.y = goal
-        self.publish(topics.GOAL_POINT.name, msg)
+        pose = PoseStamped()
+        pose.header.frame_id = self.params.map_frame
+        pose.header.stamp = ns_to_stamp(self._now_ns)
+        pose.pose.position.x, pose.pose.position.y = goal
+        pose.pose.orientation = ANY_HEADING
+        self._sent += 1
+        self._list_goal = _ListGoal(self._sent)
+        self._send(pose, self._list_goal)
+
+    def _is_ready(self) -> bool:
+        """Whether a planner listens, and a map has arrived if one is needed."""
+        map_ready = self._map_arrived or not self.params.wait_for_map
+        planners = topics.PLANNER_STATUS.name
+        reported = self._planner_reported or not self.count_publishers(planners)
+        return map_ready and reported and self._robot.planner_listens()
+
+    def _send(self, pose: PoseStamped, of_list: "_ListGoal | None" = None) -> None:
+        """Send a goal to the own action, as Nav2 does with those of ``goal_pose``."""
+        goal = NavigateToPose.Goal(pose=pose)
+        future = self._servers.client.send_goal_async(goal)
+
+        def on_response(_: object) -> None:
+            handle = future.result()
+            if handle is None:
+                return
+            if of_list is not None:
+                of_list.handle = handle
+            result = handle.get_result_async()
+            result.add_done_callback(lambda _: self._on_result(handle, of_list))
+
+        future.add_done_callback(on_response)
+
+    def _on_result(self, handle: Any, of_list: "_ListGoal | None") -> None:
+        end = self._servers.take_end(handle.goal_id)
+        if end is None:
+            return
+        if of_list is not None and of_list is self._list_goal:
+            self._list_goal = None
+            report = PlannerReport(str(of_list.number), end.how, end.how)
+            self._sequence.on_report(report, self._now_ns)
+            if end.how == CANCELED:
+                self._sequence.skip_rest()
+        self._send_next()
+
+    def _cancel_timed_out(self) -> None:
+        """Cancel the list's goal if the list does not wait for it any more."""
+        goal = self._list_goal
+        if goal is not None and self._sequence.active is None:
+            self._list_goal = None
+            if goal.handle is not None:
+                goal.handle.cancel_goal_async()
+
+
+@dataclass
+class _ListGoal:
+    """A goal of the list that was sent; ``handle`` follows the response."""
+
+    number: int
+    handle: Any = None
+
+
+def tree_text(root: TreeNode) -> str:
+    """Return the tree with the status of its nodes, one line each, without colours."""
+    return _COLOUR.sub("", unicode_tree(root, show_status=True))

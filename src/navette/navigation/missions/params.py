@@ -2,9 +2,12 @@
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 from navette.errors import ParameterError
 from navette.params import Params, param
+
+TREES = Path(__file__).parent / "trees"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,7 +25,23 @@ class MissionParams(Params):
         "continue", "what to do after a failed goal", choices=("continue", "stop")
     )
     wait_for_map: bool = param(True, "send the first goal after a map has arrived")
-    rate_hz: float = param(10.0, "rate of checks", unit="Hz", at_least=1.0)
+    rate_hz: float = param(
+        10.0, "rate of checks and of ticking the behaviour tree", unit="Hz",
+        at_least=1.0,
+    )  # fmt: skip
+    default_nav_to_pose_bt_xml: str = param(
+        "", "file of the behaviour tree of navigate_to_pose; empty: Navette's"
+    )
+    default_nav_through_poses_bt_xml: str = param(
+        "", "file of the behaviour tree of navigate_through_poses; empty: Navette's"
+    )
+    error_code_names: tuple[str, ...] = param(
+        ("navigate_error_code", "compute_path_error_code", "follow_path_error_code"),
+        "blackboard entries with error codes; the lowest becomes the action's",
+    )
+    stop_on_failure: bool = param(
+        False, "whether follow_waypoints ends with the first missed waypoint"
+    )
 
     def check(self) -> None:
         if len(self.goals_m) % 2:
@@ -37,3 +56,14 @@ class MissionParams(Params):
     def goal_points(self) -> list[tuple[float, float]]:
         """Return the goals as points (x, y), metres."""
         return list(zip(self.goals_m[0::2], self.goals_m[1::2], strict=True))
+
+    @property
+    def to_pose_tree(self) -> Path:
+        """File of the behaviour tree of navigate_to_pose."""
+        return Path(self.default_nav_to_pose_bt_xml or TREES / "navigate.xml")
+
+    @property
+    def through_poses_tree(self) -> Path:
+        """File of the behaviour tree of navigate_through_poses."""
+        named = self.default_nav_through_poses_bt_xml
+        return Path(named or TREES / "navigate_through.xml")

@@ -10,6 +10,8 @@ from navette.errors import InvalidValueError
 REACHED = "reached"
 TIMED_OUT = "timed_out"
 CANCELED = "canceled"
+PREEMPTED = "preempted"  # a newer goal replaced it
+FAILED = "failed"  # the behaviour tree failed without naming a failure
 SKIPPED = "skipped"  # a goal before this one ended the mission
 UNFINISHED = "unfinished"  # the run ended before the goal did
 
@@ -26,9 +28,11 @@ FAILURES = frozenset(
         "stuck",
         CANCELED,
         TIMED_OUT,
+        PREEMPTED,
+        FAILED,
     }
 )
-"""Status messages of a planner that ended a goal without reaching it."""
+"""Results, and status messages of a planner, of a goal that was not reached."""
 
 Point = tuple[float, float]
 
@@ -71,6 +75,27 @@ class PlannerReport:
         return self.message if is_end else ""
 
 
+class StatusFilter:
+    """Drops reports of an earlier goal.
+
+    A report that repeats the last one before the goal was sent concerns an earlier
+    goal: reports count from the first different one.
+    """
+
+    def __init__(self, before: PlannerReport) -> None:
+        self._before = before
+
+    def is_new(self, report: PlannerReport) -> bool:
+        before = self._before
+        if before.goal_id:
+            is_old = report.goal_id == before.goal_id
+        else:
+            is_old = bool(before.message) and report == before
+        if not is_old:
+            self._before = PlannerReport("", "")
+        return not is_old
+
+
 class GoalSequence:
     """State machine of the goals, without clock or topics.
 
@@ -91,7 +116,7 @@ class GoalSequence:
         self.timeout_ns = timeout_ns
         self.stop_on_failure = stop_on_failure
         self._last_report = PlannerReport("", "")
-        self._before_goal = self._last_report
+        self._filter = StatusFilter(self._last_report)
         self._position: Point | None = None
         self._active: Point | None = None
         self._started_ns = 0
@@ -130,7 +155,7 @@ class GoalSequence:
         if self._active is not None or not self._pending:
             return None
         self._active = self._pending.popleft()
-        self._before_goal = self._last_report
+        self._filter = StatusFilter(self._last_report)
         self._started_ns = now_ns
         self._path_length = 0.0
         return self._active
@@ -142,15 +167,10 @@ class GoalSequence:
         self._position = (x, y)
 
     def on_report(self, report: PlannerReport, now_ns: int) -> None:
-        """Process a planner report; a final one ends the active goal.
-
-        A report that repeats the last one before the goal was sent concerns an earlier
-        goal: reports count from the first different one.
-        """
+        """Process a report; a final one ends the active goal."""
         self._last_report = report
-        if self._active is None or self._is_old(report):
+        if self._active is None or not self._filter.is_new(report):
             return
-        self._before_goal = PlannerReport("", "")
         if report.end:
             self._end(report.end, now_ns)
 
@@ -160,6 +180,12 @@ class GoalSequence:
             return
         if now_ns - self._started_ns >= self.timeout_ns:
             self._end(TIMED_OUT, now_ns)
+
+    def skip_rest(self) -> None:
+        """End the goals that have not started, as skipped."""
+        while self._pending:
+            skipped = self._pending.popleft()
+            self.outcomes.append(GoalOutcome(skipped, SKIPPED, 0.0, 0.0, math.inf))
 
     def unfinished(self, now_ns: int) -> list[GoalOutcome]:
         """Return outcomes of the goals that have not ended, the active one first."""
@@ -171,21 +197,13 @@ class GoalSequence:
             outcomes.insert(0, self._outcome(self._active, UNFINISHED, now_ns))
         return outcomes
 
-    def _is_old(self, report: PlannerReport) -> bool:
-        before = self._before_goal
-        if before.goal_id:
-            return report.goal_id == before.goal_id
-        return bool(before.message) and report == before
-
     def _end(self, result: str, now_ns: int) -> None:
         goal = self._active
         assert goal is not None, "only an active goal ends"
         self.outcomes.append(self._outcome(goal, result, now_ns))
         self._active = None
         if result == CANCELED or (result != REACHED and self.stop_on_failure):
-            while self._pending:
-                skipped = self._pending.popleft()
-                self.outcomes.append(GoalOutcome(skipped, SKIPPED, 0.0, 0.0, math.inf))
+            self.skip_rest()
 
     def _outcome(self, goal: Point, result: str, now_ns: int) -> GoalOutcome:
         seconds = (now_ns - self._started_ns) / 1e9

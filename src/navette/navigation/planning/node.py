@@ -34,12 +34,15 @@ from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMot
 from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
 from navette.runtime import Input, Output, StageNode
 from navette.runtime.stage.commander import Commander
+from navette.runtime.stage.input_check import input_check
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import path_message
 from navette.runtime.stage.status import StatusReporter, status_output
 
 # Period of checking the age of the odometry.
 _WATCH_PERIOD_S = 0.1
+_check_pose = input_check(topics.GOAL_POSE.type)
+_check_point = input_check(topics.GOAL_POINT.type)
 # Temporary failures; all others end the goal.
 _TEMPORARY = (Outcome.STALE_ODOMETRY,)
 
@@ -63,18 +66,24 @@ class PlannerNode(StageNode):
         ),
         Input.of(
             topics.GOAL_POINT,
-            "goal position",
+            "goal position, unless missions send goals",
             callback="on_goal_point",
         ),
         Input.of(
             topics.GOAL_POSE,
-            "goal position and heading",
+            "goal position and heading, unless missions send goals",
             callback="on_goal_pose",
         ),
         Input.of(
             topics.COMMANDER,
             "who commands; the goal is paused while it is not navigation",
             callback="on_commander",
+        ),
+        Input.of(
+            topics.PLANNER_GOAL,
+            "goal of the missions; an orientation of zeros means any heading",
+            callback="on_planner_goal",
+            checks_contents=False,
         ),
     )
     OUTPUTS: ClassVar = (
@@ -140,20 +149,31 @@ class PlannerNode(StageNode):
             self._publish_news()
 
     def on_goal_point(self, msg: PointStamped) -> None:
-        """Navigate to a point, with any heading."""
-        self._set_goal(msg.header, Goal(msg.point.x, msg.point.y))
+        """Navigate to a point, with any heading, if no missions forward it."""
+        if not self._missions_send_goals():
+            self._set_goal(msg.header, Goal(msg.point.x, msg.point.y))
 
     def on_goal_pose(self, msg: PoseStamped) -> None:
-        """Navigate to a pose."""
-        position, q = msg.pose.position, msg.pose.orientation
-        yaw = yaw_of((q.x, q.y, q.z, q.w))
-        self._set_goal(msg.header, Goal(position.x, position.y, yaw))
+        """Navigate to a pose, if no missions forward it."""
+        if not self._missions_send_goals():
+            self._set_goal(msg.header, _goal(msg))
+
+    def on_planner_goal(self, msg: PoseStamped) -> None:
+        """Navigate to a pose, or to a point if the orientation is zero."""
+        q = msg.pose.orientation
+        if any((q.x, q.y, q.z, q.w)):
+            _check_pose(msg)
+            self._set_goal(msg.header, _goal(msg))
+        else:
+            point = PointStamped(header=msg.header, point=msg.pose.position)
+            _check_point(point)
+            self._set_goal(msg.header, Goal(point.point.x, point.point.y))
 
     def on_input_dropped(self, topic: str, msg: Any, error: InvalidInputError) -> None:
         """Refuse an invalid goal, and stop."""
         if topic == topics.GOAL_POINT.name:
             goal = Goal(msg.point.x, msg.point.y)
-        elif topic == topics.GOAL_POSE.name:
+        elif topic in (topics.GOAL_POSE.name, topics.PLANNER_GOAL.name):
             goal = Goal(msg.pose.position.x, msg.pose.position.y)
         else:
             return
@@ -251,6 +271,9 @@ class PlannerNode(StageNode):
         # Negative: the clock was set back, and the message is of an earlier run.
         return not 0 <= age_ns <= self.params.odometry_timeout_s * 1e9
 
+    def _missions_send_goals(self) -> bool:
+        return self.count_publishers(topics.PLANNER_GOAL.name) > 0
+
     def _set_goal(self, header: Header, goal: Goal) -> None:
         map_T_frame = self._frame_on_map(header.frame_id)
         if map_T_frame is None:
@@ -316,6 +339,11 @@ class PlannerNode(StageNode):
             logger.info(
                 f"{goal}: {report.message}" if report.goal_id else "no goal yet"
             )
+
+
+def _goal(msg: PoseStamped) -> Goal:
+    position, q = msg.pose.position, msg.pose.orientation
+    return Goal(position.x, position.y, yaw_of((q.x, q.y, q.z, q.w)))
 
 
 def _moved(goal: Goal, map_T_frame: Pose2) -> Goal:

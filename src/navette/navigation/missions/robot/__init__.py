@@ -1,0 +1,1 @@
+"""The robot as the nodes of a behaviour tree access it."""

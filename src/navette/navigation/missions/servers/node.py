@@ -1,0 +1,248 @@
+"""The actions ``navigate_to_pose``, ``navigate_through_poses``, ``follow_waypoints``.
+
+Names, types, feedback and results are those of Nav2's bt_navigator and
+waypoint_follower. The newest goal of any of them replaces the one under way, which ends
+as aborted.
+"""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from navette.errors import FileFormatError
+from navette.msgs.action_msgs.msg import GoalStatus
+from navette.msgs.builtin_interfaces.msg import Duration
+from navette.msgs.geometry_msgs.msg import PoseStamped
+from navette.msgs.nav2_msgs.action import (
+    FollowWaypoints,
+    NavigateThroughPoses,
+    NavigateToPose,
+)
+from navette.msgs.nav2_msgs.msg import MissedWaypoint
+from navette.msgs.std_msgs.msg import Header
+from navette.msgs.unique_identifier_msgs.msg import UUID
+from navette.navigation.missions.navigation import (
+    PREEMPTED_TEXT,
+    Navigation,
+    NavigationEnd,
+    NavigationProgress,
+    TreeNavigator,
+)
+from navette.navigation.missions.params import MissionParams
+from navette.navigation.missions.robot.node import NodeRobot, stamped
+from navette.navigation.missions.sequence import CANCELED, REACHED
+from navette.runtime.action import ActionClient, ActionServer, CancelResponse
+from navette.runtime.future import Future
+from navette.runtime.stage.stage_node import StageNode
+from navette.runtime.time import ns_to_stamp
+
+NO_TREE = 9002
+"""Error code of a behaviour tree that cannot be loaded (Nav2, from Kilted on)."""
+NO_GOALS = "no poses given; at least one is needed"
+_LONGEST_S = 2**31 - 1
+_KEPT_ENDS = 16
+
+
+class NavigationServers:
+    """Action servers of a node that feed one :class:`TreeNavigator`."""
+
+    def __init__(
+        self, node: StageNode, robot: NodeRobot, navigator: TreeNavigator
+    ) -> None:
+        self._node, self._robot, self._navigator = node, robot, navigator
+        self._running: dict[bytes, tuple[Any, Navigation]] = {}  # with its handle
+        self._waypoints: dict[bytes, Any] = {}  # their goal under way
+        self._newest_waypoints = b""
+        self._ends: dict[bytes, NavigationEnd] = {}
+        self._servers = [
+            ActionServer(
+                node,
+                action,
+                name,
+                execute_callback=execute,
+                cancel_callback=cancel,
+            )
+            for action, name, execute, cancel in (
+                (NavigateToPose, "navigate_to_pose", self._to_pose, self._on_cancel),
+                (
+                    NavigateThroughPoses,
+                    "navigate_through_poses",
+                    self._through_poses,
+                    self._on_cancel,
+                ),
+                (
+                    FollowWaypoints,
+                    "follow_waypoints",
+                    self._follow_waypoints,
+                    self._on_cancel_waypoints,
+                ),
+            )
+        ]
+        #: Sends the node's own goals, as Nav2 does with those of ``goal_pose``.
+        self.client = ActionClient(node, NavigateToPose, "navigate_to_pose")
+
+    @property
+    def _params(self) -> MissionParams:
+        params: MissionParams = self._node.params
+        return params
+
+    def publish_feedback(self) -> None:
+        """Publish the feedback of the navigation under way."""
+        for handle, navigation in self._running.values():
+            if navigation is self._navigator.active:
+                handle.publish_feedback(
+                    _feedback(handle, self._navigator.progress(), self._robot)
+                )
+
+    def take_end(self, goal_id: UUID) -> NavigationEnd | None:
+        """Return how a goal of this process ended, once."""
+        end = self._ends.pop(bytes(goal_id.uuid), None)
+        while len(self._ends) > _KEPT_ENDS:
+            self._ends.pop(next(iter(self._ends)))
+        return end
+
+    async def _to_pose(self, handle: Any) -> Any:
+        goal = handle.request
+        result = NavigateToPose.Result()
+        tree = goal.behavior_tree or self._params.to_pose_tree
+        await self._navigate(handle, [goal.pose], Path(tree), result, through=False)
+        return result
+
+    async def _through_poses(self, handle: Any) -> Any:
+        goal = handle.request
+        result = NavigateThroughPoses.Result()
+        tree = goal.behavior_tree or self._params.through_poses_tree
+        if not goal.poses:
+            result.error_msg = NO_GOALS
+            handle.abort()
+            return result
+        await self._navigate(handle, goal.poses, Path(tree), result, through=True)
+        return result
+
+    async def _navigate(
+        self,
+        handle: Any,
+        goals: Sequence[PoseStamped],
+        tree: Path,
+        result: Any,
+        *,
+        through: bool,
+    ) -> None:
+        """Run a navigation to its end and fill the result."""
+        if handle.is_cancel_requested:
+            handle.canceled()
+            return
+        ended: Future[NavigationEnd] = Future()
+        navigation = Navigation(goals, tree, ended.set_result, through)
+        try:
+            self._navigator.start(navigation)
+        except FileFormatError as error:
+            self._node.get_logger().error(f"goal aborted: {error}")
+            result.error_code, result.error_msg = NO_TREE, str(error)
+            handle.abort()
+            return
+        key = bytes(handle.goal_id.uuid)
+        self._running[key] = handle, navigation
+        self._robot.on_event()
+        end = await ended
+        assert end is not None, "a navigation ends with a result"
+        self._ends[key] = end
+        del self._running[key]
+        result.error_code, result.error_msg = end.error_code, end.text
+        if end.how == REACHED:
+            handle.succeed()
+        elif end.how == CANCELED and handle.is_cancel_requested:
+            handle.canceled()
+        else:
+            handle.abort()
+
+    def _on_cancel(self, handle: Any) -> CancelResponse:
+        _, navigation = self._running.get(bytes(handle.goal_id.uuid), (None, None))
+        if navigation is not None and navigation is self._navigator.active:
+            self._navigator.cancel()
+        return CancelResponse.ACCEPT
+
+    def _on_cancel_waypoints(self, handle: Any) -> CancelResponse:
+        inner = self._waypoints.get(bytes(handle.goal_id.uuid))
+        if inner is not None:
+            inner.cancel_goal_async()
+        return CancelResponse.ACCEPT
+
+    async def _follow_waypoints(self, handle: Any) -> Any:
+        result = FollowWaypoints.Result()
+        poses, first = handle.request.poses, handle.request.goal_index
+        key = self._newest_waypoints = bytes(handle.goal_id.uuid)
+        if not poses[first:]:
+            result.error_code, result.error_msg = result.UNKNOWN, NO_GOALS
+            handle.abort()
+            return result
+        for loop in range(handle.request.number_of_loops + 1):
+            for index in range(0 if loop else first, len(poses)):
+                handle.publish_feedback(
+                    FollowWaypoints.Feedback(current_waypoint=index)
+                )
+                response = await self._drive_to(key, handle, poses[index])
+                if handle.is_cancel_requested:
+                    handle.canceled()
+                    return result
+                if response is None or response.result.error_msg == PREEMPTED_TEXT:
+                    result.error_code = result.UNKNOWN
+                    result.error_msg = PREEMPTED_TEXT
+                    handle.abort()
+                    return result
+                if response.status != GoalStatus.STATUS_SUCCEEDED:
+                    _note_missed(result, index, poses[index], response.result)
+                    if self._params.stop_on_failure:
+                        handle.abort()
+                        return result
+        if len(result.missed_waypoints) == len(poses):
+            result.error_code = result.UNKNOWN
+            handle.abort()
+            return result
+        handle.succeed()
+        return result
+
+    async def _drive_to(self, key: bytes, handle: Any, pose: PoseStamped) -> Any:
+        """Return the response for one waypoint; None if a newer goal replaces it."""
+        if key != self._newest_waypoints:
+            return None
+        inner = await self.client.send_goal_async(NavigateToPose.Goal(pose=pose))
+        assert inner is not None, "the client's future has a result"
+        self._waypoints[key] = inner
+        if handle.is_cancel_requested:
+            inner.cancel_goal_async()
+        try:
+            return await inner.get_result_async()
+        finally:
+            del self._waypoints[key]
+
+
+def _note_missed(result: Any, index: int, pose: PoseStamped, of_goal: Any) -> None:
+    missed = MissedWaypoint(index=index, goal=pose, error_code=of_goal.error_code)
+    result.missed_waypoints = [*result.missed_waypoints, missed]
+    result.error_msg = of_goal.error_msg
+
+
+def _feedback(handle: Any, progress: NavigationProgress, robot: NodeRobot) -> Any:
+    """Return the feedback of an action that navigates."""
+    through = isinstance(handle.request, NavigateThroughPoses.Goal)
+    kind: Any = NavigateThroughPoses.Feedback if through else NavigateToPose.Feedback
+    feedback = kind(
+        navigation_time=_duration(progress.time_s),
+        estimated_time_remaining=_duration(progress.time_left_s),
+        number_of_recoveries=progress.recoveries,
+        distance_remaining=progress.distance_left_m,
+    )
+    if progress.pose is not None:
+        stamp = ns_to_stamp(robot.now_ns)
+        header = Header(stamp=stamp, frame_id=robot.map_frame)
+        feedback.current_pose = stamped(progress.pose, header)
+    if through:
+        feedback.number_of_poses_remaining = progress.goals_left
+    return feedback
+
+
+def _duration(seconds: float) -> Duration:
+    whole = math.floor(min(max(seconds, 0.0), _LONGEST_S))
+    return Duration(sec=whole, nanosec=round((seconds - whole) % 1.0 * 1e9) % 10**9)

@@ -1,0 +1,50 @@
+"""The kinds of tree nodes by their names in the XML."""
+
+from navette.navigation.missions.tree import actions, conditions, controls, decorators
+from navette.navigation.missions.tree.behaviour import LeafNode
+from navette.navigation.missions.tree.controls import BranchNode
+from navette.navigation.missions.tree.decorators import DecoratorNode
+
+Kind = type[BranchNode] | type[DecoratorNode] | type[LeafNode]
+
+_OTHER_NAMES = {"RecoveryControlNode": "RecoveryNode"}
+_ABSTRACT = {"ActionLeaf", "CallLeaf", "ServiceLeaf"}
+
+
+def _kinds() -> dict[str, Kind]:
+    found: dict[str, Kind] = {}
+    for module in (controls, decorators, conditions, actions):
+        for name, value in vars(module).items():
+            is_kind = (
+                isinstance(value, type)
+                and issubclass(value, BranchNode | DecoratorNode | LeafNode)
+                and value.__module__ == module.__name__
+                and name.endswith("Node")
+                and not name.startswith("_")
+                and value not in _BASES
+            )
+            if is_kind:
+                found[_OTHER_NAMES.get(name, name.removesuffix("Node"))] = value
+    return dict(sorted(found.items()))
+
+
+_BASES = {
+    BranchNode,
+    DecoratorNode,
+    decorators.MappedStatusNode,
+    decorators.CountedNode,
+    decorators.PacedNode,
+    actions.CancelNode,
+    actions.SelectorNode,
+}
+
+KINDS: dict[str, Kind] = _kinds()
+"""Every kind of node that a tree may contain."""
+
+CATEGORIES = {
+    "Action": LeafNode,
+    "Condition": LeafNode,
+    "Control": BranchNode,
+    "Decorator": DecoratorNode,
+}
+"""Elements of the explicit form: ``<Action ID="Spin"/>`` instead of ``<Spin/>``."""
