@@ -25,6 +25,7 @@ from navette.supervisor.service_config import ServiceConfig
 
 _TIMEOUT_S = 15.0
 _START_TIMEOUT_S = 30.0
+_MAX_ERROR_BYTES = 1000
 LOG_NAME = "supervisor.log"
 
 
@@ -52,6 +53,14 @@ class SupervisorClient:
             found: dict[str, str] = self._request({"command": "status"})["arguments"]
         except ConnectionError:
             return {}
+        return found
+
+    def log_problem(self) -> str:
+        """Return why output is not stored at present, or ""."""
+        try:
+            found: str = self._request({"command": "status"})["log_problem"]
+        except ConnectionError:
+            return ""
         return found
 
     def up(
@@ -192,9 +201,10 @@ def start_supervisor(project: Project, path: Path) -> None:
             check=False,
         )
     os.close(writing)
-    with os.fdopen(reading, "rb") as pipe:
-        ready, _, _ = select.select([pipe], [], [], _START_TIMEOUT_S)
-        result = pipe.read(5) if ready else b""
+    ready, _, _ = select.select([reading], [], [], _START_TIMEOUT_S)
+    result = os.read(reading, _MAX_ERROR_BYTES) if ready else b""
+    os.close(reading)
     if result not in (b"ready", b"taken"):
-        text = log.read_text(encoding="utf-8", errors="replace").strip()
-        raise SupervisorError(f"the supervisor did not start: {text or 'no output'}")
+        text = result.decode() or log.read_text(encoding="utf-8", errors="replace")
+        reason = text.strip() or "no output"
+        raise SupervisorError(f"the supervisor did not start: {reason}")

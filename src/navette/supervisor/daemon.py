@@ -46,7 +46,11 @@ def main(folder: Path, socket: Path, ready: int) -> None:
     if not _locked(lock, socket):
         os.write(ready, b"taken")  # another supervisor was faster
         return
-    daemon = _Daemon(folder, socket, lock)
+    try:
+        daemon = _Daemon(folder, socket, lock)
+    except OSError as error:  # for example a full disk
+        os.write(ready, str(error).encode())
+        return
     os.write(ready, b"ready")
     os.close(ready)
     daemon.run()
@@ -119,6 +123,7 @@ class _Daemon:
             "pid": os.getpid(),
             "services": self._supervisor.status(),
             "arguments": self._arguments,
+            "log_problem": self._log.problem,
         }
 
     def _exit_when_idle(self) -> None:

@@ -37,13 +37,19 @@ class LogLine:
 
 
 class LogStore:
-    """Writer of the log, for any thread; keeps the last 8 to 16 MB."""
+    """Writer of the log, for any thread; keeps the last 8 to 16 MB.
+
+    On a full disk lines are lost, and the processes continue. The log contains how many
+    as soon as there is space again.
+    """
 
     def __init__(self, folder: Path, now_ns: Callable[[], int]) -> None:
         self._folder = folder
         self._now_ns = now_ns
         self._lock = threading.Lock()
         self._file = self._open()
+        self._lost = 0
+        self.problem = ""  # why the last lines were not stored
 
     def write(
         self, service: str, name: str, texts: Iterable[str], *, event: bool = False
@@ -53,18 +59,31 @@ class LogStore:
         lines = [
             LogLine(now_ns, service, name, text[:_MAX_TEXT], event) for text in texts
         ]
-        data = "".join(f"{json.dumps(asdict(line))}\n" for line in lines)
-        # A full disk loses log lines; it must not stop the processes.
-        with self._lock, suppress(OSError):
-            if not self._file.closed:
-                self._file.write(data.encode())
+        with self._lock:
+            if self._file.closed:
+                return
+            try:
+                if self.problem:
+                    text = f"{self._lost} lines are not in the log: {self.problem}"
+                    # The last line may be incomplete.
+                    self._append(b"\n")
+                    self._append(_encode(LogLine(now_ns, service, name, text, True)))
+                    self._lost, self.problem = 0, ""
+                self._append(b"".join(map(_encode, lines)))
                 self._rotate()
+            except OSError as error:
+                self._lost += len(lines)
+                self.problem = error.strerror or str(error)
+
+    def _append(self, data: bytes) -> None:
+        while data:
+            data = data[self._file.write(data) :]
 
     def _rotate(self) -> None:
         if self._file.tell() > _MAX_BYTES:
-            self._file.close()
             (self._folder / FILE_NAME).replace(self._folder / _OLD_NAME)
-            self._file = self._open()
+            full, self._file = self._file, self._open()
+            full.close()
 
     def close(self) -> None:
         with self._lock:
@@ -74,6 +93,10 @@ class LogStore:
         path = self._folder / FILE_NAME
         descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
         return os.fdopen(descriptor, "ab", buffering=0)
+
+
+def _encode(line: LogLine) -> bytes:
+    return json.dumps(asdict(line)).encode() + b"\n"
 
 
 class LogReader:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mounts import needs_mounts, read_only
+from mounts import needs_mounts, read_only, small
 from navette.supervisor import project
 from navette.supervisor.project import SupervisorError, socket_path, state_root
 
@@ -67,6 +67,52 @@ def test_without_a_writable_folder_one_line_names_the_variables(
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert "set NAVETTE_STATE_DIR and XDG_RUNTIME_DIR" in done.stderr
+
+
+LOUD = """
+services:
+  loud:
+    nodes:
+      - command: "yes lines of output | head -n 20000; exec sleep 600"
+        shell: true
+"""
+FILLING = """
+set -e
+$0 -m navette up
+while ! $0 -m navette ps 2>&1 | tee seen | grep incomplete; do :; done
+grep -c running seen
+$0 -m navette logs -n 1
+$0 -m navette down
+"""
+FULL_FROM_THE_START = """
+dd if=/dev/zero of=state/rest bs=1k 2> /dev/null || exec $0 -m navette up
+"""
+
+
+@needs_mounts
+@pytest.mark.slow
+def test_services_continue_on_a_full_disk(
+    folders: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NAVETTE_STATE_DIR", str(tmp_path / "state"))
+    (tmp_path / "state").mkdir()
+    (tmp_path / "navette.yaml").write_text(LOUD)
+    script = ["sh", "-c", FILLING, sys.executable]
+    done = subprocess.run(
+        small(tmp_path / "state", "200k", script), capture_output=True, text=True
+    )
+    assert "the log in" in done.stdout
+    assert "is incomplete: No space left on device" in done.stdout
+    assert "\n1\n" in done.stdout
+    assert "lines of output" in done.stdout
+    assert done.returncode == 0, done.stdout + done.stderr
+    script = ["sh", "-c", FULL_FROM_THE_START, sys.executable]
+    done = subprocess.run(
+        small(tmp_path / "state", "200k", script), capture_output=True, text=True
+    )
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert "the supervisor did not start: [Errno 28] No space left" in done.stderr
 
 
 def test_folders_of_other_users_are_refused(folders: tuple[Path, Path]) -> None:

@@ -181,6 +181,7 @@ def ps(
             show(f"{client.project.folder}")
         if found:
             show_processes(found, usage)
+            _note_log_problem(client)
         elif not all_projects:
             _show_nothing_up(client)
     if as_json:
@@ -211,6 +212,7 @@ def logs(
         view.show(found)
         if not found:
             _show_no_output(project, services or [])
+        _note_log_problem(_client(project))
         pause = threading.Event()
         while follow:
             pause.wait(_POLL_S)
@@ -219,6 +221,12 @@ def logs(
         pass  # ends --follow
     finally:
         reader.close()
+
+
+def _note_log_problem(client: "SupervisorClient") -> None:
+    problem = client.log_problem()
+    if problem:
+        note(f"the log in {client.project.state} is incomplete: {problem}")
 
 
 def _project(file: Path | None) -> "Project":
