@@ -22,6 +22,7 @@ FLOW = (
     "mapping",
     "planning",
     "control",
+    "behaviors",
     "arbiter",
     "missions",
 )

@@ -1,7 +1,7 @@
 """Angles, poses, transforms and footprints."""
 
 from navette.geometry.footprint import Footprint
-from navette.geometry.se2 import Pose2, angle_difference, wrap_angle
+from navette.geometry.se2 import Pose2, advanced, angle_difference, wrap_angle
 from navette.geometry.se3 import (
     Quaternion,
     Transform3,
@@ -19,6 +19,7 @@ __all__ = [
     "quaternion_from_rpy",
     "quaternion_from_yaw",
     "yaw_of",
+    "advanced",
     "angle_difference",
     "wrap_angle",
     "Footprint",

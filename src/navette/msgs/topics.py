@@ -47,6 +47,8 @@ COLLISION_MONITOR_STATE = StackTopic(
 # Commands to the wheels: sources, arbiter, locks
 CMD_VEL_NAV = StackTopic("/cmd_vel_nav", "geometry_msgs/msg/Twist")
 CMD_VEL_TELEOP = StackTopic("/cmd_vel_teleop", "geometry_msgs/msg/Twist")
+CMD_VEL_ASSISTED = StackTopic("/cmd_vel_assisted", "geometry_msgs/msg/Twist")
+PREEMPT_TELEOP = StackTopic("/preempt_teleop", "std_msgs/msg/Empty")
 CMD_VEL = StackTopic("/cmd_vel", "geometry_msgs/msg/Twist")
 EMERGENCY_STOP = StackTopic("/emergency_stop", "std_msgs/msg/Bool")
 EMERGENCY_STOP_RELEASE = StackTopic("/emergency_stop/release", "std_msgs/msg/Empty")

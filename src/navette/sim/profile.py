@@ -64,6 +64,14 @@ def derive_parameters(model: Model) -> dict[str, dict[str, object]]:
         "map_memory": {"footprint_m": flat},
         "planner": {"footprint_m": flat},
         "arbiter": {"max_speed_mps": speed, "max_turn_rate_radps": yaw_rate},
+        "behaviors": {
+            "footprint_m": flat,
+            "max_speed_mps": min(reverse, cruise / 2),
+            "max_turn_rate_radps": 0.5 * yaw_rate,
+            "acceleration_mps2": min(acceleration, 0.5),
+            "deceleration_mps2": min(acceleration, 0.5),
+            "turn_acceleration_radps2": min(yaw_acceleration, 1.5),
+        },
         "control": {
             "footprint_m": flat,
             "cruise_speed_mps": cruise,

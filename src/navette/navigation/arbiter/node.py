@@ -69,6 +69,12 @@ class ArbiterNode(StageNode):
             checks_contents=False,  # an invalid command is zero, not the last one
             callback="on_command",
         ),
+        Input.of(
+            topics.CMD_VEL_ASSISTED,
+            "commands of the operator after a check (`topics.assisted_teleop`)",
+            other_types=(_STAMPED,),
+            callback="on_command",
+        ),
         Input.of(topics.PAUSE_NAVIGATION, "lock (`locks.pause`)", callback="on_lock"),
         Input.of(
             topics.EMERGENCY_STOP_ACTIVE,

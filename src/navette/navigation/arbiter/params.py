@@ -69,6 +69,10 @@ SOURCES: dict[str, CommandSourceParams] = {
     "operator": CommandSourceParams(
         topic=topics.CMD_VEL_TELEOP.name, priority=100, hold=1.0, over_limit="scale"
     ),
+    # The operator's commands after the collision check: they mask the unchecked ones.
+    "assisted_teleop": CommandSourceParams(
+        topic=topics.CMD_VEL_ASSISTED.name, priority=110, over_limit="scale"
+    ),
 }
 """The sources without any parameter."""
 

@@ -2,7 +2,6 @@
 
 from navette.navigation.control.command_gate import CommandGate, InputAges
 from navette.navigation.control.limits import STOP, VelocityCommand
-from navette.navigation.control.obstacles import obstacle_points
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
 from navette.navigation.control.records import FollowerInputs, FollowerOutput
@@ -18,5 +17,4 @@ __all__ = [
     "STOP",
     "CommandGate",
     "InputAges",
-    "obstacle_points",
 ]

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from navette.geometry import Pose2
-from navette.navigation.control.collision_check import CollisionCheck
+from navette.geometry import Footprint, Pose2
 from navette.navigation.control.cross_track_pid import CrossTrackPid
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_pieces import DrivePiece
 from navette.navigation.control.piece_progress import PathPoint
 from navette.navigation.control.pure_pursuit import PurePursuit
 from navette.navigation.control.turn_gain import TurnGain
+from navette.navigation.grids import CollisionCheck, MovingBody
 
 
 class Steering(Protocol):
@@ -37,4 +37,12 @@ class ControllerParts:
     def of(cls, params: ControlParams) -> "ControllerParts":
         pursues = params.method == "pure_pursuit"
         steering = PurePursuit(params) if pursues else CrossTrackPid(params)
-        return cls(params, steering, CollisionCheck(params), TurnGain())
+        body = MovingBody(
+            footprint=Footprint.from_flat(params.footprint_m),
+            margin_m=params.collision_margin_m,
+            horizon_m=params.slow_clearance_m,
+            reaction_s=params.reaction_s,
+            deceleration_mps2=params.deceleration_mps2,
+            turn_acceleration_radps2=params.turn_acceleration_radps2,
+        )
+        return cls(params, steering, CollisionCheck(body), TurnGain())

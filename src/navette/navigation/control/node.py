@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from navette.errors import InvalidInputError, InvalidValueError
-from navette.geometry import Pose2
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import Twist
@@ -22,10 +21,8 @@ from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.navigation.control.command_gate import InputAges
 from navette.navigation.control.limits import NO_CAP, SpeedCap
-from navette.navigation.control.obstacles import obstacle_points
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
-from navette.navigation.control.prediction import advanced
 from navette.navigation.control.records import (
     PAUSED,
     UNKNOWN_POSE,
@@ -37,16 +34,14 @@ from navette.navigation.control.servers.follow_path import (
     FollowPathServer,
 )
 from navette.navigation.control.states import ControlState
-from navette.navigation.grids import grid_from_message
+from navette.navigation.grids import ObstacleTracker
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import Poses, poses_of
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 from navette.runtime.stage.status import StatusReporter, status_output
-from navette.runtime.time import stamp_to_ns
 
 _NEVER = -(1 << 62)
-_LONGEST_PREDICTION_S = 0.25
 _TICKS_PER_REPORT = 5
 # Status of a planner before its first goal.
 _NO_GOAL_YET = "waiting_for_goal"
@@ -119,9 +114,8 @@ class ControlNode(StageNode):
         self._follows_goal = False  # the path is that of a follow_path goal …
         self._method = ""  # … which may name a steering method
         self._collision_action = CollisionMonitorState.DO_NOTHING
-        self._costmap: OccupancyGrid | None = None  # newest, not placed yet
-        self._base_T_costmap: tuple[str, Pose2] | None = None  # with its frame
-        self._costmap_ns = self._placed_ns = _NEVER  # arrivals of newest and placed
+        self._obstacles = ObstacleTracker(self._tracker)
+        self._placed_ns = _NEVER  # arrival of the costmap that the follower uses
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
         self._planner_ns = _NEVER
@@ -168,8 +162,7 @@ class ControlNode(StageNode):
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Store the newest costmap until the pose at its stamp is available."""
-        self._costmap = msg
-        self._costmap_ns = self._now_ns
+        self._obstacles.receive(msg, self._now_ns)
 
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
         """Note that the planner is alive; drop the path if the planner restarted."""
@@ -209,7 +202,7 @@ class ControlNode(StageNode):
         params: ControlParams = self.params
         if (params.base_frame, params.map_frame) != (old.base_frame, old.map_frame):
             self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
-            self._base_T_costmap = None
+            self._obstacles = ObstacleTracker(self._tracker)
             self._located_ns = _NEVER
         if params.rate_hz != old.rate_hz:
             self.destroy_timer(self._timer)
@@ -225,8 +218,8 @@ class ControlNode(StageNode):
         self._follow_server.interrupt("the clock was set back")
         self._new_follower(self.params)
         self._path = np.empty((0, 3))
-        self._costmap = self._odometry = None
-        self._costmap_ns = self._placed_ns = _NEVER
+        self._obstacles.reset()
+        self._odometry = None
         self._odometry_ns = self._located_ns = _NEVER
         self._planner_ns = _NEVER
 
@@ -291,9 +284,10 @@ class ControlNode(StageNode):
         self._place_costmap()
         if self._is_paused and self._follower.has_path:
             self._report(PAUSED)
+            self._follow_server.step_paused()
             return
         speed, turn_rate = self._tracker.velocity
-        pose = self._pose_now() or UNKNOWN_POSE
+        pose = self._tracker.predicted_now(self._now_ns) or UNKNOWN_POSE
         inputs = FollowerInputs(pose, speed, turn_rate, self._ages())
         output = self._follower.step(inputs, 1 / self.params.rate_hz)
         self._send(output)
@@ -320,61 +314,22 @@ class ControlNode(StageNode):
         age_ns = self._now_ns - arrival_ns
         return age_ns / 1e9 if arrival_ns != _NEVER and age_ns >= 0 else math.inf
 
-    def _pose_at(self, stamp_ns: int) -> Pose2 | None:
-        """Return the pose of the base at a stamp, interpolated or predicted."""
-        newest, latest_ns = self._tracker.latest, self._tracker.stamp_ns
-        if newest is None or latest_ns is None:
-            return None
-        if stamp_ns <= latest_ns:
-            return self._tracker.pose_at(stamp_ns)
-        seconds = min((stamp_ns - latest_ns) / 1e9, _LONGEST_PREDICTION_S)
-        return advanced(newest, *self._tracker.velocity, seconds)
-
-    def _pose_now(self) -> Pose2 | None:
-        """Return the pose now, or that of odometry stamped ahead of the clock."""
-        stamp_ns = self._tracker.stamp_ns
-        return None if stamp_ns is None else self._pose_at(max(self._now_ns, stamp_ns))
-
     def _place_costmap(self) -> None:
         """Convert the newest costmap to obstacles once its pose is available."""
-        msg, params = self._costmap, self.params
-        if msg is None or not (params.collision_check and self._follower.has_path):
+        if not (self.params.collision_check and self._follower.has_path):
             return
-        map_T_frame = self._placement(msg)
-        around = self._pose_now()
-        if map_T_frame is None or around is None:
-            return
-        self._costmap = None
         try:
-            cells, spec = grid_from_message(msg)
+            obstacles = self._obstacles.place(
+                self._now_ns, self.params.lethal_cost, self._follower.obstacle_reach_m
+            )
         except InvalidValueError as error:
             # The last valid costmap ages until the robot stops.
             invalid = InvalidInputError("out_of_range", str(error))
             self.drop_input(topics.COSTMAP.name, invalid)
             return
-        points = obstacle_points(
-            cells,
-            spec,
-            map_T_frame,
-            lethal_cost=params.lethal_cost,
-            around=around,
-            reach_m=self._follower.obstacle_reach_m,
-        )
-        self._follower.set_obstacles(points, spec.resolution / 2)
-        self._placed_ns = self._costmap_ns
-
-    def _placement(self, msg: OccupancyGrid) -> Pose2 | None:
-        """Return map_T_frame of the costmap at its stamp."""
-        frame = msg.header.frame_id
-        if frame == self.params.map_frame:
-            return Pose2(0.0, 0.0, 0.0)
-        if self._base_T_costmap is None or self._base_T_costmap[0] != frame:
-            base_T_frame = self._tracker.transform_to_base(frame)
-            if base_T_frame is None:
-                return None
-            self._base_T_costmap = (frame, base_T_frame)
-        map_T_base = self._pose_at(stamp_to_ns(msg.header.stamp))
-        return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
+        if obstacles is not None and self._obstacles.placed_ns is not None:
+            self._follower.set_obstacles(*obstacles)
+            self._placed_ns = self._obstacles.placed_ns
 
     def _send(self, output: FollowerOutput) -> None:
         """Publish the command; at rest, ``idle_zeros`` zeros and then nothing."""

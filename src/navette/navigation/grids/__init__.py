@@ -11,6 +11,7 @@ from navette.navigation.grids.clearance import (
     pose_clearance,
     pose_is_clear,
 )
+from navette.navigation.grids.collision_check import CollisionCheck, MovingBody
 from navette.navigation.grids.compare import Changes, compare
 from navette.navigation.grids.distance import distance_field
 from navette.navigation.grids.evidence import accumulate
@@ -18,6 +19,11 @@ from navette.navigation.grids.footprint_cells import cells_in_footprint
 from navette.navigation.grids.inflation import cost_table, inflate
 from navette.navigation.grids.merge import merge
 from navette.navigation.grids.messages import grid_from_message, grid_to_message
+from navette.navigation.grids.obstacles import (
+    Obstacles,
+    ObstacleTracker,
+    obstacle_points,
+)
 from navette.navigation.grids.rays import beam_directions, trace_beams
 from navette.navigation.grids.spec import FREE, LETHAL, UNKNOWN, GridSpec, grid_frame
 
@@ -46,6 +52,11 @@ __all__ = [
     "cells_in_footprint",
     "Changes",
     "compare",
+    "CollisionCheck",
+    "MovingBody",
+    "Obstacles",
+    "ObstacleTracker",
+    "obstacle_points",
     "grid_to_message",
     "grid_from_message",
 ]

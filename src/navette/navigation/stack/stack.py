@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from navette.errors import UnknownNameError
 from navette.navigation.arbiter.node import ArbiterNode
+from navette.navigation.behaviors.node import BehaviorNode
 from navette.navigation.control.node import ControlNode
 from navette.navigation.costmap.node import CostmapNode
 from navette.navigation.localization.distance.node import OdomIntegratorNode
@@ -21,6 +22,7 @@ FLOW = (
     "mapping",
     "planning",
     "control",
+    "behaviors",
     "arbiter",
     "missions",
 )
@@ -34,6 +36,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("map_memory", MapMemoryNode),
     ("planner", PlannerNode),
     ("control", ControlNode),
+    ("behaviors", BehaviorNode),
     ("arbiter", ArbiterNode),
     ("missions", MissionNode),
 )
@@ -63,6 +66,7 @@ class NavigationStack:
     map_memory: MapMemoryNode
     planner: PlannerNode
     control: ControlNode
+    behaviors: BehaviorNode
     arbiter: ArbiterNode
     missions: MissionNode
 
@@ -74,6 +78,7 @@ class NavigationStack:
             map_memory=MapMemoryNode(context=context),
             planner=PlannerNode(context=context),
             control=ControlNode(context=context),
+            behaviors=BehaviorNode(context=context),
             arbiter=ArbiterNode(context=context),
             missions=MissionNode(context=context),
         )

@@ -124,6 +124,15 @@ def control() -> None:
 
 
 @_program
+def behaviors() -> None:
+    """Run the behaviors."""
+    from navette.navigation.behaviors.node import BehaviorNode
+
+    text = "actions spin, backup, drive_on_heading, … → /cmd_vel_nav"
+    _run_stage("behaviors", BehaviorNode, text)
+
+
+@_program
 def arbiter() -> None:
     """Run the arbiter."""
     from navette.navigation.arbiter.node import ArbiterNode

@@ -25,6 +25,7 @@ _PROGRAMS = {
         "map_memory",
         "planner",
         "control",
+        "behaviors",
         "arbiter",
         "missions",
         "viewer",

@@ -89,6 +89,13 @@ class GoalServer:
         if goal is not None:
             goal.canceled(result)
 
+    def end(self, result: Any) -> None:
+        """End the goal: cancelled if requested, otherwise as :meth:`finish`."""
+        if self.cancel_requested:
+            self.cancel(result)
+        else:
+            self.finish(result)
+
     def _take(self) -> ServerGoalHandle | None:
         goal, self._goal = self._goal, None
         return goal
@@ -135,11 +142,10 @@ class DriveGoalServer(GoalServer):
         return self._ending is not None
 
     def end_at_rest(self, result: Any, now_ns: int) -> None:
-        """Store the result: cancelled if requested, otherwise as :meth:`finish`."""
+        """Store the result, to :meth:`end` the goal with when the robot is at rest."""
         if self._goal is None or self._ending is not None:
             return
-        end = self.cancel if self.cancel_requested else self.finish
-        self._ending = lambda: end(result)
+        self._ending = lambda: self.end(result)
         self._deadline_ns = now_ns + _LONGEST_STOP_NS
 
     def check_rest(self, motion: tuple[float, float] | None, now_ns: int) -> None:

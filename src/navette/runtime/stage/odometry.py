@@ -4,7 +4,7 @@ from bisect import bisect_right
 from collections import deque
 
 from navette.errors import InvalidInputError
-from navette.geometry import Pose2, Transform3, yaw_of
+from navette.geometry import Pose2, Transform3, advanced, yaw_of
 from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.runtime.node import Node
@@ -14,6 +14,7 @@ from navette.runtime.tf import Buffer, TransformException, TransformListener
 from navette.runtime.time import stamp_to_ns
 
 _HERE = Pose2(0.0, 0.0, 0.0)
+_LONGEST_PREDICTION_S = 0.25
 
 
 class PoseTracker:
@@ -107,6 +108,24 @@ class PoseTracker:
         return before.interpolate(
             after, (stamp_ns - before_ns) / (after_ns - before_ns)
         )
+
+    def predicted_at(self, stamp_ns: int) -> Pose2 | None:
+        """Return map_T_base at a stamp, interpolated or predicted.
+
+        The prediction continues the newest motion for at most 0.25 s.
+        """
+        newest, latest_ns = self.latest, self.stamp_ns
+        if newest is None or latest_ns is None:
+            return None
+        if stamp_ns <= latest_ns:
+            return self.pose_at(stamp_ns)
+        seconds = min((stamp_ns - latest_ns) / 1e9, _LONGEST_PREDICTION_S)
+        return advanced(newest, *self._velocity, seconds)
+
+    def predicted_now(self, now_ns: int) -> Pose2 | None:
+        """Return map_T_base now, or that of odometry stamped ahead of the clock."""
+        stamp_ns = self.stamp_ns
+        return None if stamp_ns is None else self.predicted_at(max(now_ns, stamp_ns))
 
     def transform_to_base(self, frame_id: str) -> Pose2 | None:
         """Return base_T_frame of a frame fixed to the robot, or None."""

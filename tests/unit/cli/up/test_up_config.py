@@ -251,7 +251,14 @@ def test_the_built_in_services(tmp_path: Path) -> None:
     specs = {spec.name: spec for spec in content.specs(content.names)}
     assert set(specs) == {"sim", "robot", "viewer"}
     names = [process.name for process in specs["robot"].processes]
-    assert names == ["costmap", "map_memory", "planner", "control", "arbiter"]
+    assert names == [
+        "costmap",
+        "map_memory",
+        "planner",
+        "control",
+        "behaviors",
+        "arbiter",
+    ]
     words = ("--robot", "husky", "--ros-args", "-p", "use_sim_time:=true")
     for process in specs["robot"].processes:
         assert process.argv[-5:] == words

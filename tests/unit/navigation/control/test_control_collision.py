@@ -1,6 +1,5 @@
 """Predicted motion against obstacles, and the last gate."""
 
-import itertools
 import math
 
 import numpy as np
@@ -13,10 +12,14 @@ from navette.navigation.control import (
     ControlState,
     InputAges,
     VelocityCommand,
+)
+from navette.navigation.grids import (
+    CollisionCheck,
+    GridSpec,
+    MovingBody,
     obstacle_points,
 )
-from navette.navigation.control.collision_check import CollisionCheck, signed_distance
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids.collision_check import signed_distance
 
 BODY = Footprint(((1.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (1.5, -0.5)))
 ORIGIN = Pose2(0.0, 0.0, 0.0)
@@ -24,10 +27,10 @@ ORIGIN = Pose2(0.0, 0.0, 0.0)
 
 def checker(*points: tuple[float, float]) -> CollisionCheck:
     check = CollisionCheck(
-        ControlParams(
-            footprint_m=tuple(itertools.chain(*BODY.vertices)),
-            collision_margin_m=0.1,
-            slow_clearance_m=0.5,
+        MovingBody(
+            footprint=BODY,
+            margin_m=0.1,
+            horizon_m=0.5,
             reaction_s=0.2,
             deceleration_mps2=1.0,
             turn_acceleration_radps2=2.0,

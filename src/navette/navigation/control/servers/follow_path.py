@@ -58,11 +58,23 @@ class FollowPathServer:
             node, FollowPath, "follow_path", self._on_goal, accepts=accepts
         )
         self._monitor: FollowMonitor | None = None
+        self._stepped_ns = 0
 
     @property
     def is_active(self) -> bool:
         """Whether a goal commands the follower."""
         return self._goals.is_active
+
+    def step_paused(self) -> None:
+        """Leave the time of a step out: the commands do not reach the wheels."""
+        if self._monitor is None or not self._goals.is_active:
+            return
+        now_ns = self._now_ns
+        self._monitor.pause(now_ns - self._stepped_ns)
+        self._stepped_ns = now_ns
+        if self._goals.cancel_requested:
+            self._end(Result(error_msg="cancelled"))
+        self._goals.check_rest(None, now_ns)
 
     def step(
         self, output: FollowerOutput, inputs: FollowerInputs, *, fresh: bool
@@ -76,7 +88,7 @@ class FollowPathServer:
         """
         if self._monitor is None or not self._goals.is_active:
             return
-        now_ns = self._now_ns
+        self._stepped_ns = now_ns = self._now_ns
         if not self._goals.is_ending:
             self._goals.publish_feedback(
                 distance_to_goal=output.distance_left_m, speed=abs(output.command.speed)
@@ -110,7 +122,8 @@ class FollowPathServer:
                 self._fail(*failure)
 
     def _on_goal(self, goal: Any) -> None:
-        self._monitor = FollowMonitor(self._context.params(), self._now_ns)
+        self._stepped_ns = self._now_ns
+        self._monitor = FollowMonitor(self._context.params(), self._stepped_ns)
         unknown = _unknown_plugin(goal)
         if unknown is not None:
             self._fail(*unknown)

@@ -7,14 +7,13 @@ which is too coarse to decide whether a motion leads away from an obstacle.
 """
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
-from navette.navigation.control.limits import VelocityCommand
-from navette.navigation.control.params import ControlParams
 from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
@@ -33,16 +32,29 @@ class Verdict(NamedTuple):
     clearance: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class MovingBody:
+    """The robot's outline, the clearance that it keeps, and how it stops.
+
+    ``horizon_m`` is the clearance beyond which the exact value does not matter.
+    """
+
+    footprint: Footprint
+    margin_m: float
+    horizon_m: float
+    reaction_s: float
+    deceleration_mps2: float
+    turn_acceleration_radps2: float
+
+
 class CollisionCheck:
     """Scale a command so that the robot can stop before the collision margin."""
 
-    def __init__(self, params: ControlParams) -> None:
-        self._params = params
-        footprint = Footprint.from_flat(params.footprint_m)
-        self._outline = np.array(footprint.vertices, np.float64)
-        self._radius = footprint.circumscribed_radius
-        # Clearance beyond which the exact value does not matter.
-        self._horizon = max(params.slow_clearance_m, params.collision_margin_m + 0.1)
+    def __init__(self, body: MovingBody) -> None:
+        self._body = body
+        self._outline = np.array(body.footprint.vertices, np.float64)
+        self._radius = body.footprint.circumscribed_radius
+        self._horizon = max(body.horizon_m, body.margin_m + 0.1)
         self._points = np.empty((0, 2))
         self._half_cell = 0.0
 
@@ -53,12 +65,12 @@ class CollisionCheck:
 
     def reach(self, speed: float) -> float:
         """Return the distance (m) around the robot within which obstacles matter."""
-        params = self._params
-        stop = speed * (params.reaction_s + speed / (2 * params.deceleration_mps2))
+        body = self._body
+        stop = speed * (body.reaction_s + speed / (2 * body.deceleration_mps2))
         return self._radius + stop + self._horizon + _STEP_M + speed * _COSTMAP_AGE_S
 
-    def check(self, pose: Pose2, motion: VelocityCommand) -> Verdict:
-        """Return the share of ``motion`` that is safe at ``pose`` (map).
+    def check(self, pose: Pose2, motion: tuple[float, float]) -> Verdict:
+        """Return the share of ``motion`` (m/s, rad/s) that is safe at ``pose`` (map).
 
         The robot keeps the command for the reaction time t_r and then brakes on the
         same arc. Scaled by k, this takes ``k t_r + k² t_b / 2`` seconds of the full
@@ -66,19 +78,23 @@ class CollisionCheck:
         of the arc that is free.
         """
         v, omega = motion
-        params = self._params
+        body = self._body
         brake = max(
-            abs(v) / params.deceleration_mps2,
-            abs(omega) / params.turn_acceleration_radps2,
+            abs(v) / body.deceleration_mps2,
+            abs(omega) / body.turn_acceleration_radps2,
         )
         if brake == 0.0:
             return Verdict(1.0, self.clearance(pose))
-        needed = params.reaction_s + brake / 2
+        needed = body.reaction_s + brake / 2
         free, clearance = self._free(pose, v, omega, needed)
         if free >= needed:
             return Verdict(1.0, clearance)
-        root = math.sqrt(params.reaction_s**2 + 2 * brake * free)
-        return Verdict((root - params.reaction_s) / brake, clearance)
+        root = math.sqrt(body.reaction_s**2 + 2 * brake * free)
+        return Verdict((root - body.reaction_s) / brake, clearance)
+
+    def free_time(self, pose: Pose2, v: float, omega: float, span_s: float) -> float:
+        """Return how long (s, ≤ ``span_s``) a constant motion stays clear."""
+        return self._free(pose, v, omega, span_s)[0]
 
     def turn_is_free(self, pose: Pose2, turn: float) -> bool:
         """Return whether turning in place by ``turn`` rad keeps the body clear."""
@@ -103,7 +119,7 @@ class CollisionCheck:
                 (
                     self._radius,
                     self._half_cell,
-                    self._params.collision_margin_m,
+                    self._body.margin_m,
                     self._horizon,
                 )
             ),

@@ -1,0 +1,86 @@
+"""Parameters of the behaviors."""
+
+from dataclasses import dataclass
+
+from navette.errors import InvalidValueError, ParameterError
+from navette.geometry import Footprint
+from navette.navigation.grids import MovingBody
+from navette.params import Params, param
+
+
+@dataclass(frozen=True, kw_only=True)
+class BehaviorParams(Params):
+    """Limits, collision check and timeouts of the behaviors."""
+
+    map_frame: str = param("map", "frame of the pose in which motion is measured")
+    base_frame: str = param("base_link", "frame that moves: the axle's midpoint")
+    rate_hz: float = param(20.0, "commands per second", unit="Hz", at_least=10.0)
+
+    max_speed_mps: float = param(
+        0.5, "limit of the requested speed", unit="m/s", above=0.0
+    )
+    max_turn_rate_radps: float = param(1.0, "speed of a spin", unit="rad/s", above=0.0)
+    acceleration_mps2: float = param(
+        0.5, "limit on increasing the speed", unit="m/s²", above=0.0
+    )
+    deceleration_mps2: float = param(
+        0.5, "limit on decreasing the speed", unit="m/s²", above=0.0
+    )
+    turn_acceleration_radps2: float = param(
+        1.5, "limit on changing the turn rate", unit="rad/s²", above=0.0
+    )
+    distance_tolerance_m: float = param(
+        0.01, "missing distance at which a drive is complete", unit="m", above=0.0
+    )
+    yaw_tolerance_rad: float = param(
+        0.02, "missing angle at which a spin is complete", unit="rad", above=0.0
+    )
+
+    footprint_m: tuple[float, ...] = param(
+        (0.25, 0.2, -0.25, 0.2, -0.25, -0.2, 0.25, -0.2),
+        "outline of the body about the axle: x1, y1, x2, y2, …", unit="m",
+    )  # fmt: skip
+    collision_margin_m: float = param(
+        0.05, "clearance that every motion keeps", unit="m", at_least=0.0
+    )
+    simulate_ahead_s: float = param(
+        2.0, "motion that must be free; else the behavior fails (COLLISION_AHEAD)",
+        unit="s", above=0.0,
+    )  # fmt: skip
+    reaction_s: float = param(
+        0.2, "delay from command to motion", unit="s", at_least=0.0
+    )
+    lethal_cost: int = param(
+        100, "costmap value from which a cell is an obstacle", at_least=1, at_most=100
+    )
+
+    odometry_timeout_s: float = param(
+        0.25, "age of odometry that stops the robot", unit="s", above=0.0
+    )
+    costmap_timeout_s: float = param(
+        0.3, "age of the costmap that stops the robot", unit="s", above=0.0
+    )
+    failure_tolerance_s: float = param(
+        1.0, "a behavior fails after this long with stale inputs", unit="s",
+        at_least=0.0,
+    )  # fmt: skip
+    teleop_timeout_s: float = param(
+        0.5, "age at which assisted_teleop drops a command", unit="s", above=0.0
+    )
+
+    def body(self) -> MovingBody:
+        """Return the body for the collision check."""
+        return MovingBody(
+            footprint=Footprint.from_flat(self.footprint_m),
+            margin_m=self.collision_margin_m,
+            horizon_m=self.collision_margin_m,
+            reaction_s=self.reaction_s,
+            deceleration_mps2=self.deceleration_mps2,
+            turn_acceleration_radps2=self.turn_acceleration_radps2,
+        )
+
+    def check(self) -> None:
+        try:
+            Footprint.from_flat(self.footprint_m)
+        except InvalidValueError as error:
+            raise ParameterError(f"parameter 'footprint_m': {error}") from error

@@ -1,0 +1,1 @@
+"""Servers of the behaviors node: Nav2's actions."""

@@ -1,0 +1,130 @@
+"""Server of one behavior action."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from navette.navigation.behaviors.params import BehaviorParams
+from navette.navigation.behaviors.runner import (
+    STOP,
+    Behavior,
+    BehaviorEnd,
+    BehaviorInputs,
+    Command,
+)
+from navette.navigation.behaviors.servers.actions import BehaviorAction
+from navette.navigation.grids import CollisionCheck
+from navette.runtime.node import Node
+from navette.runtime.stage.goal_server import DriveGoalServer
+from navette.runtime.time import Duration
+
+
+@dataclass(frozen=True)
+class BehaviorContext:
+    """What the servers use of the behaviors node.
+
+    Attributes:
+        params: the present parameters.
+        collision: the collision check with the newest obstacles.
+        begin: called when a server has a new goal, before it is stepped.
+        accepts: whether goals are accepted now.
+    """
+
+    params: Callable[[], BehaviorParams]
+    collision: Callable[[], CollisionCheck]
+    begin: Callable[["BehaviorServer"], None]
+    accepts: Callable[[], bool]
+
+
+class BehaviorServer:
+    """Runs the behavior of the active goal; the node calls :meth:`step`."""
+
+    def __init__(
+        self, node: Node, spec: BehaviorAction, context: BehaviorContext
+    ) -> None:
+        self.spec = spec
+        #: The behavior of the newest goal; None if the goal was refused.
+        self.behavior: Behavior | None = None
+        self._node = node
+        self._context = context
+        self._start_ns = 0
+        self._goals = DriveGoalServer(
+            node, spec.action, spec.name, self._on_goal, accepts=context.accepts
+        )
+
+    @property
+    def is_active(self) -> bool:
+        return self._goals.is_active
+
+    def step(
+        self, inputs: BehaviorInputs, dt: float, *, paused: bool
+    ) -> Command | None:
+        """Step the goal and return the command to publish, if any.
+
+        Args:
+            inputs: motion of the robot, and whether obstacles are known.
+            dt: seconds since the last step.
+            paused: whether the commands are masked: time does not count then.
+        """
+        command: Command | None = STOP
+        if not self._goals.is_ending and self.behavior is not None:
+            command = self._step(self.behavior, inputs, dt, paused=paused)
+        motion = inputs.motion
+        measured = None if motion is None else (motion.speed, motion.turn_rate)
+        self._goals.check_rest(measured, self._now_ns)
+        return command
+
+    def stop(self, reason: str) -> None:
+        """End the goal because of something else; the result follows at rest."""
+        self._end(BehaviorEnd("UNKNOWN", reason))
+
+    def abort(self, reason: str) -> None:
+        """End the goal at once."""
+        self._goals.abort(self._result(BehaviorEnd("UNKNOWN", reason)))
+
+    def _step(
+        self, behavior: Behavior, inputs: BehaviorInputs, dt: float, *, paused: bool
+    ) -> Command | None:
+        if self._goals.cancel_requested:
+            self._end(BehaviorEnd("NONE", "cancelled"))
+            return STOP
+        if paused:
+            return STOP
+        step = behavior.step(inputs, dt)
+        self._goals.publish_feedback(**self.spec.feedback(behavior.progress))
+        if step.end is not None:
+            self._end(step.end)
+        return step.command
+
+    def _on_goal(self, goal: Any) -> None:
+        self._start_ns = self._now_ns
+        self._context.begin(self)
+        context = self._context
+        made = self.spec.behavior(goal, context.params(), context.collision())
+        if isinstance(made, BehaviorEnd):
+            self.behavior = None
+            self._end(made)
+        else:
+            self.behavior = made
+
+    def _end(self, end: BehaviorEnd) -> None:
+        if end.code != "NONE":
+            text = f"{self.spec.name}: {end.code}: {end.reason}"
+            self._node.get_logger().warning(text)
+        if self.spec.output:
+            self._goals.end_at_rest(self._result(end), self._now_ns)
+        else:
+            self._goals.end(self._result(end))
+
+    def _result(self, end: BehaviorEnd) -> Any:
+        result_type = self.spec.action.Result
+        elapsed = Duration(nanoseconds=max(0, self._now_ns - self._start_ns))
+        return result_type(
+            error_code=getattr(result_type, end.code, 0),  # Wait has no codes
+            error_msg=end.reason,
+            total_elapsed_time=elapsed.to_msg(),
+        )
+
+    @property
+    def _now_ns(self) -> int:
+        return self._node.get_clock().now().nanoseconds

@@ -1,0 +1,198 @@
+"""Obstacle points around the robot, from the newest costmap."""
+
+import math
+from functools import partial
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+from navette.msgs.nav_msgs.msg import OccupancyGrid
+from navette.navigation.grids.messages import grid_from_message
+from navette.navigation.grids.spec import UNKNOWN, GridSpec
+from navette.storage.kernels import kernel
+
+
+class RobotPoses(Protocol):
+    """Poses of the robot over time, in the map frame."""
+
+    map_frame: str
+
+    def predicted_at(self, stamp_ns: int) -> Pose2 | None:
+        """Return map_T_base at a stamp, interpolated or predicted."""
+
+    def predicted_now(self, now_ns: int) -> Pose2 | None:
+        """Return map_T_base now."""
+
+    def transform_to_base(self, frame_id: str) -> Pose2 | None:
+        """Return base_T_frame of a frame fixed to the robot."""
+
+
+class Obstacles(NamedTuple):
+    """Centres (N, 2) of obstacle cells in the map, and half a cell's edge; metres."""
+
+    points: NDArray[np.float64]
+    half_cell: float
+
+
+class ObstacleTracker:
+    """Places the newest costmap in the map once the pose at its stamp is available."""
+
+    def __init__(self, poses: RobotPoses) -> None:
+        self._poses = poses
+        self._base_T_costmap: tuple[str, Pose2] | None = None  # with its frame
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget all costmaps and the map."""
+        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._costmap: OccupancyGrid | None = None  # newest, not placed yet
+        self._costmap_ns: int | None = None
+        #: Arrival of the costmap that was placed last; None before the first.
+        self.placed_ns: int | None = None
+
+    def receive(self, msg: OccupancyGrid, now_ns: int) -> None:
+        """Store a costmap until it is placed."""
+        self._costmap, self._costmap_ns = msg, now_ns
+
+    def remember(self, msg: OccupancyGrid) -> None:
+        """Use a map, in the map frame, for what the costmap does not show.
+
+        Raises:
+            InvalidValueError: the map is invalid.
+        """
+        self._map = grid_from_message(msg)
+
+    def place(self, now_ns: int, lethal_cost: int, reach_m: float) -> Obstacles | None:
+        """Return the obstacles within reach of the robot; None if there is no news.
+
+        Raises:
+            InvalidValueError: the costmap is invalid; it is dropped.
+        """
+        msg = self._costmap
+        if msg is None:
+            return None
+        map_T_frame = self._placement(msg)
+        around = self._poses.predicted_now(now_ns)
+        if map_T_frame is None or around is None:
+            return None
+        self._costmap = None
+        cells, spec = grid_from_message(msg)
+        nearby = partial(
+            obstacle_points, lethal_cost=lethal_cost, around=around, reach_m=reach_m
+        )
+        points = nearby(cells, spec, map_T_frame)
+        resolution = spec.resolution
+        if self._map is not None:
+            known = nearby(*self._map, Pose2(0.0, 0.0, 0.0))
+            unseen = ~_is_seen(known, cells, spec, map_T_frame)
+            points = np.concatenate([points, known[unseen]])
+            resolution = max(resolution, self._map[1].resolution)
+        self.placed_ns = self._costmap_ns
+        return Obstacles(points, resolution / 2)
+
+    def _placement(self, msg: OccupancyGrid) -> Pose2 | None:
+        """Return map_T_frame of the costmap at its stamp."""
+        frame = msg.header.frame_id
+        if frame == self._poses.map_frame:
+            return Pose2(0.0, 0.0, 0.0)
+        if self._base_T_costmap is None or self._base_T_costmap[0] != frame:
+            base_T_frame = self._poses.transform_to_base(frame)
+            if base_T_frame is None:
+                return None
+            self._base_T_costmap = (frame, base_T_frame)
+        stamp = msg.header.stamp
+        map_T_base = self._poses.predicted_at(stamp.sec * 1_000_000_000 + stamp.nanosec)
+        return None if map_T_base is None else map_T_base @ self._base_T_costmap[1]
+
+
+def _is_seen(
+    points: NDArray[np.float64],
+    cells: NDArray[np.int8],
+    spec: GridSpec,
+    map_T_frame: Pose2,
+) -> NDArray[np.bool_]:
+    """Return (N,) whether points (N, 2), map, lie in known cells of a costmap."""
+    uv = (map_T_frame @ spec.origin).inverse().apply(points) / spec.resolution
+    column, row = np.floor(uv).astype(np.int64).T
+    inside = (row >= 0) & (row < spec.height) & (column >= 0) & (column < spec.width)
+    seen = np.zeros(len(points), np.bool_)
+    seen[inside] = cells[row[inside], column[inside]] != UNKNOWN
+    return seen
+
+
+def obstacle_points(
+    cost: NDArray[np.int8],
+    spec: GridSpec,
+    map_T_grid: Pose2,
+    *,
+    lethal_cost: int,
+    around: Pose2,
+    reach_m: float,
+) -> NDArray[np.float64]:
+    """Return centres (N, 2), metres, map, of the lethal cells within reach of a pose.
+
+    Args:
+        cost: (H, W), or flat in that order; 0 … 100, −1 unknown. Unknown cells
+            do not count as obstacles: the grid is unknown behind every hit, and may
+            be unknown under the body.
+        spec: geometry of ``cost`` in its frame.
+        map_T_grid: pose of that frame in the map at the costmap's stamp.
+        lethal_cost: value from which a cell is an obstacle.
+        around: centre of the region (map).
+        reach_m: radius of the region.
+
+    Raises:
+        InvalidValueError: the size of ``cost`` does not match ``spec``.
+    """
+    if cost.size != spec.width * spec.height:
+        raise InvalidValueError(
+            f"costmap of {cost.size} cells: expected {spec.width} x {spec.height}"
+        )
+    map_T_origin = map_T_grid @ spec.origin
+    origin_T_around = map_T_origin.inverse() @ around
+    return _gather(
+        cost.reshape(spec.shape),
+        lethal_cost,
+        origin_T_around.x / spec.resolution,
+        origin_T_around.y / spec.resolution,
+        reach_m / spec.resolution,
+        spec.resolution,
+        *map_T_origin,
+    )
+
+
+@kernel
+def _gather(
+    cost: Any,
+    lethal: int,
+    column: float,
+    row: float,
+    reach: float,
+    resolution: float,
+    x: float,
+    y: float,
+    yaw: float,
+) -> NDArray[np.float64]:
+    """Return lethal cells within ``reach`` of (column, row), all in cells, as points.
+
+    ``x, y, yaw``: pose of the grid's corner in the frame of the points.
+    """
+    top, left = max(0, int(row - reach)), max(0, int(column - reach))
+    bottom = max(top, min(cost.shape[0], int(row + reach) + 1))
+    right = max(left, min(cost.shape[1], int(column + reach) + 1))
+    points = np.empty(((bottom - top) * (right - left), 2))
+    count = 0
+    c, s = math.cos(yaw) * resolution, math.sin(yaw) * resolution
+    for i in range(top, bottom):
+        line = cost[i]
+        v = i + 0.5
+        for j in range(left, right):
+            u = j + 0.5
+            if line[j] >= lethal and (u - column) ** 2 + (v - row) ** 2 <= reach**2:
+                points[count, 0] = x + c * u - s * v
+                points[count, 1] = y + s * u + c * v
+                count += 1
+    return points[:count].copy()
