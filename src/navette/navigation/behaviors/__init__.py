@@ -1,11 +1,11 @@
 """Behaviors: short motions on request, checked against the newest costmap."""
 
 from navette.navigation.behaviors.motions import (
+    BaseMotion,
     DriveStraight,
     MeasuredMotion,
-    Motion,
-    Target,
     TurnBy,
+    VelocityTarget,
 )
 from navette.navigation.behaviors.params import BehaviorParams
 from navette.navigation.behaviors.runner import (
@@ -27,9 +27,9 @@ __all__ = [
     "BehaviorStep",
     "DriveStraight",
     "MeasuredMotion",
-    "Motion",
+    "BaseMotion",
     "MotionBehavior",
-    "Target",
+    "VelocityTarget",
     "TurnBy",
     "Waiting",
 ]

@@ -10,7 +10,7 @@ from navette.navigation.behaviors.params import BehaviorParams
 _CREEP_MPS, _CREEP_RADPS = 0.03, 0.08
 
 
-class Target(NamedTuple):
+class VelocityTarget(NamedTuple):
     """Velocity (m/s, rad/s) to aim at, and for how long it continues (s)."""
 
     speed: float
@@ -26,14 +26,14 @@ class MeasuredMotion(NamedTuple):
     turn_rate: float
 
 
-class Motion(Protocol):
+class BaseMotion(Protocol):
     """A motion from the pose of its first step on."""
 
     @property
     def progress(self) -> float:
         """Metres driven or radians turned."""
 
-    def step(self, now: MeasuredMotion) -> Target | None:
+    def step(self, now: MeasuredMotion) -> VelocityTarget | None:
         """Return the velocity to aim at; None when the motion is complete."""
 
 
@@ -55,7 +55,7 @@ class DriveStraight:
         self._start: Pose2 | None = None
         self.progress = 0.0
 
-    def step(self, now: MeasuredMotion) -> Target | None:
+    def step(self, now: MeasuredMotion) -> VelocityTarget | None:
         self._start = self._start or now.pose
         self.progress = self._start.distance_to(now.pose)
         left = abs(self._distance) - self.progress
@@ -67,7 +67,7 @@ class DriveStraight:
             _CREEP_MPS,
             self._speed,
         )
-        return Target(math.copysign(speed, self._distance), 0.0, left / speed)
+        return VelocityTarget(math.copysign(speed, self._distance), 0.0, left / speed)
 
 
 class TurnBy:
@@ -83,7 +83,7 @@ class TurnBy:
     def progress(self) -> float:
         return self._turned
 
-    def step(self, now: MeasuredMotion) -> Target | None:
+    def step(self, now: MeasuredMotion) -> VelocityTarget | None:
         if self._yaw is not None:
             self._turned += angle_difference(now.pose.yaw, self._yaw)
         self._yaw = now.pose.yaw
@@ -96,7 +96,7 @@ class TurnBy:
             _CREEP_RADPS,
             self._params.max_turn_rate_radps,
         )
-        return Target(0.0, math.copysign(rate, self._angle), left / rate)
+        return VelocityTarget(0.0, math.copysign(rate, self._angle), left / rate)
 
 
 def _approach(left: float, deceleration: float, least: float, most: float) -> float:

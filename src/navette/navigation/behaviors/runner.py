@@ -2,7 +2,11 @@
 
 from typing import NamedTuple, Protocol
 
-from navette.navigation.behaviors.motions import MeasuredMotion, Motion, Target
+from navette.navigation.behaviors.motions import (
+    BaseMotion,
+    MeasuredMotion,
+    VelocityTarget,
+)
 from navette.navigation.behaviors.params import BehaviorParams
 from navette.navigation.grids import CollisionCheck
 
@@ -73,7 +77,7 @@ class MotionBehavior:
 
     def __init__(
         self,
-        motion: Motion,
+        motion: BaseMotion,
         params: BehaviorParams,
         collision: CollisionCheck,
         allowance_s: float,
@@ -119,14 +123,14 @@ class MotionBehavior:
             return BehaviorEnd("TF_ERROR", "the robot's pose is unknown or stale")
         return BehaviorEnd("COLLISION_AHEAD", "no recent costmap to check against")
 
-    def _is_free(self, now: MeasuredMotion, target: Target) -> bool:
+    def _is_free(self, now: MeasuredMotion, target: VelocityTarget) -> bool:
         span_s = min(self._params.simulate_ahead_s, target.left_s)
         free_s = self._collision.free_time(
             now.pose, target.speed, target.turn_rate, span_s
         )
         return free_s >= span_s
 
-    def _accelerated(self, target: Target, dt: float) -> Command:
+    def _accelerated(self, target: VelocityTarget, dt: float) -> Command:
         """Return the last command, changed towards the target within the limits."""
         params = self._params
         speed, turn_rate = self._last
