@@ -14,6 +14,7 @@ from navette.cli.arguments import (
     join_pairs,
     parse_goal,
     parse_speed,
+    split_run,
     spread_lists,
     without_daemon,
 )
@@ -100,6 +101,15 @@ Json = Annotated[
 Port = Annotated[
     int, Option(min=0, max=65535, help="Port of the live view; 0 selects a free port.")
 ]
+Share = Annotated[
+    bool,
+    Option(
+        "--share",
+        help="Share the network with all programs of this machine (or as"
+        " ROS_DOMAIN_ID and NAVETTE_ROUTER select it). Default: only your own programs"
+        " can join.",
+    ),
+]
 
 
 @click.group(
@@ -115,10 +125,20 @@ def app(
         int | None,
         Option(min=0, max=232, metavar="N", help="Use this domain, not ROS_DOMAIN_ID."),
     ] = None,
+    run: Annotated[
+        str | None,
+        Option(
+            metavar="NAME",
+            help="Join this run (navette ps), not the only one; also after the verb."
+            " shared: none of them. With demo and sim: the name of the new run.",
+        ),
+    ] = None,
 ) -> None:
     """Robot navigation you pip install: simulate, map, plan, drive, watch."""
     if domain_id is not None:
         os.environ["ROS_DOMAIN_ID"] = str(domain_id)
+    if run is not None:
+        os.environ["NAVETTE_RUN"] = run
 
 
 @app.command()
@@ -127,6 +147,7 @@ def demo(
     port: Port = 8765,
     speed: Speed = None,
     max_time: MaxTime = None,
+    share: Share = False,
 ) -> None:
     """Run the demo: a robot explores an unknown arena; watch it in the live view.
 
@@ -142,6 +163,8 @@ def demo(
         speed=parse_speed(speed or "1"),
         max_time_s=max_time,
         port=port,
+        share=share,
+        verb="demo",
     )
     _run(options, as_json=False)
 
@@ -162,6 +185,7 @@ def sim(
     max_time: MaxTime = None,
     as_json: Json = False,
     port: Port = 8765,
+    share: Share = False,
 ) -> None:
     """Simulate a robot in WORLD and drive it to goals.
 
@@ -185,6 +209,7 @@ def sim(
         params_files=tuple(params or ()),
         max_time_s=max_time,
         port=port,
+        share=share,
     )
     _run(options, as_json=as_json)
 
@@ -203,11 +228,11 @@ def main() -> None:
     """Entry point of the ``navette`` command."""
     if is_completing():
         discard_stderr()
-    arguments = sys.argv[1:]
+    run, arguments = split_run(sys.argv[1:])
     if arguments[:1] != ["run"]:
         arguments = without_daemon(fill_values(spread_lists(join_pairs(arguments))))
     try:
-        app.main(args=arguments, prog_name="navette")
+        app.main(args=[*run, *arguments], prog_name="navette")
     except NavetteError as error:
         print_error(str(error))
         raise SystemExit(USAGE_ERROR) from None

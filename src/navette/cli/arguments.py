@@ -56,6 +56,30 @@ def fill_values(arguments: Sequence[str]) -> list[str]:
     return filled
 
 
+def split_run(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Separate ``--run NAME``, which holds for all verbs, from the other arguments.
+
+    The arguments of the program that ``navette run`` runs remain as they are.
+    """
+    chosen: list[str] = []
+    kept: list[str] = []
+    rest = list(arguments)
+    is_run_verb = rest[:1] == ["run"] or rest[2:3] == ["run"]  # --domain-id N run
+    while rest:
+        word = rest.pop(0)
+        if word == "--run" and rest:
+            chosen += [word, rest.pop(0)]
+        elif word.startswith("--run="):
+            chosen.append(word)
+        else:
+            kept.append(word)
+            if is_run_verb and word == "--path" and rest:
+                kept.append(rest.pop(0))
+            elif word == "--" or (is_run_verb and word[:1] != "-" and len(kept) > 1):
+                return chosen, [*kept, *rest]
+    return chosen, kept
+
+
 def without_daemon(arguments: Sequence[str]) -> list[str]:
     """Remove discovery options of ROS 2's command, such as ``--no-daemon``.
 

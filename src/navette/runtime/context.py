@@ -1,7 +1,6 @@
 """Context: the graph, event loop, clock, arguments and log that nodes share."""
 
 import logging
-import os
 import sys
 import threading
 from collections.abc import Callable, Sequence
@@ -11,6 +10,7 @@ from typing import Any
 from weakref import WeakSet
 
 from navette.errors import InvalidValueError
+from navette.runs import PrivateRun, RunInfo
 from navette.runtime.arguments import RosArguments, parse_ros_arguments
 from navette.runtime.clock import ContextClock
 from navette.runtime.exceptions import RCLError
@@ -25,10 +25,13 @@ from navette.runtime.network import (
     IN_PROCESS,
     checked_transport,
     chosen_transport,
+    environment_domain,
     join_network,
 )
 from navette.runtime.overrides import ParameterOverrides, ParameterOwner
 from navette.transports import InProcessTransport
+
+_log = logging.getLogger(__name__)
 
 _LONGEST_CALLBACK_S = 2.0
 
@@ -47,6 +50,9 @@ class Context:
         transport: ``inprocess``, or ``zenoh`` (in process and network). Default:
             ``NAVETTE_TRANSPORT`` if set; otherwise the network, except in lock-step
             virtual time and under pytest.
+        run: the private run that this context is; it ends with the context. Default:
+            the context joins the run that ``NAVETTE_RUN`` names; with the system clock
+            also the only run of this user; else the shared network.
     """
 
     def __init__(
@@ -55,6 +61,7 @@ class Context:
         clock: ContextClock | None = None,
         graph: Graph | None = None,
         transport: str | None = None,
+        run: PrivateRun | None = None,
     ) -> None:
         if transport is not None:
             checked_transport(transport, "Context")
@@ -77,6 +84,7 @@ class Context:
         self._shut_down = False
         self._shut_down_by_program = False
         self._domain_id = 0
+        self._own_run = run
         self._on_shutdown: list[Callable[[], object]] = []
         self._lock = threading.RLock()
         self._file_sink: FileSink | None = None
@@ -123,12 +131,14 @@ class Context:
             if self._initialized:
                 raise RuntimeError("Context.init() must only be called once")
             arguments = parse_ros_arguments(sys.argv if args is None else args)
-            self._domain_id = _domain_id(domain_id)
-            self._join_network()
+            self._domain_id = environment_domain() if domain_id is None else domain_id
+            joined = self._join_network(domain_id)
             self.overrides.add_arguments(arguments.parameters, "command line")
             self.arguments = arguments
             if initialize_logging:
                 self._start_logging(arguments, console_level)
+            if joined is not None and self._own_run is None:
+                _log.info("joined run %s (%s)", joined.name, joined.command)
             self._initialized = True
 
     def init_if_needed(self) -> None:
@@ -187,6 +197,8 @@ class Context:
         self._leave_graph()
         if self._owns_graph:
             self.graph.close()
+        if self._own_run is not None:
+            self._own_run.close()
         self._stop_logging()
 
     def try_shutdown(self) -> None:
@@ -220,16 +232,27 @@ class Context:
     ) -> None:
         self.try_shutdown()
 
-    def _join_network(self) -> None:
+    def _join_network(self, domain_id: int | None) -> RunInfo | None:
+        """Join the network if the program uses it; return the private run, if any."""
         if chosen_transport(self._transport, self.clock) == IN_PROCESS:
-            return
+            return None
         # A graph with nodes stays without the network, unless the caller requests it.
         if self._transport is None and self.graph.nodes():
-            return
+            return None
         lock_step = self.clock if isinstance(self.clock, LockStepClock) else None
         if lock_step is not None:
             lock_step.on_end = self.try_shutdown
-        join_network(self.graph, self._domain_id, lambda: self.clock.now_ns, lock_step)
+        membership = join_network(
+            self.graph,
+            lambda: self.clock.now_ns,
+            domain_id=domain_id,
+            own_run=None if self._own_run is None else self._own_run.info,
+            # Time of its own means a system of its own.
+            named_only=self.clock.is_virtual,
+            lock_step=lock_step,
+        )
+        self._domain_id = membership.domain_id
+        return membership.run
 
     def _on_graph_change(self) -> None:
         """Wake the loop: a callback may be waiting for this change."""
@@ -258,15 +281,6 @@ class Context:
         if self._file_sink is not None:
             self.log.sinks.remove(self._file_sink)
             self._file_sink.close()
-
-
-def _domain_id(given: int | None) -> int:
-    if given is not None:
-        return given
-    text = os.environ.get("ROS_DOMAIN_ID", "0") or "0"
-    if not text.isdigit():
-        raise InvalidValueError(f"ROS_DOMAIN_ID must be a number >= 0, got {text!r}")
-    return int(text)
 
 
 def new_graph() -> Graph:

@@ -2,8 +2,10 @@
 
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from navette.errors import InvalidValueError
+from navette.runs import RunInfo, chosen_run
 from navette.runtime.clock import ContextClock, PacedClock, VirtualClock
 from navette.runtime.graph import Graph
 from navette.runtime.lockstep import LockStepClock
@@ -52,59 +54,96 @@ def chosen_transport(requested: str | None, clock: ContextClock) -> str:
     return ZENOH
 
 
+@dataclass(frozen=True)
+class Membership:
+    """The network that a graph has joined.
+
+    Attributes:
+        domain_id: separates systems on one network.
+        run: the private run; None: the shared network.
+    """
+
+    domain_id: int
+    run: RunInfo | None = None
+
+
 def join_network(
     graph: Graph,
-    domain_id: int,
     now_ns: Callable[[], int],
+    *,
+    domain_id: int | None = None,
+    own_run: RunInfo | None = None,
+    named_only: bool = False,
     lock_step: LockStepClock | None = None,
-) -> None:
+) -> Membership:
     """Add the network to the graph's transports unless it is one of them already.
 
     Args:
         graph: the graph that joins the network.
-        domain_id: separates systems on one network.
         now_ns: returns this process's time.
+        domain_id: default: that of the run, else of ``ROS_DOMAIN_ID``.
+        own_run: the run of this process; None: the run that the program is to join, or
+            the shared network (:func:`navette.runs.chosen_run`).
+        named_only: join a run only if ``NAVETTE_RUN`` names it.
         lock_step: the clock of a lock-step with other processes, if there is one.
 
     Raises:
         InvalidValueError: the graph has joined another domain, or has nodes already.
-        NetworkError: joining the network failed.
+        NetworkError: joining the network failed, or the choice of a run.
     """
-    with graph.joining:
-        _join(graph, domain_id, now_ns, lock_step)
-
-
-def _join(
-    graph: Graph,
-    domain_id: int,
-    now_ns: Callable[[], int],
-    lock_step: LockStepClock | None,
-) -> None:
     # Imported here, so that runs in process do not load Zenoh.
-    from navette.transports.zenoh import ZenohTransport
+    from navette.transports.zenoh import Settings, ZenohTransport
 
-    for transport in graph.transports:
-        if isinstance(transport, ZenohTransport):
-            if lock_step is not None:
-                raise InvalidValueError(
-                    "lock-step: only one context of a process can participate"
-                )
-            if transport.domain_id != domain_id:
-                raise InvalidValueError(
-                    f"domain {domain_id}: the programs of this process share the "
-                    f"domain {transport.domain_id}"
-                )
-            return
-    if graph.nodes():
-        names = ", ".join(info.full_name for info in graph.nodes())
+    with graph.joining:
+        for transport in graph.transports:
+            if isinstance(transport, ZenohTransport):
+                _check_second(transport.domain_id, domain_id, lock_step)
+                return Membership(transport.domain_id)
+        if graph.nodes():
+            names = ", ".join(info.full_name for info in graph.nodes())
+            raise InvalidValueError(
+                f"cannot join the network: the graph has nodes already ({names})"
+            )
+        run = own_run or chosen_run(named_only=named_only or domain_id is not None)
+        if domain_id is None:
+            domain_id = environment_domain() if run is None else run.domain
+        settings = Settings.from_environment()
+        if run is not None:
+            settings = settings.within(run.router, run.new_endpoint())
+        if lock_step is None:
+            graph.add_transport(ZenohTransport(domain_id, now_ns, settings))
+            return Membership(domain_id, run)
+        from navette.transports.zenoh.lockstep import ZenohStepWire
+
+        traffic = lock_step.traffic
+        stepped = ZenohTransport(domain_id, now_ns, settings, traffic=traffic)
+        lock_step.join(ZenohStepWire(stepped))
+        graph.add_transport(stepped)
+        return Membership(domain_id, run)
+
+
+def environment_domain() -> int:
+    """Return ``ROS_DOMAIN_ID``, 0 by default.
+
+    Raises:
+        InvalidValueError: the variable is not a number.
+    """
+    text = os.environ.get("ROS_DOMAIN_ID", "0") or "0"
+    if not text.isdigit():
+        raise InvalidValueError(f"ROS_DOMAIN_ID must be a number >= 0, got {text!r}")
+    return int(text)
+
+
+def _check_second(
+    joined: int, domain_id: int | None, lock_step: LockStepClock | None
+) -> None:
+    """Check that another context of the process may use the same session."""
+    if lock_step is not None:
         raise InvalidValueError(
-            f"cannot join the network: the graph has nodes already ({names})"
+            "lock-step: only one context of a process can participate"
         )
-    if lock_step is None:
-        graph.add_transport(ZenohTransport(domain_id, now_ns))
-        return
-    from navette.transports.zenoh.lockstep import ZenohStepWire
-
-    transport = ZenohTransport(domain_id, now_ns, traffic=lock_step.traffic)
-    lock_step.join(ZenohStepWire(transport))
-    graph.add_transport(transport)
+    if domain_id not in (None, joined):
+        raise InvalidValueError(
+            f"domain {domain_id}: the programs of this process share the domain "
+            f"{joined}"
+        )

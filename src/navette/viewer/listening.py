@@ -46,6 +46,13 @@ def port_of(listeners: Listeners) -> int:
     return int(listeners[0].getsockname()[1])
 
 
+def url_of(host: str, port: int) -> str:
+    """Return the address of the page."""
+    if host in ("0.0.0.0", "::", ""):
+        host = "127.0.0.1"
+    return f"http://{f'[{host}]' if ':' in host else host}:{port}"
+
+
 def _bind(listener: socket.socket, address: tuple[object, ...]) -> None:
     if os.name == "posix":  # on Windows it lets two programs share a port
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

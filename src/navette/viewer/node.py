@@ -38,7 +38,7 @@ from navette.viewer.assets import AssetFolders
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
-from navette.viewer.listening import Listeners, listen
+from navette.viewer.listening import Listeners, listen, url_of
 from navette.viewer.node_monitor import NodeMonitor
 from navette.viewer.parameter_requests import ParameterRequests
 from navette.viewer.params import ViewerParams
@@ -122,10 +122,7 @@ class ViewerNode(StageNode):
     @property
     def url(self) -> str:
         """Address of the page; with ``ws://``, the address for the Foxglove app."""
-        host = self.params.host
-        if host in ("0.0.0.0", "::", ""):
-            host = "127.0.0.1"
-        return f"http://{f'[{host}]' if ':' in host else host}:{self.port}"
+        return url_of(self.params.host, self.port)
 
     @property
     def client_count(self) -> int:

@@ -14,7 +14,9 @@ class RunOptions:
 
     ``world`` and ``robot`` are built-in names or files. ``speed`` is a factor of real
     time; infinity means as fast as possible. ``record`` is a new file; ``overwrite``
-    replaces an existing recording.
+    replaces an existing recording. ``verb`` is the command that starts the run. With
+    ``share``, the run joins the network that all programs share; otherwise only this
+    user's programs can join it.
     """
 
     world: str = "arena"
@@ -30,6 +32,8 @@ class RunOptions:
     params_files: tuple[Path, ...] = field(default=())
     max_time_s: float | None = None
     port: int = 8765
+    share: bool = False
+    verb: str = "sim"
 
     def __post_init__(self) -> None:
         if not self.speed > 0:

@@ -8,9 +8,11 @@ from navette.bags.node import RecorderNode
 from navette.errors import CallbackError
 from navette.navigation.stack.monitor import MonitorNode, RunProgress
 from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.reservation import reserve
 from navette.navigation.stack.scene import ResolvedScene, resolve_scene
 from navette.navigation.stack.stack import NavigationStack
 from navette.navigation.stack.summary import RunSummary
+from navette.runs import RunInfo
 from navette.runtime import (
     Context,
     ContextClock,
@@ -20,6 +22,7 @@ from navette.runtime import (
     Stopwatch,
     VirtualClock,
 )
+from navette.runtime.overrides import ParameterOverrides
 from navette.sim import Scene
 from navette.sim.node import SimNode
 from navette.viewer.node import ViewerNode
@@ -50,19 +53,31 @@ class Simulation:
     ) -> None:
         self.options = options
         self.resolved = resolve_scene(options, scene)
-        self.context = Context(clock=_clock(options.speed))
+        overrides = self._overrides(self.resolved)
+        clock = _clock(options.speed)
         self._stopwatch = Stopwatch()
+        # Taken before the first node exists: a run that cannot have its port or name
+        # must not be noticed by another one.
+        self._reserved = reserve(options, overrides, clock)
+        self.context = Context(
+            clock=clock, transport=self._reserved.transport, run=self._reserved.run
+        )
+        self.context.overrides.sets += overrides.sets
         try:
             self.context.init(args=[], console_level=LoggingSeverity.WARN)
-            self._override_parameters(self.resolved)
             self._create_nodes(on_change)
         except BaseException:
             self.close()
             raise
 
-    def _override_parameters(self, resolved: ResolvedScene) -> None:
-        """Add the robot's parameters, the options, then the user's files: last wins."""
-        overrides = self.context.overrides
+    @property
+    def run_info(self) -> RunInfo | None:
+        """The private run; None if the run is shared, or stays in this process."""
+        return None if self._reserved.run is None else self._reserved.run.info
+
+    def _overrides(self, resolved: ResolvedScene) -> ParameterOverrides:
+        """Return the robot's parameters, the options, the user's files: last wins."""
+        overrides = ParameterOverrides()
         resolved.override_parameters(overrides)
         goals = [value for goal in self.options.goals for value in goal]
         overrides.add("sim", {"seed": self.options.seed}, "--seed")
@@ -75,6 +90,7 @@ class Simulation:
             overrides.add("viewer", {"port": self.options.port}, "--port")
         for path in self.options.params_files:
             overrides.add_file(path)
+        return overrides
 
     def _create_nodes(self, on_change: Callable[[RunProgress], None]) -> None:
         options, context = self.options, self.context
@@ -89,7 +105,11 @@ class Simulation:
         # Before the missions, so that it reports the last goal before they end the run.
         self.monitor = MonitorNode(context=context, on_change=on_change)
         self.stack = NavigationStack.create(context)
-        self.viewer = None if options.headless else ViewerNode(context=context)
+        self.viewer = (
+            None
+            if options.headless
+            else ViewerNode(context=context, listeners=self._reserved.listeners)
+        )
         context.check_overrides()
         self.executor = Executor(context=context)
         for node in context.nodes:
@@ -160,6 +180,7 @@ class Simulation:
     def close(self) -> None:
         """Stop all nodes and threads and close the files; idempotent."""
         self.context.try_shutdown()
+        self._reserved.close()
 
 
 def _clock(speed: float) -> ContextClock:

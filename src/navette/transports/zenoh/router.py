@@ -22,6 +22,8 @@ _log = logging.getLogger(__name__)
 # While one process binds, another can neither bind nor connect: it tries again.
 _ATTEMPTS = 20
 _PAUSE_S = 0.05
+# The errors for a port, and for the socket of a private run.
+_IN_USE = ("in use", "Unable to acquire lock")
 _LIMIT_S = 1.5  # for a port that accepts links but does not respond
 
 # The system's error for an address of another machine.
@@ -129,7 +131,7 @@ class RouterRole:
             try:
                 self._router = zenoh.open(router_config(self._settings, endpoint))
             except zenoh.ZError as error:
-                if "in use" in str(error):
+                if any(text in str(error) for text in _IN_USE):
                     return True  # another process was faster
                 reasons.append(f"{endpoint}: {reason_of(error)}")
             else:

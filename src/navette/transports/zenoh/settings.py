@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from navette.errors import InvalidValueError
@@ -12,6 +12,7 @@ DEFAULT_ROUTER = "tcp/127.0.0.1:7447"
 DEFAULT_LISTEN = "tcp/127.0.0.1:0"
 SECURE_ROUTER = "tls/127.0.0.1:7447"
 SECURE_LISTEN = "tls/127.0.0.1:0"
+_PRIVATE = "unixsock-stream/"
 DEFAULT_MAX_MESSAGE_BYTES = 128 * 1024 * 1024
 DEFAULT_SERVICE_TIMEOUT_S = 600.0
 _SERVICE_TIMEOUTS_S = 0.1, 1e7
@@ -57,6 +58,23 @@ class Settings:
         """Whether all endpoints belong to this machine."""
         return all(map(_is_local, (*self.router, *self.listen)))
 
+    @property
+    def is_private(self) -> bool:
+        """Whether only programs of this user can connect: endpoints are files."""
+        return all(end.startswith(_PRIVATE) for end in (*self.router, *self.listen))
+
+    def within(self, router: str, listen: str) -> "Settings":
+        """Return the settings for a private run with these endpoints."""
+        return replace(
+            self,
+            router=(router,),
+            listen=(listen,),
+            session_file=None,
+            router_file=None,
+            security=None,
+            explicit=frozenset({"router", "listen"}),
+        )
+
     @classmethod
     def from_environment(
         cls, environment: Mapping[str, str] = os.environ
@@ -93,6 +111,8 @@ class Settings:
 
 
 def _is_local(endpoint: str) -> bool:
+    if endpoint.startswith(_PRIVATE):
+        return True
     host = endpoint.partition("/")[2].rpartition(":")[0]
     return host.startswith(("127.", "localhost", "[::1]"))
 
