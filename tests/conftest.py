@@ -2,6 +2,7 @@
 
 import logging
 import os
+import tempfile
 from collections.abc import Generator, Iterator
 
 import pytest
@@ -15,6 +16,10 @@ settings.load_profile("navette")
 # Tests run side by side and must not meet; those of the network say so themselves, and
 # have a router of their own.
 os.environ["NAVETTE_TRANSPORT"] = "inprocess"
+
+# No test joins a run of this machine, or shows itself to one.
+_runtime = tempfile.TemporaryDirectory(prefix="nv-", ignore_cleanup_errors=True)
+os.environ["NAVETTE_RUNTIME_DIR"] = _runtime.name
 
 
 @pytest.fixture(autouse=True)

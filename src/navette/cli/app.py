@@ -19,7 +19,11 @@ from navette.cli.arguments import (
     without_daemon,
 )
 from navette.cli.commands import LazyGroup
-from navette.cli.completing_installed import complete_robots, complete_worlds
+from navette.cli.completing_installed import (
+    complete_robots,
+    complete_runs,
+    complete_worlds,
+)
 from navette.cli.completion import discard_stderr, is_completing
 from navette.cli.options import Argument, Option
 from navette.cli.stderr import print_error
@@ -131,6 +135,7 @@ def app(
             metavar="NAME",
             help="Join this run (navette ps), not the only one; also after the verb."
             " shared: none of them. With demo and sim: the name of the new run.",
+            complete=complete_runs,
         ),
     ] = None,
 ) -> None:

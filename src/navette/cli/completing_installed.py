@@ -101,3 +101,10 @@ def _types(incomplete: str, *kinds: str) -> list[str]:
 def chosen(incomplete: str, names: Iterable[str]) -> list[str]:
     """Return the names with the given prefix, sorted."""
     return sorted({name for name in names if name.startswith(incomplete)})
+
+
+def complete_runs(incomplete: str) -> list[str]:
+    """Complete the name of a private run of this user."""
+    from navette.runs import live_runs
+
+    return [run.name for run in live_runs() if run.name.startswith(incomplete)]

@@ -53,6 +53,7 @@ def launch(
     from navette.ros2.launch import parse_launch_arguments, show_arguments
     from navette.ros2.launch.session import find_launch_file
     from navette.ros2.names import install
+    from navette.runs import pin_run
     from navette.supervisor import ForkServer, ProcessManager
 
     install(instead_of_ros=on_navette)
@@ -60,6 +61,7 @@ def launch(
     if show_args:
         show(show_arguments(path))
         return
+    pin_run()
     manager = ProcessManager(ForkServer() if forks else None) if processes else None
     code = run_launch(path, parse_launch_arguments(rest), manager=manager, debug=debug)
     raise click.exceptions.Exit(code)

@@ -15,8 +15,8 @@ VARIABLE = "NAVETTE_RUN"
 SHARED = "shared"
 """Value of :data:`VARIABLE` for the network that all programs share."""
 
-# Whoever sets one of these names the network to meet on.
-_NETWORK_VARIABLES = (
+# Each of these selects a network explicitly.
+NETWORK_VARIABLES = (
     "ROS_DOMAIN_ID",
     "NAVETTE_ROUTER",
     "NAVETTE_LISTEN",
@@ -42,7 +42,7 @@ def shares(environment: Mapping[str, str] = os.environ) -> bool:
     name = environment.get(VARIABLE, "")
     if name:
         return name == SHARED
-    return any(environment.get(variable) for variable in _NETWORK_VARIABLES)
+    return any(environment.get(variable) for variable in NETWORK_VARIABLES)
 
 
 def chosen_run(
@@ -97,31 +97,15 @@ def pin_run() -> None:
     os.environ[VARIABLE] = SHARED if run is None else run.name
 
 
-def table(runs: Sequence[RunInfo]) -> list[str]:
-    """Return aligned lines: name, command, world, page, process."""
-    rows = [_row(run) for run in runs]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(
-            word.ljust(width) for word, width in zip(row, widths, strict=True)
-        ).rstrip()
-        for row in rows
-    ]
-
-
-def _row(run: RunInfo) -> tuple[str, ...]:
-    command = run.command if run.is_compatible else f"navette {run.navette}"
-    return run.name, command, run.world, run.page, f"pid {run.pid}"
-
-
 def _question(runs: Sequence[RunInfo]) -> str:
-    lines = [f"{len(runs)} runs; name one of them:", ""]
-    lines += [f"  {line}" for line in table(runs)]
-    lines += [
-        "",
-        f"navette --run {runs[0].name} …, or for every program of this terminal:"
-        f" export {VARIABLE}={runs[0].name}",
-    ]
+    rows = [run.row() for run in runs]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [f"{len(runs)} runs; choose one with --run NAME:", ""]
+    for row in rows:
+        words = (f"{word:{width}}" for word, width in zip(row, widths, strict=True))
+        lines.append(f"  {'  '.join(words)}".rstrip())
+    choice = f"export {VARIABLE}={runs[0].name}"
+    lines += ["", f"or for all programs of this terminal: {choice}"]
     return "\n".join(lines)
 
 

@@ -33,8 +33,8 @@ def check_run_name(text: str) -> str:
     """
     if not is_run_name(text):
         raise InvalidValueError(
-            f"run {text!r}: a name has at most 24 lower-case letters, digits, - and _,"
-            " and begins with a letter or digit"
+            f"run {text!r}: a name has at most 24 characters, lower-case letters, "
+            "digits, - and _, and does not begin with - or _"
         )
     return text
 
@@ -80,6 +80,11 @@ class RunInfo:
     @property
     def is_compatible(self) -> bool:
         return self.protocol == PROTOCOL
+
+    def row(self) -> tuple[str, str, str, str, str]:
+        """Return name, command, world, page and process id for a list of runs."""
+        command = self.command or f"started by Navette {self.navette}"
+        return self.name, command, self.world, self.page, str(self.pid)
 
     def to_json(self) -> str:
         record = asdict(self)

@@ -77,7 +77,7 @@ def access_problem(folder: Path) -> str | None:
         return f"belongs to user {found.st_uid}; set {VARIABLE} to another folder"
     if found.st_mode & _OTHERS:
         return "accessible to other users; remove it or set its mode to 700"
-    # Whoever can rename the folder can replace it.
+    # A user who can rename the folder can replace it.
     if above.st_uid not in (0, os.getuid()) or (
         above.st_mode & 0o022 and not above.st_mode & stat.S_ISVTX
     ):

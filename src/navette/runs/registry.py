@@ -63,11 +63,13 @@ def _read(folder: Path) -> RunInfo | None:
         return None
     except OSError as error:
         raise FileFormatError(path, f"cannot read: {error.strerror}") from error
-    with os.fdopen(descriptor, "rb") as file:
+    try:
         found = os.fstat(descriptor)
         if not stat.S_ISREG(found.st_mode) or found.st_uid != os.getuid():
             raise FileFormatError(path, "not a file of this user; remove it")
-        content = file.read(MAX_BYTES + 1)
+        content = os.read(descriptor, MAX_BYTES + 1)
+    finally:
+        os.close(descriptor)
     if len(content) > MAX_BYTES:
         raise FileFormatError(path, f"longer than {MAX_BYTES} bytes; remove it")
     try:

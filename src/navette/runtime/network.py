@@ -1,14 +1,19 @@
 """Choice of a context's transports: in process only, or also the network."""
 
+import logging
 import os
+import socket
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from navette.errors import InvalidValueError
-from navette.runs import RunInfo, chosen_run
+from navette.runs import SHARED, RunInfo, chosen_run, named_run
+from navette.runs import VARIABLE as RUN_VARIABLE
 from navette.runtime.clock import ContextClock, PacedClock, VirtualClock
 from navette.runtime.graph import Graph
 from navette.runtime.lockstep import LockStepClock
+
+_log = logging.getLogger(__name__)
 
 IN_PROCESS, ZENOH = "inprocess", "zenoh"
 TRANSPORTS = (IN_PROCESS, ZENOH)
@@ -105,6 +110,8 @@ def join_network(
                 f"cannot join the network: the graph has nodes already ({names})"
             )
         run = own_run or chosen_run(named_only=named_only or domain_id is not None)
+        if run is not None and own_run is None and not named_run():
+            _warn_of_shared_network(run)
         if domain_id is None:
             domain_id = environment_domain() if run is None else run.domain
         settings = Settings.from_environment()
@@ -132,6 +139,27 @@ def environment_domain() -> int:
     if not text.isdigit():
         raise InvalidValueError(f"ROS_DOMAIN_ID must be a number >= 0, got {text!r}")
     return int(text)
+
+
+def _warn_of_shared_network(joined: RunInfo) -> None:
+    """Warn if programs outside the joined run may have been meant."""
+    from navette.transports.zenoh.settings import DEFAULT_ROUTER
+
+    address, _, port = DEFAULT_ROUTER.partition("/")[2].partition(":")
+    with socket.socket() as probe:
+        if os.name == "posix":  # only a listening socket is in the way
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((address, int(port)))
+        except OSError:
+            _log.warning(
+                "joined run %s; programs outside of it are running too: --run %s (or "
+                "%s=%s) joins those",
+                joined.name,
+                SHARED,
+                RUN_VARIABLE,
+                SHARED,
+            )
 
 
 def _check_second(

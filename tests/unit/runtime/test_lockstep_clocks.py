@@ -469,7 +469,7 @@ def test_the_clock_of_a_lock_step_cannot_be_replaced(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     context = Context(clock=Participant())
-    monkeypatch.setattr(context, "_join_network", lambda: None)
+    monkeypatch.setattr(context, "_join_network", lambda domain_id: None)
     context.init(args=[])
     with pytest.raises(InvalidValueError, match="lock-step"):
         Executor(context=context, clock=VirtualClock())

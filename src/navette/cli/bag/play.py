@@ -105,7 +105,9 @@ def play(
     ↑ and ↓ change the rate, q quits.
     """
     from navette.bags.play import PlayOptions
+    from navette.runs import stay_shared
 
+    stay_shared()  # recorded sensor data and commands would disturb a run's robot
     options = PlayOptions(
         rate=rate,
         loop=loop,

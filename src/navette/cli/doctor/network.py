@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from navette.cli.doctor.findings import Diagnosis, Rating, plural
 from navette.cli.doctor.processes import Process, listener
 from navette.cli.doctor.router_diagnosis import PortProbe, Refusal, probe, refusal
+from navette.runs import RunInfo, chosen_run, live_runs
 from navette.transports import EndpointKind
 
 if TYPE_CHECKING:
@@ -57,6 +58,8 @@ class Network:
         published: topics by domain and full name of the node.
         session_file: value of ZENOH_SESSION_CONFIG_URI.
         middleware: value of RMW_IMPLEMENTATION, for ROS 2 programs.
+        run: the private run that programs started here join; None: the shared network.
+        other_runs: names of the user's other runs.
     """
 
     transport: str = ""
@@ -65,6 +68,8 @@ class Network:
     published: Mapping[int, Mapping[str, Sequence[str]]] = field(default_factory=dict)
     session_file: str = ""
     middleware: str = ""
+    run: RunInfo | None = None
+    other_runs: tuple[str, ...] = ()
 
     @property
     def is_alone(self) -> bool:
@@ -87,7 +92,10 @@ def look_at_network() -> Network:
     from navette.transports.zenoh.config import router_endpoints
     from navette.transports.zenoh.discovery import known_to_router
 
+    run = chosen_run()
     settings = Settings.from_environment()
+    if run is not None:
+        settings = settings.within(run.router, run.new_endpoint())
     known = known_to_router(settings)
     nodes, published = _by_domain(known or ())
     routers = [_router(endpoint) for endpoint in router_endpoints(settings)]
@@ -100,6 +108,8 @@ def look_at_network() -> Network:
         published,
         os.environ.get("ZENOH_SESSION_CONFIG_URI", ""),
         os.environ.get("RMW_IMPLEMENTATION", ""),
+        run,
+        tuple(each.name for each in live_runs() if each != run),
     )
 
 
@@ -165,7 +175,8 @@ def check_network(network: Network, domain: int | None) -> Iterator[Diagnosis]:
     if network.session_file:
         text = f"settings of {network.session_file} (ZENOH_SESSION_CONFIG_URI)"
         yield Diagnosis(Rating.NOTE, NETWORK, "Zenoh", text)
-    for router in network.routers:
+    yield from _run_findings(network)
+    for router in network.routers if network.run is None else ():
         yield _router_finding(router, speaks=network.nodes is not None)
     if domain is not None:
         yield from _domain_findings(network.nodes or {}, domain)
@@ -178,6 +189,27 @@ def check_network(network: Network, domain: int | None) -> Iterator[Diagnosis]:
             " communicate with Navette's",
             "export RMW_IMPLEMENTATION=rmw_zenoh_cpp",
         )
+
+
+def _run_findings(network: Network) -> Iterator[Diagnosis]:
+    """Report the private run that programs started here join."""
+    run, others = network.run, network.other_runs
+    if run is not None:
+        responds = network.nodes is not None
+        text = f"{run.name}: {run.command}, world {run.world}, process {run.pid}"
+        data = {"run": run.name, "pid": run.pid, "others": list(others)}
+        yield Diagnosis(
+            Rating.GOOD if responds else Rating.PROBLEM,
+            NETWORK,
+            "run",
+            f"{text}; private to this user" if responds else f"{text} does not respond",
+            "" if responds else f"if it is stopped (Ctrl-Z): kill -CONT {run.pid}",
+            data,
+        )
+    elif others:
+        text = f"programs started here do not join run {', '.join(others)}"
+        advice = f"to join: --run {others[0]}, or export NAVETTE_RUN={others[0]}"
+        yield Diagnosis(Rating.NOTE, NETWORK, "runs", text, advice)
 
 
 def _router_finding(router: Router, *, speaks: bool) -> Diagnosis:

@@ -12,6 +12,7 @@ from navette.cli.options import Argument, Option
 from navette.cli.output import show, show_json
 from navette.cli.stderr import note
 from navette.errors import NavetteError
+from navette.runs import live_runs, stay_shared
 
 if TYPE_CHECKING:  # imported when a verb is called: completion must be fast
     from navette.cli.up.config import ProjectConfig
@@ -104,6 +105,7 @@ def up(
     (NAME:=VALUE) stay set until all services are down. Exit code 1: a process failed or
     was not ready in time.
     """
+    stay_shared()
     project = _project(file)
     config, names = _read(project, words or [])
     specs = config.specs(names or config.names)
@@ -137,6 +139,7 @@ def restart(
     timeout: Timeout = 60.0,
 ) -> None:
     """Stop services and start them again, with the present content of the file."""
+    stay_shared()
     project = _project(file)
     config, names = _read(project, words or [])
     client = _client(project)
@@ -163,13 +166,20 @@ def ps(
         bool, Option("--json", help="Print a JSON list of processes.")
     ] = False,
 ) -> None:
-    """List the processes of services: state, pid, time, CPU, memory, restarts."""
+    """List the processes of services: state, pid, time, CPU, memory, restarts.
+
+    And the runs that navette demo and navette sim started.
+    """
+    from navette.cli.runs import run_record, show_runs
     from navette.cli.up.view import as_record, show_processes
     from navette.supervisor.status import process_statuses
     from navette.supervisor.usage import usage_of
 
     clients = _all_clients() if all_projects else [_client(_project(file))]
-    records: list[dict[str, object]] = []
+    runs = live_runs()
+    records: list[dict[str, object]] = [run_record(run) for run in runs]
+    if runs and not as_json:
+        show_runs(runs)
     for client in clients:
         found = process_statuses(client.status())
         usage = usage_of(each.pid for each in found if each.pid)
@@ -177,12 +187,14 @@ def ps(
             folder = str(client.project.folder)
             records += [as_record(each, folder, usage) for each in found]
             continue
+        if runs and found:
+            show()
         if all_projects and found:
             show(f"{client.project.folder}")
         if found:
             show_processes(found, usage)
             _note_log_problem(client)
-        elif not all_projects:
+        elif not all_projects and not runs:
             _show_nothing_up(client)
     if as_json:
         show_json(records)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from navette import runtime
 from navette.errors import CallbackError, NavetteError
+from navette.runs import stay_shared
 from navette.runtime import Context, ContextClock, Node, PacedClock
 from navette.runtime.lockstep import Coordinator
 from navette.runtime.overrides import ParameterOverrides
@@ -78,6 +79,7 @@ def odom_integrator() -> None:
     _run(
         lambda context: OdomIntegratorNode(context=context),
         _under_any_name(of_all, "odom_integrator"),
+        joins_run=True,
     )
 
 
@@ -190,7 +192,7 @@ def viewer() -> None:
         for name in ("map_frame", "base_frame"):
             if name in of_planner:
                 own.add("/**", {name: of_planner[name].value}, of_planner[name].origin)
-    _run(_announced_viewer, own)
+    _run(_announced_viewer, own, joins_run=True)
 
 
 @_program
@@ -312,8 +314,17 @@ def _run(
     make: Callable[[Context], Node],
     profile: ParameterOverrides,
     clock: ContextClock | None = None,
+    *,
+    joins_run: bool = False,
 ) -> None:
-    """Create the node and spin it until Ctrl-C or a shutdown."""
+    """Create the node and spin it until Ctrl-C or a shutdown.
+
+    Args:
+        joins_run: join the only private run; False: most stages are in it already, and
+            a second one would disturb its robot.
+    """
+    if not joins_run:
+        stay_shared()
     context = Context(clock=clock)
     context.overrides.sets += profile.sets
     try:
