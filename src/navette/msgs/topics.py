@@ -37,6 +37,15 @@ DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
 # Costmap, mapping, planning, control
 COSTMAP = StackTopic("/costmap", "nav_msgs/msg/OccupancyGrid")
 MAP = StackTopic("/map", "nav_msgs/msg/OccupancyGrid", 1, True)
+LOCAL_COSTMAP = StackTopic(
+    "/local_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True
+)
+LOCAL_FOOTPRINT = StackTopic(
+    "/local_costmap/published_footprint", "geometry_msgs/msg/PolygonStamped", 1
+)
+GLOBAL_COSTMAP = StackTopic(
+    "/global_costmap/costmap", "nav_msgs/msg/OccupancyGrid", 1, True
+)
 PATH = StackTopic("/path", "nav_msgs/msg/Path")
 PLAN = StackTopic("/plan", "nav_msgs/msg/Path")
 SPEED_LIMIT = StackTopic("/speed_limit", "nav2_msgs/msg/SpeedLimit")

@@ -16,7 +16,7 @@ import numpy as np
 from navette.errors import InvalidInputError, InvalidValueError
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
-from navette.msgs.geometry_msgs.msg import Twist
+from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped, Twist
 from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.navigation.control.command_gate import InputAges
@@ -40,6 +40,7 @@ from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import Poses, poses_of
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 from navette.runtime.stage.status import StatusReporter, status_output
+from navette.runtime.time import ns_to_stamp
 
 _NEVER = -(1 << 62)
 _TICKS_PER_REPORT = 5
@@ -99,6 +100,11 @@ class ControlNode(StageNode):
         Output.of(
             topics.COLLISION_MONITOR_STATE,
             "what the collision check does to the commands, on change",
+        ),
+        Output.of(
+            topics.LOCAL_FOOTPRINT,
+            "the robot's outline on the map, only while it is subscribed to",
+            rate_hz=20.0,
         ),
     )
 
@@ -281,6 +287,7 @@ class ControlNode(StageNode):
     def _tick(self) -> None:
         """Locate the robot, place the costmap, step the follower, publish."""
         self._locate()
+        self._publish_footprint()
         self._place_costmap()
         if self._is_paused and self._follower.has_path:
             self._report(PAUSED)
@@ -357,6 +364,21 @@ class ControlNode(StageNode):
             distance_left_m=output.distance_left_m,
             clearance_m=output.clearance_m,
         )
+
+    def _publish_footprint(self) -> None:
+        if not self.has_listeners(topics.LOCAL_FOOTPRINT.name):
+            return
+        pose = self._tracker.predicted_now(self._now_ns)
+        if pose is None:
+            return
+        corners = np.array(self.params.footprint_m).reshape(-1, 2)
+        message = PolygonStamped()
+        message.header.frame_id = self.params.map_frame
+        message.header.stamp = ns_to_stamp(self._now_ns)
+        message.polygon.points = [
+            Point32(x=x, y=y) for x, y in pose.apply(corners).tolist()
+        ]
+        self.publish(topics.LOCAL_FOOTPRINT.name, message)
 
     def _report_collision(self, output: FollowerOutput) -> None:
         """Publish what the collision check does to the command when it changes."""

@@ -9,11 +9,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from navette.geometry import Pose2
 from navette.msgs import topics
+from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.navigation.costmap.params import CostmapParams
 from navette.navigation.costmap.scan_costmap import PlanarScan, ScanCostmap
 from navette.navigation.grids import grid_to_message
+from navette.navigation.servers.costmap_services import CostmapServices, CostmapSource
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 
 
@@ -36,6 +39,11 @@ class CostmapNode(StageNode):
             "costs around the sensor",
             rate_hz=10.0,
         ),
+        Output.of(
+            topics.LOCAL_COSTMAP,
+            "the same under Nav2's name, only while it is subscribed to",
+            rate_hz=10.0,
+        ),
     )
 
     params: CostmapParams
@@ -44,6 +52,15 @@ class CostmapNode(StageNode):
         super().__init__(node_name, **kwargs)
         self._costmap = ScanCostmap(self.params)
         self._costmap.warm_up()
+        self._newest: OccupancyGrid | None = None
+        source = CostmapSource(
+            grid=lambda: self._newest,
+            clear=lambda region: None,  # no memory: the next scan replaces all of it
+            frame_on_grid=lambda frame_id: Pose2(0.0, 0.0, 0.0),
+            robot_frame=lambda: "",
+            footprint=lambda: None,
+        )
+        self._services = CostmapServices(self, "local_costmap", source)
 
     def on_scan(self, msg: LaserScan) -> None:
         """Publish the scan's costmap."""
@@ -58,7 +75,10 @@ class CostmapNode(StageNode):
         stamp_ns = stamp_to_ns(msg.header.stamp)
         frame_id = msg.header.frame_id
         message = grid_to_message(cells, self._costmap.spec, frame_id, stamp_ns)
+        self._newest = message
         self.publish(topics.COSTMAP.name, message)
+        if self.has_listeners(topics.LOCAL_COSTMAP.name):
+            self.publish(topics.LOCAL_COSTMAP.name, message)
 
     def on_params_changed(self, old: CostmapParams) -> None:
         """Use the new values from the next scan on."""

@@ -37,6 +37,23 @@ class BodyMotion(NamedTuple):
 STEADY = BodyMotion()
 
 
+class MapRegion(NamedTuple):
+    """A square (centre and edge in m, map frame), or all of the map but the square."""
+
+    x: float
+    y: float
+    edge: float
+    is_outside: bool = False
+
+    def mask(self, spec: GridSpec) -> NDArray[np.bool_]:
+        """Return (H, W) which cells of a grid have their centres in the region."""
+        rows, columns = np.mgrid[: spec.height, : spec.width]
+        centers = spec.centers_of(np.stack([rows, columns], axis=-1).reshape(-1, 2))
+        away = np.abs(centers - (self.x, self.y)).max(axis=1)
+        inside = (away <= self.edge / 2).reshape(spec.shape)
+        return np.asarray(inside != self.is_outside)
+
+
 @dataclass(frozen=True, eq=False)
 class PlacedCostmap:
     """A costmap with the robot's pose at its stamp."""
@@ -61,6 +78,7 @@ class MapMemory:
     """
 
     def __init__(self, params: MapMemoryParams) -> None:
+        self._loaded: tuple[NDArray[np.int8], GridSpec] | None = None
         self.configure(params)
         self.reset()
 
@@ -70,21 +88,38 @@ class MapMemory:
         A map that is larger than a smaller ``max_size_m`` keeps its size.
         """
         self.params = params
-        self._footprint = (
+        self.footprint = (
             Footprint.from_flat(params.footprint_m) if params.footprint_m else None
         )
 
     def reset(self) -> None:
-        """Clear the map: all cells unknown, initial extent."""
-        params = self.params
-        edge = max(1, round(params.size_m / params.resolution_m))
-        corner = edge * params.resolution_m / 2
-        origin = Pose2(params.center_x_m - corner, params.center_y_m - corner, 0.0)
-        self.spec = GridSpec(params.resolution_m, edge, edge, origin)
-        self._cells = np.full(self.spec.shape, UNKNOWN, np.int8)
+        """Clear the map: the loaded map, else unknown cells of the initial extent."""
+        if self._loaded is not None:
+            cells, self.spec = self._loaded
+        else:
+            self.spec = self._initial_spec()
+            cells = np.full(self.spec.shape, UNKNOWN, np.int8)
+        # What clearing restores; grows with the map.
+        self._base = cells
+        self._cells = cells.copy()
         self._log_odds: NDArray[np.float32] | None = None
-        if params.fusion == "log_odds":
-            self._log_odds = np.full(self.spec.shape, np.nan, np.float32)
+        if self.params.fusion == "log_odds":
+            self._log_odds = self._evidence_of(cells)
+
+    def load(self, cells: NDArray[np.int8], spec: GridSpec) -> None:
+        """Replace the map by (H, W) and its geometry, also for :meth:`reset`."""
+        self._loaded = cells.copy(), spec
+        self.reset()
+
+    def clear(self, region: MapRegion | None = None) -> None:
+        """Restore the loaded map, or unknown cells, in a region or everywhere."""
+        if region is None:
+            self.reset()
+            return
+        cleared = region.mask(self.spec)
+        self._cells[cleared] = self._base[cleared]
+        if self._log_odds is not None:
+            self._log_odds[cleared] = self._evidence_of(self._base[cleared])
 
     def fuse(self, costmap: PlacedCostmap) -> bool:
         """Fuse a costmap; return False, without effect, if it has no known cell."""
@@ -104,8 +139,8 @@ class MapMemory:
                 sensor=costmap.sensor,
                 erase_within_m=self.params.erase_range_m,
             )
-        if self._footprint is not None:
-            self._free_under(self._footprint, costmap.map_T_base)
+        if self.footprint is not None:
+            self._free_under(self.footprint, costmap.map_T_base)
         if self._log_odds is not None:
             self._cells = self._occupancy_of(self._log_odds)
         return True
@@ -135,6 +170,21 @@ class MapMemory:
         trial.fuse(costmap)
         trial.changes(costmap)
 
+    def _initial_spec(self) -> GridSpec:
+        params = self.params
+        edge = max(1, round(params.size_m / params.resolution_m))
+        corner = edge * params.resolution_m / 2
+        origin = Pose2(params.center_x_m - corner, params.center_y_m - corner, 0.0)
+        return GridSpec(params.resolution_m, edge, edge, origin)
+
+    def _evidence_of(self, cells: NDArray[np.int8]) -> NDArray[np.float32]:
+        """Return the log-odds of occupancies; NaN for unknown cells."""
+        limit = self.params.belief_limit
+        belief = np.clip(cells / LETHAL, 1.0 - limit, limit)
+        evidence = np.log(belief / (1.0 - belief)).astype(np.float32)
+        evidence[cells == UNKNOWN] = np.nan
+        return evidence
+
     def _grow(self, corners: NDArray[np.float64]) -> None:
         growth = grow_to_hold(self.spec, corners, self.params)
         if growth is None:
@@ -142,6 +192,7 @@ class MapMemory:
         pad = (growth.rows, growth.columns)
         self.spec = growth.spec
         self._cells = np.pad(self._cells, pad, constant_values=UNKNOWN)
+        self._base = np.pad(self._base, pad, constant_values=UNKNOWN)
         if self._log_odds is not None:
             self._log_odds = np.pad(self._log_odds, pad, constant_values=np.nan)
 

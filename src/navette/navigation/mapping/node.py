@@ -18,10 +18,16 @@ from navette.navigation.mapping.memory import (
     STEADY,
     BodyMotion,
     MapMemory,
+    MapRegion,
     PlacedCostmap,
 )
 from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.placement import PlacementQueue, Ready
+from navette.navigation.servers.costmap_services import (
+    ClearedRegion,
+    CostmapServices,
+    CostmapSource,
+)
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker
 
@@ -55,6 +61,10 @@ class MapMemoryNode(StageNode):
             topics.MAP,
             "map of everything seen so far",
         ),
+        Output.of(
+            topics.GLOBAL_COSTMAP,
+            "the map, under Nav2's name",
+        ),
     )
 
     params: MapMemoryParams
@@ -65,6 +75,14 @@ class MapMemoryNode(StageNode):
         self._start()
         self._memory.warm_up()
         self._timer = self.create_timer(self.params.update_period_s, self.on_timer)
+        source = CostmapSource(
+            grid=lambda: self._published,
+            clear=self._clear,
+            frame_on_grid=lambda frame_id: self._tracker.frame_on_map(frame_id),
+            robot_frame=lambda: self.params.base_frame,
+            footprint=lambda: self._memory.footprint,
+        )
+        self._costmap_services = CostmapServices(self, "global_costmap", source)
 
     def on_odometry(self, msg: Odometry) -> None:
         """Update the robot's pose; place the costmaps that waited for it."""
@@ -175,7 +193,16 @@ class MapMemoryNode(StageNode):
     def _publish_map(self, stamp_ns: int) -> None:
         memory, frame_id = self._memory, self.params.map_frame
         message = grid_to_message(memory.occupancy(), memory.spec, frame_id, stamp_ns)
+        self._published = message
         self.publish(topics.MAP.name, message)
+        self.publish(topics.GLOBAL_COSTMAP.name, message)
+
+    def _clear(self, region: ClearedRegion | None) -> None:
+        """Clear a region of the map; what is seen now is fused again at once."""
+        self._memory.clear(None if region is None else MapRegion(*region))
+        if self._newest is not None and self._memory.fuse(self._newest):
+            self._gate.fused(self._newest, self._now_ns())
+        self._publish_map(self._now_ns())
 
     def _drop(self, reason: str, detail: str) -> None:
         self.drop_input(topics.COSTMAP.name, InvalidInputError(reason, detail))

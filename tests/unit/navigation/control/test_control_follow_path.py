@@ -12,6 +12,7 @@ from control_plant import tangent_path
 
 from navette.geometry import Pose2
 from navette.msgs.action_msgs.msg import GoalStatus
+from navette.msgs.geometry_msgs.msg import PolygonStamped
 from navette.msgs.nav2_msgs.action import FollowPath
 from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
 from navette.msgs.nav_msgs.msg import Path
@@ -246,3 +247,13 @@ def test_an_empty_path_on_the_topic_stops_a_goal(world: World) -> None:
     world.graph.run_for(1.0)
     assert abs(world.plant.speed) <= 0.03
     assert world.state == "idle"
+
+
+def test_the_footprint_is_published_while_it_is_subscribed_to(world: World) -> None:
+    world.plant.pose = Pose2(1.0, 2.0, math.pi / 2)
+    world.graph.run_for(0.3)
+    probe = world.graph.collect("/local_costmap/published_footprint", PolygonStamped)
+    world.graph.run_for(0.3)
+    assert probe.last.header.frame_id == "map"
+    corners = [(round(p.x, 6), round(p.y, 6)) for p in probe.last.polygon.points]
+    assert corners == [(0.8, 2.25), (0.8, 1.75), (1.2, 1.75), (1.2, 2.25)]

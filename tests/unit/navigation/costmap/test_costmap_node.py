@@ -5,6 +5,8 @@ import pytest
 
 from navette.errors import ParameterError
 from navette.msgs.builtin_interfaces.msg import Time
+from navette.msgs.nav2_msgs.srv import ClearEntireCostmap, GetCost, GetCostmap
+from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import Header
 from navette.navigation.costmap.node import CostmapNode
@@ -86,3 +88,29 @@ def test_an_invalid_scan_gives_no_costmap_and_the_next_one_works() -> None:
         graph.publish("/lidar", scan([math.nan, math.inf, -1.0, 3.0]))
         graph.run_for(0.1)
         assert costmaps.count == 1
+
+
+def test_nav2s_local_costmap_is_the_newest_one() -> None:
+    with GraphHarness() as graph:
+        _, costmaps = started(graph)
+        empty = graph.call(
+            GetCostmap, "/local_costmap/get_costmap", GetCostmap.Request()
+        )
+        assert empty.map.metadata.size_x == 0
+        local = graph.collect("/local_costmap/costmap", OccupancyGrid, latched=True)
+        graph.run_for(0.1)
+        graph.publish("/lidar", scan([3.0] * 21))
+        graph.run_for(0.1)
+        assert local.last == costmaps.last
+        request = ClearEntireCostmap.Request()
+        name = "/local_costmap/clear_entirely_local_costmap"
+        graph.call(ClearEntireCostmap, name, request)
+        found = graph.call(
+            GetCostmap, "/local_costmap/get_costmap", GetCostmap.Request()
+        )
+        assert found.map.header.frame_id == "lidar"
+        data = np.asarray(found.map.data).reshape(301, 301)
+        assert (data == 254).sum() == (np.asarray(costmaps.last.data) == 100).sum() > 0
+        point = GetCost.Request(x=3.0, y=0.0)
+        cost = graph.call(GetCost, "/local_costmap/get_cost_local_costmap", point)
+        assert cost.cost == 254.0

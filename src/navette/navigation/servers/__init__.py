@@ -1,0 +1,1 @@
+"""Servers that several stages offer under their own names."""
