@@ -64,6 +64,7 @@ EMERGENCY_STOP_RELEASE = StackTopic("/emergency_stop/release", "std_msgs/msg/Emp
 EMERGENCY_STOP_ACTIVE = StackTopic(
     "/emergency_stop/active", "std_msgs/msg/Bool", 1, True
 )
+CANCEL_GOAL = StackTopic("/cancel_goal", "std_msgs/msg/Empty")
 PAUSE_NAVIGATION = StackTopic("/pause_navigation", "std_msgs/msg/Bool")
 
 # Status of a stage

@@ -18,6 +18,7 @@ from navette.msgs.geometry_msgs.msg import Twist, TwistStamped
 from navette.msgs.rcl_interfaces.msg import ParameterDescriptor
 from navette.msgs.std_msgs.msg import Bool, Empty
 from navette.navigation.arbiter.arbiter import (
+    EMERGENCY_STOP,
     IDLE,
     Arbiter,
     CommandLock,
@@ -26,6 +27,7 @@ from navette.navigation.arbiter.arbiter import (
 from navette.navigation.arbiter.command_limits import CommandLimits, Velocity
 from navette.navigation.arbiter.params import (
     LOCKS,
+    NAVIGATION,
     SOURCES,
     ArbiterParams,
     CommandLockParams,
@@ -94,6 +96,9 @@ class ArbiterNode(StageNode):
     )
     OUTPUTS = (
         Output.of(topics.CMD_VEL, "command to the wheels", other_types=(_STAMPED,)),
+        Output.of(
+            topics.CANCEL_GOAL, "when navigation is masked, if `after_…` is `end`"
+        ),
         status_output(topics.COMMANDER.name),
     )
 
@@ -109,6 +114,7 @@ class ArbiterNode(StageNode):
         )
         self._status = StatusReporter(self, topics.COMMANDER.name)
         self._reported = ""
+        self._masked_nav = self._was_stopped = False
         #: Runs when the newest command of a source expires.
         self._expiries = {
             name: self.create_timer(each.timeout, self.on_timer, autostart=False)
@@ -150,10 +156,10 @@ class ArbiterNode(StageNode):
         )
 
     def outputs(self) -> tuple[Output, ...]:
-        command, status = self.OUTPUTS
+        command, *others = self.OUTPUTS
         if not self.params.use_stamped:
             return self.OUTPUTS
-        return replace(command, type=_STAMPED, other_types=(command.type,)), status
+        return replace(command, type=_STAMPED, other_types=(command.type,)), *others
 
     def on_command(self, name: str, msg: Twist | TwistStamped) -> None:
         """Pass on a command if its source has the highest priority."""
@@ -290,6 +296,7 @@ class ArbiterNode(StageNode):
             return
         self._reported = state
         masked = self._arbiter.masked(now_ns)
+        self._end_goal(decision.commander, masked)
         source = self._sources.get(decision.commander)
         is_lock = source is None and decision.commander != IDLE
         self._status.report(
@@ -303,6 +310,16 @@ class ArbiterNode(StageNode):
             ),
             refused=refusal,
         )
+
+    def _end_goal(self, commander: str, masked: list[str]) -> None:
+        """Cancel navigation's goal as it is masked, if a parameter requires it."""
+        before, self._masked_nav = self._masked_nav, NAVIGATION in masked
+        stops = commander == EMERGENCY_STOP
+        after = self.params.after_stop if stops else self.params.after_takeover
+        began = self._masked_nav and (not before or (stops and not self._was_stopped))
+        self._was_stopped = stops
+        if began and after == "end":
+            self.publish(topics.CANCEL_GOAL.name, Empty())
 
     def _nodes_on(self, topic: str) -> str:
         """Return the other nodes that publish on a topic."""

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from navette.msgs import topics
 from navette.params import Params, param
 
+_AFTER = ("resume", "end")
+
 
 @dataclass(frozen=True, kw_only=True)
 class ArbiterParams(Params):
@@ -14,6 +16,17 @@ class ArbiterParams(Params):
         False, "publish /cmd_vel as TwistStamped instead of Twist"
     )
     base_frame: str = param("base_link", "frame of stamped commands")
+    after_takeover: str = param(
+        "resume",
+        "what becomes of navigation's goal when another source commands: it resumes "
+        "afterwards, or it ends",
+        choices=_AFTER,
+    )
+    after_stop: str = param(
+        "resume",
+        "what becomes of navigation's goal when the emergency stop is engaged",
+        choices=_AFTER,
+    )
     max_speed_mps: float = param(
         0.0, "limit of every command; 0: no limit", unit="m/s", at_least=0.0
     )
@@ -60,8 +73,10 @@ class CommandLockParams(Params):
     )
 
 
+NAVIGATION = "navigation"
+
 SOURCES: dict[str, CommandSourceParams] = {
-    "navigation": CommandSourceParams(topic=topics.CMD_VEL_NAV.name, priority=10),
+    NAVIGATION: CommandSourceParams(topic=topics.CMD_VEL_NAV.name, priority=10),
     # Programs that publish the arbiter's output themselves.
     "external": CommandSourceParams(
         topic=topics.CMD_VEL.name, priority=50, hold=1.0, over_limit="scale"

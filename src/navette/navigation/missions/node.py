@@ -20,7 +20,7 @@ from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped, Quaternion
 from navette.msgs.nav2_msgs.action import NavigateToPose
 from navette.msgs.nav2_msgs.msg import BehaviorTreeLog, BehaviorTreeStatusChange
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
-from navette.msgs.std_msgs.msg import String
+from navette.msgs.std_msgs.msg import Empty, String
 from navette.navigation.missions.navigation import TreeNavigator
 from navette.navigation.missions.params import MissionParams
 from navette.navigation.missions.robot.node import NodeRobot
@@ -75,6 +75,11 @@ class MissionNode(StageNode):
             "goal position and heading of a person",
             callback="on_goal_pose",
             ignores_own=True,
+        ),
+        Input.of(
+            topics.CANCEL_GOAL,
+            "cancels every goal, those of the list too",
+            callback="on_cancel_goal",
         ),
     )
     OUTPUTS = (
@@ -188,6 +193,12 @@ class MissionNode(StageNode):
         self._robot.note_public(msg)
         self._send(msg)
 
+    def on_cancel_goal(self, msg: Empty) -> None:
+        """Cancel every goal of every action, and the list."""
+        if self._sequence.active is None:
+            self._sequence.skip_rest()  # otherwise after the active goal's result
+        self._servers.cancel_all()
+
     def on_params_changed(self, old: MissionParams) -> None:
         """Append new goals; other values apply from the next goal on."""
         params: MissionParams = self.params
@@ -214,7 +225,7 @@ class MissionNode(StageNode):
         self._robot.poll()
         self._step()
         self._servers.publish_feedback()
-        self._sequence.check(self._now_ns)
+        self._sequence.check(self._now_ns, paused=self._robot.is_paused)
         self._cancel_timed_out()
         self._send_next()
 

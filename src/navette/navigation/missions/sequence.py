@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from navette.errors import InvalidValueError
 
 REACHED = "reached"
+PAUSED = "paused"
 TIMED_OUT = "timed_out"
 CANCELED = "canceled"
 PREEMPTED = "preempted"  # a newer goal replaced it
@@ -119,7 +120,7 @@ class GoalSequence:
         self._filter = StatusFilter(self._last_report)
         self._position: Point | None = None
         self._active: Point | None = None
-        self._started_ns = 0
+        self._started_ns = self._checked_ns = self._paused_ns = 0
         self._path_length = 0.0
         self.outcomes: list[GoalOutcome] = []
         for goal in goals:
@@ -156,7 +157,7 @@ class GoalSequence:
             return None
         self._active = self._pending.popleft()
         self._filter = StatusFilter(self._last_report)
-        self._started_ns = now_ns
+        self._started_ns, self._paused_ns = now_ns, 0
         self._path_length = 0.0
         return self._active
 
@@ -174,11 +175,14 @@ class GoalSequence:
         if report.end:
             self._end(report.end, now_ns)
 
-    def check(self, now_ns: int) -> None:
-        """End the active goal if its timeout has expired."""
+    def check(self, now_ns: int, *, paused: bool = False) -> None:
+        """End the active goal if its timeout has expired; a pause does not count."""
+        if paused:
+            self._paused_ns += max(0, now_ns - self._checked_ns)
+        self._checked_ns = now_ns
         if self._active is None or not self.timeout_ns:
             return
-        if now_ns - self._started_ns >= self.timeout_ns:
+        if now_ns - self._started_ns - self._paused_ns >= self.timeout_ns:
             self._end(TIMED_OUT, now_ns)
 
     def skip_rest(self) -> None:

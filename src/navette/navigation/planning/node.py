@@ -18,7 +18,7 @@ from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
-from navette.msgs.std_msgs.msg import Header
+from navette.msgs.std_msgs.msg import Empty, Header
 from navette.msgs.std_srvs.srv import (
     Trigger,
     Trigger_Request,
@@ -75,6 +75,11 @@ class PlannerNode(StageNode):
             callback="on_goal_pose",
         ),
         Input.of(
+            topics.CANCEL_GOAL,
+            "ends the goal, unless missions send goals",
+            callback="on_cancel_goal",
+        ),
+        Input.of(
             topics.COMMANDER,
             "who commands; the goal is paused while it is not navigation",
             callback="on_commander",
@@ -119,7 +124,6 @@ class PlannerNode(StageNode):
             publish_plan=self._publish_plan,
         )
         self._path_server = PathServer(self, context, lambda: True)
-        self._was_stopped = False
         self.create_service(Trigger, "~/cancel", self.on_cancel)
         self._report()
 
@@ -193,17 +197,18 @@ class PlannerNode(StageNode):
         self._publish_news()
         return response
 
+    def on_cancel_goal(self, msg: Empty) -> None:
+        """End the goal, if no missions do that."""
+        if not self._missions_send_goals():
+            self._navigator.cancel()
+            self._publish_news()
+
     def on_commander(self, msg: DiagnosticStatus) -> None:
-        """Pause while navigation is masked; then resume, or end the goal."""
+        """Pause while navigation is masked."""
         commander = Commander.of(msg)
         if commander.masks(self.resolve_topic_name(topics.CMD_VEL_NAV.name)):
-            self._was_stopped |= commander.is_stopped
             self._navigator.pause(self._now_ns)
         elif self._navigator.is_paused:
-            params, stopped = self.params, self._was_stopped
-            self._was_stopped = False
-            if (params.after_stop if stopped else params.after_takeover) == "end":
-                self._navigator.cancel()
             self._navigator.resume(self._now_ns)
             self.on_timer()
         self._publish_news()

@@ -7,8 +7,6 @@ from navette.params import Params, param
 
 METHODS = ("a_star", "dijkstra", "breadth_first")
 
-_AFTER_PAUSE = ("resume", "end")
-
 
 @dataclass(frozen=True, kw_only=True)
 class PlannerParams(Params):
@@ -122,16 +120,6 @@ class PlannerParams(Params):
         0.0, "time for one goal before it fails (timed_out); 0: no limit", unit="s",
         at_least=0.0,
     )  # fmt: skip
-    after_takeover: str = param(
-        "resume",
-        "what happens to the goal when the operator lets go",
-        choices=_AFTER_PAUSE,
-    )
-    after_stop: str = param(
-        "resume",
-        "what happens to the goal when the emergency stop is released",
-        choices=_AFTER_PAUSE,
-    )
     switch_gain: float = param(
         0.15,
         "share by which a new path must be cheaper to replace a valid one",

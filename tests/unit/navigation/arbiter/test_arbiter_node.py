@@ -181,3 +181,31 @@ def test_the_robot_stops_when_the_arbiter_is_destroyed(bench: Bench) -> None:
     bench.node.destroy_node()
     bench.graph.run_for(0.01)
     assert bench.commands.last == Twist()
+
+
+@pytest.mark.parametrize(
+    ("parameter", "topic", "msg"),
+    [
+        ("after_takeover", "/cmd_vel_teleop", Twist()),
+        ("after_takeover", "/cmd_vel", Twist()),
+        ("after_stop", "/emergency_stop", Bool(data=True)),
+    ],
+)
+@pytest.mark.parametrize("value", ["resume", "end"])
+def test_navigations_goal_may_end_with_the_takeover(
+    graph: GraphHarness, parameter: str, topic: str, msg: object, value: str
+) -> None:
+    bench = Bench(graph, **{parameter: value})
+    cancels = graph.collect("/cancel_goal", "std_msgs/msg/Empty")
+    bench.send(topic, msg)
+    bench.send(topic, msg)
+    assert cancels.count == (value == "end")
+
+
+def test_a_stop_during_a_takeover_may_end_the_goal(graph: GraphHarness) -> None:
+    bench = Bench(graph, after_stop="end")
+    cancels = graph.collect("/cancel_goal", "std_msgs/msg/Empty")
+    bench.send("/cmd_vel_teleop", twist(0.1))
+    assert cancels.count == 0
+    bench.send("/emergency_stop", Bool(data=True))
+    assert cancels.count == 1

@@ -107,6 +107,16 @@ def test_a_goal_times_out() -> None:
     assert sequence.outcomes[0].distance_left_m == math.inf
 
 
+def test_a_pause_does_not_count_towards_the_timeout() -> None:
+    sequence = GoalSequence([(1.0, 0.0)], timeout_ns=10 * S)
+    sequence.start_next(0)
+    for second in range(100):
+        sequence.check(second * S, paused=5 < second <= 50)
+        if sequence.done:
+            break
+    assert sequence.outcomes[0].time_s == 55.0
+
+
 def test_goals_may_be_added_during_and_after_the_mission() -> None:
     sequence = GoalSequence()
     assert sequence.done

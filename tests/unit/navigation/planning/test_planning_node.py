@@ -13,6 +13,7 @@ from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.msgs.geometry_msgs.msg import (
     TransformStamped,
 )
+from navette.msgs.std_msgs.msg import Empty
 from navette.msgs.std_srvs.srv import Trigger
 from navette.runtime import Parameter, StaticTransformBroadcaster
 from navette.testing import GraphHarness
@@ -230,19 +231,12 @@ def test_a_new_goal_waits_until_navigation_commands_again(graph: GraphHarness) -
     assert world.message == "following"
 
 
-@pytest.mark.parametrize(
-    ("commander", "parameter"),
-    [("operator", "after_takeover"), ("emergency_stop", "after_stop")],
-)
-def test_a_paused_goal_may_end_instead(
-    graph: GraphHarness, commander: str, parameter: str
-) -> None:
-    world = World(graph, **{parameter: "end"}).ready()
+def test_a_topic_cancels_the_goal(graph: GraphHarness) -> None:
+    world = World(graph).ready()
     world.send(8.0, 4.0)
     graph.run_for(0.1)
-    world.commander(commander, "/cmd_vel_nav")
-    assert world.message == "paused"
-    world.commander("idle")
+    graph.publish("/cancel_goal", Empty())
+    graph.run_for(0.01)
     assert (world.message, world.values["result"]) == ("canceled", "canceled")
     assert not world.paths.last.poses
 

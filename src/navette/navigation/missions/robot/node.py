@@ -12,7 +12,7 @@ from navette.msgs.nav_msgs.msg import Path
 from navette.msgs.std_srvs.srv import Trigger
 from navette.navigation.missions.robot.planner_goal import PlannerGoal
 from navette.navigation.missions.robot.trail import DrivenTrail
-from navette.navigation.missions.sequence import PlannerReport
+from navette.navigation.missions.sequence import PAUSED, PlannerReport
 from navette.navigation.missions.tree.robot_access import (
     ABORTED,
     CANCELED,
@@ -213,6 +213,11 @@ class NodeRobot:
         self._report = report
         if self._goal is not None:
             self._goal.on_report(report)
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether the planner waits while another source commands the robot."""
+        return self._report.message == PAUSED
 
     def planner_listens(self) -> bool:
         """Whether a node beside this one receives goals."""

@@ -95,6 +95,14 @@ class NavigationServers:
                     _feedback(handle, self._navigator.progress(), self._robot)
                 )
 
+    def cancel_all(self) -> None:
+        """Request the cancellation of every goal."""
+        # First the actions that would send their next goal.
+        self._robot.cancel_all("nav2_msgs/action/FollowWaypoints", "follow_waypoints")
+        through = "nav2_msgs/action/NavigateThroughPoses"
+        self._robot.cancel_all(through, "navigate_through_poses")
+        self._robot.cancel_all("nav2_msgs/action/NavigateToPose", "navigate_to_pose")
+
     def take_end(self, goal_id: UUID) -> NavigationEnd | None:
         """Return how a goal of this process ended, once."""
         end = self._ends.pop(bytes(goal_id.uuid), None)
