@@ -49,6 +49,17 @@ class Budget:
         if count > self.items:
             raise BudgetError(f"{count} {what}; at most {self.items} are allowed")
 
+    def check_word(self, count: int, what: str = "name") -> None:
+        """Refuse a string by its length.
+
+        Raises:
+            BudgetError: too long.
+        """
+        if count > self.word:
+            raise BudgetError(
+                f"{what} of {count} characters; at most {self.word} are allowed"
+            )
+
 
 class BudgetMeter:
     """Counts what one input has used of its budget."""
@@ -95,3 +106,9 @@ QOS = Budget(octets=1 << 16, items=20_000, depth=8)
 
 METADATA = Budget(octets=16 << 20, items=500_000, depth=32)
 """``metadata.yaml`` of a recording."""
+
+FRAME = Budget(octets=64 << 10, items=1000, depth=32)
+"""Request of a client of the live view; parsing takes a millisecond at most."""
+
+JSON_MESSAGE = Budget(octets=256 << 10, items=100_000, depth=32)
+"""Message that a client of the live view publishes as JSON."""

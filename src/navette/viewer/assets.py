@@ -43,5 +43,8 @@ class AssetFolders:
         relative = unquote(parts.path).lstrip("/")
         if "\0" in relative or "\\" in relative or ":" in relative:
             return None
-        path = folder.joinpath(*PurePosixPath(relative).parts).resolve()
+        try:
+            path = folder.joinpath(*PurePosixPath(relative).parts).resolve()
+        except (OSError, UnicodeEncodeError):  # a loop of links, half a surrogate pair
+            return None
         return path if path.is_relative_to(folder) else None

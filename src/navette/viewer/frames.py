@@ -13,10 +13,14 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from navette.errors import DecodeError
+from navette.untrusted.budget import FRAME, BudgetError
 
 # In order of preference: the current app requests the first, older tools and the
 # published TypeScript client the second.
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
+
+MAX_BINARY = 4 * 2**20
+"""Bytes of a frame; the connection is closed with code 1009 beyond."""
 
 _U32 = 2**32
 _PLAYBACK = struct.Struct("<BBfBQI")
@@ -167,12 +171,16 @@ def decode(frame: str | bytes) -> ClientFrame:
     Raises:
         DecodeError: with a message that the client's user can read.
     """
-    if isinstance(frame, str):
-        return _decode_text(frame)
-    return _decode_binary(frame)
+    try:
+        if isinstance(frame, str):
+            return _decode_text(frame)
+        return _decode_binary(frame)
+    except BudgetError as error:
+        raise DecodeError(f"{error}: send several requests") from None
 
 
 def _decode_text(text: str) -> ClientFrame:
+    FRAME.check_octets(len(text), "text frame")
     try:
         # Python's parser accepts NaN, which is not JSON.
         document = json.loads(text, parse_constant=_refuse_constant)
@@ -220,6 +228,7 @@ def _decode_playback(data: bytes) -> ControlPlayback:
     end = _PLAYBACK.size + length
     if end > len(data):
         raise DecodeError("playback control frame is truncated")
+    FRAME.check_word(length, "playback control: request id")
     if command > 1:
         raise DecodeError(f"unknown playback command {command}; known: 0 and 1")
     request_id = data[_PLAYBACK.size : end].decode("utf-8", "replace")
@@ -244,8 +253,17 @@ class _Fields:
             raise self._wrong(name, value, wanted)
         return value
 
+    def _list(self, name: str, wanted: str) -> list[Any]:
+        items: list[Any] = self._get(name, list, wanted)
+        FRAME.check_items(len(items), f"entries in {name!r} of {self._where}")
+        return items
+
     def text(self, name: str) -> str:
-        return str(self._get(name, str, "a string"))
+        return self._text(name, self._get(name, str, "a string"))
+
+    def _text(self, name: str, value: str) -> str:
+        FRAME.check_word(len(value), f"{self._where}: {name!r}")
+        return value
 
     def optional_text(self, name: str) -> str | None:
         return None if self._document.get(name) is None else self.text(name)
@@ -264,17 +282,17 @@ class _Fields:
         return DecodeError(f"{self._where}: {name!r} has {value!r:.80}, not {wanted}")
 
     def identifiers(self, name: str) -> tuple[int, ...]:
-        items = self._get(name, list, "a list of numbers")
+        items = self._list(name, "a list of numbers")
         return tuple(self._identifier(name, item) for item in items)
 
     def texts(self, name: str) -> tuple[str, ...]:
-        items = self._get(name, list, "a list of strings")
+        items = self._list(name, "a list of strings")
         if not all(isinstance(item, str) for item in items):
             raise DecodeError(f"{self._where}: {name!r} is not a list of strings")
-        return tuple(items)
+        return tuple(self._text(name, item) for item in items)
 
     def objects(self, name: str) -> "list[_Fields]":
-        items = self._get(name, list, "a list of objects")
+        items = self._list(name, "a list of objects")
         if not all(isinstance(item, dict) for item in items):
             raise DecodeError(f"{self._where}: {name!r} is not a list of objects")
         return [_Fields(item, f"{self._where}.{name}") for item in items]

@@ -7,12 +7,14 @@ to the socket thread.
 """
 
 import itertools
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
+from functools import partial
 from typing import Any
 
 from navette.errors import DecodeError
 from navette.viewer import frames, replies
 from navette.viewer.assets import AssetFolders
+from navette.viewer.command_queue import Command
 from navette.viewer.frames import ClientChannel, WireParameter
 from navette.viewer.last_value_cache import LastValueCache
 from navette.viewer.liveness import NodeReport
@@ -22,19 +24,27 @@ from navette.viewer.playback import PlaybackState
 from navette.viewer.replies import Channel, ConnectionGraph, Level
 from navette.viewer.session import ProgramCommands, Session, Topic, Watch
 
-_MAX_CLIENT_CHANNELS = 256
+_MAX_CLIENT_CHANNELS = 64
+_MAX_CHANNELS = 256  # opened by all clients together
+_MAX_PARAMETER_NAMES = 1000  # to whose changes a client subscribes
+_MAX_QUEUED = 256 * 2**20  # bytes for all clients; beyond, no files are sent
+_MAX_PROBLEMS = 3  # of a request that are reported one by one
 _TIME, _NODES = "time", "nodes"
+# Subscriptions of all clients are one lane: their order matters to all.
+_WATCHES = 0
 
 
-def _call_directly(command: Callable[..., None], *args: Any) -> None:
-    command(*args)
+def _call_directly(_lane: Hashable, command: Command, _key: Hashable = None) -> None:
+    command()
 
 
 class Hub:
     """Clients, channels and subscriptions.
 
     Args:
-        forward: runs a command on the executor's thread; returns at once.
+        forward: runs a command on the executor's thread; returns at once. Its arguments
+            are a lane (commands of a lane run in order), the command, and a key (a
+            command that has not run yet is replaced by one of the same key).
     """
 
     def __init__(
@@ -59,6 +69,9 @@ class Hub:
         self._watchers: dict[Watch, set[int]] = {}
         self._last = LastValueCache()
         self._graph = replies.EMPTY_GRAPH
+        # Encoded once for any number of clients that join.
+        self._advertisement = replies.advertise(())
+        self._whole_graph: str | None = None
         self._client_ids = itertools.count(1)
         self._channel_ids = itertools.count(1)
         self.now_ns = 0
@@ -82,7 +95,7 @@ class Hub:
         session = Session(next(self._client_ids), outbox)
         self._sessions[session.id] = session
         session.send(self._info)
-        session.send(replies.advertise(self._channels.values()))
+        session.send(self._advertisement)
         if self.now_ns:
             session.send(replies.time(self.now_ns))
         if self._playback is not None:
@@ -94,7 +107,7 @@ class Hub:
             self._unsubscribe(session, subscription_id)
         for channel_id in list(session.client_channels):
             del session.client_channels[channel_id]
-            self._forward(self._program.close_publisher, session.id, channel_id)
+            self._request(session, self._program.close_publisher, channel_id)
         self._sessions.pop(session.id, None)
 
     def receive(self, session: Session, frame: str | bytes) -> None:
@@ -134,6 +147,8 @@ class Hub:
                 added.append(channel)
         if added:
             self._broadcast(replies.advertise(added))
+        if gone or added:
+            self._advertisement = replies.advertise(self._channels.values())
 
     def message(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
         channel_id = watch.channel.id
@@ -148,6 +163,8 @@ class Hub:
 
     def set_graph(self, graph: ConnectionGraph) -> None:
         update = replies.graph_update(self._graph, graph)
+        if update is not None:
+            self._whole_graph = replies.graph_update(replies.EMPTY_GRAPH, graph)
         self._graph = graph
         for topic, channel in self._topics.items():
             if topic.is_kept:
@@ -223,30 +240,29 @@ class Hub:
     # -- client requests -------------------------------------------------------
 
     def _subscribe(self, session: Session, request: frames.Subscribe) -> None:
+        problems = []
         for subscription_id, channel_id in request.subscriptions:
             channel = self._channels.get(channel_id)
             if channel is None:
-                session.send_status(f"subscribe: unknown channel id {channel_id}")
+                problems.append(f"unknown channel id {channel_id}")
             elif subscription_id in session.channel_by_subscription:
-                session.send_status(f"subscribe: id {subscription_id} is in use")
+                problems.append(f"id {subscription_id} is in use")
             elif channel_id in session.subscription_by_channel:
-                session.send_status(
-                    f"subscribe: channel {channel_id} ({channel.topic}) is subscribed"
-                )
+                problems.append(f"channel {channel_id} ({channel.topic}) is subscribed")
             else:
                 session.channel_by_subscription[subscription_id] = channel_id
                 session.subscription_by_channel[channel_id] = subscription_id
                 self._add_watcher(session, channel)
+        _report(session, "subscribe", problems)
 
     def _on_unsubscribe(self, session: Session, request: frames.Unsubscribe) -> None:
+        problems = []
         for subscription_id in request.subscription_ids:
             if subscription_id in session.channel_by_subscription:
                 self._unsubscribe(session, subscription_id)
             else:
-                session.send_status(
-                    f"unsubscribe: unknown subscription id {subscription_id}",
-                    Level.WARNING,
-                )
+                problems.append(f"unknown subscription id {subscription_id}")
+        _report(session, "unsubscribe", problems, Level.WARNING)
 
     def _unsubscribe(self, session: Session, subscription_id: int) -> None:
         channel_id = session.channel_by_subscription.pop(subscription_id)
@@ -262,7 +278,7 @@ class Hub:
         watchers = self._watchers.get(watch)
         if watchers is None:
             self._watchers[watch] = {session.id}
-            self._forward(self._program.watch, watch)
+            self._forward_watch(self._program.watch, watch)
             return
         watchers.add(session.id)
         last = self._last.last(channel.id)
@@ -280,31 +296,33 @@ class Hub:
                 self._drop_unwatched(watch)
         elif self._last.open(channel.id) and watch not in self._watchers:
             self._watchers[watch] = set()
-            self._forward(self._program.watch, watch)
+            self._forward_watch(self._program.watch, watch)
 
     def _drop_unwatched(self, watch: Watch) -> None:
         """Unsubscribe from a topic without clients, unless it is cached."""
         if not self._watchers[watch] and watch.channel.id not in self._last:
             del self._watchers[watch]
-            self._forward(self._program.unwatch, watch)
+            self._forward_watch(self._program.unwatch, watch)
 
     def _advertise(self, session: Session, request: frames.Advertise) -> None:
+        problems = []
         for channel in request.channels:
-            problem = _refusal(session, channel)
+            problem = self._refusal(session, channel)
             if problem:
-                session.send_status(f"advertise: {problem}")
+                problems.append(problem)
                 continue
             session.client_channels[channel.id] = channel
             self._request(session, self._program.open_publisher, channel)
+        _report(session, "advertise", problems)
 
     def _unadvertise(self, session: Session, request: frames.Unadvertise) -> None:
+        problems = []
         for channel_id in request.channel_ids:
             if session.client_channels.pop(channel_id, None) is None:
-                session.send_status(
-                    f"unadvertise: unknown channel id {channel_id}", Level.WARNING
-                )
-                continue
-            self._request(session, self._program.close_publisher, channel_id)
+                problems.append(f"unknown channel id {channel_id}")
+            else:
+                self._request(session, self._program.close_publisher, channel_id)
+        _report(session, "unadvertise", problems, Level.WARNING)
 
     def _publish(self, session: Session, request: frames.Publish) -> None:
         if request.channel_id not in session.client_channels:
@@ -332,7 +350,15 @@ class Hub:
     def _watch_parameters(
         self, session: Session, request: frames.WatchParameters
     ) -> None:
-        session.parameter_names.update(request.names)
+        names = session.parameter_names.union(request.names)
+        if len(names) > _MAX_PARAMETER_NAMES:
+            session.send_status(
+                "subscribeParameterUpdates: a client can name "
+                f"{_MAX_PARAMETER_NAMES} parameters at most; without names, all are "
+                "subscribed"
+            )
+            return
+        session.parameter_names = names
         session.all_parameters = session.all_parameters or not request.names
 
     def _unwatch_parameters(
@@ -345,9 +371,8 @@ class Hub:
 
     def _watch_graph(self, session: Session, request: frames.WatchGraph) -> None:
         session.wants_graph = request.wanted
-        update = replies.graph_update(replies.EMPTY_GRAPH, self._graph)
-        if request.wanted and update is not None:
-            session.send(update)
+        if request.wanted and self._whole_graph is not None:
+            session.send(self._whole_graph)
 
     def _watch_nodes(self, session: Session, request: frames.WatchNodes) -> None:
         session.wants_nodes = request.wanted
@@ -355,6 +380,10 @@ class Hub:
             self._request(session, self._program.request_parameter_texts)
 
     def _fetch_asset(self, session: Session, request: frames.FetchAsset) -> None:
+        if sum(each.outbox.size for each in self._sessions.values()) > _MAX_QUEUED:
+            problem = "the clients have not received earlier data; request it again"
+            session.send(replies.asset_error(request.request_id, problem))
+            return
         try:
             data = self._assets.read(request.uri)
         except (LookupError, OSError) as error:
@@ -388,11 +417,30 @@ class Hub:
             )
         return self._plays
 
+    def _refusal(self, session: Session, channel: ClientChannel) -> str:
+        """Return why a client's channel cannot be opened; empty if it can."""
+        if channel.id in session.client_channels:
+            return f"channel id {channel.id} is in use"
+        if channel.encoding not in replies.ENCODINGS:
+            return (
+                f"encoding {channel.encoding!r:.80} of {channel.topic!r:.80}; "
+                f"known: {', '.join(replies.ENCODINGS)}"
+            )
+        if len(session.client_channels) >= _MAX_CLIENT_CHANNELS:
+            return f"a client can open {_MAX_CLIENT_CHANNELS} channels at most"
+        opened = sum(len(each.client_channels) for each in self._sessions.values())
+        if opened >= _MAX_CHANNELS:
+            return f"all clients together can open {_MAX_CHANNELS} channels at most"
+        return ""
+
     def _request(
         self, session: Session, command: Callable[..., None], *args: Any
     ) -> None:
         session.pending += 1
-        self._forward(command, session.id, *args)
+        self._forward(session.id, partial(command, session.id, *args))
+
+    def _forward_watch(self, command: Callable[[Watch], None], watch: Watch) -> None:
+        self._forward(_WATCHES, partial(command, watch), watch)
 
     # -- internals ----------------------------------------------------------------
 
@@ -436,15 +484,12 @@ def _watch_of(session: Session, channel: Channel) -> Watch:
     return Watch(channel, session.id if channel.latched else None)
 
 
-def _refusal(session: Session, channel: ClientChannel) -> str:
-    """Return why a client's channel cannot be opened; empty if it can."""
-    if channel.id in session.client_channels:
-        return f"channel id {channel.id} is in use"
-    if channel.encoding not in replies.ENCODINGS:
-        return (
-            f"encoding {channel.encoding!r:.80} of {channel.topic!r:.80}; "
-            f"known: {', '.join(replies.ENCODINGS)}"
-        )
-    if len(session.client_channels) >= _MAX_CLIENT_CHANNELS:
-        return f"a client can open {_MAX_CLIENT_CHANNELS} channels at most"
-    return ""
+def _report(
+    session: Session, operation: str, problems: list[str], level: Level = Level.ERROR
+) -> None:
+    """Send the problems of a request, a bounded number of them one by one."""
+    for problem in problems[:_MAX_PROBLEMS]:
+        session.send_status(f"{operation}: {problem}", level)
+    more = len(problems) - _MAX_PROBLEMS
+    if more > 0:
+        session.send_status(f"{operation}: {more} more entries are refused", level)

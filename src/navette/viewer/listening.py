@@ -9,6 +9,8 @@ from contextlib import ExitStack
 from navette.errors import InvalidValueError
 
 _BACKLOG = 100
+# Accepted connections inherit it: the server parses so many bytes without a pause.
+_RECEIVE_BUFFER = 16 * 1024
 
 Listeners = Sequence[socket.socket]
 
@@ -58,6 +60,7 @@ def _bind(listener: socket.socket, address: tuple[object, ...]) -> None:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     if listener.family == socket.AF_INET6:
         listener.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)
     listener.bind(address)
     listener.listen(_BACKLOG)
 

@@ -35,6 +35,7 @@ from navette.runtime.qos import (
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.subscription import Subscription
 from navette.viewer.assets import AssetFolders
+from navette.viewer.command_queue import CommandQueue
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
@@ -85,6 +86,12 @@ class ViewerNode(StageNode):
         self._refreshing = False
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
+        wall = Stopwatch()
+        self._commands = CommandQueue(
+            partial(self.run_soon, source="command"),
+            lambda delay_s, function: self._server.call_later(delay_s, function),
+            lambda: wall.elapsed_s,
+        )
         self._hub = Hub(
             self,
             name="Navette",
@@ -92,7 +99,7 @@ class ViewerNode(StageNode):
             session_id=f"navette-{id(self):x}",
             assets=AssetFolders(asset_folders or {}),
             playback_range=None if playback is None else _range(playback),
-            forward=self._run_command,
+            forward=self._commands.add,
         )
         self._publishers = ClientPublishers(self._publisher, self.destroy_publisher)
         self._playback = PlaybackRequests(playback, self._hub, self._call)
@@ -195,7 +202,11 @@ class ViewerNode(StageNode):
     # -- ProgramCommands (executor thread) -----------------------------------------
 
     def watch(self, watch: Watch) -> None:
-        """Subscribe for one client, or for all."""
+        """Subscribe for one client, or for all; again, if subscribed already.
+
+        A new subscription receives latched messages again.
+        """
+        self.unwatch(watch)
         channel = watch.channel
         try:
             self._watched[watch] = self.create_subscription(
@@ -263,9 +274,6 @@ class ViewerNode(StageNode):
         self.context.loop.call_soon_threadsafe(
             function, f"viewer {source}", self.get_fully_qualified_name()
         )
-
-    def _run_command(self, command: Callable[..., None], *args: Any) -> None:
-        self.run_soon(partial(command, *args), command.__name__)
 
     def _execute(self, client: int, request: Callable[..., None], *args: Any) -> None:
         """Execute a client's request; an error is sent back to that client."""

@@ -15,6 +15,7 @@ class Outbox:
     should be disconnected. Data frames belong to a stream (a subscription); each stream
     keeps its newest ``depth`` frames and at most ``stream_bytes`` (but always one
     frame), so that a slow client receives current data of every topic at a lower rate.
+    All streams together keep at most ``data_bytes`` (but always the newest frame).
     """
 
     def __init__(
@@ -22,13 +23,17 @@ class Outbox:
         *,
         depth: int = 16,
         stream_bytes: int = 4_000_000,
+        data_bytes: int = 32_000_000,
         control_bytes: int = 64_000_000,
     ) -> None:
         self._depth = depth
         self._stream_bytes = stream_bytes
+        self._data_limit = data_bytes
+        self._data_size = 0
         self._control_limit = control_bytes
         self._control: deque[Frame] = deque()
-        self._control_size = 0
+        #: Bytes of the queued control frames.
+        self.control_size = 0
         self._streams: dict[Hashable, _Stream] = {}
         self._turns: deque[Hashable] = deque()
         self.dropped = 0
@@ -41,8 +46,8 @@ class Outbox:
         if self.overflowed:
             return
         self._control.append(frame)
-        self._control_size += len(frame)
-        self.overflowed = self._control_size > self._control_limit
+        self.control_size += len(frame)
+        self.overflowed = self.control_size > self._control_limit
 
     def put_data(
         self, stream: Hashable, frame: Frame, *, depth: int | None = None
@@ -52,30 +57,47 @@ class Outbox:
             waiting = self._streams[stream] = _Stream()
         waiting.frames.append(frame)
         waiting.size += len(frame)
+        self._data_size += len(frame)
         self._turns.append(stream)
         limit = self._depth if depth is None else depth
         while len(waiting.frames) > 1 and (
             len(waiting.frames) > limit or waiting.size > self._stream_bytes
         ):
-            waiting.size -= len(waiting.frames.popleft())
+            size = len(waiting.frames.popleft())
+            waiting.size -= size
+            self._data_size -= size
             # A stream has as many turns as frames.
             self._turns.remove(stream)
             self.dropped += 1
+        while self._data_size > self._data_limit and len(self._turns) > 1:
+            self._pop_data()
+            self.dropped += 1
 
     def forget(self, stream: Hashable) -> None:
-        if self._streams.pop(stream, None) is not None:
+        waiting = self._streams.pop(stream, None)
+        if waiting is not None:
+            self._data_size -= waiting.size
             self._turns = deque(turn for turn in self._turns if turn != stream)
 
     def pop(self) -> Frame:
         """Remove and return the next frame: control frames first, then data."""
         if self._control:
             frame = self._control.popleft()
-            self._control_size -= len(frame)
+            self.control_size -= len(frame)
             return frame
+        return self._pop_data()
+
+    @property
+    def size(self) -> int:
+        """Bytes of all queued frames."""
+        return self.control_size + self._data_size
+
+    def _pop_data(self) -> Frame:
         stream = self._turns.popleft()
         waiting = self._streams[stream]
         data = waiting.frames.popleft()
         waiting.size -= len(data)
+        self._data_size -= len(data)
         if not waiting.frames:
             del self._streams[stream]
         return data

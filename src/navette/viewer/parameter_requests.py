@@ -59,23 +59,30 @@ class ParameterRequests:
         self._nodes = nodes
         self._remote = remote
         self._parameter = parameter
+        #: Requests (client, names, id) that wait for the nodes' responses.
+        self._waiting: list[tuple[int, tuple[str, ...], str | None]] = []
 
     def get(self, client: int, names: tuple[str, ...], request_id: str | None) -> None:
         """Send the named parameters, or all, once all nodes have responded.
 
         Unknown names and nodes that do not respond are omitted.
         """
-
-        def send() -> None:
-            self._send(client, names, request_id)
-            self._call(self._hub.done, client)
-
         for name in names:
             try:
                 split_name(name)
             except ParameterError as error:
                 self._call(self._hub.send_status, client, str(error))
-        self._remote.fetch(send)
+                break
+        self._waiting.append((client, names, request_id))
+        if len(self._waiting) == 1:
+            self._remote.fetch(self._send_to_waiting)
+
+    def _send_to_waiting(self) -> None:
+        waiting, self._waiting = self._waiting, []
+        found = self._all_parameters()
+        for client, names, request_id in waiting:
+            self._send(client, names, request_id, found)
+            self._call(self._hub.done, client)
 
     def set(
         self,
@@ -90,7 +97,7 @@ class ParameterRequests:
             # The current values show what was set and what was refused.
             if request_id is not None:
                 names = tuple(parameter.name for parameter in parameters)
-                self._send(client, names, request_id)
+                self._send(client, names, request_id, self._all_parameters())
             self._call(self._hub.done, client)
 
         def one_is_done(name: str, reason: str) -> None:
@@ -128,14 +135,20 @@ class ParameterRequests:
         changes += [WireParameter(wire_name(event.node, n), None) for n in deleted]
         self._call(self._hub.parameters_changed, changes)
 
-    def _send(
-        self, client: int, names: tuple[str, ...], request_id: str | None
-    ) -> None:
-        found = self._remote.values | {
+    def _all_parameters(self) -> dict[str, WireParameter]:
+        return self._remote.values | {
             parameter.name: parameter
             for node in self._nodes()
             for parameter in _parameters_of(node)
         }
+
+    def _send(
+        self,
+        client: int,
+        names: tuple[str, ...],
+        request_id: str | None,
+        found: dict[str, WireParameter],
+    ) -> None:
         wanted = [n if n.startswith("/") else f"/{n}" for n in names] or list(found)
         values = [found[name] for name in wanted if name in found]
         self._call(self._hub.parameters, client, values, request_id)

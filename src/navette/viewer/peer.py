@@ -7,8 +7,13 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 from navette.viewer.session import Session
+from navette.viewer.token_bucket import TokenBucket
 
-_MAX_PENDING = 64  # unfinished requests of one client
+_MAX_PENDING = 16  # unfinished requests of one client
+_MAX_UNREAD = 4 * 2**20  # bytes of responses that a client has not received
+# Requests of one client. Teleoperation sends 10 a second, a page that opens about 100.
+_REQUEST_BURST, _REQUESTS_PER_S = 1000, 200
+_BYTE_BURST, _BYTES_PER_S = 16 * 2**20, 8 * 2**20
 
 
 class Peer:
@@ -22,6 +27,9 @@ class Peer:
         self._outbox = session.outbox
         self._answered = asyncio.Event()
         self._filled = asyncio.Event()
+        now_s = asyncio.get_running_loop().time
+        self._requests = TokenBucket(_REQUESTS_PER_S, _REQUEST_BURST, now_s)
+        self._bytes = TokenBucket(_BYTES_PER_S, _BYTE_BURST, now_s)
 
     def wake(self) -> None:
         self._filled.set()
@@ -38,9 +46,21 @@ class Peer:
     def check_pending(self) -> None:
         self._answered.set()
 
-    async def wait_for_answers(self) -> None:
-        """Return when fewer than the maximum of requests are unfinished."""
-        while self.session.pending >= _MAX_PENDING and not self.gone:
+    async def admit(self, size: int) -> None:
+        """Return when the client's next request may be read after one of ``size``.
+
+        Waits while the client exceeds its rates, has too many unfinished requests or
+        does not read the responses.
+        """
+        self._requests.take(1)
+        self._bytes.take(size)
+        wait_s = max(self._requests.wait_s(), self._bytes.wait_s())
+        if wait_s:
+            await asyncio.sleep(wait_s)
+        while not self.gone and (
+            self.session.pending >= _MAX_PENDING
+            or self._outbox.control_size > _MAX_UNREAD
+        ):
             self._answered.clear()
             await self._answered.wait()
 
@@ -52,3 +72,4 @@ class Peer:
                 self._filled.clear()
                 while self._outbox:
                     await self.connection.send(self._outbox.pop())
+                    self.check_pending()

@@ -6,6 +6,7 @@ from typing import Any
 
 from navette.errors import DecodeError
 from navette.msgs import Message, deserialize, from_dict
+from navette.untrusted.budget import JSON_MESSAGE, BudgetMeter
 from navette.viewer.frames import ClientChannel
 
 
@@ -52,24 +53,28 @@ def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
     Raises:
         DecodeError: the bytes are not a message of this type.
         MessageError: a field is unknown or has the wrong type; names the field.
+        BudgetError: the JSON document is too large.
     """
     if encoding == "cdr":
         return deserialize(data, cls)
+    JSON_MESSAGE.check_octets(len(data), "JSON message")
     try:
         document = json.loads(data)
     except (ValueError, RecursionError) as error:
         raise DecodeError(f"message is not JSON: {error}") from None
     if not isinstance(document, dict):
         raise DecodeError("message is not a JSON object")
-    return from_dict(cls, _with_ros_names(document))
+    return from_dict(cls, _with_ros_names(document, BudgetMeter(JSON_MESSAGE)))
 
 
-def _with_ros_names(value: Any) -> Any:
-    """Rename {sec, nsec} to {sec, nanosec}, at any depth."""
-    if isinstance(value, list):
-        return [_with_ros_names(item) for item in value]
-    if not isinstance(value, dict):
+def _with_ros_names(value: Any, meter: BudgetMeter) -> Any:
+    """Rename {sec, nsec} to {sec, nanosec}, at any permitted depth."""
+    if not isinstance(value, list | dict):
         return value
-    if value.keys() == {"sec", "nsec"}:
-        return {"sec": value["sec"], "nanosec": value["nsec"]}
-    return {name: _with_ros_names(item) for name, item in value.items()}
+    meter.spend_items(len(value))
+    with meter.nested():
+        if isinstance(value, list):
+            return [_with_ros_names(item, meter) for item in value]
+        if value.keys() == {"sec", "nsec"}:
+            return {"sec": value["sec"], "nanosec": value["nsec"]}
+        return {name: _with_ros_names(item, meter) for name, item in value.items()}

@@ -203,7 +203,7 @@ def asset(request_id: int, data: bytes) -> bytes:
 
 
 def asset_error(request_id: int, message: str) -> bytes:
-    text = message.encode()
+    text = message.encode(errors="replace")  # it may quote half a surrogate pair
     return struct.pack("<BIBI", 4, request_id, 1, len(text)) + text
 
 

@@ -11,6 +11,7 @@ import socket
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
+from functools import partial
 from http import HTTPStatus
 from typing import Any
 
@@ -20,7 +21,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
-from navette.viewer.frames import SUBPROTOCOLS
+from navette.viewer.connection import BoundedConnection, ConnectionLimit, bounded_by
+from navette.viewer.frames import MAX_BINARY, SUBPROTOCOLS
 from navette.viewer.hub import Hub
 from navette.viewer.listening import Listeners, port_of
 from navette.viewer.liveness import PERIOD_S
@@ -28,6 +30,7 @@ from navette.viewer.offers import OfferQueue
 from navette.viewer.outbox import Outbox
 from navette.viewer.peer import Peer
 from navette.viewer.session import Watch
+from navette.viewer.throttled_selector import ThrottledSelector
 from navette.viewer.web import AccessPolicy, HttpResponse, Site, refuse
 
 # Connections that open, close or fail are normal; only errors of the server are logged.
@@ -35,7 +38,10 @@ _log = logging.getLogger(__name__)
 _log.setLevel(logging.ERROR)
 _log.addFilter(lambda record: record.msg != "opening handshake failed")
 
-_MAX_FRAME = 16 * 2**20  # bytes; a larger client frame closes the connection
+# CPU time of the socket thread: the robot's nodes may run in the same process.
+_CPU_SHARE, _CPU_BURST_S = 0.3, 0.1
+_MAX_OPENING = 32  # connections besides the clients: HTTP requests and handshakes
+_BACKLOG = 32  # connections accepted in one turn
 _SEND_BUFFER = 256 * 1024  # bytes in flight per client before frames queue up
 _OPEN_S = 2.0  # until a request; browsers open connections in advance
 _CLOSE_S = 1.0
@@ -71,7 +77,9 @@ class ViewerServer:
         self._on_period = on_period
         self._tick_s = 1.0 / time_rate_hz
         self._max_clients = max_clients
-        self._loop = asyncio.new_event_loop()
+        self._loop = asyncio.SelectorEventLoop(
+            ThrottledSelector(_CPU_SHARE, _CPU_BURST_S)
+        )
         self._thread = threading.Thread(
             target=self._run, name="navette-viewer", daemon=True
         )
@@ -103,6 +111,10 @@ class ViewerServer:
             if not self._loop.is_closed():
                 raise
 
+    def call_later(self, delay_s: float, function: Callable[[], None]) -> None:
+        """Run ``function`` on the socket thread after a delay."""
+        self.call(partial(self._loop.call_later, delay_s, function))
+
     def offer(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
         """Queue a message for its clients; drops the oldest when the queue is full."""
         self._offers.add(watch, stamp_ns, payload)
@@ -121,21 +133,27 @@ class ViewerServer:
             self._started.cancel()  # start() must not block forever
 
     async def _serve(self) -> None:
-        servers = [await self._accept(each) for each in self._listeners]
+        limit = ConnectionLimit(self._max_clients + _MAX_OPENING)
+        connection = bounded_by(limit)
+        servers = [await self._accept(each, connection) for each in self._listeners]
         self._started.set_result(None)
         self._tick()
         self._run_period()
         await self._stop.wait()
         await self._end(servers)
 
-    async def _accept(self, listener: socket.socket) -> Server:
+    async def _accept(
+        self, listener: socket.socket, connection_class: type[BoundedConnection]
+    ) -> Server:
         return await serve(
             self._client,
             sock=listener,
             subprotocols=[Subprotocol(name) for name in SUBPROTOCOLS],
             process_request=self._answer,
             compression=None,  # costs more time than loopback gains
-            max_size=_MAX_FRAME,
+            create_connection=connection_class,
+            backlog=_BACKLOG,
+            max_size=MAX_BINARY,
             write_limit=_SEND_BUFFER,
             open_timeout=_OPEN_S,
             close_timeout=_CLOSE_S,
@@ -195,7 +213,7 @@ class ViewerServer:
                 self._hub.receive(peer.session, frame)
                 peer.wake()
                 # While nothing is read, TCP slows the client down.
-                await peer.wait_for_answers()
+                await peer.admit(len(frame))
 
     def _call(self, function: Callable[..., None], *args: Any) -> None:
         function(*args)

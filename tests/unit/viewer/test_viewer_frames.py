@@ -85,7 +85,21 @@ def test_binary_frames_are_decoded() -> None:
         ("{", "not JSON"),
         ("[1]", "not a JSON object"),
         ('{"op": "subscribe", "x": NaN}', "NaN is not JSON"),
-        ("[" * 100_000, "not JSON"),
+        ("[" * 60_000, "not JSON"),
+        ("1" * 60_000, "not JSON"),
+        ("[" * 100_000, "100000 bytes; at most 65536 are allowed"),
+        (
+            '{"op": "unsubscribe", "subscriptionIds": [' + "1," * 1000 + "1]}",
+            "1001 entries in 'subscriptionIds' of unsubscribe; at most 1000",
+        ),
+        (
+            json.dumps({"op": "getParameters", "parameterNames": ["a" * 1001]}),
+            "'parameterNames' of 1001 characters; at most 1000",
+        ),
+        (
+            struct.pack("<BBfBQI", 3, 0, 1.0, 0, 0, 1001) + b"a" * 1001,
+            "request id of 1001 characters",
+        ),
         ('{"op": "dance"}', "unknown op 'dance'; known: subscribe"),
         ('{"op": ["subscribe"]}', "unknown op"),
         ('{"op": "subscribe"}', "'subscriptions' has None, not a list"),

@@ -199,7 +199,7 @@ def test_invalid_channels_are_refused(bench: Bench) -> None:
     assert "channel id 1 is in use" in status["message"]
     for number in range(2, 400):
         replies = advertise(bench, session, id=number)
-    assert "256 channels at most" in replies[0]["message"]
+    assert "64 channels at most" in replies[0]["message"]
 
 
 def test_publishers_of_a_client_end_with_it(bench: Bench) -> None:

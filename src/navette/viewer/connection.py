@@ -1,0 +1,96 @@
+"""Bounds of one connection below the level of messages.
+
+The WebSocket library bounds messages and HTTP headers. It neither limits the number of
+fragments and control frames nor the responses to them that a client does not read.
+"""
+
+from collections import OrderedDict
+from typing import Any
+
+from websockets.asyncio.server import ServerConnection
+from websockets.frames import CTRL_OPCODES, CloseCode, Frame
+from websockets.protocol import Event
+
+from navette.viewer.token_bucket import TokenBucket
+
+_MAX_FRAGMENTS = 256  # of a message
+# Pings and pongs of a client; ordinary clients send less than one a second.
+_CONTROL_BURST, _CONTROL_PER_S = 100, 10
+
+
+class ConnectionLimit:
+    """Connections of a server; those without a complete request are the first to go."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._opening: OrderedDict[BoundedConnection, None] = OrderedDict()
+        self._count = 0
+
+    def add(self, connection: "BoundedConnection") -> None:
+        self._count += 1
+        self._opening[connection] = None
+        if self._count > self._most:
+            oldest, _ = self._opening.popitem(last=False)
+            oldest.transport.abort()
+
+    def opened(self, connection: "BoundedConnection") -> None:
+        """Note that the connection sent its request."""
+        self._opening.pop(connection, None)
+
+    def remove(self, connection: "BoundedConnection") -> None:
+        self._count -= 1
+        self._opening.pop(connection, None)
+
+
+class BoundedConnection(ServerConnection):
+    """A connection whose fragments, control frames and unread responses are bounded."""
+
+    limit: ConnectionLimit
+
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)
+        self._fragments = 0
+        self._control = TokenBucket(_CONTROL_PER_S, _CONTROL_BURST, self.loop.time)
+        self.limit.add(self)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self.limit.remove(self)
+        super().connection_lost(exc)
+
+    def process_event(self, event: Event) -> None:
+        self.limit.opened(self)
+        if isinstance(event, Frame):
+            problem = self._excess(event)
+            if problem:
+                self.protocol.fail(CloseCode.POLICY_VIOLATION, problem)
+                self.send_data()
+                return
+        super().process_event(event)
+
+    def _excess(self, frame: Frame) -> str:
+        """Return which bound the frame exceeds; empty if it exceeds none."""
+        if frame.opcode in CTRL_OPCODES:
+            return "" if self._control.try_take(1) else "too many control frames"
+        self._fragments = 0 if frame.fin else self._fragments + 1
+        if self._fragments <= _MAX_FRAGMENTS:
+            return ""
+        return f"more than {_MAX_FRAGMENTS} fragments in a message"
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        if self.paused:  # the client does not read what it is sent
+            self.transport.pause_reading()
+
+    def resume_writing(self) -> None:
+        super().resume_writing()
+        if not self.recv_messages.paused:
+            self.transport.resume_reading()
+
+
+def bounded_by(of_server: ConnectionLimit) -> type[BoundedConnection]:
+    """Return the class of the connections of one server."""
+
+    class Connection(BoundedConnection):
+        limit = of_server
+
+    return Connection
