@@ -1,7 +1,7 @@
 """Bounds of one connection below the level of messages.
 
-The WebSocket library bounds messages and HTTP headers. It neither limits the number of
-fragments and control frames nor the responses to them that a client does not read.
+The WebSocket library bounds messages and HTTP headers, but not the number of fragments,
+control frames (each is answered) and connections.
 """
 
 from collections import OrderedDict
@@ -43,7 +43,7 @@ class ConnectionLimit:
 
 
 class BoundedConnection(ServerConnection):
-    """A connection whose fragments, control frames and unread responses are bounded."""
+    """A connection whose fragments and control frames are bounded."""
 
     limit: ConnectionLimit
 
@@ -75,16 +75,6 @@ class BoundedConnection(ServerConnection):
         if self._fragments <= _MAX_FRAGMENTS:
             return ""
         return f"more than {_MAX_FRAGMENTS} fragments in a message"
-
-    def data_received(self, data: bytes) -> None:
-        super().data_received(data)
-        if self.paused:  # the client does not read what it is sent
-            self.transport.pause_reading()
-
-    def resume_writing(self) -> None:
-        super().resume_writing()
-        if not self.recv_messages.paused:
-            self.transport.resume_reading()
 
 
 def bounded_by(of_server: ConnectionLimit) -> type[BoundedConnection]:

@@ -86,11 +86,11 @@ class ViewerNode(StageNode):
         self._refreshing = False
         self._stop_listening: Callable[[], None] = _nothing
         self._frames = ("map", "base_link")
-        wall = Stopwatch()
+        self._wall = Stopwatch()
         self._commands = CommandQueue(
             partial(self.run_soon, source="command"),
             lambda delay_s, function: self._server.call_later(delay_s, function),
-            lambda: wall.elapsed_s,
+            self._wall_s,
         )
         self._hub = Hub(
             self,
@@ -267,6 +267,9 @@ class ViewerNode(StageNode):
         position_ns = self._playback.position_ns()
         return self.get_clock().now_ns if position_ns is None else position_ns
 
+    def _wall_s(self) -> float:
+        return self._wall.elapsed_s
+
     # -- between the threads -------------------------------------------------------
 
     def run_soon(self, function: Callable[[], None], source: str) -> None:
@@ -290,10 +293,7 @@ class ViewerNode(StageNode):
     # -- internals -----------------------------------------------------------------
 
     def _monitor_nodes(self) -> ParameterRequests:
-        wall = Stopwatch()
-
-        def now_s() -> float:
-            return wall.elapsed_s
+        now_s = self._wall_s
 
         def client_of(service: str, type_name: str) -> Client:
             return self.create_client(get_interface(type_name), service)
@@ -363,6 +363,7 @@ class ViewerNode(StageNode):
             AccessPolicy(params.host, params.allowed_origins, params.allowed_hosts),
             listeners=listeners or listen(params.host, params.port),
             now_ns=self._now_ns,
+            wall_s=self._wall_s,
             on_period=self._monitor.on_period,
             time_rate_hz=params.time_rate_hz,
             max_clients=params.max_clients,

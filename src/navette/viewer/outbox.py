@@ -34,6 +34,7 @@ class Outbox:
         self._control: deque[Frame] = deque()
         #: Bytes of the queued control frames.
         self.control_size = 0
+        self._sending = 0
         self._streams: dict[Hashable, _Stream] = {}
         self._turns: deque[Hashable] = deque()
         self.dropped = 0
@@ -80,17 +81,26 @@ class Outbox:
             self._turns = deque(turn for turn in self._turns if turn != stream)
 
     def pop(self) -> Frame:
-        """Remove and return the next frame: control frames first, then data."""
+        """Remove and return the next frame: control frames first, then data.
+
+        The frame counts as queued until the next one or :meth:`sent`.
+        """
         if self._control:
             frame = self._control.popleft()
             self.control_size -= len(frame)
-            return frame
-        return self._pop_data()
+        else:
+            frame = self._pop_data()
+        self._sending = len(frame)
+        return frame
+
+    def sent(self) -> None:
+        """Note that the frame that was removed last has been sent."""
+        self._sending = 0
 
     @property
     def size(self) -> int:
         """Bytes of all queued frames."""
-        return self.control_size + self._data_size
+        return self.control_size + self._data_size + self._sending
 
     def _pop_data(self) -> Frame:
         stream = self._turns.popleft()

@@ -72,4 +72,5 @@ class Peer:
                 self._filled.clear()
                 while self._outbox:
                     await self.connection.send(self._outbox.pop())
+                    self._outbox.sent()
                     self.check_pending()

@@ -11,7 +11,6 @@ import socket
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
-from functools import partial
 from http import HTTPStatus
 from typing import Any
 
@@ -53,6 +52,7 @@ class ViewerServer:
     Args:
         listeners: listening sockets, which are closed with the server.
         now_ns: the program's time; called on the socket thread.
+        wall_s: monotonic wall time.
         on_period: called on the socket thread every ``PERIOD_S`` of wall time.
     """
 
@@ -64,6 +64,7 @@ class ViewerServer:
         *,
         listeners: Listeners,
         now_ns: Callable[[], int],
+        wall_s: Callable[[], float],
         on_period: Callable[[], None],
         time_rate_hz: float,
         max_clients: int,
@@ -78,7 +79,7 @@ class ViewerServer:
         self._tick_s = 1.0 / time_rate_hz
         self._max_clients = max_clients
         self._loop = asyncio.SelectorEventLoop(
-            ThrottledSelector(_CPU_SHARE, _CPU_BURST_S)
+            ThrottledSelector(_CPU_SHARE, _CPU_BURST_S, wall_s)
         )
         self._thread = threading.Thread(
             target=self._run, name="navette-viewer", daemon=True
@@ -113,7 +114,11 @@ class ViewerServer:
 
     def call_later(self, delay_s: float, function: Callable[[], None]) -> None:
         """Run ``function`` on the socket thread after a delay."""
-        self.call(partial(self._loop.call_later, delay_s, function))
+
+        def schedule() -> None:
+            self._loop.call_later(delay_s, function)
+
+        self.call(schedule)
 
     def offer(self, watch: Watch, stamp_ns: int, payload: bytes) -> None:
         """Queue a message for its clients; drops the oldest when the queue is full."""

@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from navette.runtime.clock import Stopwatch
 from navette.viewer.token_bucket import TokenBucket
 
 
@@ -21,23 +20,22 @@ class ThrottledSelector(selectors.DefaultSelector):
     Args:
         share: seconds of CPU time per second.
         burst_s: CPU time that may be used at once.
+        now_s: monotonic wall time.
         cpu_s: CPU time of the calling thread.
-        now_s: monotonic time; by default wall time.
     """
 
     def __init__(
         self,
         share: float,
         burst_s: float,
+        now_s: Callable[[], float],
         *,
         cpu_s: Callable[[], float] = time.thread_time,
-        now_s: Callable[[], float] | None = None,
-        sleep: Callable[[float], object] = threading.Event().wait,
+        sleep: Callable[[float], object] | None = None,
     ) -> None:
         super().__init__()
-        wall = Stopwatch()
-        self._bucket = TokenBucket(share, burst_s, now_s or (lambda: wall.elapsed_s))
-        self._cpu_s, self._sleep = cpu_s, sleep
+        self._bucket = TokenBucket(share, burst_s, now_s)
+        self._cpu_s, self._sleep = cpu_s, sleep or threading.Event().wait
         self._used_s: float | None = None
 
     def select(self, timeout: float | None = None) -> Any:

@@ -325,7 +325,9 @@ def test_a_client_that_never_reads_loses_frames_and_does_not_slow_the_robot(
         assert got == sorted(got)
 
 
-def test_a_client_that_requests_and_never_reads_is_disconnected(tmp_path: Path) -> None:
+def test_a_client_that_requests_and_never_reads_affects_no_other(
+    tmp_path: Path,
+) -> None:
     (tmp_path / "large").write_bytes(bytes(20_000_000))
     with (
         Program(Talker, asset_folders={"navette": tmp_path}) as program,
@@ -334,9 +336,8 @@ def test_a_client_that_requests_and_never_reads_is_disconnected(tmp_path: Path) 
     ):
         for request in range(6):
             deaf.send(op="fetchAsset", uri="package://navette/large", requestId=request)
-        while program.viewer.client_count > 1:
-            other.get_parameters()
-        assert other.get_parameters("/talker.depth") == {"/talker.depth": 3}
+        for _ in range(20):
+            assert other.get_parameters("/talker.depth") == {"/talker.depth": 3}
 
 
 def test_closing_does_not_wait_for_a_client_that_never_reads(

@@ -206,8 +206,14 @@ class Client:
         self.close()
 
 
+def raw_frame(opcode: int, data: bytes, *, fin: bool = True) -> bytes:
+    """A masked frame (RFC 6455, 5.2); a mask of zeros changes nothing."""
+    first = opcode | (0x80 if fin else 0)
+    return struct.pack(">BBH4x", first, 0x80 | 126, len(data)) + data
+
+
 class NonReadingClient:
-    """Opens the socket and sends, but never reads."""
+    """Opens the socket and sends any bytes, but never reads on its own."""
 
     def __init__(self, address: str) -> None:
         host, _, port = address.partition(":")
@@ -225,9 +231,19 @@ class NonReadingClient:
         assert self._socket.recv(12) == b"HTTP/1.1 101"
 
     def send(self, **document: Any) -> None:
-        text = json.dumps(document).encode()
-        # A masked text frame (RFC 6455, 5.2); a mask of zeros changes nothing.
-        self._socket.sendall(struct.pack(">BBH4x", 0x81, 0x80 | 126, len(text)) + text)
+        self.send_raw(raw_frame(1, json.dumps(document).encode()))
+
+    def send_raw(self, data: bytes) -> None:
+        self._socket.sendall(data)
+
+    def read_to_the_end(self) -> bytes:
+        """Return all bytes until the server ends the connection."""
+        received = b""
+        self._socket.settimeout(PATIENCE_S)
+        with suppress(ConnectionError):
+            while data := self._socket.recv(1 << 16):
+                received += data
+        return received
 
     def close(self) -> None:
         self._socket.close()

@@ -1,0 +1,144 @@
+"""Rates with bursts, in the queue of commands and in the selector."""
+
+from collections.abc import Callable
+
+import pytest
+
+from navette.viewer.command_queue import CommandQueue
+from navette.viewer.throttled_selector import ThrottledSelector
+from navette.viewer.token_bucket import TokenBucket
+
+
+class Time:
+    """Seconds that advance on request."""
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+    def advance(self, seconds: float) -> None:
+        self.now_s += seconds
+
+
+@pytest.fixture
+def time() -> Time:
+    return Time()
+
+
+def test_a_bucket_permits_a_burst_and_then_its_rate(time: Time) -> None:
+    bucket = TokenBucket(2.0, 5.0, time)
+    assert [bucket.try_take(1) for _ in range(6)] == [True] * 5 + [False]
+    time.advance(1.0)
+    assert [bucket.try_take(1) for _ in range(3)] == [True, True, False]
+    time.advance(100.0)
+    assert bucket.is_full
+    assert sum(bucket.try_take(1) for _ in range(10)) == 5
+
+
+def test_a_debt_is_paid_off_at_the_rate(time: Time) -> None:
+    bucket = TokenBucket(2.0, 5.0, time)
+    bucket.take(9.0)
+    assert bucket.wait_s() == 2.0
+    time.advance(1.5)
+    assert bucket.wait_s() == 0.5
+    time.advance(1.0)
+    assert bucket.wait_s() == 0.0
+
+
+def test_a_thread_that_uses_more_than_its_share_sleeps(time: Time) -> None:
+    """In any mix of work the CPU time stays below burst + share * time."""
+    cpu, slept = Time(), Time()
+
+    def sleep(seconds: float) -> None:
+        time.advance(seconds)
+        slept.advance(seconds)
+
+    with ThrottledSelector(0.25, 0.1, time, cpu_s=cpu, sleep=sleep) as selector:
+        selector.select(0.0)
+        for work_s in (0.05, 0.02, 1.0, 0.001, 0.3) * 20:
+            cpu.advance(work_s)
+            time.advance(work_s)
+            selector.select(0.0)
+            assert cpu.now_s <= 0.1 + 0.25 * time.now_s + 1e-9
+        assert slept.now_s > 0
+        # An idle thread does not sleep.
+        before_s = slept.now_s
+        time.advance(10.0)
+        cpu.advance(0.05)
+        selector.select(0.0)
+        assert slept.now_s == before_s
+
+
+class Executor:
+    """Runs scheduled functions one by one, and delayed ones when told."""
+
+    def __init__(self, time: Time) -> None:
+        self.ready: list[Callable[[], None]] = []
+        self.later: list[tuple[float, Callable[[], None]]] = []
+        self.queue = CommandQueue(
+            self.ready.append, lambda s, f: self.later.append((s, f)), time
+        )
+
+    def turn(self) -> None:
+        self.ready.pop(0)()
+
+
+def test_commands_of_a_flooding_client_do_not_delay_those_of_others(time: Time) -> None:
+    executor, ran = Executor(time), list[str]()
+
+    def command(name: str) -> Callable[[], None]:
+        def run() -> None:
+            time.advance(0.0015)
+            ran.append(name)
+
+        return run
+
+    for number in range(100):
+        executor.queue.add("flood", command(f"flood {number}"))
+    executor.queue.add("driver", command("stop"))
+    assert len(executor.ready) == 1
+    executor.turn()
+    assert ran == ["flood 0", "stop"]
+    assert len(executor.ready) == 1, "other callbacks run between two slices"
+
+
+def test_commands_use_a_tenth_of_the_executor_at_most(time: Time) -> None:
+    executor = Executor(time)
+    used = Time()
+
+    def command() -> None:
+        time.advance(0.01)
+        used.advance(0.01)
+
+    for number in range(500):
+        executor.queue.add(number % 7, command)
+    while executor.ready or executor.later:
+        if executor.ready:
+            executor.turn()
+            assert used.now_s <= 0.1 + 0.01 + 0.1 * time.now_s + 1e-9
+        else:
+            (delay_s, function) = executor.later.pop()
+            time.advance(delay_s)
+            function()
+    assert used.now_s == pytest.approx(5.0)
+
+
+def test_commands_of_a_lane_run_in_order_and_replace_their_like(time: Time) -> None:
+    executor, ran = Executor(time), list[str]()
+    for name, key in (
+        ("watch a", "a"),
+        ("watch b", "b"),
+        ("unwatch a", "a"),
+        ("watch a", "a"),
+        ("open", None),
+        ("publish", None),
+    ):
+        executor.queue.add(1, lambda name=name: ran.append(name), key)  # type: ignore[misc]
+    executor.turn()
+    assert ran == ["watch b", "watch a", "open", "publish"]
+    assert executor.ready == []
+    executor.queue.add(1, lambda: ran.append("next"))
+    executor.turn()
+    assert ran[-1] == "next"
