@@ -110,5 +110,5 @@ METADATA = Budget(octets=16 << 20, items=500_000, depth=32)
 FRAME = Budget(octets=64 << 10, items=1000, depth=32)
 """Request of a client of the live view; parsing takes a millisecond at most."""
 
-JSON_MESSAGE = Budget(octets=256 << 10, items=100_000, depth=32)
-"""Message that a client of the live view publishes as JSON."""
+CLIENT_MESSAGE = Budget(octets=256 << 10, items=100_000, depth=32)
+"""Message that a client of the live view publishes, except for plain arrays in CDR."""

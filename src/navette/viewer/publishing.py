@@ -1,12 +1,13 @@
 """Messages that clients publish: decoding, and the publishers they use."""
 
+import functools
 import json
 from collections.abc import Callable
 from typing import Any
 
 from navette.errors import DecodeError
-from navette.msgs import Message, deserialize, from_dict
-from navette.untrusted.budget import JSON_MESSAGE, BudgetMeter
+from navette.msgs import Message, deserialize, fields, from_dict, get_interface
+from navette.untrusted.budget import CLIENT_MESSAGE, BudgetMeter
 from navette.viewer.frames import ClientChannel
 
 
@@ -53,18 +54,31 @@ def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
     Raises:
         DecodeError: the bytes are not a message of this type.
         MessageError: a field is unknown or has the wrong type; names the field.
-        BudgetError: the JSON document is too large.
+        BudgetError: the message is too large.
     """
     if encoding == "cdr":
+        if _has_lists_of_objects(cls):  # decoded one by one, other arrays at once
+            CLIENT_MESSAGE.check_octets(len(data), f"{cls._type_name_} message")
         return deserialize(data, cls)
-    JSON_MESSAGE.check_octets(len(data), "JSON message")
+    CLIENT_MESSAGE.check_octets(len(data), "JSON message")
     try:
         document = json.loads(data)
     except (ValueError, RecursionError) as error:
         raise DecodeError(f"message is not JSON: {error}") from None
     if not isinstance(document, dict):
         raise DecodeError("message is not a JSON object")
-    return from_dict(cls, _with_ros_names(document, BudgetMeter(JSON_MESSAGE)))
+    return from_dict(cls, _with_ros_names(document, BudgetMeter(CLIENT_MESSAGE)))
+
+
+@functools.cache
+def _has_lists_of_objects(cls: type[Message]) -> bool:
+    """Whether the number of objects in a message depends on its data."""
+    kinds = [field.type for field in fields(cls)]
+    return any(
+        (not kind.is_numeric and not kind.is_scalar)
+        or (kind.is_message and _has_lists_of_objects(get_interface(kind.base)))
+        for kind in kinds
+    )
 
 
 def _with_ros_names(value: Any, meter: BudgetMeter) -> Any:

@@ -37,8 +37,8 @@ _log = logging.getLogger(__name__)
 _log.setLevel(logging.ERROR)
 _log.addFilter(lambda record: record.msg != "opening handshake failed")
 
-# CPU time of the socket thread: the robot's nodes may run in the same process.
-_CPU_SHARE, _CPU_BURST_S = 0.3, 0.1
+# Work of the socket thread: the robot's nodes may run in the same process.
+_WORK_SHARE, _WORK_BURST_S = 0.3, 0.1
 _MAX_OPENING = 32  # connections besides the clients: HTTP requests and handshakes
 _BACKLOG = 32  # connections accepted in one turn
 _SEND_BUFFER = 256 * 1024  # bytes in flight per client before frames queue up
@@ -79,7 +79,7 @@ class ViewerServer:
         self._tick_s = 1.0 / time_rate_hz
         self._max_clients = max_clients
         self._loop = asyncio.SelectorEventLoop(
-            ThrottledSelector(_CPU_SHARE, _CPU_BURST_S, wall_s)
+            ThrottledSelector(_WORK_SHARE, _WORK_BURST_S, wall_s)
         )
         self._thread = threading.Thread(
             target=self._run, name="navette-viewer", daemon=True

@@ -1,4 +1,4 @@
-"""Limit on the CPU time of an asyncio loop's thread.
+"""Limit on the time of an asyncio loop's thread.
 
 Python runs one thread at a time: work of the socket thread delays the robot's nodes in
 the same process. Bounds on frames keep each piece of work short; this limit bounds
@@ -7,7 +7,6 @@ their sum, whatever the work is (handshakes, pings, parsing, encryption).
 
 import selectors
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -15,13 +14,15 @@ from navette.viewer.token_bucket import TokenBucket
 
 
 class ThrottledSelector(selectors.DefaultSelector):
-    """Selector that sleeps while its thread has used more CPU time than its share.
+    """Selector that sleeps while its thread has worked more than its share.
+
+    Work is wall time outside :meth:`select`, not CPU time: on a machine that is short
+    of CPU time, the thread leaves most of what the process receives to other threads.
 
     Args:
-        share: seconds of CPU time per second.
-        burst_s: CPU time that may be used at once.
+        share: seconds of work per second.
+        burst_s: work that may be done at once.
         now_s: monotonic wall time.
-        cpu_s: CPU time of the calling thread.
     """
 
     def __init__(
@@ -30,21 +31,20 @@ class ThrottledSelector(selectors.DefaultSelector):
         burst_s: float,
         now_s: Callable[[], float],
         *,
-        cpu_s: Callable[[], float] = time.thread_time,
         sleep: Callable[[float], object] | None = None,
     ) -> None:
         super().__init__()
         self._bucket = TokenBucket(share, burst_s, now_s)
-        self._cpu_s, self._sleep = cpu_s, sleep or threading.Event().wait
-        self._used_s: float | None = None
+        self._now_s = now_s
+        self._sleep = sleep or threading.Event().wait
+        self._selected_s = now_s()
 
     def select(self, timeout: float | None = None) -> Any:
-        used_s = self._cpu_s()
-        # The first call is in the loop's thread; the constructor may not be.
-        if self._used_s is not None:
-            self._bucket.take(used_s - self._used_s)
-        self._used_s = used_s
-        if wait_s := self._bucket.wait_s():
+        self._bucket.take(self._now_s() - self._selected_s)
+        wait_s = self._bucket.wait_s()
+        if wait_s:
             self._sleep(wait_s)
             timeout = 0.0
-        return super().select(timeout)
+        events = super().select(timeout)
+        self._selected_s = self._now_s()
+        return events

@@ -23,7 +23,7 @@ class TokenBucket:
         self._refilled_s = now_s()
 
     def take(self, count: float) -> None:
-        """Take tokens, also those that are not there yet."""
+        """Take tokens, also more than there are."""
         self._refill()
         self._tokens -= count
 

@@ -17,6 +17,8 @@ from navette.viewer.session import Session, Topic, Watch
 SCAN = Topic("/lidar", "sensor_msgs/msg/LaserScan", "float32[] ranges")
 MAP = Topic("/map", "nav_msgs/msg/OccupancyGrid", "int8[] data", latched=True)
 
+LARGE = "package://navette/large"
+
 
 class Bench:
     """A hub with a recording program and clients that send JSON."""
@@ -279,3 +281,64 @@ def test_service_calls_fail_with_a_message(bench: Bench) -> None:
     bench.hub.receive(session, b"\x02" + bytes(12))
     (failure,) = sent(session.outbox)
     assert failure["op"] == "serviceCallFailure"
+
+
+def test_problems_of_long_requests_are_summed_up(bench: Bench) -> None:
+    session = bench.join()
+    pairs = [{"id": i, "channelId": 1000 + i} for i in range(1000)]
+    statuses = bench.ask(session, op="subscribe", subscriptions=pairs)
+    assert len(statuses) == 4
+    assert "unknown channel id 1000" in statuses[0]["message"]
+    assert statuses[-1]["message"] == "subscribe: 997 more entries are refused"
+
+
+def test_all_clients_together_open_a_bounded_number_of_channels(bench: Bench) -> None:
+    for _ in range(5):
+        session = bench.join()
+        for number in range(64):
+            replies = advertise(bench, session, id=number)
+    assert "all clients together can open 256 channels" in replies[0]["message"]
+
+
+def test_a_client_subscribes_to_a_bounded_number_of_parameters(bench: Bench) -> None:
+    session = bench.join()
+    for start in range(0, 3000, 500):
+        names = [f"/a.{n}" for n in range(start, start + 500)]
+        replies = bench.ask(
+            session, op="subscribeParameterUpdates", parameterNames=names
+        )
+    assert "1000 parameters at most" in replies[0]["message"]
+    assert len(session.parameter_names) == 1000
+
+
+def test_files_are_sent_only_while_clients_receive_them(tmp_path: Path) -> None:
+    (tmp_path / "large").write_bytes(bytes(30_000_000))
+    bench = Bench(tmp_path)
+    failed = 0
+    for _ in range(12):
+        session = bench.hub.join(Outbox())
+        bench.hub.receive(
+            session, json.dumps({"op": "fetchAsset", "uri": LARGE, "requestId": 1})
+        )
+        frames = list[str | bytes]()
+        if session.outbox.size < 1_000_000:
+            while session.outbox:
+                frames.append(session.outbox.pop())
+            failed += b"request it again" in frames[-1]  # type: ignore[operator]
+    assert failed == 3
+
+
+def test_queued_bytes_are_counted_until_they_are_sent() -> None:
+    outbox = Outbox(data_bytes=100)
+    outbox.put_control("12345")
+    for stream in range(5):
+        outbox.put_data(stream, b"a" * 30)
+    assert outbox.size == 5 + 90
+    outbox.pop()
+    outbox.forget(4)
+    assert outbox.size == 5 + 60
+    outbox.sent()
+    outbox.pop()
+    outbox.pop()
+    outbox.sent()
+    assert outbox.size == 0

@@ -1,6 +1,7 @@
 """Decoding of messages from clients; invalid input is refused."""
 
 import json
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -8,9 +9,11 @@ from hypothesis import strategies as st
 
 from navette.errors import DecodeError, MessageError, NavetteError
 from navette.msgs import serialize
-from navette.msgs.geometry_msgs.msg import PointStamped, Twist
+from navette.msgs.geometry_msgs.msg import PointStamped, PoseStamped, Twist
 from navette.msgs.nav_msgs.msg import Path
-from navette.msgs.sensor_msgs.msg import LaserScan
+from navette.msgs.sensor_msgs.msg import Image, LaserScan
+from navette.msgs.std_msgs.msg import String
+from navette.untrusted.budget import BudgetError
 from navette.viewer.publishing import decode_message
 from navette.viewer.replies import ConnectionGraph
 from navette.viewer.session import Topic
@@ -34,6 +37,36 @@ def test_json_may_omit_fields_and_use_either_stamp_form() -> None:
 def test_invalid_json_is_refused(data: bytes) -> None:
     with pytest.raises(DecodeError, match="JSON"):
         decode_message("json", Twist, data)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "message", "limit"),
+    [
+        ("cdr", Path(poses=[PoseStamped()] * 6000), "262144 are allowed"),
+        ("cdr", Image(data=bytes(3_000_000)), ""),
+        ("json", {"data": "a" * 300_000}, "262144 are allowed"),
+        ("json", {"data": [[0, 1]] * 40_000}, "100000 items"),
+    ],
+)
+def test_messages_are_bounded_by_what_they_cost(
+    encoding: str, message: Any, limit: str
+) -> None:
+    """Plain arrays are decoded at once; lists of objects one by one."""
+    if encoding == "cdr":
+        cls, data = type(message), serialize(message)
+    else:
+        cls, data = String, json.dumps(message, separators=(",", ":")).encode()
+    if limit:
+        with pytest.raises(NavetteError, match=limit):
+            decode_message(encoding, cls, data)
+    else:
+        assert decode_message(encoding, cls, data) == message
+
+
+def test_deeply_nested_json_is_refused() -> None:
+    deep = b'{"data": ' + b"[" * 500 + b"]" * 500 + b"}"
+    with pytest.raises(BudgetError, match="nested deeper than 32"):
+        decode_message("json", String, deep)
 
 
 @pytest.mark.parametrize(
