@@ -96,6 +96,14 @@ ParamsFile = Annotated[
         help="ROS 2 parameter file. Repeat for several; later files win.",
     ),
 ]
+Tree = Annotated[
+    Path | None,
+    Option(
+        metavar="FILE.xml",
+        help="Behaviour tree of a goal, in BehaviorTree.CPP's or Nav2's words; default:"
+        " Navette's (navette tree --default).",
+    ),
+]
 MaxTime = Annotated[
     float | None, Option(metavar="S", help="Stop after this simulated time.")
 ]
@@ -149,6 +157,7 @@ def app(
 @app.command()
 def demo(
     robot: Robot = None,
+    tree: Tree = None,
     port: Port = 8765,
     speed: Speed = None,
     max_time: MaxTime = None,
@@ -165,6 +174,7 @@ def demo(
         world="arena",
         robot=robot,
         goals=demo_goals(),
+        tree=tree,
         speed=parse_speed(speed or "1"),
         max_time_s=max_time,
         port=port,
@@ -187,6 +197,7 @@ def sim(
     record_images: RecordImages = False,
     overwrite: Overwrite = False,
     params: ParamsFile = None,
+    tree: Tree = None,
     max_time: MaxTime = None,
     as_json: Json = False,
     port: Port = 8765,
@@ -212,6 +223,7 @@ def sim(
         record_images=record_images,
         overwrite=overwrite,
         params_files=tuple(params or ()),
+        tree=tree,
         max_time_s=max_time,
         port=port,
         share=share,

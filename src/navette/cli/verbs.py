@@ -47,6 +47,12 @@ VERBS = (
         "Drive a robot with the keyboard.",
     ),
     LazyCommand(
+        "tree",
+        "navette.cli.tree:tree",
+        "Watch the behaviour tree of the running robot, or check a tree file.",
+        read_only=True,
+    ),
+    LazyCommand(
         "topic",
         "navette.cli.topic:topic",
         "List, inspect, print and measure topics, and publish messages.",

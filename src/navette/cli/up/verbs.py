@@ -97,6 +97,10 @@ def up(
         ),
     ] = False,
     watch: Watch = False,
+    tree: Annotated[
+        Path | None,
+        Option(metavar="FILE.xml", help="Same as tree:=FILE.xml: the behaviour tree."),
+    ] = None,
     timeout: Timeout = 60.0,
 ) -> None:
     """Start services; each of their nodes is a supervised process.
@@ -107,7 +111,8 @@ def up(
     """
     stay_shared()
     project = _project(file)
-    config, names = _read(project, words or [])
+    words = [*(words or ()), *([f"tree:={tree.resolve()}"] if tree else ())]
+    config, names = _read(project, words)
     specs = config.specs(names or config.names)
     client = _client(project)
     up_before = {each["service"] for each in client.status()}
@@ -119,7 +124,7 @@ def up(
     try:
         _await_ready(client, [s.name for s in specs], timeout, stay=attach or watch)
         if watch:
-            _watch_files(client, words or [])
+            _watch_files(client, words)
         elif attach:
             _follow(reader)
     except KeyboardInterrupt:

@@ -7,12 +7,9 @@ parameter ``goals_m``. Goals of topics and of the list become goals of
 with ``wait_for_map``, a map has arrived; each is sent once.
 """
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
-
-from py_trees.display import unicode_tree
 
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
@@ -32,13 +29,12 @@ from navette.navigation.missions.sequence import (
     Point,
 )
 from navette.navigation.missions.servers.node import NavigationServers
-from navette.navigation.missions.tree.behaviour import TreeNode
+from navette.navigation.missions.tree.drawing import tree_text
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 from navette.runtime.time import ns_to_stamp
 
 ANY_HEADING = Quaternion(x=0.0, y=0.0, z=0.0, w=0.0)
-_COLOUR = re.compile("\x1b\\[[0-9;]*m")
 
 
 class MissionNode(StageNode):
@@ -343,8 +339,3 @@ class _ListGoal:
 
     number: int
     handle: Any = None
-
-
-def tree_text(root: TreeNode) -> str:
-    """Return the tree with the status of its nodes, one line each, without colours."""
-    return _COLOUR.sub("", unicode_tree(root, show_status=True))

@@ -29,6 +29,7 @@ class RunOptions:
     record: Path | None = None
     record_images: bool = False
     overwrite: bool = False
+    tree: Path | None = None
     params_files: tuple[Path, ...] = field(default=())
     max_time_s: float | None = None
     port: int = 8765

@@ -83,6 +83,9 @@ class Simulation:
         overrides.add("sim", {"seed": self.options.seed}, "--seed")
         if goals:
             overrides.add("missions", {"goals_m": goals}, "--goal")
+        if self.options.tree is not None:
+            tree = {"default_nav_to_pose_bt_xml": str(self.options.tree)}
+            overrides.add("missions", tree, "--tree")
         if self.options.record is not None:
             images = {"images": self.options.record_images}
             overrides.add("recorder", images, "--record-images")

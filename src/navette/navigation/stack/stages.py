@@ -151,6 +151,9 @@ def missions() -> None:
     parser.add_argument(
         "--goal", nargs=2, type=float, action="append", metavar=("X", "Y")
     )
+    parser.add_argument(
+        "--tree", metavar="FILE", help="the behaviour tree of navigate_to_pose"
+    )
     given = _parse(parser)
     from navette.navigation.missions.node import MissionNode
     from navette.navigation.missions.sequence import REACHED
@@ -158,7 +161,9 @@ def missions() -> None:
     profile = _profile(_resolve(given), "missions")
     if given.goal:
         goals = [value for goal in given.goal for value in goal]
-        profile.add("missions", {"goals_m": goals}, "--goal")
+        profile.add("/**", {"goals_m": goals}, "--goal")
+    if given.tree:
+        profile.add("/**", {"default_nav_to_pose_bt_xml": given.tree}, "--tree")
     made: list[MissionNode] = []
 
     def make(context: Context) -> Node:

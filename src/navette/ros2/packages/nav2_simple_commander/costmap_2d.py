@@ -39,11 +39,11 @@ class PyCostmap2D:
 
     def getSizeInMetersX(self) -> float:
         """Distance from the first cell's edge to the last cell's centre."""
-        return (self.size_x - 0.5) * self.resolution
+        return float((self.size_x - 0.5) * self.resolution)
 
     def getSizeInMetersY(self) -> float:
         """Distance from the first cell's edge to the last cell's centre."""
-        return (self.size_y - 0.5) * self.resolution
+        return float((self.size_y - 0.5) * self.resolution)
 
     def getOriginX(self) -> float:
         return self.origin_x

@@ -498,7 +498,7 @@ class BasicNavigator(Node):
         path: Path = response.result.path
         return path
 
-    def _call(self, client: "Client[Any, Any]", request: Any, what: str) -> Any:
+    def _call(self, client: Client, request: Any, what: str) -> Any:
         """Return the response of a service, or None after a shutdown."""
         if not self._wait_for(client.wait_for_service, f"{what} service"):
             return None
