@@ -9,8 +9,10 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from navette.msgs.topics import CMD_VEL_NAV
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.summary import RunSummary
+from navette.runtime.stage.commander import Commander
 
 if TYPE_CHECKING:
     from navette.navigation.stack.monitor import RunProgress
@@ -29,6 +31,7 @@ class StatusScreen:
         self._console = Console(stderr=True, highlight=False)
         self._longest_m: dict[str, float] = {}
         self._reported = ""
+        self._commander = Commander()
 
     @contextmanager
     def starting(self) -> Iterator[None]:
@@ -55,12 +58,12 @@ class StatusScreen:
             yield
 
     def on_change(self, progress: "RunProgress") -> None:
-        """Print a line when a goal starts, ends or fails."""
+        """Print a line when a goal starts, ends or fails, and on a takeover."""
+        self._print(progress, self._takeover(progress))
         text = self._event(progress)
         if text is not None and text.plain != self._reported:
             self._reported = text.plain
-            stamp = Text(f"{progress.sim_time_s:8.1f} s  ", style="dim")
-            self._console.print(stamp + text, soft_wrap=True)
+            self._print(progress, text)
 
     def report(self, summary: RunSummary, *, interrupted: bool) -> None:
         """Print the summary of the run."""
@@ -105,6 +108,25 @@ class StatusScreen:
                 ),
                 soft_wrap=True,
             )
+
+    def _print(self, progress: "RunProgress", text: Text | None) -> None:
+        if text is not None:
+            stamp = Text(f"{progress.sim_time_s:8.1f} s  ", style="dim")
+            self._console.print(stamp + text, soft_wrap=True)
+
+    def _takeover(self, progress: "RunProgress") -> Text | None:
+        """Return a line when another source than navigation begins or ends."""
+        before, commander = self._commander, progress.commander
+        self._commander = commander
+        if commander.name == before.name:
+            return None
+        if commander.is_stopped:
+            return Text("■ emergency stop; navette stop --release", style="bold red")
+        if commander.masks(CMD_VEL_NAV.name):
+            return Text(f"‖ {commander.text} commands", style="yellow")
+        if before.masks(CMD_VEL_NAV.name):
+            return Text("▸ navigation may drive again", style="cyan")
+        return None
 
     def _event(self, progress: "RunProgress") -> Text | None:
         if progress.goal is None:

@@ -3,12 +3,16 @@
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import click
 
 from navette.cli.options import Argument, Option
-from navette.msgs.topics import CMD_VEL
+
+if TYPE_CHECKING:
+    from navette.cli.teleop_link import TeleopLink
+
+STOP_KEY, RELEASE_KEY = " ", "r"
 
 # A terminal reports key presses and repeats, but not releases: each press drives for
 # this long, which exceeds the usual repeat delay of keyboards.
@@ -30,7 +34,9 @@ _DIRECTIONS = {
 _HELP = (
     ("↑ ↓ ← →", "or w s a d"),
     ("u o m .", "curves"),
-    ("space", "stop"),
+    ("space", "emergency stop"),
+    ("r", "release it"),
+    ("any other key", "halt"),
     ("+ −", "faster, slower"),
     ("q", "quit"),
 )
@@ -79,53 +85,60 @@ class KeyDriver:
 
 
 def teleop(
-    topic: Annotated[str, Argument(help="Topic of velocity commands.")] = CMD_VEL.name,
+    topic: Annotated[
+        str,
+        Argument(
+            metavar="[TOPIC]",
+            help="Topic of velocity commands. Default: that of the arbiter's operator, "
+            "or of the robot itself where no arbiter runs.",
+        ),
+    ] = "",
     speed: Annotated[float, Option(metavar="M/S", help="Forward speed.")] = 0.5,
     turn: Annotated[float, Option(metavar="RAD/S", help="Turn rate.")] = 0.8,
 ) -> None:
     """Drive a robot with the keyboard.
 
-    The robot stops when no key is held. Do not use it while a planner follows a goal:
-    both would publish commands.
+    The first key takes over from navigation, which resumes after you let go. The robot
+    stops when no key is held. Space engages the emergency stop, r releases it.
     """
     for name, value in (("--speed", speed), ("--turn", turn)):
         if not (math.isfinite(value) and value > 0):
             raise click.BadParameter(f"{name} {value} is not above 0")
     from navette.cli.keyboard import listening_to_keys
     from navette.cli.session import connect, fail, wait_for
-    from navette.msgs.geometry_msgs.msg import Twist
+    from navette.cli.teleop_link import TeleopLink
 
     driver = KeyDriver(speed, turn)
     with connect(node_name="teleop") as node:
-        publisher = node.create_publisher(Twist, topic, 1)
+        link = TeleopLink(node, topic)
         clock = node.context.clock
 
         def send() -> None:
             command = driver.command(clock.now_ns)
             if command is not None:
-                message = Twist()
-                message.linear.x, message.angular.z = command
-                publisher.publish(message)
+                link.drive(*command)
 
         def press(key: str) -> None:
             driver.press(key, clock.now_ns)
             node.executor.call_soon_threadsafe(send)
+            if key == STOP_KEY:
+                node.executor.call_soon_threadsafe(link.stop)
+            elif key == RELEASE_KEY:
+                node.executor.call_soon_threadsafe(link.release)
 
         node.create_timer(_PERIOD_S, send)
         with listening_to_keys(press) as has_keys:
             if not has_keys:
                 fail("teleop needs a terminal as standard input to read keys")
-            with _shown(driver, topic, publisher.get_subscription_count) as refresh:
+            with _shown(driver, link) as refresh:
                 node.create_timer(_PERIOD_S, refresh)
                 wait_for(node, lambda: driver.has_quit)
-                publisher.publish(Twist())
+                link.drive(0.0, 0.0)
 
 
 @contextmanager
-def _shown(
-    driver: KeyDriver, topic: str, subscription_count: Callable[[], int]
-) -> Iterator[Callable[[], None]]:
-    """Print the keys, and update one line with the speeds."""
+def _shown(driver: KeyDriver, link: "TeleopLink") -> Iterator[Callable[[], None]]:
+    """Print the keys, and update one line with the speeds and who commands."""
     from rich.console import Console
     from rich.live import Live
     from rich.text import Text
@@ -137,10 +150,17 @@ def _shown(
     console.print(keys, soft_wrap=True)
 
     def line() -> Text:
-        command = Text(f"{driver.speed_mps:.2f} m/s  {driver.turn_radps:.2f} rad/s")
-        if subscription_count() == 0:
-            return command + Text(f"   no subscription on {topic}", style="yellow")
-        return command + Text(f"   → {topic}", style="dim")
+        text = Text(f"{driver.speed_mps:.2f} m/s  {driver.turn_radps:.2f} rad/s")
+        topic = link.topic
+        if not topic:
+            return text.append(f"   no subscription on {link.wanted}", style="yellow")
+        text.append(f"   → {topic}", style="dim")
+        commander = link.commander
+        if commander.is_stopped:
+            return text.append("   EMERGENCY STOP: r releases it", style="bold red")
+        if commander.name:
+            text.append(f"   {commander.text} commands", style="cyan")
+        return text
 
     with Live(line(), console=console, auto_refresh=False, transient=True) as live:
         yield lambda: live.update(line(), refresh=True)

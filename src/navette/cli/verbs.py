@@ -47,6 +47,16 @@ VERBS = (
         "Drive a robot with the keyboard.",
     ),
     LazyCommand(
+        "stop",
+        "navette.cli.stop:stop",
+        "Stop the robot at once; it stays stopped until --release.",
+    ),
+    LazyCommand(
+        "cancel",
+        "navette.cli.cancel:cancel",
+        "Cancel every goal: the robot stops and waits for the next one.",
+    ),
+    LazyCommand(
         "tree",
         "navette.cli.tree:tree",
         "Watch the behaviour tree of the running robot, or check a tree file.",

@@ -240,7 +240,7 @@ def _teleop() -> dict[str, Any]:
     """Publish at 10 Hz; the robot stops soon after the button is released."""
     return {
         "title": "Teleop",
-        "topic": topics.CMD_VEL.name,
+        "topic": topics.CMD_VEL_TELEOP.name,
         "publishRate": 10,
         "upButton": {"field": "linear-x", "value": 0.5},
         "downButton": {"field": "linear-x", "value": -0.3},

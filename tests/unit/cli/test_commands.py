@@ -48,7 +48,7 @@ def test_every_verb_is_listed_and_can_be_called() -> None:
         assert name in shown
         assert navette(name, "--help").exit_code == 0
     assert navette("topics", "list").exit_code == 2
-    assert "Did you mean 'topic'?" in navette("topics", "list").stderr
+    assert "'topic'?" in navette("topics", "list").stderr
 
 
 def test_a_group_lists_its_commands() -> None:

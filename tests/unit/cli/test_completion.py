@@ -183,7 +183,7 @@ def test_programs_and_launch_files(
     monkeypatch.chdir(tmp_path)
     nothing: Any = SimpleNamespace(params={})
     of_arm: Any = SimpleNamespace(params={"words": ["arm"]})
-    assert installed.complete_programs(nothing, "ar") == ["arm", "artist.py"]
+    assert installed.complete_programs(nothing, "ar") == ["arbiter", "arm", "artist.py"]
     assert installed.complete_programs(of_arm, "") == ["wave"]
     assert "planner" in installed.complete_programs(nothing, "pl")
     assert installed.complete_launch_files(nothing, "ar") == ["arm"]

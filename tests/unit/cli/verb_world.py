@@ -17,6 +17,7 @@ from navette.testing import GraphHarness
 _JOINING = (
     "action.send_goal",
     "action.listing",
+    "cancel",
     "component",
     "completing",
     "doctor.command",
@@ -26,6 +27,7 @@ _JOINING = (
     "service.call",
     "service.echo",
     "service.listing",
+    "stop",
 )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from navette.msgs import topics
 from navette.msgs.diagnostic_msgs.msg import DiagnosticStatus
 from navette.runtime import Context, DurabilityPolicy, Node, QoSProfile
+from navette.runtime.stage.commander import NO_COMMANDER, Commander
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -21,6 +22,7 @@ class RunProgress:
     control: str = ""
     distance_left_m: float | None = None
     failed: bool = False
+    commander: Commander = NO_COMMANDER
     sim_time_s: float = 0.0
 
 
@@ -28,7 +30,7 @@ class MonitorNode(Node):
     """Follow the status of planner and controller.
 
     Args:
-        on_change: called when the planner's state or goal changes.
+        on_change: called when the planner's state or goal or the commander changes.
     """
 
     def __init__(
@@ -40,6 +42,7 @@ class MonitorNode(Node):
         for topic, callback in (
             (topics.PLANNER_STATUS.name, self._on_planner),
             (topics.CONTROL_STATUS.name, self._on_control),
+            (topics.COMMANDER.name, self._on_commander),
         ):
             self.create_subscription(
                 DiagnosticStatus, topic, callback, LATCHED, shared=True
@@ -64,6 +67,16 @@ class MonitorNode(Node):
 
     def _on_control(self, status: DiagnosticStatus) -> None:
         self.progress = replace(self.progress, control=status.message)
+
+    def _on_commander(self, status: DiagnosticStatus) -> None:
+        before, commander = self.progress.commander, Commander.of(status)
+        self.progress = replace(
+            self.progress,
+            commander=commander,
+            sim_time_s=self.get_clock().now().nanoseconds / 1e9,
+        )
+        if before.name != commander.name:
+            self._on_change(self.progress)
 
 
 def _number(values: dict[str, str], key: str) -> float:

@@ -30,6 +30,17 @@ class Commander(NamedTuple):
         """Whether the emergency stop is engaged."""
         return self.name == EMERGENCY_STOP
 
+    @property
+    def text(self) -> str:
+        """The commander for people: its name, and the nodes that publish for it."""
+        nodes = ", ".join(node.lstrip("/") for node in self.nodes)
+        name = self.name.replace("_", " ")
+        return f"{name} ({nodes})" if nodes else name
+
     def masks(self, topic: str) -> bool:
         """Whether commands on a topic (its full name) do not reach the wheels."""
         return topic in self.masked_topics
+
+
+NO_COMMANDER = Commander()
+"""Before the arbiter has published, and without one."""
