@@ -267,7 +267,9 @@ def test_one_run_is_found_and_a_taken_port_disturbs_no_one(
         "rclpy.spin(node)\n"
     )
     program = terminals.start("run", str(tmp_path / "ros.py"))
-    observer.spin_until(lambda: observer.received["/chatter"], "the program is heard")
+    observer.spin_until(
+        lambda: observer.received["/chatter"], "the message of the program"
+    )
     program.terminate()
     (tmp_path / "plain.py").write_text(
         "import navette\nnavette.init()\n"
@@ -293,7 +295,7 @@ def test_one_run_is_found_and_a_taken_port_disturbs_no_one(
     observer.context.try_shutdown()
 
 
-def test_a_shared_run_is_no_private_one(terminals: Terminals) -> None:
+def test_a_shared_run_is_not_registered(terminals: Terminals) -> None:
     terminals.environment["NAVETTE_ROUTER"] = f"tcp/127.0.0.1:{free_port()}"
     process = terminals.start("sim", "empty", "--port", "0", "--max-time", "30")
 
