@@ -1,12 +1,32 @@
 """Interface of an open recording, independent of the file format."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple, Self
 
 from navette.bags.qos import OfferedQos
+
+
+@dataclass(frozen=True)
+class RecordedChannel:
+    """A topic as its file describes it, for copies that keep everything."""
+
+    encoding: str
+    """Encoding of the messages: ``cdr``, ``ros1``, ``json``, …"""
+
+    schema_name: str = ""
+    schema_encoding: str = ""
+    """``ros2msg``, ``ros2idl``, ``ros1msg``, ``jsonschema``, ``protobuf``, …"""
+    schema: bytes | None = None
+    """The definition; None if the channel has no schema."""
+
+    metadata: tuple[tuple[str, str], ...] = ()
+
+    to_cdr: Callable[[bytes], bytes] | None = field(default=None, compare=False)
+    """Conversion of a recorded message to CDR; None if it is not converted."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +52,24 @@ class BagTopic:
     encoding: str = "cdr"
     """Encoding of the messages; ``cdr`` for everything recorded by ROS."""
 
+    channel: RecordedChannel | None = None
+    """As described in the file, if the file describes it."""
+
+    @cached_property
+    def as_recorded(self) -> "BagTopic":
+        """The topic with the encoding of its recorded messages."""
+        if self.channel is None or self.channel.encoding == self.encoding:
+            return self
+        return replace(self, encoding=self.channel.encoding)
+
+    @cached_property
+    def _hash(self) -> int:
+        parts = (self.name, self.type_name, self.type_hash, self.encoding, self.channel)
+        return hash(parts)
+
+    def __hash__(self) -> int:  # topics are the keys of every count
+        return self._hash
+
     @property
     def latched(self) -> bool:
         """Whether late subscribers received the last messages (transient local)."""
@@ -45,6 +83,41 @@ class BagMessage(NamedTuple):
     stamp_ns: int
     """Time of reception."""
     data: bytes
+
+
+class RecordedMessage(NamedTuple):
+    """A message with everything that was recorded, in its recorded encoding."""
+
+    topic: BagTopic
+    stamp_ns: int
+    data: bytes
+    publish_ns: int | None = None
+    """Time of publication; None if not recorded."""
+    sequence: int | None = None
+    """Number given by the publisher or recorder; None if not recorded."""
+
+
+class BagAttachment(NamedTuple):
+    """A file inside a recording."""
+
+    name: str
+    media_type: str
+    size: int
+    """Bytes of its content."""
+    log_ns: int
+    create_ns: int
+    blocks: Callable[[], Iterator[bytes]]
+    """Read the whole record's content in parts, as in the file.
+
+    Raises FileFormatError if it is damaged.
+    """
+
+
+class MetadataRecord(NamedTuple):
+    """Named texts about a recording."""
+
+    name: str
+    values: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -79,6 +152,10 @@ class BagReader(ABC):
     """All topics, each with one type."""
     problems: tuple[str, ...] = ()
     """Problems found on opening; intact parts can be read."""
+    remarks: tuple[str, ...] = ()
+    """What is unusual, but no damage: a definition that cannot be read."""
+    profile: str = ""
+    """Profile of the file's header, such as ``ros2``."""
     size: int
     """Total size of the files, bytes."""
     start_ns: int
@@ -95,6 +172,14 @@ class BagReader(ABC):
     @abstractmethod
     def compression(self) -> Mapping[str, int]:
         """Number of chunks (or files, or messages) by kind: ``none``, ``zstd``, …"""
+
+    def attachments(self) -> Sequence[BagAttachment]:
+        """Return the files inside; may scan the records once."""
+        return ()
+
+    def metadata_records(self) -> Sequence[MetadataRecord]:
+        """Return the metadata records; may scan the records once."""
+        return ()
 
     @abstractmethod
     def counts(self) -> Mapping[BagTopic, int]:
@@ -125,6 +210,26 @@ class BagReader(ABC):
         Raises:
             FileFormatError: a part of the file is damaged; names file and byte.
         """
+
+    def recorded_messages(
+        self,
+        topics: Collection[str] | None = None,
+        *,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        on_damage: OnDamage | None = None,
+        as_cdr: bool = False,
+    ) -> Iterator[RecordedMessage]:
+        """Iterate as :meth:`messages` does, over complete messages.
+
+        Args:
+            as_cdr: convert messages of ROS 1; otherwise the topics of the messages are
+                those of the reader as :attr:`BagTopic.as_recorded`.
+        """
+        for message in self.messages(
+            topics, start_ns=start_ns, end_ns=end_ns, on_damage=on_damage
+        ):
+            yield RecordedMessage(*message)
 
     @abstractmethod
     def close(self) -> None:

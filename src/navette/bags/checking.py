@@ -96,6 +96,9 @@ def check_bag(
         for problem in reader.problems:
             findings.error("problem", problem)
         counted = _check(reader, findings, on_bytes or _ignore)
+        for remark in reader.remarks:
+            findings.warning("remark", remark)
+        _check_attachments(reader, findings)
         for text in out_of_order(reader):
             findings.warning("order", text)
         _check_counts(reader, counted, findings)
@@ -124,6 +127,19 @@ def _check(
         for problem in reader.integrity():
             findings.error("database", f"{reader.path.name}: {problem}")
     return _count(reader, findings)
+
+
+def _check_attachments(reader: BagReader, findings: _Findings) -> None:
+    try:
+        for attachment in reader.attachments():
+            try:
+                for _ in attachment.blocks():
+                    pass
+            except FileFormatError as error:
+                findings.error("attachment", error.reason)
+        reader.metadata_records()
+    except FileFormatError as error:
+        findings.error("attachment or metadata", error.reason)
 
 
 def _count(reader: BagReader, findings: _Findings) -> Counter[BagTopic]:
@@ -223,6 +239,7 @@ def _span(chunk: Chunk) -> tuple[int, int, int]:
 
 
 def _check_messages(reader: BagReader, findings: _Findings) -> None:
+    """Decode all messages; only a recorded definition makes a failure an error."""
     decoders: dict[BagTopic, Decoder | None] = {}
     for message in reader.messages(on_damage=lambda damage: None):
         topic = message.topic
@@ -230,14 +247,18 @@ def _check_messages(reader: BagReader, findings: _Findings) -> None:
             if topic not in decoders:
                 decoders[topic] = None
                 decoders[topic] = Decoder(topic)
-            decoder = decoders[topic]
-            if decoder is not None:
-                decoder(message.data)
         except NavetteError as error:
-            findings.error(
-                f"{topic.name} unreadable",
-                f"{topic.name} at {message.stamp_ns} ns: {error}",
-            )
+            kind = f"{topic.name} not decoded"
+            findings.warning(kind, f"{topic.name}: not decoded: {error}")
+        decoder = decoders[topic]
+        if decoder is None:
+            continue
+        try:
+            decoder(message.data)
+        except NavetteError as error:
+            add = findings.error if topic.definition else findings.warning
+            text = f"{topic.name} at {message.stamp_ns} ns: {error}"
+            add(f"{topic.name} unreadable", text)
 
 
 def out_of_order(reader: BagReader) -> Iterator[str]:

@@ -4,14 +4,20 @@ from abc import abstractmethod
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
-from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage, OnDamage
+from navette.bags.bag import (
+    BagMessage,
+    BagReader,
+    BagTopic,
+    Damage,
+    OnDamage,
+    RecordedMessage,
+)
 from navette.bags.binary_file import BinaryFile
-from navette.bags.chunks import Chunk, ChunkMerge, ChunkQuery, Entry, FileIndex
+from navette.bags.chunks import LAST_NS, Chunk, ChunkMerge, ChunkQuery, Entry, FileIndex
 from navette.bags.compression import is_zstd, unpack_zstd_message
 from navette.errors import DecodeError, FileFormatError
 
 Convert = Callable[[bytes], bytes]
-FOREVER_NS = 2**63 - 1
 
 
 class ChunkedReader(BagReader):
@@ -29,12 +35,15 @@ class ChunkedReader(BagReader):
         self._file = file
         self._topic_of: dict[int, BagTopic] = {}
         self._convert_of: dict[int, Convert] = {}
+        self._shared: dict[BagTopic, BagTopic] = {}
         try:
             self.index = self._read_index()
         except BaseException:
             self.close()
             raise
+        self.topics = tuple(self._shared)
         self.problems = tuple(self.index.problems)
+        self.remarks = tuple(self.index.remarks)
         # Chunks without messages have no times.
         filled = [c for c in self.chunks if c.channels or c.start_ns or c.end_ns]
         self.start_ns = min((chunk.start_ns for chunk in filled), default=0)
@@ -68,11 +77,12 @@ class ChunkedReader(BagReader):
     def _add_channel(
         self, number: int, topic: BagTopic, convert: Convert | None = None
     ) -> None:
-        """Register a channel; channels with the same topic and type share a topic."""
-        same = next((t for t in self.topics if t == topic), None)
-        if same is None:
-            self.topics = (*self.topics, topic)
-        self._topic_of[number] = same or topic
+        """Register a channel; channels that are described equally share a topic.
+
+        Args:
+            convert: applied to every message, also ``as_recorded``.
+        """
+        self._topic_of[number] = self._shared.setdefault(topic, topic)
         if convert is not None:
             self._convert_of[number] = convert
 
@@ -147,40 +157,80 @@ class ChunkedReader(BagReader):
         end_ns: int | None = None,
         on_damage: OnDamage | None = None,
     ) -> Iterator[BagMessage]:
+        query = self._query(topics, start_ns, end_ns)
+        found = self._read(query, self._topic_of, self._all_to_cdr(), on_damage)
+        for topic, entry, data in found:
+            yield BagMessage(topic, entry[0], data)
+
+    def recorded_messages(
+        self,
+        topics: Collection[str] | None = None,
+        *,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        on_damage: OnDamage | None = None,
+        as_cdr: bool = False,
+    ) -> Iterator[RecordedMessage]:
+        topic_of, convert_of = self._topic_of, self._all_to_cdr()
+        if not as_cdr:
+            topic_of = {n: topic.as_recorded for n, topic in topic_of.items()}
+            convert_of = self._convert_of
+        query = self._query(topics, start_ns, end_ns)
+        found = self._read(query, topic_of, convert_of, on_damage)
+        for topic, entry, data in found:
+            yield RecordedMessage(
+                topic, entry.stamp_ns, data, entry.publish_ns, entry.sequence
+            )
+
+    def _all_to_cdr(self) -> dict[int, Convert]:
+        """Return all conversions by channel, including the optional ones."""
+        convert_of = dict(self._convert_of)
+        for number, topic in self._topic_of.items():
+            if topic.channel is not None and topic.channel.to_cdr is not None:
+                convert_of[number] = topic.channel.to_cdr
+        return convert_of
+
+    def _query(
+        self, topics: Collection[str] | None, start_ns: int | None, end_ns: int | None
+    ) -> ChunkQuery:
         channels = frozenset(
             number
             for number, topic in self._topic_of.items()
             if topics is None or topic.name in topics
         )
-        query = ChunkQuery(
+        return ChunkQuery(
             channels if topics is not None else None,
-            -FOREVER_NS if start_ns is None else start_ns,
-            FOREVER_NS if end_ns is None else end_ns,
+            0 if start_ns is None else start_ns,
+            LAST_NS if end_ns is None else end_ns,
         )
+
+    def _read(
+        self,
+        query: ChunkQuery,
+        topic_of: Mapping[int, BagTopic],
+        convert_of: Mapping[int, Convert],
+        on_damage: OnDamage | None,
+    ) -> Iterator[tuple[BagTopic, Entry, bytes]]:
         merge = ChunkMerge(self._read_chunk, self._entries, on_damage)
         for entry, data in merge.messages(self.chunks, query):
-            message = self._message(entry, data, on_damage)
-            if message is not None:
-                yield message
-
-    def _message(
-        self, entry: Entry, data: bytes, on_damage: OnDamage | None
-    ) -> BagMessage | None:
-        topic = self._topic_of.get(entry.channel)
-        convert = self._convert_of.get(entry.channel)
-        try:
+            channel = entry[1]
+            topic = topic_of.get(channel)
             if topic is None:
-                raise DecodeError(f"a message of undefined channel {entry.channel}")
-            if convert is not None:
-                data = convert(data)
-            elif is_zstd(data):  # rosbag2 with compression_mode "message"
-                data = unpack_zstd_message(data)
-        except DecodeError as error:
-            damage = Damage(
-                self.path, entry.begin, f"message at {entry.stamp_ns} ns: {error}"
-            )
-            if on_damage is None:
-                raise FileFormatError(self.path, damage.reason) from error
-            on_damage(damage)
-            return None
-        return BagMessage(topic, entry.stamp_ns, data)
+                reason = f"a message of undefined channel {channel}"
+                self._damaged(entry, reason, on_damage)
+                continue
+            try:
+                if channel in convert_of:
+                    data = convert_of[channel](data)
+                elif is_zstd(data) and topic.encoding == "cdr":
+                    data = unpack_zstd_message(data)  # compression_mode "message"
+            except DecodeError as error:
+                self._damaged(entry, str(error), on_damage)
+                continue
+            yield topic, entry, data
+
+    def _damaged(self, entry: Entry, reason: str, on_damage: OnDamage | None) -> None:
+        reason = f"message at {entry.stamp_ns} ns: {reason}"
+        if on_damage is None:
+            raise FileFormatError(self.path, reason)
+        on_damage(Damage(self.path, entry.begin, reason))

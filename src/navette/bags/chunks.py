@@ -17,6 +17,8 @@ from navette.bags.bag import Damage, OnDamage
 from navette.errors import FileFormatError
 
 CACHE_BYTES = 128 << 20
+LAST_NS = 2**64 - 1
+"""Last stamp that a file can contain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,7 @@ class FileIndex:
     counts: Counter[int] | None = None
     """Messages by channel; None if they are not known without reading the chunks."""
     problems: list[str] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
     is_scanned: bool = False
     """Whether the records were scanned, because the file's own index is unusable."""
 
@@ -56,6 +59,8 @@ class Entry(NamedTuple):
     channel: int
     begin: int
     end: int
+    publish_ns: int | None = None
+    sequence: int | None = None
 
 
 class ChunkQuery(NamedTuple):
@@ -64,6 +69,12 @@ class ChunkQuery(NamedTuple):
     channels: frozenset[int] | None
     first_ns: int
     last_ns: int
+
+    @property
+    def takes_all(self) -> bool:
+        """Whether no message can be excluded, whatever a chunk's index states."""
+        is_unbounded = self.first_ns <= 0 and self.last_ns >= LAST_NS
+        return self.channels is None and is_unbounded
 
     def may_be_in(self, chunk: Chunk) -> bool:
         if chunk.end_ns < self.first_ns or chunk.start_ns > self.last_ns:
@@ -160,7 +171,9 @@ class ChunkMerge:
     def _open(self, chunk: Chunk, query: ChunkQuery, heap: list[_Open]) -> None:
         try:
             data = self._bytes_of(chunk)
-            entries = [e for e in self._list_entries(chunk, data) if query.takes(e)]
+            entries = self._list_entries(chunk, data)
+            if not query.takes_all:
+                entries = [entry for entry in entries if query.takes(entry)]
         except FileFormatError as error:
             if self._on_damage is None:
                 raise

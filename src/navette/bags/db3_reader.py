@@ -11,9 +11,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote
 
-from navette.bags.bag import BagMessage, BagReader, BagTopic, Damage, OnDamage
+from navette.bags.bag import (
+    BagMessage,
+    BagReader,
+    BagTopic,
+    Damage,
+    OnDamage,
+    RecordedChannel,
+)
 from navette.bags.compression import LARGEST, is_zstd, unpack_zstd_message
-from navette.bags.definitions import idl_to_msg, ros2_name
+from navette.bags.definitions import msg_text, ros2_name
 from navette.bags.qos import parse_qos
 from navette.errors import DecodeError, FileFormatError
 
@@ -169,17 +176,17 @@ class Db3Reader(BagReader):
     def _columns(self, table: str) -> set[str]:
         return {row[1] for row in self._database.execute(f"PRAGMA table_info({table})")}
 
-    def _definitions(self) -> dict[str, tuple[str, str]]:
+    def _definitions(self) -> dict[str, tuple[str, bytes]]:
         query = "SELECT topic_type, encoding, encoded_message_definition"
         return {
-            str(name): (str(encoding), str(text))
+            str(name): (str(encoding), _octets(text))
             for name, encoding, text in self._database.execute(
                 f"{query} FROM message_definitions"
             )
         }
 
     def _read_topics(
-        self, columns: set[str], definitions: dict[str, tuple[str, str]]
+        self, columns: set[str], definitions: dict[str, tuple[str, bytes]]
     ) -> None:
         optional = [
             name if name in columns else "''"
@@ -189,26 +196,33 @@ class Db3Reader(BagReader):
         for number, name, type_name, encoding, qos, hash_ in self._database.execute(
             f"{query} FROM topics ORDER BY id"
         ):
-            topic = BagTopic(
+            schema_encoding, schema = _definition_of(str(type_name), definitions)
+            metadata = {
+                "offered_qos_profiles": str(qos or ""),
+                "topic_type_hash": str(hash_ or ""),
+            }
+            recorded = RecordedChannel(
+                str(encoding),
+                str(type_name),
+                schema_encoding,
+                schema,
+                tuple(metadata.items()),
+            )
+            try:
+                text = msg_text(recorded)
+            except FileFormatError as error:
+                self.remarks += (str(error),)
+                text = ""
+            self._topic_of[number] = BagTopic(
                 str(name),
-                ros2_name(str(type_name)),
-                self._text(str(type_name), definitions),
+                ros2_name(str(type_name)) if encoding == "cdr" else str(type_name),
+                text,
                 str(hash_ or ""),
                 parse_qos(qos),
                 str(encoding),
+                recorded if schema_encoding else None,
             )
-            self._topic_of[number] = topic
         self.topics = tuple(dict.fromkeys(self._topic_of.values()))
-
-    def _text(self, type_name: str, definitions: dict[str, tuple[str, str]]) -> str:
-        encoding, text = definitions.get(type_name, ("", ""))
-        if encoding == "ros2idl":
-            try:
-                return idl_to_msg(ros2_name(type_name), text)
-            except FileFormatError as error:
-                self.problems += (str(error),)
-                return ""
-        return text if encoding == "ros2msg" else ""
 
     # -- messages ------------------------------------------------------------------
 
@@ -252,7 +266,7 @@ class Db3Reader(BagReader):
         try:
             if not isinstance(data, bytes):
                 raise DecodeError("no data")
-            if is_zstd(data):
+            if is_zstd(data) and self._topic_of[row.topic].encoding == "cdr":
                 data = unpack_zstd_message(data)
         except DecodeError as error:
             reason = f"message {row.id} at {row.stamp_ns} ns: {error}"
@@ -330,3 +344,17 @@ def _open(uri: str) -> sqlite3.Connection:
 
 def _text(data: bytes) -> str:
     return data.decode("utf-8", "replace")
+
+
+def _octets(text: object) -> bytes:
+    return text if isinstance(text, bytes) else str(text or "").encode()
+
+
+def _definition_of(
+    type_name: str, definitions: Mapping[str, tuple[str, bytes]]
+) -> tuple[str, bytes | None]:
+    """Return encoding and text of a type; rosbag2 stores that of an event's service."""
+    found = definitions.get(type_name)
+    if found is None and type_name.endswith("_Event"):
+        found = definitions.get(type_name.removesuffix("_Event"))
+    return found or ("", None)

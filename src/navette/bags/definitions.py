@@ -1,5 +1,6 @@
 """Convert recorded definitions to ``ros2msg`` text."""
 
+from navette.bags.bag import RecordedChannel
 from navette.errors import FileFormatError
 from navette.msgs.definition_sections import MAX_CHARACTERS
 
@@ -10,6 +11,18 @@ def ros2_name(name: str) -> str:
     """``pkg/Name`` → ``pkg/msg/Name``; other names stay."""
     package, slash, rest = name.partition("/")
     return f"{package}/msg/{rest}" if slash and "/" not in rest else name
+
+
+def msg_text(channel: RecordedChannel) -> str:
+    """Return a channel's definition as ``ros2msg`` text; "" if it has none.
+
+    Raises:
+        FileFormatError: an invalid IDL definition.
+    """
+    text = (channel.schema or b"").decode("utf-8", "replace")
+    if channel.schema_encoding == "ros2idl":
+        return idl_to_msg(ros2_name(channel.schema_name), text)
+    return text if channel.schema_encoding == "ros2msg" else ""
 
 
 def idl_to_msg(name: str, text: str) -> str:

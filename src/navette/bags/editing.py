@@ -1,21 +1,22 @@
 """Create a recording from others: convert, filter, merge, cut, recover."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from navette.bags.bag import BagMessage, BagReader, BagTopic, OnDamage
+from navette.bags.bag import BagReader, BagTopic, Damage, OnDamage, RecordedMessage
 from navette.bags.folder_reader import FolderReader, Metadata
 from navette.bags.message_types import Decoder
 from navette.bags.opening import open_bag
-from navette.bags.topic_writer import TopicWriter
+from navette.bags.topic_writer import TopicWriter, UnsupportedTopicError
 from navette.bags.writing import completed
 from navette.errors import FileFormatError, InvalidValueError
 from navette.msgs.expressions import Expression, ExpressionError
 
-Progress = Callable[[BagMessage], None]
+Progress = Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -65,14 +66,14 @@ class _Condition:
         self._expression = Expression(text, names=("topic", "t", "m"))
         self._decoders: dict[BagTopic, Decoder] = {}
 
-    def __call__(self, message: BagMessage) -> bool:
+    def __call__(self, message: RecordedMessage) -> bool:
         try:
             return bool(self._expression.value(_Names(self, message)))
         except ExpressionError as error:
             where = f"{message.topic.name} at {message.stamp_ns} ns"
             raise InvalidValueError(f"{where}: {error}") from None
 
-    def decode(self, message: BagMessage) -> Any:
+    def decode(self, message: RecordedMessage) -> Any:
         decoder = self._decoders.get(message.topic)
         if decoder is None:
             decoder = self._decoders[message.topic] = Decoder(message.topic)
@@ -82,7 +83,7 @@ class _Condition:
 class _Names(dict[str, Any]):
     """Variables of the expression; ``m`` is decoded only when it is read."""
 
-    def __init__(self, condition: _Condition, message: BagMessage) -> None:
+    def __init__(self, condition: _Condition, message: RecordedMessage) -> None:
         super().__init__(topic=message.topic.name, t=message.stamp_ns / 1e9)
         self._condition = condition
         self._message = message
@@ -120,9 +121,11 @@ def copy(
     on_message: Progress | None = None,
     on_damage: OnDamage | None = None,
 ) -> int:
-    """Write the selected messages; return their number.
+    """Write the selected messages, all attachments and metadata; return their number.
 
-    The writer is closed, or abandoned after an error.
+    Messages keep their encoding, publish times and sequence numbers, and topics their
+    schemas and metadata, as far as the format can hold them; ``writer.losses`` lists
+    the rest. The writer is closed, or abandoned after an error.
 
     Raises:
         FileFormatError: a part cannot be read (without ``on_damage``) or written.
@@ -130,7 +133,8 @@ def copy(
     """
     selected = selected or MessageFilter()
     try:
-        for message in _chosen(reader, selected, on_message, on_damage):
+        _copy_extras(reader, writer, on_damage)
+        for message in _chosen(reader, writer, selected, on_message, on_damage):
             writer.write(message)
     except BaseException:
         writer.abandon()
@@ -139,22 +143,69 @@ def copy(
     return writer.message_count
 
 
+def _copy_extras(
+    reader: BagReader, writer: TopicWriter, on_damage: OnDamage | None
+) -> None:
+    def attempt(work: Callable[[], None]) -> None:
+        try:
+            work()
+        except FileFormatError as error:
+            if on_damage is None or error.path == writer.path:
+                raise
+            on_damage(Damage(error.path, 0, error.reason))
+
+    def copy_attachments() -> None:
+        for attachment in reader.attachments():
+            attempt(partial(writer.add_attachment, attachment))
+
+    def copy_metadata() -> None:
+        for record in reader.metadata_records():
+            attempt(partial(writer.add_metadata, record))
+
+    attempt(copy_attachments)
+    attempt(copy_metadata)
+
+
 def _chosen(
     reader: BagReader,
+    writer: TopicWriter,
     selected: MessageFilter,
     on_message: Progress | None,
     on_damage: OnDamage | None,
-) -> Iterator[BagMessage]:
+) -> Iterator[RecordedMessage]:
     expression = _Condition(selected.expression) if selected.expression else None
-    taken = {t: completed(t) for t in reader.topics if selected.takes(t)}
-    for message in reader.messages(
+    topics = [topic for topic in reader.topics if selected.takes(topic)]
+    if writer.keeps_encoding:
+        topics = [topic.as_recorded for topic in topics]
+    taken = {topic: completed(topic) for topic in topics}
+    refused = _add_topics(writer, taken)
+    for message in reader.recorded_messages(
         {topic.name for topic in taken},
         start_ns=selected.start_ns,
         end_ns=selected.end_ns,
         on_damage=on_damage,
+        as_cdr=not writer.keeps_encoding,
     ):
         if on_message is not None:
-            on_message(message)
+            on_message(message.stamp_ns)
         topic = taken.get(message.topic)
-        if topic is not None and (expression is None or expression(message)):
-            yield message._replace(topic=topic)
+        if topic is None or (expression is not None and not expression(message)):
+            continue
+        if topic in refused:
+            writer.losses.add(refused[topic], topic.name)
+            continue
+        yield message._replace(topic=topic)
+
+
+def _add_topics(
+    writer: TopicWriter, taken: Mapping[BagTopic, BagTopic]
+) -> dict[BagTopic, str]:
+    """Add all topics, also those without messages; return those refused, as losses."""
+    refused: dict[BagTopic, str] = {}
+    for topic in taken.values():
+        try:
+            writer.add_topic(topic)
+        except UnsupportedTopicError as error:
+            refused[topic] = f"messages: {error.reason}"
+            writer.losses.add(refused[topic], topic.name, 0)
+    return refused

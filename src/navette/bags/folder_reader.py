@@ -1,15 +1,23 @@
 """Read rosbag2 folders: ``metadata.yaml`` and one or more files."""
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import yaml
 
-from navette.bags.bag import BagMessage, BagReader, BagTopic, OnDamage
+from navette.bags.bag import (
+    BagAttachment,
+    BagMessage,
+    BagReader,
+    BagTopic,
+    MetadataRecord,
+    OnDamage,
+    RecordedMessage,
+)
 from navette.bags.qos import parse_qos
 from navette.errors import FileFormatError
 from navette.untrusted.budget import METADATA as METADATA_BUDGET
@@ -17,6 +25,7 @@ from navette.untrusted.files import open_regular
 from navette.untrusted.yaml_input import BoundedLoader, line_of, load_yaml, problem_of
 
 METADATA = "metadata.yaml"
+_AnyMessage = TypeVar("_AnyMessage", BagMessage, RecordedMessage)
 
 
 class _MetadataLoader(BoundedLoader):
@@ -117,6 +126,11 @@ class FolderReader(BagReader):
             *problems,
             *(f"{names[r]}: {each}" for r in readers for each in r.problems),
         )
+        self.remarks = tuple(
+            f"{names[r]}: {each}" for r in readers for each in r.remarks
+        )
+        profiles = {reader.profile for reader in readers}
+        self.profile = profiles.pop() if len(profiles) == 1 else ""
         self._topic_of = {
             topic: self._completed(topic) for r in readers for topic in r.topics
         }
@@ -154,9 +168,16 @@ class FolderReader(BagReader):
             found.update(reader.compression)
         return found
 
+    def attachments(self) -> Sequence[BagAttachment]:
+        return [each for reader in self.readers for each in reader.attachments()]
+
+    def metadata_records(self) -> Sequence[MetadataRecord]:
+        return [each for reader in self.readers for each in reader.metadata_records()]
+
     def counts(self) -> Mapping[BagTopic, int]:
         known = self._metadata.counts
-        if known and not self.problems:
+        names = {(topic.name, topic.type_name) for topic in self.topics}
+        if known and not self.problems and len(names) == len(self.topics):
             return {t: known.get((t.name, t.type_name), 0) for t in self.topics}
         found = Counter(dict.fromkeys(self.topics, 0))
         for reader in self.readers:
@@ -182,12 +203,42 @@ class FolderReader(BagReader):
                 topics, start_ns=start_ns, end_ns=end_ns, on_damage=on_damage
             )
 
+        for message in self._merged(opened, start_ns):
+            yield message._replace(topic=self._topic_of[message.topic])
+
+    def recorded_messages(
+        self,
+        topics: Collection[str] | None = None,
+        *,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        on_damage: OnDamage | None = None,
+        as_cdr: bool = False,
+    ) -> Iterator[RecordedMessage]:
+        def opened(reader: BagReader) -> Iterator[RecordedMessage]:
+            return reader.recorded_messages(
+                topics,
+                start_ns=start_ns,
+                end_ns=end_ns,
+                on_damage=on_damage,
+                as_cdr=as_cdr,
+            )
+
+        topic_of = self._topic_of
+        if not as_cdr:
+            topic_of = {k.as_recorded: t.as_recorded for k, t in topic_of.items()}
+        for message in self._merged(opened, start_ns):
+            yield message._replace(topic=topic_of[message.topic])
+
+    def _merged(
+        self, opened: Callable[[BagReader], Iterator[_AnyMessage]], start_ns: int | None
+    ) -> Iterator[_AnyMessage]:
         waiting = [
             reader
             for reader in reversed(self.readers)
             if start_ns is None or reader.end_ns >= start_ns
         ]
-        heap: list[tuple[int, int, BagMessage, Iterator[BagMessage]]] = []
+        heap: list[tuple[int, int, _AnyMessage, Iterator[_AnyMessage]]] = []
         order = 0
         while heap or waiting:
             # A file is opened when its first stamp is reached.
@@ -199,7 +250,7 @@ class FolderReader(BagReader):
                     heappush(heap, (first.stamp_ns, order, first, rest))
             if heap:
                 _, place, message, rest = heappop(heap)
-                yield message._replace(topic=self._topic_of[message.topic])
+                yield message
                 following = next(rest, None)
                 if following is not None:
                     heappush(heap, (following.stamp_ns, place, following, rest))

@@ -7,13 +7,15 @@ times as long per message.
 
 import struct
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from tempfile import SpooledTemporaryFile
 from typing import IO, Any
 
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
+    AttachmentIndex,
     Channel,
     Chunk,
     ChunkIndex,
@@ -21,12 +23,16 @@ from mcap.records import (
     Footer,
     Header,
     McapRecord,
+    Metadata,
+    MetadataIndex,
     Schema,
     Statistics,
     SummaryOffset,
 )
 
+from navette.bags.bag import BagAttachment
 from navette.bags.mcap_records import MAGIC
+from navette.errors import InvalidValueError
 
 COMPRESSIONS = ("zstd", "lz4", "none")
 # Opcode, content length; channel, sequence, log time, publish time (ns).
@@ -34,6 +40,9 @@ _MESSAGE = struct.Struct("<BQHIQQ")
 _MESSAGE_HEAD = _MESSAGE.size - 9
 # Opcode, content length; channel, bytes of the entries that follow.
 _INDEX = struct.Struct("<BQHI")
+_RECORD_HEAD = struct.Struct("<BQ")
+_MOST_IDS = 2**16 - 1
+_SPOOL_BYTES = 1 << 20
 _FOOTER_START = struct.Struct("<BQQQ")
 # Maximum bytes: end of data, statistics, offsets and footer; index of a chunk; entries
 # of a channel in the chunk index and statistics.
@@ -62,7 +71,10 @@ class McapFile:
         self._position = 0
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
-        self._sequences: list[int] = [0]
+        self._attachments: list[AttachmentIndex] = []
+        self._metadata: list[MetadataIndex] = []
+        #: Messages by channel.
+        self._counts: list[int] = [0]
         self._compression = "" if compression == "none" else compression
         self._compress = _compressor(compression)
         self._chunk_indexes: list[ChunkIndex] = []
@@ -79,7 +91,7 @@ class McapFile:
 
     @property
     def message_count(self) -> int:
-        return sum(self._sequences)
+        return sum(self._counts)
 
     @property
     def size(self) -> int:
@@ -88,7 +100,7 @@ class McapFile:
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Return the schema id for :meth:`add_channel`."""
-        number = len(self._schemas) + 1
+        number = _next_id(self._schemas, "schemas")
         schema = Schema(id=number, name=name, encoding=encoding, data=data)
         self._schemas.append(schema)
         self._add_to_both(_record(schema))
@@ -98,7 +110,7 @@ class McapFile:
         self, topic: str, encoding: str, schema: int, metadata: dict[str, str]
     ) -> int:
         """Return the channel id for :meth:`add_message`."""
-        number = len(self._channels) + 1
+        number = _next_id(self._channels, "channels")
         channel = Channel(
             id=number,
             topic=topic,
@@ -107,12 +119,13 @@ class McapFile:
             metadata=metadata,
         )
         self._channels.append(channel)
-        self._sequences.append(0)
+        self._counts.append(0)
         self._add_to_both(_record(channel))
         return number
 
     def add_message(self, channel: int, stamp_ns: int, payload: bytes) -> None:
-        self._sequences[channel] = sequence = self._sequences[channel] + 1
+        """Append a message; its sequence is its number in the channel, from 1."""
+        self._counts[channel] = sequence = self._counts[channel] + 1
         length = _MESSAGE_HEAD + len(payload)
         index = self._index.setdefault(channel, [])
         index.append(stamp_ns)
@@ -121,6 +134,51 @@ class McapFile:
         self._parts.append(head)
         self._parts.append(payload)
         self.chunk_size += 9 + length
+
+    def set_recorded(self, publish_ns: int | None, sequence: int | None) -> None:
+        """Give the last message its recorded time of publication and sequence."""
+        parts = list(_MESSAGE.unpack(self._parts[-2]))
+        if sequence is not None:
+            parts[3] = sequence
+        if publish_ns is not None:
+            parts[5] = publish_ns
+        self._parts[-2] = _MESSAGE.pack(*parts)
+
+    def add_attachment(self, attachment: BagAttachment) -> None:
+        """Write an attachment, between chunks."""
+        length = 0
+        position = self._position
+        with SpooledTemporaryFile(max_size=_SPOOL_BYTES) as spool:
+            for block in attachment.blocks():
+                length += len(block)
+                spool.write(block)
+            spool.seek(0)
+            self._write(_RECORD_HEAD.pack(Opcode.ATTACHMENT, length))
+            while block := spool.read(_SPOOL_BYTES):
+                self._write(block)
+        self._add_index(
+            self._attachments,
+            AttachmentIndex(
+                offset=position,
+                length=self._position - position,
+                log_time=attachment.log_ns,
+                create_time=attachment.create_ns,
+                data_size=attachment.size,
+                name=attachment.name,
+                media_type=attachment.media_type,
+            ),
+        )
+
+    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Write a metadata record, between chunks."""
+        record = _record(Metadata(name=name, metadata=dict(values)))
+        index = MetadataIndex(offset=self._position, length=len(record), name=name)
+        self._write(record)
+        self._add_index(self._metadata, index)
+
+    def _add_index(self, indexes: list[Any], index: McapRecord) -> None:
+        indexes.append(index)
+        self.index_size += len(_record(index))
 
     def end_chunk(self) -> None:
         """Write the chunk and its index, if it has messages."""
@@ -168,7 +226,7 @@ class McapFile:
         while self._chunk_indexes and _end(self._chunk_indexes[-1]) > size:
             self._chunk_indexes.pop()
             self._chunk_counts.pop()
-        self._sequences = [0] + [
+        self._counts = [0] + [
             sum(counts.get(channel.id, 0) for counts in self._chunk_counts)
             for channel in self._channels
         ]
@@ -220,6 +278,8 @@ class McapFile:
             (Opcode.CHANNEL, list(self._channels)),
             (Opcode.STATISTICS, [self._statistics()]),
             (Opcode.CHUNK_INDEX, list(self._chunk_indexes)),
+            (Opcode.ATTACHMENT_INDEX, list(self._attachments)),
+            (Opcode.METADATA_INDEX, list(self._metadata)),
         )
         summary = b""
         offsets = []
@@ -237,16 +297,16 @@ class McapFile:
 
     def _statistics(self) -> Statistics:
         chunks = self._chunk_indexes
-        counts = {n: count for n, count in enumerate(self._sequences) if count}
+        counts = {n: count for n, count in enumerate(self._counts) if count}
         return Statistics(
-            attachment_count=0,
+            attachment_count=len(self._attachments),
             channel_count=len(self._channels),
             channel_message_counts=counts,
             chunk_count=len(chunks),
             message_count=self.message_count,
             message_start_time=min((c.message_start_time for c in chunks), default=0),
             message_end_time=max((c.message_end_time for c in chunks), default=0),
-            metadata_count=0,
+            metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )
 
@@ -258,6 +318,13 @@ class McapFile:
     def _write(self, data: bytes) -> None:
         self.stream.write(data)
         self._position += len(data)
+
+
+def _next_id(known: Sequence[object], what: str) -> int:
+    """Return the id of the next schema or channel: 16 bits, from 1."""
+    if len(known) >= _MOST_IDS:
+        raise InvalidValueError(f"more than {_MOST_IDS} {what} in one .mcap file")
+    return len(known) + 1
 
 
 def _end(chunk: ChunkIndex) -> int:

@@ -11,6 +11,7 @@ from mcap.records import Channel, Footer, Header, Schema, Statistics
 
 from navette.bags.binary_file import reason_of, walk
 from navette.bags.chunks import Chunk, FileIndex
+from navette.bags.mcap_extras import ExtraPositions
 from navette.bags.mcap_records import (
     HEAD,
     MAGIC,
@@ -42,6 +43,8 @@ class McapIndex(FileIndex):
 
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
+    extras: ExtraPositions = field(default_factory=ExtraPositions)
+    profile: str = ""
 
 
 def read_index(file: RecordFile) -> McapIndex:
@@ -99,11 +102,13 @@ def _index_of_summary(file: RecordFile, start: int, summary: bytes) -> McapIndex
         elif opcode == Opcode.STATISTICS:
             statistics = parse(Statistics, content)
         else:
+            index.extras.note_index(opcode, content)
             _note(index, opcode, content)
     index.chunks.sort(key=lambda chunk: chunk.position)
     if statistics is None or not _is_complete(index, statistics):
         return None
     index.counts = Counter(statistics.channel_message_counts)
+    index.extras.stated = statistics.attachment_count, statistics.metadata_count
     return index
 
 
@@ -125,7 +130,8 @@ def _read_header(file: RecordFile, index: McapIndex) -> int:
         index.problems.append("there is no header")
         return head.position
     try:
-        parse(Header, file.content(head, 1 << 16))
+        header: Header = parse(Header, file.content(head, 1 << 16))
+        index.profile = header.profile
     except (DecodeError, FileFormatError) as error:
         index.problems.append(f"the header cannot be read ({error})")
     return head.end
@@ -155,6 +161,8 @@ def scan(file: RecordFile) -> McapIndex:
     except FileFormatError as error:
         index.problems.append(f"the header cannot be read ({error.reason})")
     walk(file, start, walker.visit, partial(_next_chunk, file), index.problems)
+    found = index.extras
+    found.stated = len(found.attachments), len(found.metadata)
     return index
 
 
@@ -197,6 +205,8 @@ class _Walk:
             self._message(head)
         elif head.opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
             _note(self._index, head.opcode, self._file.content(head))
+        else:
+            self._index.extras.note_record(head)
         return head.end
 
     def _chunk(self, head: Head) -> None:

@@ -23,6 +23,7 @@ from navette.errors import DecodeError, FileFormatError
 MAGIC = b"\x89MCAP0\r\n"
 HEAD = struct.Struct("<BQ")
 MESSAGE = struct.Struct("<HIQQ")
+_MESSAGE_RECORD = struct.Struct("<BQHIQQ")
 _CHUNK = struct.Struct("<QQQII")  # times, size, crc, length of the compression's name
 _CHUNK_INDEX = struct.Struct("<QQQQI")
 _LENGTH = struct.Struct("<Q")
@@ -108,35 +109,49 @@ def read_chunk(file: RecordFile, chunk: Chunk) -> bytes:
 
 
 def records_in(path: Path, chunk: Chunk, data: bytes) -> Iterator[tuple[int, int, int]]:
-    """Opcode, begin and end of the records in a chunk's bytes."""
-    position, size = 0, len(data)
-    while position < size:
-        if position + HEAD.size > size:
-            raise FileFormatError(
-                path, f"byte {chunk.position}: chunk ends inside a record"
-            )
-        opcode, length = HEAD.unpack_from(data, position)
-        begin = position + HEAD.size
-        position = begin + length
-        if position > size:
-            raise FileFormatError(
-                path, f"byte {chunk.position}: chunk ends inside a record"
-            )
-        yield opcode, begin, position
+    """Opcode, begin and end of the records in a chunk's bytes.
+
+    Raises:
+        FileFormatError: a record exceeds the chunk, or is of kind 0, which is invalid:
+            a chunk of zeros is not a million records.
+    """
+    position = 0
+    while position < len(data):
+        found = _record_at(path, chunk, data, position)
+        yield found
+        position = found[2]
+
+
+def _record_at(
+    path: Path, chunk: Chunk, data: bytes, position: int
+) -> tuple[int, int, int]:
+    begin = position + HEAD.size
+    opcode, length = HEAD.unpack_from(data, position) if begin <= len(data) else (0, 0)
+    where = f"byte {chunk.position}: chunk"
+    if begin + length > len(data):
+        raise FileFormatError(path, f"{where} ends inside a record")
+    if opcode == 0:
+        raise FileFormatError(path, f"{where}, at {position}: record of kind 0")
+    if opcode == Opcode.MESSAGE and length < MESSAGE.size:
+        raise FileFormatError(path, f"{where}, at {position}: message without a head")
+    return opcode, begin, begin + length
 
 
 def message_entries(path: Path, chunk: Chunk, data: bytes) -> list[Entry]:
     """The messages in a chunk's bytes, as they lie."""
     entries: list[Entry] = []
-    unpack_message = MESSAGE.unpack_from
-    for opcode, begin, end in records_in(path, chunk, data):
-        if opcode == Opcode.MESSAGE:
-            if end - begin < MESSAGE.size:
-                raise FileFormatError(
-                    path, f"byte {chunk.position}: message without a head"
-                )
-            channel, _, stamp, _ = unpack_message(data, begin)
-            entries.append(Entry(stamp, channel, begin + MESSAGE.size, end))
+    position, size, message = 0, len(data), int(Opcode.MESSAGE)
+    unpack, head_size = _MESSAGE_RECORD.unpack_from, _MESSAGE_RECORD.size
+    last = size - head_size
+    while position < size:
+        if position <= last and data[position] == message:
+            _, length, channel, sequence, stamp, published = unpack(data, position)
+            begin, end = position + head_size, position + HEAD.size + length
+            if begin <= end <= size:
+                entries.append(Entry(stamp, channel, begin, end, published, sequence))
+                position = end
+                continue
+        position = _record_at(path, chunk, data, position)[2]
     return entries
 
 

@@ -1,9 +1,10 @@
 """Deserialization of recorded messages."""
 
+from dataclasses import replace
 from typing import Any
 
 from navette.bags.bag import BagTopic
-from navette.errors import FileFormatError
+from navette.errors import FileFormatError, UnknownNameError
 from navette.msgs import Message, deserialize, get_interface, register_definition
 
 
@@ -22,7 +23,7 @@ def message_class(topic: BagTopic) -> type[Message]:
         raise FileFormatError(
             topic.name, f"{topic.encoding} messages are not ROS messages"
         )
-    if topic.definition:
+    if topic.definition or (is_empty_type(topic) and not _is_installed(topic)):
         found = register_definition(topic.type_name, topic.definition, private=True)
     else:
         found = get_interface(topic.type_name)
@@ -31,11 +32,40 @@ def message_class(topic: BagTopic) -> type[Message]:
     return found
 
 
+def is_empty_type(topic: BagTopic) -> bool:
+    """Whether the recorded definition has no text: a message without fields."""
+    recorded = topic.channel
+    return (
+        recorded is not None
+        and recorded.schema_encoding == "ros2msg"
+        and recorded.schema == b""
+    )
+
+
+def _is_installed(topic: BagTopic) -> bool:
+    try:
+        get_interface(topic.type_name)
+    except UnknownNameError:
+        return False
+    return True
+
+
+_HEADER_SIZE = 4
+"""CDR header; messages without fields may consist of it, or of nothing at all."""
+
+
 class Decoder:
     """Deserializes the messages of one topic."""
 
     def __init__(self, topic: BagTopic) -> None:
+        recorded = topic.channel
+        self._to_cdr = None
+        if recorded is not None and recorded.encoding == topic.encoding:
+            self._to_cdr = recorded.to_cdr
+        if self._to_cdr is not None:
+            topic = replace(topic, encoding="cdr")
         self.message_class = message_class(topic)
+        self._is_fieldless = not self.message_class.get_fields_and_field_types()
 
     def __call__(self, data: bytes) -> Any:
         """Deserialize a message.
@@ -43,4 +73,8 @@ class Decoder:
         Raises:
             DecodeError: invalid bytes.
         """
+        if self._to_cdr is not None:
+            data = self._to_cdr(data)
+        if len(data) <= _HEADER_SIZE and self._is_fieldless:
+            return self.message_class()
         return deserialize(data, self.message_class)

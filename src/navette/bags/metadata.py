@@ -28,27 +28,32 @@ class FileFacts:
         self.count += 1
 
 
-def write_metadata(
-    folder: Path, files: Sequence[FileFacts], topics: Sequence[tuple[BagTopic, int]]
-) -> None:
-    """Write the metadata of a folder of ``.mcap`` files atomically.
+def information(
+    files: Sequence[FileFacts],
+    topics: Sequence[tuple[BagTopic, int]],
+    *,
+    storage: str = "mcap",
+    compression: str = "",
+) -> dict[str, Any]:
+    """Return the content of the key ``rosbag2_bagfile_information``.
 
-    Raises:
-        OSError: the disk is full.
+    Args:
+        topics: with the number of their messages.
+        compression: of whole files: ``zstd`` or "".
     """
     filled = [each for each in files if each.count]
     start = min((each.start_ns for each in filled), default=0)
     end = max((each.end_ns for each in filled), default=0)
-    found: dict[str, Any] = {
+    return {
         "version": VERSION,
-        "storage_identifier": "mcap",
+        "storage_identifier": storage,
         **_span(start, end, sum(each.count for each in files)),
         "topics_with_message_count": [
             {"topic_metadata": _topic(topic), "message_count": count}
             for topic, count in topics
         ],
-        "compression_format": "",
-        "compression_mode": "",
+        "compression_format": compression,
+        "compression_mode": "file" if compression else "",
         "relative_file_paths": [each.name for each in files],
         "files": [
             {"path": each.name, **_span(each.start_ns, each.end_ns, each.count)}
@@ -57,6 +62,22 @@ def write_metadata(
         "custom_data": None,
         "ros_distro": "navette",
     }
+
+
+def write_metadata(
+    folder: Path,
+    files: Sequence[FileFacts],
+    topics: Sequence[tuple[BagTopic, int]],
+    *,
+    storage: str = "mcap",
+    compression: str = "",
+) -> None:
+    """Write the metadata of a folder atomically.
+
+    Raises:
+        OSError: the disk is full.
+    """
+    found = information(files, topics, storage=storage, compression=compression)
     text = yaml.safe_dump({"rosbag2_bagfile_information": found}, sort_keys=False)
     part = folder / ".metadata.yaml.part"
     part.write_text(text, "utf-8")

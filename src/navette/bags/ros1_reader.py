@@ -4,11 +4,11 @@ import struct
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from navette.bags.bag import BagTopic
+from navette.bags.bag import BagTopic, RecordedChannel
 from navette.bags.chunked_reader import ChunkedReader
 from navette.bags.chunks import Chunk, Entry, FileIndex
 from navette.bags.qos import OfferedQos
-from navette.bags.ros1_index import read_index, scan
+from navette.bags.ros1_index import Connection, read_index, scan
 from navette.bags.ros1_messages import ros1_type
 from navette.bags.ros1_records import (
     BagFile,
@@ -40,17 +40,15 @@ class Ros1Reader(ChunkedReader):
     def _read_index(self) -> FileIndex:
         index = read_index(self._file)
         for number, connection in sorted(index.connections.items()):
+            qos = _LATCHED if connection.latching else ()
             try:
                 ros1 = ros1_type(connection.type_name, connection.definition)
             except NavetteError as error:
-                index.problems.append(f"topic {connection.topic}: {error}")
+                name = connection.topic
+                index.remarks.append(f"topic {name}: not converted to ROS 2: {error}")
+                self._add_channel(number, _unconverted(connection, qos))
                 continue
-            topic = BagTopic(
-                connection.topic,
-                ros1.type_name,
-                ros1.definition,
-                qos=_LATCHED if connection.latching else (),
-            )
+            topic = BagTopic(connection.topic, ros1.type_name, ros1.definition, qos=qos)
             self._add_channel(number, topic, ros1.to_cdr)
         return index
 
@@ -84,3 +82,11 @@ class Ros1Reader(ChunkedReader):
         except (DecodeError, struct.error) as error:
             raise self._file.error(position, str(error)) from error
         return found or None
+
+
+def _unconverted(connection: Connection, qos: tuple[OfferedQos, ...]) -> BagTopic:
+    """Return the topic of a connection whose definition cannot be read."""
+    text = connection.definition.encode()
+    name = connection.type_name
+    recorded = RecordedChannel("ros1", name, "ros1msg", text)
+    return BagTopic(connection.topic, name, qos=qos, encoding="ros1", channel=recorded)

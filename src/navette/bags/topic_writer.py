@@ -4,38 +4,95 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import Any
 
-from navette.bags.bag import BagMessage, BagTopic
+from navette.bags.bag import (
+    BagAttachment,
+    BagMessage,
+    BagTopic,
+    MetadataRecord,
+    RecordedMessage,
+)
 from navette.errors import FileFormatError
+
+_NAMED = 3
+
+
+class UnsupportedTopicError(FileFormatError):
+    """A format cannot represent a topic; its messages are left out."""
+
+
+class Losses:
+    """Parts of a recording that its copy lacks, counted by kind and named."""
+
+    def __init__(self) -> None:
+        self._counts: dict[str, dict[str, int]] = {}
+
+    def add(self, kind: str, name: str, count: int = 1) -> None:
+        """Count a part.
+
+        Args:
+            kind: in the plural: ``attachments``, ``publish times``, …
+            name: of the part or of its topic.
+        """
+        names = self._counts.setdefault(kind, {})
+        names[name] = names.get(name, 0) + count
+
+    def __bool__(self) -> bool:
+        return bool(self._counts)
+
+    @property
+    def lines(self) -> list[str]:
+        """One line for each kind: number and names."""
+        lines = []
+        for kind, names in self._counts.items():
+            shown = ", ".join(list(names)[:_NAMED])
+            more = len(names) - _NAMED
+            rest = f" and {more} more" if more > 0 else ""
+            lines.append(f"{sum(names.values())} {kind} ({shown}{rest})")
+        return lines
 
 
 class TopicWriter(ABC):
     """Writer of a recording."""
 
+    keeps_encoding = False
+    """Whether messages of any encoding can be written, not only CDR."""
+
     def __init__(self, path: Path) -> None:
         self.path = path
         #: Messages written so far.
         self.message_count = 0
+        #: Parts that the format cannot hold.
+        self.losses = Losses()
         self._channels: dict[BagTopic, Any] = {}
 
     def add_topic(self, topic: BagTopic) -> None:
         """Add a topic, possibly without messages.
 
         Raises:
-            FileFormatError: the format cannot represent the topic.
+            UnsupportedTopicError: the format cannot represent the topic.
         """
         self.channel_of(topic)
 
     def channel_of(self, topic: BagTopic) -> Any:
         """Return the format's own record of a topic, which is added if necessary."""
-        if topic not in self._channels:
-            self._channels[topic] = self._add(topic)
-        return self._channels[topic]
+        channel = self._channels.get(topic)
+        if channel is None:
+            channel = self._channels[topic] = self._add(topic)
+        return channel
+
+    def add_attachment(self, attachment: BagAttachment) -> None:
+        """Add a file; a loss if the format has none."""
+        self.losses.add("attachments", attachment.name)
+
+    def add_metadata(self, record: MetadataRecord) -> None:
+        """Add named texts; a loss if the format has none."""
+        self.losses.add("metadata records", record.name)
 
     @abstractmethod
     def _add(self, topic: BagTopic) -> Any: ...
 
     @abstractmethod
-    def write(self, message: BagMessage) -> None:
+    def write(self, message: BagMessage | RecordedMessage) -> None:
         """Append a message; adds its topic if necessary.
 
         Raises:
@@ -53,3 +110,25 @@ class TopicWriter(ABC):
     def _error(self, error: Exception) -> FileFormatError:
         reason = getattr(error, "strerror", None) or error
         return FileFormatError(self.path, f"cannot be written: {reason}")
+
+    def _note_losses(self, message: BagMessage | RecordedMessage) -> None:
+        """Count what formats without publish times and sequence numbers lose."""
+        if not isinstance(message, RecordedMessage):
+            return
+        name = message.topic.name
+        if message.publish_ns not in (None, message.stamp_ns):
+            self.losses.add("publish times", name)
+        if message.sequence:
+            self.losses.add("sequence numbers", name)
+
+
+_KEPT_KEYS = {"offered_qos_profiles", "topic_type_hash"}
+
+
+def other_metadata(topic: BagTopic) -> list[str]:
+    """Return the keys of a channel's metadata that only MCAP can hold."""
+    if topic.channel is None:
+        return []
+    return [
+        key for key, value in topic.channel.metadata if value and key not in _KEPT_KEYS
+    ]

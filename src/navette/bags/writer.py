@@ -16,7 +16,13 @@ from io import BufferedWriter, BytesIO, FileIO
 from pathlib import Path
 from typing import IO, cast
 
-from navette.bags.bag import BagTopic
+from navette.bags.bag import (
+    BagAttachment,
+    BagTopic,
+    MetadataRecord,
+    RecordedChannel,
+    RecordedMessage,
+)
 from navette.bags.mcap_file import COMPRESSIONS, McapFile
 from navette.bags.qos import qos_text
 from navette.bags.recording_file import RecordingFile
@@ -37,6 +43,7 @@ class BagWriter:
     Args:
         compression: of the chunks: ``zstd``, ``lz4`` or ``none``.
         overwrite: replace an existing bag that no other process records.
+        profile: of the header.
 
     Raises:
         InvalidValueError: another compression.
@@ -48,7 +55,12 @@ class BagWriter:
     """
 
     def __init__(
-        self, path: Path, *, compression: str = "zstd", overwrite: bool = False
+        self,
+        path: Path,
+        *,
+        compression: str = "zstd",
+        overwrite: bool = False,
+        profile: str = "ros2",
     ) -> None:
         if compression not in COMPRESSIONS:
             raise InvalidValueError(
@@ -58,13 +70,13 @@ class BagWriter:
         self.path = path
         start = BytesIO()
         self._mcap = McapFile(
-            start, profile="ros2", library=_LIBRARY, compression=compression
+            start, profile=profile, library=_LIBRARY, compression=compression
         )
         self._file = RecordingFile(path, start.getvalue(), overwrite=overwrite)
         self._stream = BufferedWriter(self._file.raw, _BUFFER_BYTES)
         self._mcap.stream = self._stream
         self._flushed = self._mcap.written
-        self._schemas: dict[tuple[str, str], int] = {}
+        self._schemas: dict[tuple[str, str, bytes], int] = {}
         self._reserve = Reserve(path.parent)
 
     def add_channel(
@@ -85,15 +97,15 @@ class BagWriter:
             qos: what its publishers offer, see :func:`navette.bags.qos_text`.
             encoding: of the messages, where they are not ROS 2's.
         """
-        schema = self._schemas.get((type_name, definition))
-        if schema is None:
-            schema = self._mcap.add_schema(type_name, "ros2msg", definition.encode())
-            self._schemas[type_name, definition] = schema
+        schema = self._schema(type_name, "ros2msg", definition.encode())
         metadata = {"offered_qos_profiles": qos, "topic_type_hash": type_hash}
         return self._mcap.add_channel(topic, encoding, schema, metadata)
 
     def add_topic(self, topic: BagTopic) -> int:
-        """Add a channel for a topic of a recording."""
+        """Add a channel for a topic of a recording, as recorded if its encoding is."""
+        recorded = topic.channel
+        if recorded is not None and recorded.encoding == topic.encoding:
+            return self._add_recorded(topic, recorded)
         return self.add_channel(
             topic.name,
             topic.type_name,
@@ -103,11 +115,52 @@ class BagWriter:
             encoding=topic.encoding,
         )
 
+    def _add_recorded(self, topic: BagTopic, recorded: RecordedChannel) -> int:
+        schema = 0
+        if recorded.schema is not None:
+            schema = self._schema(
+                recorded.schema_name, recorded.schema_encoding, recorded.schema
+            )
+        metadata = dict(recorded.metadata)
+        known = {
+            "offered_qos_profiles": qos_text(topic.qos),
+            "topic_type_hash": topic.type_hash,
+        }
+        for key, value in known.items():  # from a folder's metadata.yaml
+            if value and not metadata.get(key):
+                metadata[key] = value
+        return self._mcap.add_channel(topic.name, recorded.encoding, schema, metadata)
+
+    def _schema(self, name: str, encoding: str, data: bytes) -> int:
+        key = name, encoding, data
+        if key not in self._schemas:
+            self._schemas[key] = self._mcap.add_schema(*key)
+        return self._schemas[key]
+
     def write(self, channel: int, stamp_ns: int, payload: bytes) -> None:
         """Append a message: CDR with its 4-byte header, and the time of reception."""
         self._mcap.add_message(channel, stamp_ns, payload)
         if self._mcap.chunk_size > _CHUNK_BYTES:
             self.flush()
+
+    def write_recorded(self, channel: int, message: RecordedMessage) -> None:
+        """Append a message of another recording, with everything that was recorded."""
+        self._mcap.add_message(channel, message.stamp_ns, message.data)
+        self._mcap.set_recorded(message.publish_ns, message.sequence)
+        if self._mcap.chunk_size > _CHUNK_BYTES:
+            self.flush()
+
+    def add_attachment(self, attachment: BagAttachment) -> None:
+        """Copy a file of another recording.
+
+        Raises:
+            FileFormatError: it is damaged; nothing is written.
+        """
+        self._mcap.add_attachment(attachment)
+
+    def add_metadata(self, record: MetadataRecord) -> None:
+        """Add named texts."""
+        self._mcap.add_metadata(record.name, record.values)
 
     @property
     def message_count(self) -> int:

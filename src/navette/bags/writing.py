@@ -1,12 +1,21 @@
 """Write a recording in any of the supported formats."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
-from navette.bags.bag import BagMessage, BagTopic
+from navette.bags.bag import (
+    BagAttachment,
+    BagMessage,
+    BagTopic,
+    MetadataRecord,
+    RecordedMessage,
+)
+from navette.bags.db3_writer import Db3Writer
 from navette.bags.mcap_file import COMPRESSIONS
 from navette.bags.replacing import make_way
-from navette.bags.rosbags_writers import Db3Writer, Ros1Writer
-from navette.bags.topic_writer import TopicWriter
+from navette.bags.ros1_writer import Ros1Writer
+from navette.bags.topic_writer import TopicWriter, UnsupportedTopicError
 from navette.bags.writer import BagWriter
 from navette.errors import FileFormatError, InvalidValueError, UnknownNameError
 from navette.msgs import definition_text, type_hash
@@ -16,23 +25,50 @@ _BY_SUFFIX = {".mcap": "mcap", ".db3": "sqlite3", ".bag": "rosbag1"}
 
 
 class McapWriter(TopicWriter):
-    """Writes ``.mcap`` with the ``ros2`` profile; moved to its target when complete."""
+    """Writes ``.mcap``; moved to its target when complete."""
 
-    def __init__(self, path: Path, *, compression: str = "zstd") -> None:
+    keeps_encoding = True
+
+    def __init__(
+        self, path: Path, *, compression: str = "zstd", profile: str = "ros2"
+    ) -> None:
         super().__init__(path)
         self._part = path.with_name(f".{path.name}.new")
-        self._writer = BagWriter(self._part, compression=compression, overwrite=True)
+        self._writer = BagWriter(
+            self._part, compression=compression, overwrite=True, profile=profile
+        )
+
+    def add_attachment(self, attachment: BagAttachment) -> None:
+        self._on_disk(lambda: self._writer.add_attachment(attachment))
+
+    def add_metadata(self, record: MetadataRecord) -> None:
+        self._on_disk(lambda: self._writer.add_metadata(record))
 
     def _add(self, topic: BagTopic) -> int:
-        return self._writer.add_topic(topic)
-
-    def write(self, message: BagMessage) -> None:
-        channel = self.channel_of(message.topic)
         try:
-            self._writer.write(channel, message.stamp_ns, message.data)
+            return self._writer.add_topic(topic)
+        except InvalidValueError as error:
+            raise UnsupportedTopicError(self.path, str(error)) from error
+
+    def write(self, message: BagMessage | RecordedMessage) -> None:
+        channel = self.channel_of(message.topic)
+        if message.stamp_ns < 0:
+            self.losses.add("messages with a stamp before 1970", message.topic.name)
+            return
+        try:
+            if isinstance(message, RecordedMessage):
+                self._writer.write_recorded(channel, message)
+            else:
+                self._writer.write(channel, message.stamp_ns, message.data)
         except OSError as error:
             raise self._error(error) from error
         self.message_count += 1
+
+    def _on_disk(self, work: Callable[[], None]) -> None:
+        try:
+            work()
+        except OSError as error:
+            raise self._error(error) from error
 
     def close(self) -> None:
         try:
@@ -68,7 +104,12 @@ def storage_of(path: Path, storage: str = "") -> str:
 
 
 def open_writer(
-    path: Path, *, storage: str = "", compression: str = "", overwrite: bool = False
+    path: Path,
+    *,
+    storage: str = "",
+    compression: str = "",
+    overwrite: bool = False,
+    profile: str = "ros2",
 ) -> TopicWriter:
     """Create a new recording.
 
@@ -76,6 +117,7 @@ def open_writer(
         storage: ``mcap``, ``sqlite3`` or ``rosbag1``; by default from the file name.
         compression: ``none``, ``zstd``, ``lz4`` or ``bz2``, if the format supports it;
             by default zstd for ``.mcap`` and none for others.
+        profile: of an ``.mcap`` file's header.
 
     Raises:
         FileFormatError: the file exists already, or cannot be created.
@@ -86,20 +128,20 @@ def open_writer(
     if not path.absolute().parent.is_dir():
         raise FileFormatError(path, "cannot be written: the folder does not exist")
     if storage == "mcap":
-        return McapWriter(path, compression=compression or COMPRESSIONS[0])
+        return McapWriter(
+            path, compression=compression or COMPRESSIONS[0], profile=profile
+        )
     if storage == "sqlite3":
         return Db3Writer(path, compression=compression or "none")
     return Ros1Writer(path, compression=compression or "none")
 
 
 def completed(topic: BagTopic) -> BagTopic:
-    """Add Navette's definition to a topic without a recorded one."""
-    if topic.definition or topic.encoding != "cdr":
+    """Add Navette's definition to a topic whose file has none."""
+    if topic.definition or topic.encoding != "cdr" or topic.channel is not None:
         return topic
     try:
         text, known = definition_text(topic.type_name), type_hash(topic.type_name)
     except UnknownNameError:
         return topic
-    return BagTopic(
-        topic.name, topic.type_name, text, topic.type_hash or known, topic.qos
-    )
+    return replace(topic, definition=text, type_hash=topic.type_hash or known)

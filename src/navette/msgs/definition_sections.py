@@ -1,8 +1,10 @@
 """Parser of ``ros2msg`` text: a type's definition, then those of contained types.
 
 The format is that of MCAP schemas: the type's own text, then for each type that it
-refers to a line of ``=``, ``MSG: package/Name`` and that type's text. The text comes
-from files and from the network, so its size and nesting are limited.
+refers to a line of ``=``, ``MSG: package/Name`` and that type's text. rosbag2 stores
+the events of a service as ``SRV: package/srv/Name`` with the text of the service, and
+those of an action as ``ACTION: …``. The text comes from files and from the network, so
+its size and nesting are limited.
 """
 
 import re
@@ -14,6 +16,7 @@ from navette.msgs.parser import (
     INTERFACE_NAME,
     PACKAGE_NAME,
     PARSERS,
+    PART_NAME,
     parse_message,
 )
 from navette.msgs.registry import full_name, get_message_spec
@@ -25,10 +28,8 @@ MAX_FIELDS = 1 << 16  # of the type and all contained types, arrays expanded
 MAX_BYTES = 1 << 26  # of its fixed-size arrays of numbers
 MAX_DEPTH = 32
 
-_MARK = "MSG: "
+_MARKS = {"MSG": "msg", "SRV": "srv", "ACTION": "action"}
 _SECTION = re.compile(r"^={80,}[ \t]*\r?\n", re.MULTILINE)
-# Part of a service or action, which recordings treat as a message.
-_PART = re.compile(r"[A-Z][A-Za-z0-9]*(?:_[A-Z][A-Za-z0-9]*)+")
 
 
 def split_sections(name: str, text: str, source: str) -> list[tuple[str, str]]:
@@ -49,11 +50,14 @@ def split_sections(name: str, text: str, source: str) -> list[tuple[str, str]]:
     sections = [(name, top)]
     for section in contained:
         head, _, body = section.partition("\n")
-        if not head.startswith(_MARK):
+        mark, colon, short = head.partition(": ")
+        if not colon or mark not in _MARKS:
             raise FileFormatError(
-                source, f"{head[:80]!r}, expected '{_MARK}package/Name'"
+                source, f"{head[:80]!r}, expected 'MSG: package/Name'"
             )
-        sections.append((head.removeprefix(_MARK).strip(), body))
+        sections.append((_section_name(_MARKS[mark], short.strip(), name), body))
+    if contained and not top.strip() and contained[0].startswith(("SRV: ", "ACTION: ")):
+        del sections[0]  # an event, whose text is that of its service or action
     for section_name, body in sections:
         if body.count("\n") > MAX_LINES:
             raise FileFormatError(
@@ -63,11 +67,22 @@ def split_sections(name: str, text: str, source: str) -> list[tuple[str, str]]:
     return sections
 
 
+def _section_name(kind: str, short: str, top: str) -> str:
+    """Return the name of a section's type; ``top`` is that of the first type."""
+    package, slash, rest = short.partition("/")
+    if not slash or "/" in rest:
+        return short
+    if kind == "msg" and PART_NAME.fullmatch(rest) and top.count("/") == 2:
+        kind = top.split("/")[1]  # a part belongs to a service or an action
+    return short if kind == "msg" else f"{package}/{kind}/{rest}"
+
+
 def read_definition(name: str, text: str, source: str = "") -> list[Spec]:
     """Parse a text; return the type called ``name`` first, each type once.
 
     For a name under ``srv`` or ``action`` the text above the first section contains the
-    parts, separated by ``---``; a part (``pkg/srv/Name_Event``) is a message.
+    parts, separated by ``---``; a part (``pkg/srv/Name_Event``) is a message. For the
+    text of a service's event in rosbag2's form, the service is first.
 
     Raises:
         FileFormatError: the text is malformed, defines a type twice, or describes a
@@ -91,7 +106,7 @@ def messages_of(spec: Spec) -> Sequence[MessageSpec]:
 
 def _parse(name: str, text: str, source: str) -> Spec:
     package, kind, rest = name.split("/")
-    is_part = kind != "msg" and _PART.fullmatch(rest) is not None
+    is_part = kind != "msg" and PART_NAME.fullmatch(rest) is not None
     if not PACKAGE_NAME.fullmatch(package) or not (
         is_part or INTERFACE_NAME.fullmatch(rest)
     ):

@@ -40,6 +40,12 @@ _TYPE = re.compile(
     r"(?P<array>\[(?P<at_most><=)?(?P<size>\d+)?\])?"
 )
 _REFERENCE = re.compile(rf"(?:(?P<package>{_PACKAGE})/(?:msg/)?)?(?P<name>{_NAME})")
+# Part of a service or action, which only definitions of their events refer to.
+_PART = r"[A-Z][A-Za-z0-9]*(?:_[A-Z][A-Za-z0-9]*)+"
+PART_NAME = re.compile(_PART)
+_PART_REFERENCE = re.compile(
+    rf"(?:(?P<package>{_PACKAGE})/(?:(?P<kind>srv|action)/)?)?(?P<name>{_PART})"
+)
 
 
 class _LineError(ValueError):
@@ -87,7 +93,7 @@ def _parse(
             members.append([])
         elif line:
             try:
-                member = _parse_line(line, name.partition("/")[0])
+                member = _parse_line(line, name)
                 _refuse_duplicate(member, members[-1])
             except _LineError as error:
                 raise FileFormatError(source, str(error), number) from None
@@ -128,11 +134,11 @@ def _refuse_duplicate(
         raise _LineError(f"{member.name!r} is defined twice")
 
 
-def _parse_line(line: str, package: str) -> Field | Constant:
+def _parse_line(line: str, owner: str) -> Field | Constant:
     match = _LINE.fullmatch(line)
     if match is None:
         raise _LineError(f"{line!r}: expected 'type name' or 'type NAME=value'")
-    type_ = _parse_type(match["type"], package)
+    type_ = _parse_type(match["type"], owner)
     name, value = match["name"], match["value"]
     if match["equals"]:
         return _parse_constant(name, type_, value)
@@ -146,11 +152,11 @@ def _parse_line(line: str, package: str) -> Field | Constant:
     return Field(name, type_, _parse_default(name, type_, value))
 
 
-def _parse_type(text: str, package: str) -> FieldType:
+def _parse_type(text: str, owner: str) -> FieldType:
     match = _TYPE.fullmatch(text)
     if match is None:
         raise _LineError(f"type {text!r}: expected base, base[], base[N] or base[<=N]")
-    base = _resolve(match["base"], package)
+    base = _resolve(match["base"], owner)
     bound = int(match["bound"]) if match["bound"] else None
     if bound is not None and (base not in STRINGS or bound < 1):
         raise _LineError(f"type {text!r}: only strings take a bound, at least 1")
@@ -163,9 +169,14 @@ def _parse_type(text: str, package: str) -> FieldType:
     return FieldType(base, "array" if is_array else "sequence", size, bound)
 
 
-def _resolve(base: str, package: str) -> str:
+def _resolve(base: str, owner: str) -> str:
+    """Return the full name of a type that ``owner`` refers to."""
     if base in PRIMITIVES:
         return base
+    package, kind, _ = owner.split("/")
+    part = _PART_REFERENCE.fullmatch(base) if kind != "msg" else None
+    if part is not None:
+        return f"{part['package'] or package}/{part['kind'] or kind}/{part['name']}"
     match = _REFERENCE.fullmatch(base)
     if match is None:
         known = ", ".join(sorted(PRIMITIVES))

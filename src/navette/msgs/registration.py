@@ -50,6 +50,14 @@ def load_private_definition(name: str, text: str) -> str:
     """
     source = f"definition of {name}"
     specs = read_definition(name, text, source)
+    # Of a service that differs, only the recorded messages get another name.
+    specs = [
+        part
+        for spec in specs
+        for part in (
+            [spec] if spec.name == full_name(name) else _parts_if_different(spec)
+        )
+    ]
     differing = {spec.name for spec in specs if differs(spec)}
     # A type that contains a private type differs from the public type, too.
     while True:
@@ -67,6 +75,10 @@ def load_private_definition(name: str, text: str) -> str:
     private = {each: _private_name(each, mark) for each in differing}
     _add([_renamed(spec, private, source) for spec in specs], source)
     return private.get(full_name(name), full_name(name))
+
+
+def _parts_if_different(spec: Spec) -> Sequence[Spec]:
+    return messages_of(spec) if differs(spec) else [spec]
 
 
 def differs(spec: Spec) -> bool:

@@ -22,7 +22,7 @@ from bag_samples import (
     sample,
     write_sample,
 )
-from navette.bags import BagMessage, BagTopic, BagWriter, open_bag, parse_qos, qos_text
+from navette.bags import BagMessage, BagWriter, open_bag, parse_qos, qos_text
 from navette.bags.chunks import Chunk, ChunkMerge, ChunkQuery, Entry
 from navette.bags.message_types import Decoder
 from navette.bags.summary import summarise
@@ -367,7 +367,13 @@ def test_other_encodings_are_distinguished(tmp_path: Path) -> None:
         writer.add_message(writer.register_channel("/a", "json", schema), 1, b"{}", 1)
         writer.finish()
     with open_bag(path) as reader:
-        assert reader.topics == (BagTopic("/a", "Beep", encoding="json"),)
+        (topic,) = reader.topics
+        assert (topic.name, topic.type_name, topic.encoding) == ("/a", "Beep", "json")
+        assert topic.channel is not None
+        assert (topic.channel.schema_encoding, topic.channel.schema) == (
+            "jsonschema",
+            b"{}",
+        )
         assert next(reader.messages()).data == b"{}"
         with pytest.raises(FileFormatError, match="json messages are not ROS messages"):
             Decoder(reader.topics[0])
@@ -414,7 +420,8 @@ def test_definitions_in_idl(tmp_path: Path) -> None:
     with open_bag(path) as reader:
         broken, scene = sorted(reader.topics, key=lambda topic: topic.name)
         assert broken.definition == ""
-        assert "/reading_idl/msg/Broken" in reader.problems[0]
+        assert "/reading_idl/msg/Broken" in reader.remarks[0]
+        assert reader.problems == ()
         assert len(list(reader.messages())) == 2
     kind: Any = Decoder(scene).message_class
     assert kind.LARGE == 3

@@ -22,7 +22,7 @@ from navette.cli.session import FAILED
 from navette.cli.stderr import note
 
 if TYPE_CHECKING:
-    from navette.bags import BagMessage, BagReader, Damage
+    from navette.bags import BagReader, Damage
     from navette.bags.editing import MessageFilter
 
 
@@ -144,22 +144,25 @@ def _copy(
         storage=target.storage,
         compression=target.compression,
         overwrite=target.overwrite,
+        profile=reader.profile if reader.storage == "mcap" else "ros2",
     )
     first, last = reader.start_ns, reader.end_ns
     with progress(f"writing {output.name}", (last - first) / 1e9) as advance:
         at = first
 
-        def on_message(message: "BagMessage") -> None:
+        def on_message(stamp_ns: int) -> None:
             nonlocal at
-            if advance is not None and message.stamp_ns - at > 100_000_000:
-                advance((message.stamp_ns - at) / 1e9)
-                at = message.stamp_ns
+            if advance is not None and stamp_ns - at > 100_000_000:
+                advance((stamp_ns - at) / 1e9)
+                at = stamp_ns
 
         count = copy(
             reader, writer, selection, on_message=on_message, on_damage=on_damage
         )
     size = output.stat().st_size if output.is_file() else 0
     suffix = f", {size_text(size)}" if size else ""
+    for loss in writer.losses.lines:
+        note(f"not kept: {loss}")
     note(f"{output}: {count_text(count)} messages{suffix}")
     return count
 
