@@ -108,6 +108,10 @@ class StatusScreen:
                 ),
                 soft_wrap=True,
             )
+            if simulation.viewer.remote_url:
+                remote = Text(simulation.viewer.remote_url, style="underline")
+                head = Text("elsewhere  ", style="dim") + remote
+                self._console.print(head, soft_wrap=True)
 
     def _print(self, progress: "RunProgress", text: Text | None) -> None:
         if text is not None:

@@ -48,11 +48,11 @@ def port_of(listeners: Listeners) -> int:
     return int(listeners[0].getsockname()[1])
 
 
-def url_of(host: str, port: int) -> str:
-    """Return the address of the page."""
+def url_of(host: str, port: int, scheme: str = "http") -> str:
+    """Return the address of the page on this machine."""
     if host in ("0.0.0.0", "::", ""):
         host = "127.0.0.1"
-    return f"http://{f'[{host}]' if ':' in host else host}:{port}"
+    return f"{scheme}://{f'[{host}]' if ':' in host else host}:{port}"
 
 
 def _bind(listener: socket.socket, address: tuple[object, ...]) -> None:

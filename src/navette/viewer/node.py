@@ -11,6 +11,8 @@ displays them.
 """
 
 import importlib.resources
+import os
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from functools import partial
@@ -34,12 +36,14 @@ from navette.runtime.qos import (
 )
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.subscription import Subscription
+from navette.viewer.access import Access
 from navette.viewer.assets import AssetFolders
 from navette.viewer.command_queue import CommandQueue
 from navette.viewer.frames import ClientChannel, ControlPlayback, WireParameter
+from navette.viewer.gate import Gate
 from navette.viewer.hub import Hub
 from navette.viewer.layout import build_layout
-from navette.viewer.listening import Listeners, listen, url_of
+from navette.viewer.listening import Listeners, listen
 from navette.viewer.node_monitor import NodeMonitor
 from navette.viewer.parameter_requests import ParameterRequests
 from navette.viewer.params import ViewerParams
@@ -103,7 +107,9 @@ class ViewerNode(StageNode):
         )
         self._publishers = ClientPublishers(self._publisher, self.destroy_publisher)
         self._playback = PlaybackRequests(playback, self._hub, self._call)
+        self._denial_noted = False
         try:
+            self._access = Access.of(self.params, os.environ, self._wall_s)
             self._parameters = self._monitor_nodes()
             self._server = self._make_server(listeners)
             self._server.start()
@@ -129,7 +135,14 @@ class ViewerNode(StageNode):
     @property
     def url(self) -> str:
         """Address of the page; with ``ws://``, the address for the Foxglove app."""
-        return url_of(self.params.host, self.port)
+        return self._access.url(self.params.host, self.port)
+
+    @property
+    def remote_url(self) -> str:
+        """Address of the page for other machines, with the token; empty without any."""
+        if not self._access.is_remote:
+            return ""
+        return self._access.remote_url(self.params.host, self.port)
 
     @property
     def client_count(self) -> int:
@@ -352,21 +365,49 @@ class ViewerNode(StageNode):
             for file in data.iterdir()
             if file.name.endswith(".js")
         }
+        site = Site(
+            (data / "page.html").read_bytes(),
+            scripts,
+            lambda: build_layout(*self._frames),
+            self._health,
+        )
+        gate = Gate(
+            AccessPolicy(params.host, params.allowed_origins, params.allowed_hosts),
+            self._access.login,
+            site,
+            on_refused=self._note_refused_origin,
+            on_denied=self._note_denied,
+        )
         return ViewerServer(
             self._hub,
-            Site(
-                (data / "page.html").read_bytes(),
-                scripts,
-                lambda: build_layout(*self._frames),
-                self._health,
-            ),
-            AccessPolicy(params.host, params.allowed_origins, params.allowed_hosts),
+            gate,
+            tls=self._access.tls,
             listeners=listeners or listen(params.host, params.port),
             now_ns=self._now_ns,
             wall_s=self._wall_s,
             on_period=self._monitor.on_period,
             time_rate_hz=params.time_rate_hz,
             max_clients=params.max_clients,
+        )
+
+    def _note_refused_origin(self, reason: str) -> None:
+        def warn() -> None:
+            self.get_logger().warning(f"a page was refused: {reason}")
+
+        self.run_soon(warn, "refused origin")
+
+    def _note_denied(self) -> None:
+        """Print the address with the token once, when another user tries to connect.
+
+        Not by the logger: log messages are published and recorded.
+        """
+        if self._access.is_remote or self._denial_noted:
+            return
+        self._denial_noted = True
+        url = self._access.remote_url(self.params.host, self.port)
+        sys.stderr.write(
+            "live view: refused a program of another user; for access it needs the "
+            f"token: {url}\n"
         )
 
     def _health(self) -> dict[str, Any]:

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from navette.params import Params, param
 
-# The Foxglove app in a browser, and in its desktop shell.
-_FOXGLOVE = ("https://app.foxglove.dev", "https://studio.foxglove.dev", "file://")
+# The Foxglove app in a browser.
+_FOXGLOVE = ("https://app.foxglove.dev",)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -13,7 +13,9 @@ class ViewerParams(Params):
     """Address of the live view, and its access rules."""
 
     host: str = param(
-        "127.0.0.1", "address to listen on; 0.0.0.0 listens on all networks"
+        "127.0.0.1",
+        "address to listen on; 0.0.0.0 listens on all networks, which requires "
+        "NAVETTE_SECURITY or allow_unencrypted",
     )
     port: int = param(
         8765, "TCP port to listen on; 0 takes a free one", at_least=0, at_most=65535
@@ -34,8 +36,15 @@ class ViewerParams(Params):
     )
     allowed_origins: tuple[str, ...] = param(
         _FOXGLOVE,
-        "web origins that may open the socket, besides local ones; '*' allows all",
+        "web origins that may open the socket, besides the live view's own page; "
+        "'*' allows all",
     )
     allowed_hosts: tuple[str, ...] = param(
         (), "host names under which the server may be addressed, besides local ones"
+    )
+    allow_unencrypted: bool = param(
+        False, "other machines may connect without TLS; tokens can be read on the way"
+    )
+    allow_anyone: bool = param(
+        False, "other machines may connect without a token and drive the robot"
     )

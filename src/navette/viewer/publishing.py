@@ -57,7 +57,8 @@ def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
         BudgetError: the message is too large.
     """
     if encoding == "cdr":
-        if _has_lists_of_objects(cls):  # decoded one by one, other arrays at once
+        if _has_lists_of_objects(cls._type_name_):
+            # Decoded one by one, other arrays at once.
             CLIENT_MESSAGE.check_octets(len(data), f"{cls._type_name_} message")
         return deserialize(data, cls)
     CLIENT_MESSAGE.check_octets(len(data), "JSON message")
@@ -71,12 +72,12 @@ def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
 
 
 @functools.cache
-def _has_lists_of_objects(cls: type[Message]) -> bool:
+def _has_lists_of_objects(type_name: str) -> bool:
     """Whether the number of objects in a message depends on its data."""
-    kinds = [field.type for field in fields(cls)]
+    kinds = [field.type for field in fields(get_interface(type_name))]
     return any(
         (not kind.is_numeric and not kind.is_scalar)
-        or (kind.is_message and _has_lists_of_objects(get_interface(kind.base)))
+        or (kind.is_message and _has_lists_of_objects(kind.base))
         for kind in kinds
     )
 

@@ -8,6 +8,7 @@ import asyncio
 import contextlib
 import logging
 import socket
+import ssl
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -22,15 +23,18 @@ from websockets.typing import Subprotocol
 
 from navette.viewer.connection import BoundedConnection, ConnectionLimit, bounded_by
 from navette.viewer.frames import MAX_BINARY, SUBPROTOCOLS
+from navette.viewer.gate import Gate, WebRequest
 from navette.viewer.hub import Hub
 from navette.viewer.listening import Listeners, port_of
 from navette.viewer.liveness import PERIOD_S
+from navette.viewer.login import Visitor
 from navette.viewer.offers import OfferQueue
 from navette.viewer.outbox import Outbox
 from navette.viewer.peer import Peer
+from navette.viewer.peer_user import is_same_user
 from navette.viewer.session import Watch
 from navette.viewer.throttled_selector import ThrottledSelector
-from navette.viewer.web import AccessPolicy, HttpResponse, Site, refuse
+from navette.viewer.web import HttpResponse, refuse
 
 # Connections that open, close or fail are normal; only errors of the server are logged.
 _log = logging.getLogger(__name__)
@@ -59,10 +63,10 @@ class ViewerServer:
     def __init__(
         self,
         hub: Hub,
-        site: Site,
-        policy: AccessPolicy,
+        gate: Gate,
         *,
         listeners: Listeners,
+        tls: ssl.SSLContext | None = None,
         now_ns: Callable[[], int],
         wall_s: Callable[[], float],
         on_period: Callable[[], None],
@@ -70,8 +74,8 @@ class ViewerServer:
         max_clients: int,
     ) -> None:
         self._hub = hub
-        self._site = site
-        self._policy = policy
+        self._gate = gate
+        self._tls = tls
         self._listeners = listeners
         self.port = port_of(listeners)
         self._now_ns = now_ns
@@ -153,6 +157,8 @@ class ViewerServer:
         return await serve(
             self._client,
             sock=listener,
+            ssl=self._tls,
+            ssl_handshake_timeout=None if self._tls is None else _OPEN_S,
             subprotocols=[Subprotocol(name) for name in SUBPROTOCOLS],
             process_request=self._answer,
             compression=None,  # costs more time than loopback gains
@@ -182,13 +188,19 @@ class ViewerServer:
     ) -> Response | None:
         """Return an HTTP response, or None to open the WebSocket."""
         headers = request.headers
-        refused = self._policy.refusal(headers.get("Host"), headers.get("Origin"))
-        is_socket = headers.get("Upgrade", "").lower() == "websocket"
-        if refused:
-            return _response(refuse(403, refused))
-        if not is_socket:
-            method = getattr(request, "method", "GET")  # websockets < 16: GET only
-            return _response(self._site.answer(method, request.path))
+        asked = WebRequest(
+            getattr(request, "method", "GET"),  # websockets < 16: GET only
+            request.path,
+            headers.get("Host"),
+            headers.get("Origin"),
+            headers.get("Authorization"),
+            _visitor(connection),
+        )
+        if headers.get("Upgrade", "").lower() != "websocket":
+            return _response(self._gate.page(asked))
+        refused = self._gate.refusal(asked)
+        if refused is not None:
+            return _response(refused)
         if not _offers_subprotocol(headers):
             known = " or ".join(SUBPROTOCOLS)
             return _response(refuse(400, f"the WebSocket subprotocol must be {known}"))
@@ -244,6 +256,16 @@ class ViewerServer:
             self._loop.call_later(PERIOD_S, self._run_period)
 
 
+def _visitor(connection: ServerConnection) -> Visitor:
+    client, server = connection.remote_address[:2], connection.local_address[:2]
+    encryption = connection.transport.get_extra_info("ssl_object")
+    return Visitor(
+        client[0],
+        is_same_user(client, server),
+        encryption is not None and bool(encryption.getpeercert()),
+    )
+
+
 def _offers_subprotocol(headers: Headers) -> bool:
     offered = ",".join(headers.get_all("Sec-WebSocket-Protocol")).split(",")
     return any(name.strip() in SUBPROTOCOLS for name in offered)
@@ -256,6 +278,7 @@ def _response(answer: HttpResponse) -> Response:
             "Content-Length": str(len(answer.body)),
             "Cache-Control": "no-store",
             "X-Content-Type-Options": "nosniff",
+            "Referrer-Policy": "no-referrer",
             "Connection": "close",
             **answer.headers,
         }

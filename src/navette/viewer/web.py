@@ -39,19 +39,26 @@ class AccessPolicy:
     allowed_origins: tuple[str, ...]
     allowed_hosts: tuple[str, ...] = ()
 
-    def refusal(self, host: str | None, origin: str | None) -> str:
-        """Return why a request is refused; empty if it is allowed."""
-        if host is not None and not self._host_allowed(host):
-            return (
-                f"host {host!r:.120} is not allowed: use localhost or 127.0.0.1, or "
-                "add the name to the viewer's parameter allowed_hosts"
-            )
-        if origin is not None and not self._origin_allowed(origin, host):
-            return (
-                f"origin {origin!r:.120} is not allowed: add it to the viewer's "
-                "parameter allowed_origins"
-            )
-        return ""
+    def host_refusal(self, host: str | None) -> str:
+        """Return why the Host header is refused; empty if it is allowed."""
+        if host is None or self._host_allowed(host):
+            return ""
+        return (
+            f"host {host!r:.120} is not allowed: use localhost or 127.0.0.1, or add "
+            "the name to the viewer's parameter allowed_hosts"
+        )
+
+    def origin_refusal(self, origin: str | None, host: str | None) -> str:
+        """Return why a page's origin is refused; empty if it is allowed.
+
+        Programs other than browsers send no origin.
+        """
+        if origin is None or self._origin_allowed(origin, host):
+            return ""
+        return (
+            f"origin {origin!r:.120} is not allowed: add it to the viewer's parameter "
+            "allowed_origins, or connect with a token"
+        )
 
     def _host_allowed(self, host: str) -> bool:
         name = _name_of(f"//{host}")
@@ -63,8 +70,6 @@ class AccessPolicy:
 
     def _origin_allowed(self, origin: str, host: str | None) -> bool:
         if "*" in self.allowed_origins or origin in self.allowed_origins:
-            return True
-        if _name_of(origin) in _LOOPBACK_NAMES and origin.startswith("http"):
             return True
         return host is not None and origin in (f"http://{host}", f"https://{host}")
 
@@ -102,6 +107,11 @@ class Site:
         self._scripts = scripts
         self._layout = layout
         self._health = health
+
+    def is_public(self, target: str) -> bool:
+        """Whether a path is the same for every program: the page and its scripts."""
+        path = target.partition("?")[0]
+        return path in ("/", "/index.html") or path in self._scripts
 
     def answer(self, method: str, target: str) -> HttpResponse:
         if method not in ("GET", "HEAD"):

@@ -83,7 +83,7 @@ def test_requests_wait_until_the_client_reads_its_responses() -> None:
         for _ in range(3):
             session.outbox.put_control(bytes(2 * 2**20))
         waiting = asyncio.create_task(peer.admit(1))
-        await asyncio.sleep(0)
+        await asyncio.wait([waiting], timeout=0)
         session.outbox.pop()
         peer.check_pending()
         await waiting
@@ -99,7 +99,7 @@ def test_requests_wait_while_many_are_unfinished() -> None:
         waiting = asyncio.create_task(peer.admit(1))
         for _ in range(3):
             peer.check_pending()
-            await asyncio.sleep(0)
+            await asyncio.wait([waiting], timeout=0)
         assert not waiting.done()
         session.pending = 15
         peer.check_pending()

@@ -14,6 +14,7 @@ from navette.viewer.parameters import from_wire, split_name, to_wire
 from navette.viewer.web import AccessPolicy, Site
 
 LOCAL = AccessPolicy("127.0.0.1", ("https://app.foxglove.dev",))
+APP = AccessPolicy("127.0.0.1", ("file://",))
 OPEN = AccessPolicy("0.0.0.0", (), ("robot.example.org",))
 
 
@@ -63,6 +64,7 @@ def test_other_uris_are_refused(folder: Path, uri: str) -> None:
     [
         (LOCAL, "127.0.0.1:8765", None, True),
         (LOCAL, "localhost:8765", "http://localhost:8765", True),
+        (LOCAL, "localhost:8765", "http://127.0.0.1:8765", False),
         (LOCAL, "[::1]:8765", None, True),
         (LOCAL, "LOCALHOST", None, True),
         (LOCAL, None, None, True),
@@ -71,7 +73,10 @@ def test_other_uris_are_refused(folder: Path, uri: str) -> None:
         (LOCAL, "192.168.1.5:8765", None, False),
         (LOCAL, "", None, False),
         (LOCAL, "127.0.0.1:8765", "https://app.foxglove.dev", True),
-        (LOCAL, "127.0.0.1:8765", "http://localhost:3000", True),
+        (LOCAL, "127.0.0.1:8765", "http://localhost:3000", False),
+        (LOCAL, "127.0.0.1:8765", "http://127.0.0.1:3000", False),
+        (LOCAL, "127.0.0.1:8765", "file://", False),
+        (APP, "127.0.0.1:8765", "file://", True),
         (LOCAL, "127.0.0.1:8765", "https://evil.example", False),
         (LOCAL, "127.0.0.1:8765", "https://localhost.evil.example", False),
         (LOCAL, "127.0.0.1:8765", "null", False),
@@ -88,7 +93,7 @@ def test_other_uris_are_refused(folder: Path, uri: str) -> None:
 def test_foreign_hosts_and_origins_are_refused(
     policy: AccessPolicy, host: str | None, origin: str | None, passes: bool
 ) -> None:
-    refusal = policy.refusal(host, origin)
+    refusal = policy.host_refusal(host) or policy.origin_refusal(origin, host)
     assert bool(refusal) is not passes
     if refusal:
         assert "allowed_" in refusal

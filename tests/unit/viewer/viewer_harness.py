@@ -104,7 +104,7 @@ class Client:
         self._stack = ExitStack()
         self.socket: ClientConnection = self._stack.enter_context(
             connect(
-                f"ws://{address}",
+                f"{'wss' if 'ssl' in options else 'ws'}://{address}",
                 subprotocols=[Subprotocol(subprotocol)],
                 open_timeout=PATIENCE_S,
                 # Of a client that vanishes the thread stays, and its pings would draw

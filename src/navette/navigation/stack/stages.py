@@ -224,6 +224,8 @@ def _announced_viewer(context: Context) -> Node:
 
     node = ViewerNode(context=context)
     node.get_logger().info(f"live view: {node.url}")
+    if node.remote_url:  # with the token: log messages are published and recorded
+        sys.stderr.write(f"live view for other machines: {node.remote_url}\n")
     return node
 
 

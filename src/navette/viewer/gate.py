@@ -1,0 +1,79 @@
+"""Decides on every request: page, file, WebSocket or refusal."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from navette.viewer.login import Login, Visitor, token_of
+from navette.viewer.web import AccessPolicy, HttpResponse, Site, refuse
+
+_MAX_NOTES = 16  # refused origins that are reported
+
+
+@dataclass(frozen=True)
+class WebRequest:
+    """The parts of an HTTP request that decide about it."""
+
+    method: str
+    target: str
+    host: str | None
+    origin: str | None
+    authorization: str | None
+    visitor: Visitor
+
+
+class Gate:
+    """Checks host, login and origin of a request, in this order.
+
+    Args:
+        on_refused: called with the reason when an origin is refused, once per origin.
+        on_denied: called when a visitor is not accepted.
+    """
+
+    def __init__(
+        self,
+        policy: AccessPolicy,
+        login: Login,
+        site: Site,
+        *,
+        on_refused: Callable[[str], None],
+        on_denied: Callable[[], None],
+    ) -> None:
+        self._policy, self._login, self._site = policy, login, site
+        self._on_refused, self._on_denied = on_refused, on_denied
+        self._noted: set[str] = set()
+
+    def page(self, request: WebRequest) -> HttpResponse:
+        """Return the response to a request that opens no socket.
+
+        The page and its scripts are the same everywhere and need no login; with them
+        a browser requests the token.
+        """
+        refused = self._policy.host_refusal(request.host)
+        if refused:
+            return refuse(403, refused)
+        if self._site.is_public(request.target):
+            return self._site.answer(request.method, request.target)
+        return self.refusal(request) or self._site.answer(
+            request.method, request.target
+        )
+
+    def refusal(self, request: WebRequest) -> HttpResponse | None:
+        """Return the response to a request that is refused, else None."""
+        refused = self._policy.host_refusal(request.host)
+        if refused:
+            return refuse(403, refused)
+        token = token_of(request.target, request.authorization)
+        denied = self._login.refusal(request.visitor, token)
+        if denied is not None:
+            self._on_denied()
+            return denied
+        refused = self._policy.origin_refusal(request.origin, request.host)
+        if not refused:
+            return None
+        # A page that has the token needs no other permission.
+        if token is not None:
+            return self._login.token_refusal(request.visitor, token)
+        if request.origin not in self._noted and len(self._noted) < _MAX_NOTES:
+            self._noted.add(str(request.origin))
+            self._on_refused(refused)
+        return refuse(403, refused)
