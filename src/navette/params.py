@@ -11,7 +11,6 @@ parameters with the same description and range.
 """
 
 import dataclasses
-import math
 import types
 import typing
 from collections.abc import Sequence
@@ -50,6 +49,9 @@ class ParamInfo:
         return " and ".join(bounds) or "any"
 
 
+LARGEST = 1e9
+"""Largest magnitude of a float; beyond it no range of a field has a meaning."""
+
 _KEY = "navette.param"
 
 
@@ -74,7 +76,8 @@ class Params:
     """Base class of the parameters of a stage; checks each field on construction.
 
     Field types: bool, int, float, str and tuples of these (ROS 2 arrays). An int for a
-    float is converted; any other value of a wrong type raises.
+    float is converted; any other value of a wrong type raises. Floats are finite and
+    within ±1e9 in any unit, which keeps sums, squares and nanoseconds finite.
 
     Raises:
         ParameterError: names the field, the value and the allowed values.
@@ -139,9 +142,12 @@ def _wrong_type(name: str, value: Any, hint: Any) -> ParameterError:
 def _check_range(name: str, value: Any, info: ParamInfo) -> None:
     for item in value if isinstance(value, tuple) else (value,):
         if not _in_range(item, info):
+            allowed = info.allowed()
+            if isinstance(item, float) and not abs(item) <= LARGEST:
+                allowed = f"a finite number within ±{LARGEST:g}"
             raise ParameterError(
                 f"parameter {name!r}: {item!r} is not allowed; "
-                f"must be {info.allowed()}{' ' + info.unit if info.unit else ''}"
+                f"must be {allowed}{' ' + info.unit if info.unit else ''}"
             )
 
 
@@ -151,7 +157,7 @@ def _in_range(value: Any, info: ParamInfo) -> bool:
     if isinstance(value, bool):
         return True
     return (
-        math.isfinite(value)
+        (isinstance(value, int) or abs(value) <= LARGEST)
         and (info.at_least is None or value >= info.at_least)
         and (info.at_most is None or value <= info.at_most)
         and (info.above is None or value > info.above)

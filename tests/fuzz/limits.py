@@ -14,7 +14,7 @@ SECONDS = float(os.environ.get("NAVETTE_FUZZ_SECONDS", "0"))
 #: First seed; long runs on several machines start at different ones.
 SEED = int(os.environ.get("NAVETTE_FUZZ_SEED", "0"))
 #: Longest wall time of one input, far above what any valid one takes.
-HANG_S = 20
+HANG_S = 60
 _MEMORY_BYTES = 12 << 30
 
 

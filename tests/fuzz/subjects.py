@@ -5,22 +5,30 @@ themselves: a new stage, topic or service is tested without a change here.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from navette.msgs import Message, get_interface
 from navette.msgs.copying import copy_message
 from navette.navigation.stack import RunOptions
+from navette.navigation.stack.scene import resolve_scene
 from navette.navigation.stack.simulation import Simulation
 from navette.navigation.stack.stack import NODE_CLASSES
-from navette.runtime import Context, Node, ns_to_stamp
+from navette.runtime import (
+    Context,
+    DurabilityPolicy,
+    Node,
+    QoSProfile,
+    ns_to_stamp,
+)
 from navette.sim import World, load_robot
 from navette.sim.node import SimNode
 from navette.testing import GraphHarness
 
+_LATCHED = DurabilityPolicy.TRANSIENT_LOCAL
 _EKF_INPUTS = {
     "odom0": "/odom/filtered",
     "odom1": "/wheels",
@@ -111,14 +119,14 @@ def recorded() -> dict[str, Message]:
     try:
         listener = Node("listener", context=run.context)
         run.executor.add_node(listener)
-        topics = run.context.graph.topics()
-        for topic, types in topics.items():
-            listener.create_subscription(
-                get_interface(types[0]),
-                topic,
-                lambda msg, topic=topic: last.__setitem__(topic, msg),
-                10,
-            )
+        for topic, types in run.context.graph.topics().items():
+            for durability in (DurabilityPolicy.VOLATILE, _LATCHED):
+                listener.create_subscription(
+                    get_interface(types[0]),
+                    topic,
+                    partial(last.__setitem__, topic),
+                    QoSProfile(depth=10, durability=durability),
+                )
         run.run()
     finally:
         run.close()
@@ -127,13 +135,29 @@ def recorded() -> dict[str, Message]:
 
 def valid_message(topic: str, message_class: type[Message]) -> Message:
     """Return a valid message: that of a drive, or the defaults of the type."""
+    if topic in ("/goal_pose", "/initialpose"):
+        return _goal_pose(message_class)
     by_topic = recorded()
     if type(by_topic.get(topic)) is message_class:
         return copy_message(by_topic[topic])
     for msg in by_topic.values():
         if type(msg) is message_class:
             return copy_message(msg)
-    return message_class()
+    made: Any = message_class()
+    if hasattr(made, "header"):
+        made.header.frame_id = "base_link"
+    default: Message = made
+    return default
+
+
+def _goal_pose(message_class: Any) -> Message:
+    goal: Any = recorded()["/goal_point"]
+    msg = message_class()
+    msg.header.frame_id = goal.header.frame_id
+    pose = msg.pose.pose if hasattr(msg.pose, "pose") else msg.pose
+    pose.position.x, pose.position.y = goal.point.x, goal.point.y
+    valid: Message = msg
+    return valid
 
 
 def stamped(msg: Message, now_ns: int) -> Message:
@@ -146,22 +170,47 @@ def stamped(msg: Message, now_ns: int) -> Message:
     return msg
 
 
+class Feed:
+    """Publishes the valid inputs of a node: transforms first, then in order."""
+
+    def __init__(self, graph: GraphHarness, node: Node) -> None:
+        self._graph = graph
+        declared = {each.topic: each for each in getattr(node, "INPUTS", ())}
+        self._valid: dict[str, Message] = {}
+        self._repeated = set()
+        for subscription in node.subscriptions:
+            topic = subscription.topic_name
+            self._valid[topic] = valid_message(topic, subscription.msg_type)
+            if topic not in declared or declared[topic].rate_hz is not None:
+                self._repeated.add(topic)
+        self._order = sorted(self._valid, key=lambda topic: not topic.startswith("/tf"))
+
+    def all(self) -> None:
+        """Publish every input once: a goal and a map, too."""
+        for topic in self._order:
+            self._send(topic)
+
+    def periodic(self) -> None:
+        """Publish the inputs that a robot publishes periodically."""
+        for topic in self._order:
+            if topic in self._repeated:
+                self._send(topic)
+
+    def _send(self, topic: str) -> None:
+        graph = self._graph
+        graph.publish(topic, stamped(self._valid[topic], graph.now_ns), latched=True)
+
+
 @contextmanager
 def running(
     subject: Subject, **parameters: Any
-) -> Iterator[tuple[GraphHarness, Node, Callable[[], None]]]:
-    """Run a node with valid inputs; the function sends each of its inputs once."""
+) -> Iterator[tuple[GraphHarness, Node, Feed]]:
+    """Run a node that has received each of its inputs."""
     with GraphHarness() as graph:
+        overrides = graph.context.overrides
+        resolve_scene(RunOptions()).override_parameters(overrides)
         node = graph.add(subject.make(graph.context, **parameters))
-        inputs = {
-            subscription.topic_name: valid_message(
-                subscription.topic_name, subscription.msg_type
-            )
-            for subscription in node.subscriptions
-        }
-
-        def feed() -> None:
-            for topic, msg in inputs.items():
-                graph.publish(topic, stamped(msg, graph.now_ns), latched=True)
-
+        feed = Feed(graph, node)
+        feed.all()
+        graph.run_for(0.1)
         yield graph, node, feed

@@ -3,6 +3,7 @@
 Through each subscribed topic, each service and each parameter. Outputs stay finite.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -10,9 +11,11 @@ import pytest
 
 from fuzz.extremes import Extremes, unusable_numbers
 from fuzz.limits import rounds, within
-from fuzz.subjects import SUBJECTS, Subject, running, stamped, valid_message
+from fuzz.parameter_values import extremes, infos, wrong_types
+from fuzz.subjects import SUBJECTS, Feed, Subject, running, stamped, valid_message
 from navette.msgs import Message, serialize
-from navette.runtime import Node
+from navette.msgs.rcl_interfaces.srv import SetParameters
+from navette.runtime import Node, Parameter
 from navette.testing import GraphHarness
 
 _INPUTS = 300
@@ -53,16 +56,16 @@ def test_topics(subject: Subject) -> None:
         with running(subject) as (graph, node, feed):
             extremes = Extremes(seed)
             Outputs(graph, node)
-            feed()
-            graph.run_for(0.2)
             inputs = [(s.topic_name, s.msg_type) for s in node.subscriptions]
             for topic, kind in inputs:
                 for number in range(_INPUTS):
                     send_one(graph, extremes, topic, kind)
                     with within():
                         graph.run_for(0.01)
-                    if number % 5 == 0:
-                        feed()
+                    if number % 50 == 0:
+                        feed.all()
+                    elif number % 5 == 0:
+                        feed.periodic()
 
 
 def send_one(graph: GraphHarness, extremes: Extremes, topic: str, kind: Any) -> None:
@@ -90,7 +93,7 @@ def test_services(subject: Subject) -> None:
                 client = graph.node.create_client(kind, name)
                 for number in range(_REQUESTS):
                     if number % 20 == 0:
-                        feed()
+                        feed.periodic()
                     if extremes.rng.integers(2):
                         request = extremes.message(kind.Request)
                     else:
@@ -99,3 +102,46 @@ def test_services(subject: Subject) -> None:
                     with within():
                         graph.run_for(0.01)
                 client.destroy()
+
+
+@subjects
+def test_parameters(subject: Subject) -> None:
+    with running(subject) as (graph, node, feed):
+        Outputs(graph, node)
+        known = infos(subject.node_class.PARAMS)
+        for name in list(node.known_parameters() or []):
+            before = node.get_parameter(name)
+            values = (
+                *extremes(before.type_, known.get(name)),
+                *wrong_types(before.type_),
+            )
+            for value in values:
+                with within():
+                    set_one(graph, node, Parameter(name, value=value), feed)
+            with within():
+                set_one(graph, node, before, feed)
+
+
+def set_one(
+    graph: GraphHarness, node: Node, parameter: Parameter[Any], feed: Feed
+) -> None:
+    """Set a parameter by the service; if it is accepted, drive with it for a while."""
+    client = graph.node.create_client(
+        SetParameters, f"{node.get_fully_qualified_name()}/set_parameters"
+    )
+    request = SetParameters.Request(parameters=[parameter.to_parameter_msg()])
+    answer = client.call_async(request)
+    graph.run_for(0.0)
+    (result,) = answer.result().results
+    client.destroy()
+    if not result.successful:
+        assert result.reason, f"{parameter.name} = {parameter.value!r} without a reason"
+        return
+    value = parameter.value
+    for number in value if isinstance(value, list) else [value]:
+        is_number = isinstance(number, float)
+        assert not is_number or math.isfinite(number), f"{parameter.name} = {number}"
+    feed.all()
+    for _ in range(3):
+        feed.periodic()
+        graph.run_for(0.05)

@@ -74,15 +74,21 @@ class SimParams(Params):
     )
     link_frame_prefix: str = param("", "prefix of link names in frame names")
 
-    clock_rate_hz: float = param(100.0, "/clock", unit="Hz", above=0.0, at_most=1000.0)
+    clock_rate_hz: float = param(
+        100.0, "/clock", unit="Hz", at_least=0.01, at_most=1000.0
+    )
     odometry_rate_hz: float = param(
-        50.0, "/odom/filtered and /ground_truth", unit="Hz", above=0.0, at_most=500.0
+        50.0,
+        "/odom/filtered and /ground_truth",
+        unit="Hz",
+        at_least=0.01,
+        at_most=500.0,
     )
     tf_rate_hz: float = param(
-        50.0, "/tf of the base", unit="Hz", above=0.0, at_most=50.0
+        50.0, "/tf of the base", unit="Hz", at_least=0.01, at_most=50.0
     )
     joint_tf_rate_hz: float = param(
-        10.0, "/tf of turning wheels", unit="Hz", above=0.0, at_most=50.0
+        10.0, "/tf of turning wheels", unit="Hz", at_least=0.01, at_most=50.0
     )
 
     def check(self) -> None:

@@ -31,7 +31,7 @@ class ViewerParams(Params):
         20.0,
         "rate at which clients receive the time",
         unit="Hz",
-        above=0.0,
+        at_least=0.01,
         at_most=100.0,
     )
     allowed_origins: tuple[str, ...] = param(

@@ -17,7 +17,9 @@ class ControlParams(Params):
     map_frame: str = param("map", "frame of /path and of the pose that is steered")
     base_frame: str = param("base_link", "frame that is steered: the axle's midpoint")
     method: str = param("pure_pursuit", "steering method", choices=METHODS)
-    rate_hz: float = param(20.0, "commands per second", unit="Hz", at_least=10.0)
+    rate_hz: float = param(
+        20.0, "commands per second", unit="Hz", at_least=10.0, at_most=1000.0
+    )
 
     cruise_speed_mps: float = param(
         0.5, "speed on a straight, free path", unit="m/s", above=0.0
@@ -35,10 +37,10 @@ class ControlParams(Params):
         1.0, "limit on increasing the commanded speed", unit="m/s²", above=0.0
     )
     deceleration_mps2: float = param(
-        1.0, "limit on decreasing the commanded speed", unit="m/s²", above=0.0
+        1.0, "limit on decreasing the commanded speed", unit="m/s²", at_least=0.01
     )
     turn_acceleration_radps2: float = param(
-        2.0, "limit on changing the commanded turn rate", unit="rad/s²", above=0.0
+        2.0, "limit on changing the commanded turn rate", unit="rad/s²", at_least=0.01
     )
     lateral_acceleration_mps2: float = param(
         1.0, "limit of speed² · curvature in bends", unit="m/s²", above=0.0

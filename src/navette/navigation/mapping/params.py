@@ -38,7 +38,7 @@ class MapMemoryParams(Params):
         1.0,
         "period of checking whether the robot moved far enough",
         unit="s",
-        above=0.0,
+        at_least=0.001,
     )
     update_distance_m: float = param(
         1.5,

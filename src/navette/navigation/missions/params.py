@@ -27,7 +27,7 @@ class MissionParams(Params):
     wait_for_map: bool = param(True, "send the first goal after a map has arrived")
     rate_hz: float = param(
         10.0, "rate of checks and of ticking the behaviour tree", unit="Hz",
-        at_least=1.0,
+        at_least=1.0, at_most=1000.0,
     )  # fmt: skip
     default_nav_to_pose_bt_xml: str = param(
         "", "file of the behaviour tree of navigate_to_pose; empty: Navette's"

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from navette.errors import ParameterError
+from navette.errors import InvalidValueError, ParameterError
+from navette.geometry import Footprint
 from navette.params import Params, param
 
 METHODS = ("a_star", "dijkstra", "breadth_first")
@@ -22,11 +23,12 @@ class PlannerParams(Params):
         unit="m",
     )
     clearance_margin_m: float = param(
-        0.15, "clearance between body and obstacles", unit="m", at_least=0.0
-    )
+        0.15, "clearance between body and obstacles", unit="m", at_least=0.0,
+        at_most=10.0,
+    )  # fmt: skip
     tight_margin_m: float = param(
         0.05, "clearance where no path has clearance_margin_m", unit="m",
-        at_least=0.0,
+        at_least=0.0, at_most=10.0,
     )  # fmt: skip
     comfort_m: float = param(
         0.3,
@@ -34,6 +36,7 @@ class PlannerParams(Params):
         "where there is room",
         unit="m",
         at_least=0.0,
+        at_most=10.0,
     )
     clearance_weight: float = param(
         3.0,
@@ -78,7 +81,7 @@ class PlannerParams(Params):
         above=0.0,
     )
     path_spacing_m: float = param(
-        0.1, "largest distance between poses of the path", unit="m", above=0.0
+        0.1, "largest distance between poses of the path", unit="m", at_least=0.01
     )
     turn_threshold_rad: float = param(
         0.8,
@@ -101,7 +104,7 @@ class PlannerParams(Params):
     )
 
     plan_period_s: float = param(
-        0.5, "period of checking goal, progress and path", unit="s", above=0.0
+        0.5, "period of checking goal, progress and path", unit="s", at_least=0.001
     )
     odometry_timeout_s: float = param(
         0.5, "age at which odometry is stale and the robot stops", unit="s", above=0.0
@@ -128,6 +131,10 @@ class PlannerParams(Params):
     )
 
     def check(self) -> None:
+        try:
+            Footprint.from_flat(self.footprint_m)
+        except InvalidValueError as error:
+            raise ParameterError(f"parameter 'footprint_m': {error}") from error
         if self.path_end_tolerance_m > self.goal_tolerance_m:
             raise ParameterError(
                 f"parameter 'path_end_tolerance_m': {self.path_end_tolerance_m!r} is "

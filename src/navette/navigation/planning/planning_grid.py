@@ -18,6 +18,7 @@ from navette.navigation.grids import (
     cells_in_footprint,
     distance_field,
 )
+from navette.navigation.grids.distance import MAX_RADIUS
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.traversal import (
     LETHAL,
@@ -195,7 +196,8 @@ def _prepared(
     margin = params.clearance_margin_m
     closed_m = body.inscribed_m + margin
     free_m = body.circumscribed_m + margin + params.comfort_m
-    distance_m = distance_field(obstacles, spec.resolution, free_m + spec.resolution)
+    reach_m = min(free_m + spec.resolution, (MAX_RADIUS - 1) * spec.resolution)
+    distance_m = distance_field(obstacles, spec.resolution, reach_m)
     weight = max(
         params.clearance_weight, params.unknown_cost, params.map_cost_weight, 1e-3
     )

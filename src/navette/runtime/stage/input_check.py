@@ -17,7 +17,7 @@ from navette.msgs.registry import get_message_spec
 FARTHEST = 1e9
 #: Largest number of beams of a scan, and of cells of a grid.
 MOST_BEAMS = 100_000
-MOST_CELLS = 1 << 26
+MOST_CELLS = 20_000**2
 
 _NS_PER_S = 1_000_000_000
 # An orientation from float32 or rounded text is still a unit quaternion.

@@ -65,7 +65,7 @@ class EkfParams(Params):
     """Inputs of the filter, their use, and the noise of the motion model."""
 
     frequency_hz: float = param(
-        30.0, "rate of published estimates", unit="Hz", above=0.0
+        30.0, "rate of published estimates", unit="Hz", at_least=0.1, at_most=1000.0
     )
     sensor_timeout_s: float = param(
         0.5,
