@@ -14,7 +14,9 @@ class BehaviorParams(Params):
 
     map_frame: str = param("map", "frame of the pose in which motion is measured")
     base_frame: str = param("base_link", "frame that moves: the axle's midpoint")
-    rate_hz: float = param(20.0, "commands per second", unit="Hz", at_least=10.0, at_most=1000.0)
+    rate_hz: float = param(
+        20.0, "commands per second", unit="Hz", at_least=10.0, at_most=1000.0
+    )
 
     max_speed_mps: float = param(
         0.5, "limit of the requested speed", unit="m/s", above=0.0

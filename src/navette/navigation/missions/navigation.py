@@ -6,6 +6,7 @@ at rest.
 """
 
 import math
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any, Protocol
 
 from py_trees.common import Status
 
+from navette.errors import FileFormatError
 from navette.geometry import Pose2
 from navette.msgs.geometry_msgs.msg import PoseStamped
 from navette.navigation.missions.sequence import (
@@ -27,6 +29,7 @@ from navette.navigation.missions.tree.paths import nearest_index, path_length_m
 from navette.navigation.missions.tree.robot_access import RobotAccess
 from navette.navigation.missions.tree.tree_file import TreeFile
 from navette.navigation.missions.tree_run import StatusChange, TreeRun
+from navette.untrusted.files import open_regular
 
 PREEMPTED_TEXT = "preempted by a newer goal"
 # A robot that does not stop within this time has another problem.
@@ -111,9 +114,13 @@ class TreeNavigator:
             FileFormatError: the file or its tree is invalid.
         """
         try:
-            key = path, path.stat().st_mtime_ns
-        except OSError:
-            return TreeFile.read(path)  # raises and names the reason
+            # A client names the file: a pipe would block the node.
+            with open_regular(path) as file:
+                key = path, os.fstat(file.fileno()).st_mtime_ns
+        except ValueError as error:  # a null character
+            if isinstance(error, FileFormatError):
+                raise
+            raise FileFormatError(repr(str(path)), str(error)) from None
         if key not in self._files:
             file = TreeFile.read(path)
             TreeRun(file, self._robot)

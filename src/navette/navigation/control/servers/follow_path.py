@@ -15,6 +15,7 @@ from navette.navigation.control.records import FollowerInputs, FollowerOutput
 from navette.navigation.control.states import ControlState
 from navette.runtime.node import Node
 from navette.runtime.stage.goal_server import DriveGoalServer
+from navette.runtime.stage.input_check import FARTHEST
 from navette.runtime.stage.path_messages import Poses, moved, poses_of
 
 # Names of Nav2's default parameters; the empty name selects the only one.
@@ -135,7 +136,7 @@ class FollowPathServer:
             self._fail("TF_ERROR", text)
             return
         poses = poses_of(goal.path)
-        if len(poses) == 0 or not np.isfinite(poses).all():
+        if len(poses) == 0 or not (np.abs(poses) <= FARTHEST).all():
             self._fail("INVALID_PATH", "the path is empty or not finite")
             return
         method = goal.controller_id if goal.controller_id in METHODS else ""

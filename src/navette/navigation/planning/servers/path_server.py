@@ -23,6 +23,7 @@ from navette.navigation.planning.planner import Goal, Planner
 from navette.runtime import Stopwatch
 from navette.runtime.node import Node
 from navette.runtime.stage.goal_server import serve_query
+from navette.runtime.stage.input_check import FARTHEST
 from navette.runtime.stage.path_messages import moved, path_message, pose_of, poses_of
 from navette.runtime.time import Duration
 
@@ -61,11 +62,11 @@ class PlanningContext:
     def path(self, msg: Path) -> Poses | None:
         """Return the poses (N, 3) of a path in the map frame.
 
-        None: the frame is unknown, or a value is not finite.
+        None: the frame is unknown, or a value is not finite or out of range.
         """
         map_T_frame = self.frame_on_map(msg.header.frame_id or self.params().map_frame)
         poses = poses_of(msg)
-        if map_T_frame is None or not np.isfinite(poses).all():
+        if map_T_frame is None or not (np.abs(poses) <= FARTHEST).all():
             return None
         return moved(poses, map_T_frame)
 
@@ -169,7 +170,9 @@ class PathServer:
                 f"{name} in unknown frame {frame_id!r}; expected a frame on /tf",
             )
         pose = pose_of(msg.pose)
-        return map_T_frame @ pose if np.isfinite(pose).all() else pose
+        if not (np.abs(pose) <= FARTHEST).all():
+            return pose  # refused by the planner
+        return map_T_frame @ pose
 
     def _check_path(self, request: Any, response: Any) -> Any:
         context = self._context
