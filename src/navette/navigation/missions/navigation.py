@@ -115,8 +115,8 @@ class TreeNavigator:
         """
         try:
             # A client names the file: a pipe would block the node.
-            with open_regular(path) as file:
-                key = path, os.fstat(file.fileno()).st_mtime_ns
+            with open_regular(path) as opened:
+                key = path, os.fstat(opened.fileno()).st_mtime_ns
         except ValueError as error:  # a null character
             if isinstance(error, FileFormatError):
                 raise

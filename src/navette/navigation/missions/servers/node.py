@@ -240,7 +240,7 @@ def _feedback(handle: Any, progress: NavigationProgress, robot: NodeRobot) -> An
         navigation_time=_duration(progress.time_s),
         estimated_time_remaining=_duration(progress.time_left_s),
         number_of_recoveries=progress.recoveries,
-        distance_remaining=progress.distance_left_m,
+        distance_remaining=_bounded(progress.distance_left_m),
     )
     if progress.pose is not None:
         stamp = ns_to_stamp(robot.now_ns)
@@ -252,5 +252,11 @@ def _feedback(handle: Any, progress: NavigationProgress, robot: NodeRobot) -> An
 
 
 def _duration(seconds: float) -> Duration:
-    whole = math.floor(min(max(seconds, 0.0), _LONGEST_S))
-    return Duration(sec=whole, nanosec=round((seconds - whole) % 1.0 * 1e9) % 10**9)
+    seconds = _bounded(seconds)
+    whole = math.floor(seconds)
+    return Duration(sec=whole, nanosec=round((seconds - whole) * 1e9) % 10**9)
+
+
+def _bounded(value: float) -> float:
+    """Return a value for a message; the goal may be at 1e308 m or not a number."""
+    return min(max(0.0, value), _LONGEST_S)
