@@ -53,12 +53,25 @@ class LifecycleNodeMixin(ManagedEntity):
     ) -> None:
         if not isinstance(self, Node):
             raise RuntimeError("LifecycleNodeMixin needs Node in the inheritance tree")
-        self._node = cast(Node, self)
+        name = "~" if enable_communication_interface else None
+        self._begin_lifecycle(cast(Node, self), name, callback_group)
+
+    def _begin_lifecycle(
+        self, node: Node, name: str | None, callback_group: CallbackGroup | None = None
+    ) -> None:
+        """Start in the state ``unconfigured``.
+
+        Args:
+            node: the node whose lifecycle this is.
+            name: prefix of the services' names; None: no services.
+            callback_group: the services' group.
+        """
+        self._node = node
         self._state_machine = LifecycleStateMachine()
         self._managed_entities: list[ManagedEntity] = []
         self._transition_events: Publisher[TransitionEvent] | None = None
-        if enable_communication_interface:
-            self._open_interface(callback_group)
+        if name is not None:
+            self._open_interface(name, callback_group)
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         return self._change_state(Transition.TRANSITION_CONFIGURE)
@@ -179,7 +192,7 @@ class LifecycleNodeMixin(ManagedEntity):
             self._node.get_logger().error(f"{name} raised:\n{traceback.format_exc()}")
             return TransitionCallbackReturn.ERROR
 
-    def _open_interface(self, group: CallbackGroup | None) -> None:
+    def _open_interface(self, prefix: str, group: CallbackGroup | None) -> None:
         for type_name, name, callback in (
             ("ChangeState", "change_state", self._on_change_state),
             ("GetState", "get_state", self._on_get_state),
@@ -193,12 +206,12 @@ class LifecycleNodeMixin(ManagedEntity):
         ):
             self._node.serve(
                 f"lifecycle_msgs/srv/{type_name}",
-                f"~/{name}",
+                f"{prefix}/{name}",
                 callback,
                 callback_group=group,
             )
         self._transition_events = self._node.create_publisher(
-            TransitionEvent, "~/transition_event", 10
+            TransitionEvent, f"{prefix}/transition_event", 10
         )
 
     def _on_change_state(self, request: Any, response: Any) -> Any:
