@@ -31,6 +31,9 @@ WORLD_DESCRIPTION = StackTopic("/world_description", "std_msgs/msg/String", 1, T
 TF = StackTopic("/tf", "tf2_msgs/msg/TFMessage")
 TF_STATIC = StackTopic("/tf_static", "tf2_msgs/msg/TFMessage", 1, True)
 ODOMETRY = StackTopic("/odom/filtered", "nav_msgs/msg/Odometry")
+AMCL_POSE = StackTopic(
+    "/amcl_pose", "geometry_msgs/msg/PoseWithCovarianceStamped", 1, True
+)
 GNSS = StackTopic("/gnss_driver/odometry", "gnss_driver/msg/Gps", 1)
 DISTANCE = StackTopic("/odom_integrator/distance", "std_msgs/msg/Float64")
 

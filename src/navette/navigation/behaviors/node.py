@@ -22,6 +22,7 @@ from navette.navigation.behaviors.servers.behavior_server import (
     BehaviorServer,
 )
 from navette.navigation.grids import CollisionCheck, ObstacleTracker
+from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input, Output, StageNode
@@ -79,11 +80,16 @@ class BehaviorNode(StageNode):
         super().__init__("behaviors", **kwargs)
         self._start()
         self._commander = Commander()
+        self._lifecycle = StageLifecycle(
+            self,
+            "behavior_server",
+            lambda: self._stop_at_once("behavior_server was deactivated"),
+        )
         context = BehaviorContext(
             params=lambda: self.params,
             collision=lambda: self._collision,
             begin=self._begin,
-            accepts=lambda: True,
+            accepts=lambda: self._lifecycle.is_active,
         )
         self._servers = [
             BehaviorServer(self, spec, context) for spec in BEHAVIOR_ACTIONS

@@ -35,6 +35,7 @@ from navette.navigation.control.servers.follow_path import (
 )
 from navette.navigation.control.states import ControlState
 from navette.navigation.grids import ObstacleTracker
+from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import Poses, poses_of
@@ -137,7 +138,12 @@ class ControlNode(StageNode):
             follow=self._follow_goal,
             stop=self._stop_goal,
         )
-        self._follow_server = FollowPathServer(self, context, lambda: True)
+        self._lifecycle = StageLifecycle(
+            self, "controller_server", lambda: self.on_path(Path())
+        )
+        self._follow_server = FollowPathServer(
+            self, context, lambda: self._lifecycle.is_active
+        )
 
     def on_path(self, msg: Path) -> None:
         """Follow a new path, or report why it is refused."""
@@ -149,16 +155,18 @@ class ControlNode(StageNode):
                 f"path in frame {frame!r}; expected map_frame, "
                 f"{self.params.map_frame!r}",
             )
+        if msg.poses and not self._lifecycle.is_active:
+            raise InvalidInputError("inactive", "controller_server is not active")
         self._try_path(poses_of(msg))
 
     def on_input_dropped(self, topic: str, msg: Any, error: InvalidInputError) -> None:
         """Stop for an invalid path: the previous one is obsolete."""
         if topic == topics.PATH.name:
             self._replace_path()
-            is_frame = error.reason == "unknown_frame"
-            state = (
-                ControlState.UNKNOWN_FRAME if is_frame else ControlState.INVALID_PATH
-            )
+            state = {
+                "unknown_frame": ControlState.UNKNOWN_FRAME,
+                "inactive": ControlState.IDLE,
+            }.get(error.reason, ControlState.INVALID_PATH)
             self._follower.reset(state)
 
     def on_odometry(self, msg: Odometry) -> None:

@@ -28,6 +28,7 @@ from navette.navigation.servers.costmap_services import (
     CostmapServices,
     CostmapSource,
 )
+from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
 from navette.runtime.stage.odometry import PoseTracker
 
@@ -82,6 +83,7 @@ class MapMemoryNode(StageNode):
             robot_frame=lambda: self.params.base_frame,
             footprint=lambda: self._memory.footprint,
         )
+        self._lifecycle = StageLifecycle(self, "map_server")
         self._costmap_services = CostmapServices(self, "global_costmap", source)
 
     def on_odometry(self, msg: Odometry) -> None:

@@ -30,6 +30,7 @@ from navette.navigation.missions.sequence import (
 )
 from navette.navigation.missions.servers.node import NavigationServers
 from navette.navigation.missions.tree.drawing import tree_text
+from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 from navette.runtime.time import ns_to_stamp
@@ -123,7 +124,11 @@ class MissionNode(StageNode):
         self._robot = NodeRobot(self, self._tracker, self._step)
         self._navigator = TreeNavigator(self._robot, params.error_code_names)
         self._load_trees()
-        self._servers = NavigationServers(self, self._robot, self._navigator)
+        self._lifecycle = StageLifecycle(self, "bt_navigator", self._navigator.cancel)
+        StageLifecycle(self, "waypoint_follower")
+        self._servers = NavigationServers(
+            self, self._robot, self._navigator, lambda: self._lifecycle.is_active
+        )
         self._stepping = False
         self._timer = self.create_timer(1 / params.rate_hz, self._check)
 
@@ -304,6 +309,9 @@ class MissionNode(StageNode):
         def on_response(_: object) -> None:
             handle = future.result()
             if handle is None:
+                return
+            if not handle.accepted:
+                self.get_logger().warning("goal refused: bt_navigator is not active")
                 return
             if of_list is not None:
                 of_list.handle = handle

@@ -32,6 +32,8 @@ from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Planner
 from navette.navigation.planning.reports import NavigatorReport, Phase, RobotMotion
 from navette.navigation.planning.servers.path_server import PathServer, PlanningContext
+from navette.navigation.planning.servers.smoother_server import SmootherServer
+from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.input_check import input_check
@@ -123,7 +125,12 @@ class PlannerNode(StageNode):
             frame_on_map=lambda frame_id: self._tracker.frame_on_map(frame_id),
             publish_plan=self._publish_plan,
         )
-        self._path_server = PathServer(self, context, lambda: True)
+        self._lifecycle = StageLifecycle(self, "planner_server", self._end_goal)
+        smoothing = StageLifecycle(self, "smoother_server")
+        self._smoother_server = SmootherServer(
+            self, context, lambda: smoothing.is_active
+        )
+        self._path_server = PathServer(self, context, lambda: self._lifecycle.is_active)
         self.create_service(Trigger, "~/cancel", self.on_cancel)
         self._report()
 
@@ -192,10 +199,15 @@ class PlannerNode(StageNode):
     ) -> Trigger_Response:
         """End the goal (``canceled``) and stop the robot."""
         response.success = True
-        canceled = self._navigator.cancel()
+        canceled = self._end_goal()
         response.message = "goal canceled" if canceled else "no goal was active"
-        self._publish_news()
         return response
+
+    def _end_goal(self) -> bool:
+        """Cancel the goal and stop the robot; return whether there was one."""
+        canceled = self._navigator.cancel()
+        self._publish_news()
+        return canceled
 
     def on_cancel_goal(self, msg: Empty) -> None:
         """End the goal, if no missions do that."""
@@ -288,6 +300,9 @@ class PlannerNode(StageNode):
             )
         else:
             self._navigator.set_goal(_moved(goal, map_T_frame), self._now_ns)
+        if not self._lifecycle.is_active:
+            self.get_logger().warning("goal refused: planner_server is not active")
+            self._navigator.cancel()
         self._report()
         self.on_timer()
 

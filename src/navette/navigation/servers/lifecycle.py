@@ -19,8 +19,6 @@ from navette.runtime.node import Node
 
 NAV2_NODES = {
     "map_server": "map_memory",
-    "global_costmap/global_costmap": "map_memory",
-    "local_costmap/local_costmap": "costmap",
     "amcl": "localizer",
     "controller_server": "control",
     "smoother_server": "planner",
@@ -44,7 +42,7 @@ class StageLifecycle(LifecycleNodeMixin):
     """
 
     def __init__(
-        self, node: Node, name: str, on_inactive: Callable[[], None] = lambda: None
+        self, node: Node, name: str, on_inactive: Callable[[], object] = lambda: None
     ) -> None:
         assert name in NAV2_NODES, "only Nav2's names are offered"
         self._on_inactive = on_inactive

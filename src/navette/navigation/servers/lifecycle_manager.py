@@ -31,7 +31,9 @@ _ACTIVE = "active"
 class LifecycleManagerParams(Params):
     """The nodes that the lifecycle manager starts and stops."""
 
-    node_names: tuple[str, ...] = param(_NAMES, "managed nodes, in the order of starting")
+    node_names: tuple[str, ...] = param(
+        _NAMES, "managed nodes, in the order of starting"
+    )
 
 
 class LifecycleManagerNode(StageNode):
@@ -70,7 +72,7 @@ class LifecycleManagerNode(StageNode):
         failed = [name for name in names if not await self._bring(name, goal)]
         response.success = not failed
         if failed:
-            self.get_logger().error(f"not {goal}: {', '.join(failed)}")
+            self.get_logger().error(f"state {goal!r} not reached: {', '.join(failed)}")
         else:
             self.get_logger().info(f"all managed nodes are {goal}")
         return response

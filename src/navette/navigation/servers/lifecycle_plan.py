@@ -13,6 +13,7 @@ _STEPS = {
     "active": _UP | {"inactive": _T.TRANSITION_ACTIVATE},
     "inactive": _UP | _DOWN,
     "unconfigured": _DOWN | {"inactive": _T.TRANSITION_CLEANUP},
+    "not active": _DOWN,
     "finalized": _DOWN
     | {
         "inactive": _T.TRANSITION_INACTIVE_SHUTDOWN,
@@ -21,9 +22,10 @@ _STEPS = {
 }
 
 _Command = ManageLifecycleNodes.Request
+_PAUSED = "not active"
 _GOALS = {
     _Command.STARTUP: "active",
-    _Command.PAUSE: "inactive",
+    _Command.PAUSE: _PAUSED,
     _Command.RESUME: "active",
     _Command.RESET: "unconfigured",
     _Command.SHUTDOWN: "finalized",
@@ -50,7 +52,7 @@ def next_transition(state: str, goal: str) -> int | None:
     Raises:
         InvalidValueError: no transition leads there, such as from a transition state.
     """
-    if state == goal:
+    if state == goal or (goal == _PAUSED and state in _STEPS and state != "active"):
         return None
     step = _STEPS[goal].get(state)
     if step is None:

@@ -9,9 +9,11 @@ from navette.navigation.control.node import ControlNode
 from navette.navigation.costmap.node import CostmapNode
 from navette.navigation.localization.distance.node import OdomIntegratorNode
 from navette.navigation.localization.ekf.node import EkfNode
+from navette.navigation.localization.localizer.node import LocalizerNode
 from navette.navigation.mapping.node import MapMemoryNode
 from navette.navigation.missions.node import MissionNode
 from navette.navigation.planning.node import PlannerNode
+from navette.navigation.servers.lifecycle_manager import LifecycleManagerNode
 from navette.runtime import Context, StageNode
 from navette.sim.node import SimNode
 
@@ -32,6 +34,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("sim", SimNode),
     ("odom_integrator", OdomIntegratorNode),
     ("ekf", EkfNode),
+    ("localizer", LocalizerNode),
     ("costmap", CostmapNode),
     ("map_memory", MapMemoryNode),
     ("planner", PlannerNode),
@@ -39,6 +42,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("behaviors", BehaviorNode),
     ("arbiter", ArbiterNode),
     ("missions", MissionNode),
+    ("lifecycle_manager_navigation", LifecycleManagerNode),
 )
 
 
@@ -62,6 +66,7 @@ class NavigationStack:
     Start localization nodes by name where required.
     """
 
+    localizer: LocalizerNode
     costmap: CostmapNode
     map_memory: MapMemoryNode
     planner: PlannerNode
@@ -69,11 +74,13 @@ class NavigationStack:
     behaviors: BehaviorNode
     arbiter: ArbiterNode
     missions: MissionNode
+    lifecycle_manager: LifecycleManagerNode
 
     @classmethod
     def create(cls, context: Context) -> "NavigationStack":
         """Create all nodes, with the context's parameter overrides."""
         return cls(
+            localizer=LocalizerNode(context=context),
             costmap=CostmapNode(context=context),
             map_memory=MapMemoryNode(context=context),
             planner=PlannerNode(context=context),
@@ -81,4 +88,5 @@ class NavigationStack:
             behaviors=BehaviorNode(context=context),
             arbiter=ArbiterNode(context=context),
             missions=MissionNode(context=context),
+            lifecycle_manager=LifecycleManagerNode(context=context),
         )

@@ -94,6 +94,14 @@ def ekf() -> None:
 
 
 @_program
+def localizer() -> None:
+    """Run the localizer."""
+    from navette.navigation.localization.localizer.node import LocalizerNode
+
+    _run_stage("localizer", LocalizerNode, "/odom/filtered, /initialpose → /amcl_pose")
+
+
+@_program
 def costmap() -> None:
     """Run the costmap."""
     from navette.navigation.costmap.node import CostmapNode
@@ -141,6 +149,16 @@ def arbiter() -> None:
 
     text = "/cmd_vel_nav, /cmd_vel_teleop, /emergency_stop → /cmd_vel"
     _run_stage("arbiter", ArbiterNode, text)
+
+
+@_program
+def lifecycle_manager() -> None:
+    """Run the lifecycle manager."""
+    from navette.navigation.servers.lifecycle_manager import LifecycleManagerNode
+
+    text = "services that start, pause and stop the navigation nodes"
+    _parse(_parser("lifecycle_manager", text))
+    _run(lambda context: LifecycleManagerNode(context=context), ParameterOverrides())
 
 
 @_program

@@ -21,6 +21,7 @@ _PROGRAMS = {
         "sim",
         "odom_integrator",
         "ekf",
+        "localizer",
         "costmap",
         "map_memory",
         "planner",
@@ -28,6 +29,7 @@ _PROGRAMS = {
         "behaviors",
         "arbiter",
         "missions",
+        "lifecycle_manager",
         "viewer",
         "recorder",
     )

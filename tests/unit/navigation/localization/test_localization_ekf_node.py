@@ -313,3 +313,58 @@ def test_parameters_may_change_while_it_runs() -> None:
         assert "7 numbers" in node.set_parameters([bad])[0].reason
         moved = node.set_parameters([Parameter("odom0", value="/other")])[0]
         assert "cannot change after the start" in moved.reason
+
+
+def initial_pose(x: float, y: float, yaw: float, frame: str = "odom", variance=0.0):
+    msg = stamped(PoseWithCovarianceStamped(), 0.0, frame)
+    msg.pose.pose.position.x, msg.pose.pose.position.y = x, y
+    qx, qy, qz, qw = quaternion_from_yaw(yaw)
+    msg.pose.pose.orientation = Quaternion(x=qx, y=qy, z=qz, w=qw)
+    msg.pose.covariance = (np.eye(6) * variance).ravel()
+    return msg
+
+
+def test_an_initial_pose_replaces_the_estimate() -> None:
+    with GraphHarness() as graph:
+        _, estimates = started(graph, **WHEELS)
+        for i in range(10):
+            graph.publish("/wheels", wheels(0.1 * i, 1.0))
+            graph.run_for(0.1)
+        assert pose_of(estimates.last)[0] > 0.5
+        graph.publish("/initialpose", initial_pose(5.0, -2.0, math.pi / 2))
+        graph.run_for(0.01)
+        for i in range(10, 20):
+            graph.publish("/wheels", wheels(0.1 * i, 1.0))
+            graph.run_for(0.1)
+        x, y, yaw = pose_of(estimates.last)
+        assert x == pytest.approx(5.0, abs=0.02)
+        assert y == pytest.approx(-1.0, abs=0.15)
+        assert yaw == pytest.approx(math.pi / 2, abs=0.01)
+        variances = np.asarray(estimates.last.pose.covariance).reshape(6, 6).diagonal()
+        assert 0.25 <= variances[0] < 0.6  # none was given
+
+
+def test_a_late_measurement_does_not_undo_an_initial_pose() -> None:
+    with GraphHarness() as graph:
+        _, estimates = started(graph, **WHEELS)
+        for i in range(10):
+            graph.publish("/wheels", wheels(0.1 * i, 1.0))
+            graph.run_for(0.1)
+        graph.publish("/initialpose", initial_pose(5.0, 0.0, 0.0, variance=0.01))
+        graph.run_for(0.01)
+        for late_s in (0.45, 0.95):
+            graph.publish("/wheels", wheels(late_s, 1.0))
+            graph.run_for(0.1)
+        assert pose_of(estimates.last)[0] > 5.0
+
+
+def test_an_initial_pose_in_an_unknown_frame_is_dropped() -> None:
+    with GraphHarness() as graph:
+        node, estimates = started(graph, **WHEELS)
+        graph.publish("/wheels", wheels(0.0, 0.0))
+        graph.run_for(0.1)
+        graph.publish("/initialpose", initial_pose(5.0, 0.0, 0.0, frame="moon"))
+        graph.publish("/wheels", wheels(0.1, 0.0))
+        graph.run_for(0.1)
+        assert pose_of(estimates.last)[0] == pytest.approx(0.0)
+        assert sum(node.dropped_inputs.values()) == 1

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from navette.geometry import Pose2
 from navette.navigation.localization.ekf.measurement import (
     Measurement,
     expected_jacobian,
@@ -20,6 +21,8 @@ from navette.navigation.localization.ekf.state import (
     SIZE,
     YAW,
     Array,
+    X,
+    Y,
     predicted,
     predicted_jacobian,
     wrapped,
@@ -112,6 +115,17 @@ class PlanarEkf:
         if not later.is_finite:
             return None
         return Estimate(max(stamp_ns, now.stamp_ns), later.state, later.covariance)
+
+    def set_pose(self, pose: Pose2, covariance: Array) -> None:
+        """Replace the pose and its covariance (3, 3), without correlations."""
+        before, rows = self.snapshot, [X, Y, YAW]
+        state, full = before.state.copy(), before.covariance.copy()
+        state[rows] = pose.x, pose.y, wrapped(pose.yaw)
+        full[rows, :] = full[:, rows] = 0.0
+        full[np.ix_(rows, rows)] = covariance
+        self.snapshot = FilterSnapshot(
+            before.stamp_ns, state, full, before.unseen - set(rows)
+        )
 
     def step(self, measurement: Measurement) -> Fused:
         """Predict to the measurement's time and correct the estimate.

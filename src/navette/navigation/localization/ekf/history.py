@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 
+from navette.geometry import Pose2
 from navette.navigation.localization.ekf.filter import FilterSnapshot, Fused, PlanarEkf
 from navette.navigation.localization.ekf.measurement import Measurement
+from navette.navigation.localization.ekf.state import Array
 
 # A larger step back of a sensor's stamps means a new run: a bag that starts again or
 # was set back, or a reset simulation.
@@ -35,12 +37,20 @@ class OrderedEkf:
         self.max_gap_ns = max_gap_ns
         self._entries: list[_Entry] = []
         self._newest_of: dict[str, int] = {}
+        self._set_ns: int | None = None  # stamp of the estimate when it was set
 
     def reset(self) -> None:
         """Reset the filter and the history."""
         self.ekf.reset()
         self._entries.clear()
         self._newest_of.clear()
+        self._set_ns = None
+
+    def set_pose(self, pose: Pose2, covariance: Array) -> None:
+        """Replace the pose; measurements from before that are too old from now on."""
+        self.ekf.set_pose(pose, covariance)
+        self._entries.clear()
+        self._set_ns = self.ekf.stamp_ns
 
     def is_new_run(self, source: str, stamp_ns: int) -> bool:
         """Return whether time went back, or ahead by more than the gap: a new run."""
@@ -55,6 +65,8 @@ class OrderedEkf:
         source, stamp_ns = measurement.source, measurement.stamp_ns
         newest_ns = self.ekf.stamp_ns
         if newest_ns is not None and stamp_ns < newest_ns - self.history_ns:
+            return Fused.TOO_OLD
+        if self._set_ns is not None and stamp_ns < self._set_ns:
             return Fused.TOO_OLD
         self._newest_of[source] = max(stamp_ns, self._newest_of.get(source, stamp_ns))
         later = self._roll_back_to(stamp_ns)

@@ -20,7 +20,7 @@ from navette.msgs.std_msgs.msg import Header
 from navette.navigation.localization.ekf.filter import Estimate
 from navette.navigation.localization.ekf.state import VX, VY, VYAW, YAW, Array, X, Y
 
-_PLANAR = np.ix_([0, 1, 5], [0, 1, 5])
+PLANAR_POSE = np.ix_([0, 1, 5], [0, 1, 5])
 
 
 def odometry_message(estimate: Estimate, world: str, base: str) -> Odometry:
@@ -78,5 +78,5 @@ def _header(stamp_ns: int, frame: str) -> Header:
 def _spatial(covariance: Array, rows: list[int]) -> Array:
     """Return the covariance (36,) of a spatial pose or twist from three entries."""
     spatial = np.zeros((6, 6))
-    spatial[_PLANAR] = covariance[np.ix_(rows, rows)]
+    spatial[PLANAR_POSE] = covariance[np.ix_(rows, rows)]
     return spatial.ravel()

@@ -14,10 +14,12 @@ import numpy as np
 from navette.errors import InvalidInputError, ParameterError, TransformError
 from navette.geometry import Transform3
 from navette.msgs import topics
+from navette.msgs.geometry_msgs.msg import PoseWithCovarianceStamped
 from navette.msgs.tf2_msgs.msg import TFMessage
 from navette.navigation.localization.ekf.filter import Estimate, Fused, PlanarEkf
 from navette.navigation.localization.ekf.history import OrderedEkf
 from navette.navigation.localization.ekf.messages import (
+    PLANAR_POSE,
     odometry_message,
     pose_of,
     transform_message,
@@ -28,7 +30,11 @@ from navette.navigation.localization.ekf.params import (
     EkfParams,
 )
 from navette.navigation.localization.ekf.sensors import KINDS, FilterInput
-from navette.navigation.localization.ekf.state import PLANAR, planar_covariance
+from navette.navigation.localization.ekf.state import (
+    PLANAR,
+    is_covariance,
+    planar_covariance,
+)
 from navette.runtime import (
     Buffer,
     Input,
@@ -37,8 +43,11 @@ from navette.runtime import (
     TransformListener,
     stamp_to_ns,
 )
+from navette.runtime.stage.path_messages import pose_of as pose_of_message
 
 _WARNING_PERIOD_NS = 5_000_000_000
+# Of an initial pose without variances; those of RViz.
+_INITIAL_COVARIANCE = np.diag([0.25, 0.25, 0.0685])
 
 
 def _input(source: str, type_name: str, role: str) -> Input:
@@ -64,6 +73,11 @@ class EkfNode(StageNode):
         _input("twist0", "geometry_msgs/msg/TwistWithCovarianceStamped", "velocity"),
         _input("imu0", "sensor_msgs/msg/Imu", "heading, turn rate, acceleration"),
         _input("gps0", "sensor_msgs/msg/NavSatFix", "position of the antenna"),
+        Input.of(
+            topics.INITIAL_POSE,
+            "pose that replaces the estimate",
+            callback="on_initial_pose",
+        ),
     )
     OUTPUTS: ClassVar = (
         Output.of(
@@ -101,7 +115,7 @@ class EkfNode(StageNode):
                 f"node {self.get_fully_qualified_name()}: no input; set the topic "
                 f"of at least one of {', '.join(SOURCES)}"
             )
-        return tuple(
+        sources = (
             replace(
                 usual,
                 topic=getattr(self.params, usual.topic),
@@ -110,6 +124,7 @@ class EkfNode(StageNode):
             for usual in self.INPUTS
             if usual.topic in self.params.used
         )
+        return *sources, self.INPUTS[-1]
 
     def on_odom0(self, msg: Any) -> None:
         self._take("odom0", msg)
@@ -128,6 +143,22 @@ class EkfNode(StageNode):
 
     def on_gps0(self, msg: Any) -> None:
         self._take("gps0", msg)
+
+    def on_initial_pose(self, msg: PoseWithCovarianceStamped) -> None:
+        """Continue from a pose of a person or program."""
+        frame_id = msg.header.frame_id or self.params.world_frame
+        try:
+            world_T_frame = self.in_world(frame_id).to_pose2()
+        except TransformError as error:
+            text = f"initial pose not used: {error}"
+            raise InvalidInputError("unknown_frame", text) from None
+        pose = world_T_frame @ pose_of_message(msg.pose.pose)
+        given = np.asarray(msg.pose.covariance).reshape(6, 6)[PLANAR_POSE]
+        usable = is_covariance(given) and given.diagonal().all()
+        self._filter.set_pose(pose, given if usable else _INITIAL_COVARIANCE)
+        self.get_logger().info(
+            f"initial pose: ({pose.x:.2f}, {pose.y:.2f}), heading {pose.yaw:.2f} rad"
+        )
 
     def on_timer(self) -> None:
         """Publish the newest estimate, or a prediction from it."""

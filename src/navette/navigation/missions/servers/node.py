@@ -6,7 +6,7 @@ as aborted.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,12 @@ from navette.navigation.missions.navigation import (
 from navette.navigation.missions.params import MissionParams
 from navette.navigation.missions.robot.node import NodeRobot, stamped
 from navette.navigation.missions.sequence import CANCELED, REACHED
-from navette.runtime.action import ActionClient, ActionServer, CancelResponse
+from navette.runtime.action import (
+    ActionClient,
+    ActionServer,
+    CancelResponse,
+    GoalResponse,
+)
 from navette.runtime.future import Future
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.time import ns_to_stamp
@@ -48,7 +53,11 @@ class NavigationServers:
     """Action servers of a node that feed one :class:`TreeNavigator`."""
 
     def __init__(
-        self, node: StageNode, robot: NodeRobot, navigator: TreeNavigator
+        self,
+        node: StageNode,
+        robot: NodeRobot,
+        navigator: TreeNavigator,
+        accepts: Callable[[], bool],
     ) -> None:
         self._node, self._robot, self._navigator = node, robot, navigator
         self._running: dict[bytes, tuple[Any, Navigation]] = {}  # with its handle
@@ -62,6 +71,9 @@ class NavigationServers:
                 name,
                 execute_callback=execute,
                 cancel_callback=cancel,
+                goal_callback=lambda goal: (
+                    GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT
+                ),
             )
             for action, name, execute, cancel in (
                 (NavigateToPose, "navigate_to_pose", self._to_pose, self._on_cancel),
@@ -217,6 +229,8 @@ class NavigationServers:
             return None
         inner = await self.client.send_goal_async(NavigateToPose.Goal(pose=pose))
         assert inner is not None, "the client's future has a result"
+        if not inner.accepted:  # navigation is not active any more
+            return None
         self._waypoints[key] = inner
         if handle.is_cancel_requested:
             inner.cancel_goal_async()

@@ -1,0 +1,62 @@
+"""Nav2's smoother server: the action smooth_path."""
+
+from collections.abc import Callable
+from typing import Any
+
+from navette.msgs.nav2_msgs.action import SmoothPath
+from navette.navigation.planning.footprint_check import check_path
+from navette.navigation.planning.path_smoothing import smooth_path
+from navette.navigation.planning.servers.path_server import PlanningContext
+from navette.runtime import Stopwatch
+from navette.runtime.node import Node
+from navette.runtime.stage.goal_server import serve_query
+from navette.runtime.stage.path_messages import path_message
+from navette.runtime.time import Duration
+
+SMOOTHERS = ("", "simple_smoother")
+"""The empty name selects the only one; the other is that of Nav2's parameters."""
+
+Result = SmoothPath.Result
+
+
+class SmootherServer:
+    """Smooths the path of a goal on the newest map."""
+
+    def __init__(
+        self, node: Node, context: PlanningContext, accepts: Callable[[], bool]
+    ) -> None:
+        self._node = node
+        self._context = context
+        serve_query(node, SmoothPath, "smooth_path", self._answer, accepts=accepts)
+
+    def _answer(self, goal: Any) -> Any:
+        timer = Stopwatch()
+        result = self._smoothed(goal)
+        result.smoothing_duration = Duration(seconds=timer.elapsed_s).to_msg()
+        if result.error_code:
+            self._node.get_logger().warning(f"smooth_path: {result.error_msg}")
+        return result
+
+    def _smoothed(self, goal: Any) -> Any:
+        if goal.smoother_id not in SMOOTHERS:
+            text = f"smoother_id {goal.smoother_id!r}: unknown; known: {SMOOTHERS[1]}"
+            return Result(error_code=Result.INVALID_SMOOTHER, error_msg=text)
+        params, planner = self._context.params(), self._context.planner()
+        poses = self._context.path(goal.path)
+        if poses is None or len(poses) == 0:
+            text = "the path is empty, not finite, or in an unknown frame"
+            return Result(error_code=Result.INVALID_PATH, error_msg=text)
+        if planner is None:
+            text = "no map has arrived yet"
+            return Result(error_code=Result.FAILED_TO_SMOOTH_PATH, error_msg=text)
+        grid = planner.grid()
+        poses = smooth_path(poses, grid, planner.body, params.path_spacing_m)
+        stamp_ns = self._node.get_clock().now().nanoseconds
+        path = path_message(poses, params.map_frame, stamp_ns)
+        if goal.check_for_collisions:
+            check = check_path(poses, grid, planner.body, 0.0)
+            if not check.fits:
+                text = f"the smoothed path is in collision at pose {check.first_bad}"
+                code = Result.SMOOTHED_PATH_IN_COLLISION
+                return Result(path=path, error_code=code, error_msg=text)
+        return Result(path=path, was_completed=True)
