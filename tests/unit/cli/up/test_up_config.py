@@ -252,13 +252,17 @@ def test_the_built_in_services(tmp_path: Path) -> None:
     assert set(specs) == {"sim", "robot", "viewer"}
     names = [process.name for process in specs["robot"].processes]
     assert names == [
+        "localizer",
         "costmap",
         "map_memory",
         "planner",
         "control",
         "behaviors",
         "arbiter",
+        "missions",
+        "lifecycle_manager",
     ]
-    words = ("--robot", "husky", "--ros-args", "-p", "use_sim_time:=true")
     for process in specs["robot"].processes:
-        assert process.argv[-5:] == words
+        assert process.argv[-3:] == ("--ros-args", "-p", "use_sim_time:=true")
+        if process.name != "lifecycle_manager":
+            assert process.argv[process.argv.index("--robot") + 1] == "husky"
