@@ -57,6 +57,11 @@ VERBS = (
         "Cancel every goal: the robot stops and waits for the next one.",
     ),
     LazyCommand(
+        "explore",
+        "navette.cli.explore:explore",
+        "Map an unknown world: in the simulator, or with the running robot.",
+    ),
+    LazyCommand(
         "tree",
         "navette.cli.tree:tree",
         "Watch the behaviour tree of the running robot, or check a tree file.",

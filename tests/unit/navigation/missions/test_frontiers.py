@@ -1,0 +1,103 @@
+"""Frontiers of small maps drawn as text."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from navette.geometry import Pose2
+from navette.navigation.grids import GridSpec
+from navette.navigation.missions.explore.frontiers import (
+    FrontierParams,
+    explore,
+    is_open,
+)
+
+# One cell is 0.5 m. "#" occupied, "." free, " " unknown; the first line is the top.
+CELLS = {"#": 100, ".": 0, " ": -1, "o": 40}
+PARAMS = FrontierParams(clearance_m=0.4, min_length_m=0.9, viewpoint_m=1.5)
+
+
+def grid(*lines: str) -> tuple[NDArray[np.int8], GridSpec]:
+    rows = [[CELLS[sign] for sign in line] for line in reversed(lines)]
+    cells = np.array(rows, np.int8)
+    spec = GridSpec(0.5, cells.shape[1], cells.shape[0], Pose2(0.0, 0.0, 0.0))
+    return cells, spec
+
+
+def test_a_closed_room_has_no_frontier() -> None:
+    cells, spec = grid("######", "#....#", "#....#", "#....#", "######")
+    found = explore(cells, spec, (1.25, 1.25), PARAMS)
+    assert found.frontiers == ()
+    assert (found.unreachable, found.open_share) == (0, 0.0)
+    assert found.free_m2 == pytest.approx(12 * 0.25)
+    assert found.known_m2 == pytest.approx(30 * 0.25)
+
+
+def test_an_opening_is_a_frontier_with_a_goal_in_front_of_it() -> None:
+    cells, spec = grid(
+        "##########",
+        "#........ ",
+        "#........ ",
+        "#........ ",
+        "##########",
+    )
+    found = explore(cells, spec, (1.25, 1.25), PARAMS)
+    (frontier,) = found.frontiers
+    assert frontier.middle == pytest.approx((4.25, 1.25))
+    assert frontier.length_m == pytest.approx(1.5)
+    x, y = frontier.goal
+    assert math.dist(frontier.goal, frontier.middle) <= 1.5
+    assert 0.9 <= y <= 1.6
+    assert frontier.way_m == pytest.approx(x - 1.25)
+    assert 0.0 < found.open_share < 0.5
+    assert is_open(cells, spec, frontier.middle, 0.6)
+    assert not is_open(cells, spec, (1.25, 1.25), 0.6)
+
+
+def test_the_way_leads_around_walls_and_the_nearer_frontier_is_first() -> None:
+    cells, spec = grid(
+        "                ",
+        "#..............#",
+        "#..............#",
+        "#..............#",
+        "#######...#....#",
+        "#.....#...#....#",
+        "#.....#...#....#",
+        "#.....#...#....#",
+        "#         #    #",
+    )
+    found = explore(cells, spec, (4.25, 2.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0))
+    ways = [each.way_m for each in found.frontiers]
+    assert ways == sorted(ways)
+    # The room on the left is behind walls.
+    assert found.unreachable == 1
+    assert len(found.frontiers) == 3
+    right = next(each for each in found.frontiers if each.middle[0] > 5.0
+                 and each.middle[1] < 2.0)  # fmt: skip
+    assert right.way_m > math.dist((4.25, 2.25), right.goal) + 1.0
+
+
+def test_longer_frontiers_are_worth_a_longer_way() -> None:
+    lines = ["#" + "." * 20 + "#"] * 3
+    cells, spec = grid("#" * 22, *lines, "#" + "." * 3 + "#" * 18)
+    cells[1:4, 0] = -1  # three cells wide, near
+    cells[4, 12:21] = -1  # nine cells wide, far
+    near = explore(cells, spec, (1.75, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 0.0))
+    long = explore(cells, spec, (1.75, 1.25), FrontierParams(0.4, 100, 0.9, 1.5, 3.0))
+    assert near.frontiers[0].length_m < long.frontiers[0].length_m
+
+
+def test_goals_that_failed_are_avoided() -> None:
+    cells, spec = grid("########", "#...... ", "#...... ", "#...... ", "########")
+    (frontier,) = explore(cells, spec, (1.25, 1.25), PARAMS).frontiers
+    found = explore(cells, spec, (1.25, 1.25), PARAMS, [frontier.goal])
+    assert all(math.dist(f.goal, frontier.goal) > 0.7 for f in found.frontiers)
+
+
+def test_a_robot_beside_a_wall_leaves_and_one_outside_reaches_nothing() -> None:
+    cells, spec = grid("########", "#...... ", "#...... ", "#...... ", "########")
+    assert len(explore(cells, spec, (0.75, 0.75), PARAMS).frontiers) == 1
+    outside = explore(cells, spec, (-50.0, 0.75), PARAMS)
+    assert (outside.frontiers, outside.unreachable) == ((), 1)
