@@ -13,7 +13,7 @@ from .conftest import MakeSimulation
 def test_two_rooms_are_mapped(simulate: MakeSimulation) -> None:
     world = World("two rooms").add_walls((9.0, 6.0))
     # A wall between the rooms with a door of 2 m.
-    world.add_box((0.5, -1.0), (0.2, 4.0, 1.0))
+    world.add_box((0.5, -1.0), (0.2, 4.0))
     simulation = simulate(
         scene=world.scene(), robot="turtlebot3_burger", max_time_s=300.0
     )

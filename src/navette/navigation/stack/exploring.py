@@ -34,7 +34,9 @@ def make_explorer(context: Context, planner_values: Sequence[Any]) -> ExplorerNo
         "base_frame": base_frame,
         "clearance_m": radius_m + _MARGIN_M,
     }
-    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    overrides: list[Parameter[Any]] = [
+        Parameter(name, value=value) for name, value in values.items()
+    ]
     return ExplorerNode(context=context, parameter_overrides=overrides)
 
 

@@ -11,6 +11,7 @@ from navette.navigation.localization.distance.node import OdomIntegratorNode
 from navette.navigation.localization.ekf.node import EkfNode
 from navette.navigation.localization.localizer.node import LocalizerNode
 from navette.navigation.mapping.node import MapMemoryNode
+from navette.navigation.missions.explore.node import ExplorerNode
 from navette.navigation.missions.node import MissionNode
 from navette.navigation.planning.node import PlannerNode
 from navette.navigation.servers.lifecycle_manager import LifecycleManagerNode
@@ -42,6 +43,7 @@ NODE_CLASSES: tuple[tuple[str, type[StageNode]], ...] = (
     ("behaviors", BehaviorNode),
     ("arbiter", ArbiterNode),
     ("missions", MissionNode),
+    ("explorer", ExplorerNode),
     ("lifecycle_manager_navigation", LifecycleManagerNode),
 )
 

@@ -202,6 +202,14 @@ def missions() -> None:
 
 
 @_program
+def explorer() -> None:
+    """Run the explorer."""
+    from navette.navigation.missions.explore.node import ExplorerNode
+
+    _run_stage("explorer", ExplorerNode, "/map → goals of navigate_to_pose")
+
+
+@_program
 def viewer() -> None:
     """Run the live view."""
     parser = _parser("viewer", "The live view on one port (parameter port).")

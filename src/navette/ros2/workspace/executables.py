@@ -29,6 +29,7 @@ _PROGRAMS = {
         "behaviors",
         "arbiter",
         "missions",
+        "explorer",
         "lifecycle_manager",
         "viewer",
         "recorder",

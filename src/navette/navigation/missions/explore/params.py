@@ -25,7 +25,7 @@ class ExplorerParams(Params):
         2.0, "largest distance from a frontier to the goal in front of it", unit="m",
         above=0.0,
     )  # fmt: skip
-    gain: float = param(
+    frontier_gain: float = param(
         1.0, "metres of way that a metre of frontier is worth", at_least=0.0
     )
     map_timeout_s: float = param(
@@ -44,5 +44,5 @@ class ExplorerParams(Params):
             lethal_cost=self.lethal_cost,
             min_length_m=self.min_frontier_m,
             viewpoint_m=self.viewpoint_m,
-            gain=self.gain,
+            gain=self.frontier_gain,
         )
