@@ -295,7 +295,9 @@ def test_one_run_is_found_and_a_taken_port_disturbs_no_one(
     observer.context.try_shutdown()
 
 
-def test_a_shared_run_is_not_registered(terminals: Terminals) -> None:
+def test_a_shared_run_is_not_registered_and_alone_in_its_domain(
+    terminals: Terminals,
+) -> None:
     terminals.environment["NAVETTE_ROUTER"] = f"tcp/127.0.0.1:{free_port()}"
     process = terminals.start("sim", "empty", "--port", "0", "--max-time", "30")
 
@@ -305,6 +307,11 @@ def test_a_shared_run_is_not_registered(terminals: Terminals) -> None:
     until(is_up, "the shared run is found")
     assert live_runs() == []
     assert process.poll() is None
+
+    # A second simulator would drive the same robot: it ends before its first node.
+    second = terminals.type("sim", "empty", "--port", "0")
+    assert second.returncode == 2
+    assert "/sim publishes /clock in domain 0 already" in second.stderr
 
 
 ATTEMPT = """

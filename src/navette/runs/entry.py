@@ -17,7 +17,7 @@ MAX_BYTES = 16_384
 MAX_TEXT = 200
 _MAX_DOMAIN = 232
 _NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,23}")
-_PAGE = re.compile(r"http://[0-9A-Za-z.:\[\]-]{1,60}")
+_PAGE = re.compile(r"https?://[0-9A-Za-z.:\[\]-]{1,60}")
 
 
 def is_run_name(text: str) -> bool:

@@ -16,7 +16,7 @@ from navette.supervisor.project import (
     Project,
     SupervisorError,
     create_state,
-    is_locked,
+    is_supervised,
     read_info,
     socket_path,
     state_root,
@@ -164,7 +164,7 @@ def known_projects() -> list[Project]:
     found = []
     for file in sorted(state_root().glob(f"*/{INFO_NAME}")):
         info = read_info(file.parent)
-        if info is not None and is_locked(file.parent):
+        if info is not None and is_supervised(file.parent):
             found.append(Project(Path(info["folder"])))
     return found
 
@@ -172,7 +172,7 @@ def known_projects() -> list[Project]:
 def killed_supervisor(project: Project) -> int | None:
     """Return the process id of a supervisor that was killed, if there is one."""
     info = read_info(project.state)
-    if info is None or is_locked(project.state):
+    if info is None or is_supervised(project.state):
         return None
     return int(info["pid"])
 

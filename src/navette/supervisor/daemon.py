@@ -13,6 +13,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
+from navette.runs.locks import try_lock
 from navette.runtime import SystemClock
 from navette.runtime.events import Call
 from navette.runtime.loop import EventLoop
@@ -26,7 +27,6 @@ from navette.supervisor.project import (
     create_state,
     lock_path,
     read_info,
-    try_lock,
 )
 from navette.supervisor.server import RequestServer
 from navette.supervisor.service_config import ServiceConfig

@@ -3,7 +3,6 @@
 A project is the folder of the nearest ``navette.yaml``, in this folder or above.
 """
 
-import fcntl
 import hashlib
 import json
 import os
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from navette.errors import FileFormatError, NavetteError
+from navette.runs.locks import is_locked
 from navette.storage.folders import can_write, private_folder, temporary_folder
 
 FILE_NAME = "navette.yaml"
@@ -42,7 +42,7 @@ class Project:
     @property
     def is_supervised(self) -> bool:
         """Whether a supervisor runs, or its guard still ends its processes."""
-        return is_locked(self.state)
+        return is_supervised(self.state)
 
 
 def find_project(start: Path, file: Path | None = None) -> Project:
@@ -136,26 +136,10 @@ def read_info(state: Path) -> dict[str, Any] | None:
     return info if isinstance(info, dict) and {"pid", "folder"} <= info.keys() else None
 
 
+def is_supervised(state: Path) -> bool:
+    """Return whether a process holds the lock; the kernel releases it at its end."""
+    return is_locked(lock_path(state))
+
+
 def lock_path(state: Path) -> Path:
     return state / "lock"
-
-
-def is_locked(state: Path) -> bool:
-    """Return whether a process holds the lock; the kernel releases it at its end."""
-    try:
-        descriptor = os.open(lock_path(state), os.O_RDWR)
-    except FileNotFoundError:
-        return False
-    try:
-        return not try_lock(descriptor)
-    finally:
-        os.close(descriptor)
-
-
-def try_lock(descriptor: int) -> bool:
-    """Take the lock if it is free."""
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from navette.bags.node import RecorderNode
-from navette.errors import CallbackError
+from navette.errors import CallbackError, NetworkError
+from navette.msgs.topics import CLOCK
 from navette.navigation.stack.monitor import MonitorNode, RunProgress
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.reservation import reserve
@@ -25,6 +26,7 @@ from navette.runtime import (
 from navette.runtime.overrides import ParameterOverrides
 from navette.sim import Scene
 from navette.sim.node import SimNode
+from navette.transports import EndpointKind
 from navette.viewer.node import ViewerNode
 
 HALT_NS = 1_000_000_000
@@ -65,10 +67,27 @@ class Simulation:
         self.context.overrides.sets += overrides.sets
         try:
             self.context.init(args=[], console_level=LoggingSeverity.WARN)
+            self._check_alone()
             self._create_nodes(on_change)
         except BaseException:
             self.close()
             raise
+
+    def _check_alone(self) -> None:
+        """Check that no other simulator runs on the network that this run shares.
+
+        Raises:
+            NetworkError: it publishes the time, and its robot would follow the same
+                commands.
+        """
+        kind = EndpointKind.PUBLISHER
+        for clock in self.context.graph.endpoints(CLOCK.name, kind=kind):
+            domain = self.context.get_domain_id()
+            raise NetworkError(
+                f"{clock.node_full_name} publishes {CLOCK.name} in domain {domain} "
+                "already, and its robot would follow this run's commands; end it, "
+                "choose another domain (ROS_DOMAIN_ID), or start without --share"
+            )
 
     @property
     def run_info(self) -> RunInfo | None:
