@@ -12,7 +12,13 @@ from navette.errors import InvalidInputError, InvalidValueError
 from navette.msgs import topics
 from navette.msgs.geometry_msgs.msg import Quaternion
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
-from navette.navigation.grids import grid_from_message, grid_to_message, placed
+from navette.navigation.grids import (
+    GridSpec,
+    grid_from_message,
+    grid_to_message,
+    placed,
+)
+from navette.navigation.grids.spec import Cells
 from navette.navigation.mapping.gate import FusionGate
 from navette.navigation.mapping.memory import (
     STEADY,
@@ -23,6 +29,7 @@ from navette.navigation.mapping.memory import (
 )
 from navette.navigation.mapping.params import MapMemoryParams
 from navette.navigation.mapping.placement import PlacementQueue, Ready
+from navette.navigation.mapping.servers.map_services import MapServices, MapStore
 from navette.navigation.servers.costmap_services import (
     ClearedRegion,
     CostmapServices,
@@ -84,6 +91,16 @@ class MapMemoryNode(StageNode):
             footprint=lambda: self._memory.footprint,
         )
         self._lifecycle = StageLifecycle(self, "map_server")
+        store = MapStore(
+            topics=lambda: tuple(
+                self.resolve_topic_name(each.name)
+                for each in (topics.MAP, topics.GLOBAL_COSTMAP)
+            ),
+            newest=lambda: self._published,
+            load=self._load,
+            is_probability=lambda: self.params.fusion == "log_odds",
+        )
+        self._map_services = MapServices(self, store)
         self._costmap_services = CostmapServices(self, "global_costmap", source)
 
     def on_odometry(self, msg: Odometry) -> None:
@@ -198,6 +215,12 @@ class MapMemoryNode(StageNode):
         self._published = message
         self.publish(topics.MAP.name, message)
         self.publish(topics.GLOBAL_COSTMAP.name, message)
+
+    def _load(self, cells: Cells, spec: GridSpec) -> None:
+        """Replace the map by a loaded one; scans change it from now on."""
+        self._memory.load(cells, spec)
+        self._gate.reset()
+        self._publish_map(self._now_ns())
 
     def _clear(self, region: ClearedRegion | None) -> None:
         """Clear a region of the map; what is seen now is fused again at once."""

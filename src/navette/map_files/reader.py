@@ -1,0 +1,91 @@
+"""The cells of a map, from its image."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+
+from navette.errors import FileFormatError
+from navette.geometry import Pose2
+from navette.map_files.description import MapDescription, read_description
+
+MAX_PIXELS = 16_000_000
+_UNKNOWN, _FREE, _OCCUPIED = -1, 0, 100
+
+
+@dataclass(frozen=True, eq=False)
+class OccupancyMap:
+    """Cells (H, W), row 0 at the bottom: −1 unknown, 0 free … 100 occupied.
+
+    ``origin`` is the pose of the outer corner of cell (0, 0), ``resolution`` the edge
+    of a cell in metres.
+    """
+
+    cells: NDArray[np.int8]
+    resolution: float
+    origin: Pose2
+
+
+def read_occupancy_map(path: Path) -> OccupancyMap:
+    """Read a map.
+
+    Raises:
+        FileFormatError: the YAML file or its image is invalid, missing or too large.
+    """
+    described = read_description(path)
+    return OccupancyMap(read_cells(described), described.resolution, described.origin)
+
+
+def read_cells(described: MapDescription) -> NDArray[np.int8]:
+    """Return the cells (H, W) of a map, row 0 at the bottom.
+
+    A pixel p of 0 … 255 has the occupancy 1 − p / 255, with ``negate`` p / 255.
+    ``trinary``: from ``occupied_thresh`` on occupied, up to ``free_thresh`` free,
+    unknown in between. ``scale``: in between 0 … 100. ``raw``: the pixel's value; above
+    100 unknown. Transparent pixels are unknown, except in ``raw`` mode.
+
+    Raises:
+        FileFormatError: the image is invalid, missing or too large.
+    """
+    grey, alpha = _pixels(described)
+    if described.mode == "raw":
+        raw = np.where(grey > _OCCUPIED, _UNKNOWN, grey)
+        return np.flipud(raw).astype(np.int8)
+    share = grey / 255.0 if described.negate else 1.0 - grey / 255.0
+    free, occupied = described.free_threshold, described.occupied_threshold
+    cells = np.full(grey.shape, _UNKNOWN, np.int8)
+    if described.mode == "scale":
+        cells[:] = np.rint(np.clip((share - free) / (occupied - free), 0, 1) * 100)
+    cells[share >= occupied] = _OCCUPIED
+    cells[share <= free] = _FREE
+    cells[alpha < 255] = _UNKNOWN
+    return np.ascontiguousarray(np.flipud(cells))
+
+
+def _pixels(described: MapDescription) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return grey values and opacities (H, W), 0 … 255."""
+    try:
+        with Image.open(described.image, formats=("PPM", "PNG", "BMP")) as image:
+            if image.width * image.height > MAX_PIXELS:
+                raise FileFormatError(
+                    described.path,
+                    f"image of {image.width} x {image.height} pixels; "
+                    f"at most {MAX_PIXELS}",
+                )
+            grey = np.asarray(image.convert("L"), dtype=np.float64)
+            alpha = np.asarray(image.convert("RGBA"))[:, :, 3]
+    except (
+        OSError,
+        ValueError,
+        SyntaxError,  # a damaged PNG
+        UnidentifiedImageError,
+        Image.DecompressionBombError,
+    ) as error:
+        name = described.image.name
+        raise FileFormatError(
+            described.path, f"image {name!r} cannot be read: {error}"
+        ) from None
+    return grey, alpha

@@ -1,0 +1,1 @@
+"""Servers of the map memory node: Nav2's map services."""

@@ -1,0 +1,117 @@
+"""Reading and writing of map_server's maps."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from PIL import Image
+
+from navette.errors import FileFormatError, InvalidValueError
+from navette.geometry import Pose2
+from navette.map_files import OccupancyMap, read_occupancy_map, write_occupancy_map
+
+ORIGIN = Pose2(-3.5, 2.25, 0.5)
+
+
+def described(folder: Path, pixels: np.ndarray, **values: object) -> Path:
+    Image.fromarray(pixels.astype(np.uint8)).save(folder / "map.png")
+    text = {"image": "map.png", "resolution": 0.05, "origin": [1.0, 2.0, 0.0], **values}
+    path = folder / "map.yaml"
+    path.write_text(yaml.safe_dump(text))
+    return path
+
+
+def test_a_pgm_of_map_server(tmp_path: Path) -> None:
+    (tmp_path / "hall.pgm").write_bytes(
+        b"P5\n# CREATOR: map_saver\n3 2\n255\n" + bytes([0, 205, 254, 254, 0, 254])
+    )
+    (tmp_path / "hall.yaml").write_text(
+        "image: hall.pgm\nmode: trinary\nresolution: 0.05\n"
+        "origin: [-1.5, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    found = read_occupancy_map(tmp_path / "hall.yaml")
+    assert found.cells.tolist() == [[0, 100, 0], [100, -1, 0]]  # row 0: the bottom
+    assert (found.resolution, found.origin) == (0.05, Pose2(-1.5, 2.0, 0.0))
+
+
+def test_modes_thresholds_and_negation(tmp_path: Path) -> None:
+    pixels = np.array([[0, 64, 128, 192, 255]])
+    thresholds = {"occupied_thresh": 0.75, "free_thresh": 0.25}
+
+    def cells(**values: object) -> list[int]:
+        path = described(tmp_path, pixels, **thresholds, **values)
+        return list(read_occupancy_map(path).cells[0].tolist())
+
+    assert cells() == [100, -1, -1, 0, 0]
+    assert cells(negate=1) == [0, -1, -1, 100, 100]
+    assert cells(mode="scale") == [100, 100, 50, 0, 0]
+    assert cells(mode="raw") == [0, 64, -1, -1, -1]
+
+
+def test_transparent_pixels_are_unknown(tmp_path: Path) -> None:
+    pixels = np.array([[[0, 255], [0, 0], [255, 255]]])
+    path = described(tmp_path, pixels)
+    assert read_occupancy_map(path).cells.tolist() == [[100, -1, 0]]
+
+
+@pytest.mark.parametrize("image_format", ["pgm", "png", "bmp"])
+@pytest.mark.parametrize("mode", ["trinary", "scale", "raw"])
+def test_what_is_written_is_read(tmp_path: Path, mode: str, image_format: str) -> None:
+    if mode == "scale" and image_format != "png":
+        return
+    cells = np.arange(-1, 101, dtype=np.int8).reshape(6, 17)
+    if mode == "trinary":
+        cells = np.random.default_rng(0).choice([-1, 0, 100], (6, 17)).astype(np.int8)
+    path = write_occupancy_map(
+        tmp_path / "deep" / "v1.2",
+        OccupancyMap(cells, 0.1, ORIGIN),
+        mode=mode,
+        image_format=image_format,
+    )
+    assert path == tmp_path / "deep" / "v1.2.yaml"
+    found = read_occupancy_map(path)
+    assert found.cells.tolist() == cells.tolist()
+    assert (found.resolution, found.origin) == (0.1, ORIGIN)
+    assert sorted(each.name for each in path.parent.iterdir()) == [
+        f"v1.2.{image_format}",
+        "v1.2.yaml",
+    ]
+
+
+def test_trinary_thresholds_decide_what_is_written(tmp_path: Path) -> None:
+    cells = np.array([[0, 25, 26, 64, 65, 100, -1]], np.int8)
+    occupancy = OccupancyMap(cells, 0.1, ORIGIN)
+    found = read_occupancy_map(write_occupancy_map(tmp_path / "m", occupancy))
+    assert found.cells.tolist() == [[0, 0, -1, -1, 100, 100, -1]]
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"mode": "grey"}, "trinary, scale, raw"),
+        ({"image_format": "gif"}, "pgm, png, bmp"),
+        ({"mode": "scale", "image_format": "pgm"}, "use png"),
+        ({"free_threshold": 0.7}, "free_thresh 0.7"),
+        ({"occupied_threshold": 1.5}, "occupied_thresh 1.5"),
+    ],
+)
+def test_invalid_options_write_nothing(
+    tmp_path: Path, options: dict[str, object], text: str
+) -> None:
+    occupancy = OccupancyMap(np.zeros((2, 2), np.int8), 0.1, ORIGIN)
+    with pytest.raises(InvalidValueError, match=text):
+        write_occupancy_map(tmp_path / "m", occupancy, **options)  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_damaged_image_is_named(tmp_path: Path) -> None:
+    path = described(tmp_path, np.zeros((20, 20)))
+    image = tmp_path / "map.png"
+    for damaged in (image.read_bytes()[:40], b"no image", b""):
+        image.write_bytes(damaged)
+        with pytest.raises(FileFormatError, match=r"map\.png"):
+            read_occupancy_map(path)
+    image.unlink()
+    with pytest.raises(FileFormatError, match=r"map\.png"):
+        read_occupancy_map(path)
