@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 from viewer_harness import Client, Program
-from websockets.exceptions import InvalidMessage, InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 
 from navette.errors import FileFormatError, InvalidValueError
 from navette.runtime import Context, Node, SystemClock
@@ -27,7 +27,7 @@ from navette.viewer.peer_user import is_same_user, owner_of
 from navette.viewer.web import AccessPolicy, Site
 
 NOW = datetime.datetime.fromtimestamp(SystemClock().now_ns / 1e9, datetime.UTC)
-REFUSED = (ConnectionError, ssl.SSLError, InvalidMessage)
+REFUSED = (ConnectionError, ConnectionClosed, ssl.SSLError, InvalidMessage)
 TOKEN = "correct-horse-battery"
 OWN = Visitor("127.0.0.1", is_same_user=True)
 OTHER = Visitor("127.0.0.1")

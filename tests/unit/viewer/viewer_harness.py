@@ -236,6 +236,15 @@ class NonReadingClient:
     def send_raw(self, data: bytes) -> None:
         self._socket.sendall(data)
 
+    def read_until(self, wanted: bytes) -> None:
+        """Read until ``wanted`` was received."""
+        received = b""
+        self._socket.settimeout(PATIENCE_S)
+        while wanted not in received:
+            data = self._socket.recv(1 << 16)
+            assert data, f"closed after {received[-200:]!r}"
+            received = received[-len(wanted) :] + data
+
     def read_to_the_end(self) -> bytes:
         """Return all bytes until the server ends the connection."""
         received = b""
