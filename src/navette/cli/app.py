@@ -113,6 +113,27 @@ Json = Annotated[
 Port = Annotated[
     int, Option(min=0, max=65535, help="Port of the live view; 0 selects a free port.")
 ]
+Host = Annotated[
+    str,
+    Option(
+        metavar="ADDRESS",
+        help="Address of the live view; 0.0.0.0 lets other machines connect, with the"
+        " keys of NAVETTE_SECURITY and a token.",
+    ),
+]
+Unencrypted = Annotated[
+    bool,
+    Option("--unencrypted", help="Let other machines connect without keys."),
+]
+Origins = Annotated[
+    list[str] | None,
+    Option(
+        "--origin",
+        metavar="ORIGIN",
+        help="Web pages of this origin may connect too, such as file:// for the"
+        " Foxglove desktop app. Repeat for several.",
+    ),
+]
 Share = Annotated[
     bool,
     Option(
@@ -159,6 +180,9 @@ def demo(
     robot: Robot = None,
     tree: Tree = None,
     port: Port = 8765,
+    host: Host = "127.0.0.1",
+    unencrypted: Unencrypted = False,
+    origin: Origins = None,
     speed: Speed = None,
     max_time: MaxTime = None,
     share: Share = False,
@@ -178,6 +202,9 @@ def demo(
         speed=parse_speed(speed or "1"),
         max_time_s=max_time,
         port=port,
+        host=host,
+        unencrypted=unencrypted,
+        origins=tuple(origin or ()),
         share=share,
         verb="demo",
     )
@@ -201,6 +228,9 @@ def sim(
     max_time: MaxTime = None,
     as_json: Json = False,
     port: Port = 8765,
+    host: Host = "127.0.0.1",
+    unencrypted: Unencrypted = False,
+    origin: Origins = None,
     share: Share = False,
 ) -> None:
     """Simulate a robot in WORLD and drive it to goals.
@@ -226,6 +256,9 @@ def sim(
         tree=tree,
         max_time_s=max_time,
         port=port,
+        host=host,
+        unencrypted=unencrypted,
+        origins=tuple(origin or ()),
         share=share,
     )
     _run(options, as_json=as_json)

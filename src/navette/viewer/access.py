@@ -53,7 +53,8 @@ class Access:
             raise InvalidValueError(
                 f"viewer: other machines reach host {params.host}, and nothing "
                 f"encrypts the connections: set {VARIABLE} to a folder of keys "
-                "(navette keys create), or the viewer's parameter allow_unencrypted"
+                "(navette keys create), or permit it: --unencrypted, or the viewer's "
+                "parameter allow_unencrypted"
             )
         is_open = is_remote and params.allow_anyone
         token = "" if is_open else new_token(environment.get(TOKEN_VARIABLE))

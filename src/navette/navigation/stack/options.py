@@ -33,6 +33,9 @@ class RunOptions:
     params_files: tuple[Path, ...] = field(default=())
     max_time_s: float | None = None
     port: int = 8765
+    host: str = "127.0.0.1"
+    unencrypted: bool = False
+    origins: tuple[str, ...] = ()
     share: bool = False
     verb: str = "sim"
 

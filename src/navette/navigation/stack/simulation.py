@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError
@@ -28,6 +29,7 @@ from navette.sim import Scene
 from navette.sim.node import SimNode
 from navette.transports import EndpointKind
 from navette.viewer.node import ViewerNode
+from navette.viewer.params import ViewerParams
 
 HALT_NS = 1_000_000_000
 """Simulated time for the robot to brake after a node raised."""
@@ -110,6 +112,7 @@ class Simulation:
             overrides.add("recorder", images, "--record-images")
         if not self.options.headless:
             overrides.add("viewer", {"port": self.options.port}, "--port")
+            overrides.add("viewer", _access(self.options), "--host")
         for path in self.options.params_files:
             overrides.add_file(path)
         return overrides
@@ -207,3 +210,13 @@ class Simulation:
 
 def _clock(speed: float) -> ContextClock:
     return VirtualClock() if math.isinf(speed) else PacedClock(speed)
+
+
+def _access(options: RunOptions) -> dict[str, Any]:
+    """Return the viewer's parameters that the options set."""
+    given: dict[str, Any] = {"host": options.host}
+    if options.unencrypted:
+        given["allow_unencrypted"] = True
+    if options.origins:
+        given["allowed_origins"] = [*ViewerParams().allowed_origins, *options.origins]
+    return given
