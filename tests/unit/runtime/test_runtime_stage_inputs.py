@@ -14,7 +14,7 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Input, StageNode
-from navette.runtime.stage.input_check import input_check
+from navette.runtime.input_check import input_check
 from navette.testing import GraphHarness
 
 

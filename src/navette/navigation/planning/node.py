@@ -35,8 +35,8 @@ from navette.navigation.planning.servers.path_server import PathServer, Planning
 from navette.navigation.planning.servers.smoother_server import SmootherServer
 from navette.navigation.servers.lifecycle import StageLifecycle
 from navette.runtime import Input, Output, StageNode
+from navette.runtime.input_check import input_check
 from navette.runtime.stage.commander import Commander
-from navette.runtime.stage.input_check import input_check
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import path_message
 from navette.runtime.stage.status import StatusReporter, status_output

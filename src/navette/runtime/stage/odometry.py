@@ -7,8 +7,8 @@ from navette.errors import InvalidInputError
 from navette.geometry import Pose2, Transform3, advanced, yaw_of
 from navette.msgs import topics
 from navette.msgs.nav_msgs.msg import Odometry
+from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
-from navette.runtime.stage.input_check import FARTHEST
 from navette.runtime.stage.stage_node import StageNode
 from navette.runtime.tf import Buffer, TransformException, TransformListener
 from navette.runtime.time import stamp_to_ns
@@ -51,7 +51,10 @@ class PoseTracker:
         self._history: deque[tuple[int, Pose2]] = deque()
         self._velocity = (0.0, 0.0)
         # Received only if odometry needs moving transforms.
-        self._listener = TransformListener(self.buffer, node, static_only=True)
+        self._on_invalid = node.drop_input if isinstance(node, StageNode) else None
+        self._listener = TransformListener(
+            self.buffer, node, static_only=True, on_invalid=self._on_invalid
+        )
         self._moving_listener: TransformListener | None = None
         self._child_T_base: tuple[str, Pose2] | None = None
 
@@ -191,7 +194,9 @@ class PoseTracker:
             return self.buffer.lookup(self.map_frame, frame, 0).to_pose2()
         except TransformException as error:
             if self._moving_listener is None:
-                self._moving_listener = TransformListener(self.buffer, self._node)
+                self._moving_listener = TransformListener(
+                    self.buffer, self._node, on_invalid=self._on_invalid
+                )
             self._drop("unknown_frame", str(error))
             return None
 

@@ -16,13 +16,13 @@ from navette.msgs import get_interface, type_name
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.msgs.topics import StackTopic
 from navette.params import Params
+from navette.runtime.input_check import input_check
 from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher
 from navette.runtime.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from navette.runtime.ros_clock import JumpThreshold, TimeJump
 from navette.runtime.stage.dropped_inputs import DroppedInputs
-from navette.runtime.stage.input_check import input_check
 from navette.runtime.stage.params import declare_params
 from navette.runtime.subscription import Subscription
 from navette.runtime.time import Duration

@@ -4,10 +4,13 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+from navette.errors import InvalidInputError
 from navette.msgs.geometry_msgs.msg import TransformStamped
 from navette.msgs.tf2_msgs.msg import TFMessage
+from navette.msgs.values import shortened
 from navette.runtime.callback_groups import ReentrantCallbackGroup
 from navette.runtime.executor import SingleThreadedExecutor
+from navette.runtime.input_check import input_check
 from navette.runtime.qos import DurabilityPolicy, QoSProfile
 from navette.runtime.tf.buffer import Buffer
 from navette.runtime.tf.exceptions import TransformException
@@ -18,6 +21,8 @@ _STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 # Stamps that go back by more belong to another run: a bag that loops or a simulation
 # that was reset. With a smaller difference a message arrived late.
 _NEW_RUN_NS = 1_000_000_000
+_check = input_check("geometry_msgs/msg/TransformStamped")
+_FAULTS = {"not_finite": "is not finite", "out_of_range": "is out of range"}
 _AUTHORITY = "default_authority"  # tf2's value for transforms from a topic
 
 
@@ -34,6 +39,8 @@ class TransformListener:
         spin_thread: spin the node in a thread, for programs that do not spin. Ignored
             with a virtual clock, which would advance without the program.
         static_only: do not subscribe to moving transforms.
+        on_invalid: called with topic and error for each transform that cannot be used
+            instead of logging it.
     """
 
     def __init__(
@@ -47,8 +54,11 @@ class TransformListener:
         tf_topic: str = "/tf",
         tf_static_topic: str = "/tf_static",
         static_only: bool = False,
+        on_invalid: Callable[[str, InvalidInputError], None] | None = None,
     ) -> None:
         self.buffer = buffer
+        self._on_invalid = on_invalid or self._log_invalid
+        self._topics = tf_topic, tf_static_topic
         self.node = node
         self.group = ReentrantCallbackGroup()
         self._newest_ns: dict[str, int] = {}
@@ -70,12 +80,13 @@ class TransformListener:
         self.tf_static_sub = self.tf_sub = None
 
     def callback(self, data: TFMessage) -> None:
-        for transform in data.transforms:
+        for transform in self._valid(data, self._topics[0]):
             self._watch_stamp(transform)
-        self._store(data, self.buffer.set_transform)
+            self._store(transform, self.buffer.set_transform, self._topics[0])
 
     def static_callback(self, data: TFMessage) -> None:
-        self._store(data, self.buffer.set_transform_static)
+        for transform in self._valid(data, self._topics[1]):
+            self._store(transform, self.buffer.set_transform_static, self._topics[1])
 
     def _watch_stamp(self, transform: TransformStamped) -> None:
         child, stamp_ns = transform.child_frame_id, stamp_to_ns(transform.header.stamp)
@@ -97,17 +108,37 @@ class TransformListener:
             TFMessage, topic, callback, qos, callback_group=self.group, shared=True
         )
 
-    def _store(
-        self, data: TFMessage, store: Callable[[TransformStamped, str], None]
-    ) -> None:
+    def _valid(self, data: TFMessage, topic: str) -> list[TransformStamped]:
+        """Return the usable transforms: an invalid one must not affect the others."""
+        valid = []
         for transform in data.transforms:
             try:
-                store(transform, _AUTHORITY)
-            except TransformException as error:
-                # An invalid transform of one publisher must not affect the others.
-                self.node.get_logger().error(
-                    f"invalid transform ignored: {error}", throttle_duration_sec=1.0
-                )
+                _check(transform)
+            except InvalidInputError as error:
+                fault = _FAULTS.get(error.reason, "is invalid")
+                child = shortened(transform.child_frame_id)
+                detail = f"transform of {child} {fault}: {error.detail}"
+                self._on_invalid(topic, InvalidInputError(error.reason, detail))
+            else:
+                valid.append(transform)
+        return valid
+
+    def _store(
+        self,
+        transform: TransformStamped,
+        store: Callable[[TransformStamped, str], None],
+        topic: str,
+    ) -> None:
+        try:
+            store(transform, _AUTHORITY)
+        except TransformException as error:
+            invalid = InvalidInputError("invalid_transform", str(error))
+            self._on_invalid(topic, invalid)
+
+    def _log_invalid(self, topic: str, error: InvalidInputError) -> None:
+        self.node.get_logger().error(
+            f"invalid transform ignored: {error.detail}", throttle_duration_sec=1.0
+        )
 
     def _spin_in_thread(self) -> None:
         self.executor = SingleThreadedExecutor(context=self.node.context)

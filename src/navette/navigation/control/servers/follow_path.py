@@ -13,9 +13,9 @@ from navette.navigation.control.follow_monitor import FollowMonitor
 from navette.navigation.control.params import METHODS, ControlParams
 from navette.navigation.control.records import FollowerInputs, FollowerOutput
 from navette.navigation.control.states import ControlState
+from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
 from navette.runtime.stage.goal_server import DriveGoalServer
-from navette.runtime.stage.input_check import FARTHEST
 from navette.runtime.stage.path_messages import Poses, moved, poses_of
 
 # Names of Nav2's default parameters; the empty name selects the only one.

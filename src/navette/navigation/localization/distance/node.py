@@ -19,7 +19,7 @@ from navette.msgs.std_msgs.msg import Float64
 from navette.navigation.localization.distance.odometer import Odometer, Step
 from navette.navigation.localization.distance.params import DistanceParams
 from navette.runtime import Input, Output, StageNode, stamp_to_ns
-from navette.runtime.stage.input_check import FARTHEST
+from navette.runtime.input_check import FARTHEST
 
 _PERIOD_S = 0.1
 

@@ -104,7 +104,10 @@ class EkfNode(StageNode):
         self._buffer = Buffer(node=self)
         # A filter in the map frame needs odom → base, which moves.
         self._listener = TransformListener(
-            self._buffer, self, static_only=not self._is_on_map
+            self._buffer,
+            self,
+            static_only=not self._is_on_map,
+            on_invalid=self.drop_input,
         )
         self._start()
         self._timer = self.create_timer(1.0 / self.params.frequency_hz, self.on_timer)

@@ -21,9 +21,9 @@ from navette.navigation.planning.path_queries import blocked_poses, plan_through
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Planner
 from navette.runtime import Stopwatch
+from navette.runtime.input_check import FARTHEST
 from navette.runtime.node import Node
 from navette.runtime.stage.goal_server import serve_query
-from navette.runtime.stage.input_check import FARTHEST
 from navette.runtime.stage.path_messages import moved, path_message, pose_of, poses_of
 from navette.runtime.time import Duration
 
