@@ -90,7 +90,7 @@ def unusable(extremes: Extremes, msg: Message, now_ns: int) -> Message | bytes:
     """Return a message that the check of its type refuses, or damaged bytes."""
     valid = stamped(msg, now_ns)
     check = input_check(valid._type_name_)
-    for _ in range(20):
+    for _ in range(8):
         spoiled, _ = extremes.spoiled(valid)
         try:
             check(spoiled)
@@ -108,13 +108,9 @@ class Attacker:
         self._topics = sorted(topics.items())
         self._publishers: dict[str, Any] = {}
         self.sent = 0
-        self.period_ns = 0
-        drive.graph.node.create_timer(0.002, self._attack)
-        self.is_active = True
+        drive.graph.node.create_timer(0.01, self._attack)
 
     def _attack(self) -> None:
-        if not self.is_active:
-            return
         graph, extremes = self._drive.graph, self._extremes
         index = int(extremes.rng.integers(len(self._topics)))
         topic, kind = self._topics[index]
@@ -150,21 +146,21 @@ def test_a_robot_reaches_its_goal_through_unusable_sensor_data() -> None:
             robot.check()
             outcomes = robot.stack.missions.outcomes
             assert [each.result for each in outcomes] == ["reached"]
-            assert attacker.sent > 1000
+            assert attacker.sent > 500
 
 
 def test_unusable_inputs_on_every_topic_end_nothing() -> None:
     for seed in rounds():
         with drive() as robot:
             attacker = Attacker(robot, seed, topics_of(robot, sensed_only=False))
-            for _ in range(20):
+            for _ in range(10):
                 robot.graph.run_for(1.0)
                 robot.check()
-            assert attacker.sent == 10_000
+            assert attacker.sent >= 999
             dropped = sum(
                 sum(node.dropped_inputs.values()) for node in vars(robot.stack).values()
             )
-            assert dropped > 1000
+            assert dropped > 500
 
 
 @pytest.mark.parametrize(
