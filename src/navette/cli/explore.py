@@ -9,7 +9,17 @@ import click
 from rich.console import Console
 from rich.text import Text
 
-from navette.cli.app import Headless, Json, MaxTime, Port, Robot, Seed, Speed, World
+from navette.cli.app import (
+    Headless,
+    Json,
+    MaxTime,
+    Port,
+    Robot,
+    Seed,
+    Share,
+    Speed,
+    World,
+)
 from navette.cli.arguments import parse_speed
 from navette.cli.options import Option
 
@@ -47,6 +57,7 @@ def explore(
     max_time: MaxTime = None,
     as_json: Json = False,
     port: Port = 8765,
+    share: Share = False,
 ) -> None:
     """Map an unknown world: in the simulator, or with the running robot.
 
@@ -68,6 +79,8 @@ def explore(
             seed=seed,
             max_time_s=max_time,
             port=port,
+            share=share,
+            verb="explore",
         )
         code = _explore_simulated(screen, options, as_json=as_json)
     raise click.exceptions.Exit(code)
