@@ -1,5 +1,6 @@
 """The command line: the ``navette`` command and its verbs."""
 
+from navette.cli import ending
 from navette.cli.gc_tuning import uncollected
 from navette.cli.interruption import default_signal_action
 
@@ -8,6 +9,7 @@ __all__ = ["main"]
 
 def main() -> None:
     """Entry point of the ``navette`` command, with the fastest possible import."""
+    ending.register()
     with default_signal_action(), uncollected():
         from navette.cli.app import main as run
 

@@ -25,6 +25,7 @@ from navette.cli.completing_installed import (
     complete_worlds,
 )
 from navette.cli.completion import discard_stderr, is_completing
+from navette.cli.ending import end_with
 from navette.cli.options import Argument, Option
 from navette.cli.stderr import print_error
 from navette.cli.verbs import VERBS
@@ -287,12 +288,5 @@ def main() -> None:
         print_error(str(error))
         raise SystemExit(USAGE_ERROR) from None
     except SystemExit as end:
-        _exit_without_waiting(end.code)
+        end_with(end.code)
         raise
-
-
-def _exit_without_waiting(exit_code: object) -> None:
-    """Exit at once if the transport is loaded: closing its threads takes long."""
-    shutdown = sys.modules.get("navette.transports.shutdown")
-    if shutdown is not None and isinstance(exit_code, int):
-        shutdown.end_with(exit_code)

@@ -8,6 +8,7 @@ modules of the runtime do not read the wall clock.
 import threading
 import time
 from abc import ABC, abstractmethod
+from contextlib import suppress
 
 from navette.errors import InvalidValueError
 
@@ -18,22 +19,28 @@ _MAX_CATCH_UP_S = 0.25
 
 
 class Wakeup:
-    """Event with which another thread ends a wait."""
+    """Event with which another thread ends a wait.
 
-    __slots__ = ("_event",)
+    In place of ``threading.Event``: an interrupt (Ctrl-C) between two lines of that
+    leaves its lock locked, and the next use waits for ever.
+    """
+
+    __slots__ = ("_unset",)
 
     def __init__(self) -> None:
-        self._event = threading.Event()
+        self._unset = threading.Lock()
+        self._unset.acquire()
 
     def set(self) -> None:
-        self._event.set()
+        with suppress(RuntimeError):  # it is set already
+            self._unset.release()
 
     def clear(self) -> None:
-        self._event.clear()
+        self._unset.acquire(blocking=False)
 
     @property
     def is_pending(self) -> bool:
-        return self._event.is_set()
+        return not self._unset.locked()
 
     def wait(self, timeout_s: float | None) -> bool:
         """Return True if woken, False after ``timeout_s`` (None: no limit)."""
@@ -42,7 +49,8 @@ class Wakeup:
             left = _LONGEST_WAIT_S
             if deadline is not None:
                 left = min(left, deadline - time.perf_counter())
-            if self._event.wait(max(left, 0.0)):
+            if self._unset.acquire(timeout=max(left, 0.0)):
+                self.set()
                 return True
             if deadline is not None and time.perf_counter() >= deadline:
                 return False

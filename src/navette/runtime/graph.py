@@ -3,6 +3,7 @@
 import itertools
 import threading
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from typing import Generic, ParamSpec
 
@@ -28,9 +29,15 @@ class GraphEvent(Generic[P]):
         self._callbacks: list[Callable[P, object]] = []
 
     def __call__(self, callback: Callable[P, object]) -> Callable[[], None]:
-        """Register a callback; return a function that removes it."""
+        """Register a callback; return a function that removes it, once."""
         self._callbacks.append(callback)
-        return lambda: self._callbacks.remove(callback)
+
+        def remove() -> None:
+            # Two threads may close the same endpoint: the program's and the end's.
+            with suppress(ValueError):
+                self._callbacks.remove(callback)
+
+        return remove
 
     def report(self, *args: P.args, **kwargs: P.kwargs) -> None:
         """Run the callbacks."""

@@ -52,7 +52,9 @@ class EventLoop:
         self._driver: int | None = None
         self._running: Entity | None = None
         self._lock = threading.Lock()
-        self._turn = threading.Condition()
+        # Taken by itself: Ctrl-C inside the condition's __enter__ would leave it locked.
+        self._turn_lock = threading.RLock()
+        self._turn = threading.Condition(self._turn_lock)
         self._others = 0  # threads that wait while another thread drives
         self._pending_execute = 0  # threads in execute() that wait for their turn
 
@@ -116,7 +118,7 @@ class EventLoop:
     def notify_threads(self) -> None:
         """Make the threads that wait for their turn check their conditions."""
         if self._others:
-            with self._turn:
+            with self._turn_lock:
                 self._turn.notify_all()
 
     @property
@@ -173,7 +175,7 @@ class EventLoop:
         """Wait until no other thread runs a callback; call after :meth:`close`."""
         if self.in_driver_thread:
             return True
-        with self._turn:
+        with self._turn_lock:
             return self._turn.wait_for(lambda: self._driver is None, timeout_s)
 
     def run(
@@ -255,10 +257,10 @@ class EventLoop:
 
     def _claim_turn(self) -> bool:
         """Become the driver before any :meth:`take`; False once closed."""
-        with self._turn:
+        with self._turn_lock:
             self._pending_execute += 1
         self.wake()
-        with self._turn:
+        with self._turn_lock:
             while self._driver is not None and not self._closed:
                 self._turn.wait(_TURN_S)
             self._pending_execute -= 1
@@ -267,7 +269,7 @@ class EventLoop:
             return not self._closed
 
     def _yield_to_execute(self) -> None:
-        with self._turn:
+        with self._turn_lock:
             if self._pending_execute:
                 self._turn.wait(_TURN_S)
 
@@ -288,7 +290,7 @@ class EventLoop:
 
     def _take_turn(self) -> bool:
         """Become the driver; False after a short wait if another thread is."""
-        with self._turn:
+        with self._turn_lock:
             if self._driver is not None:
                 self._others += 1
                 self._turn.wait(_TURN_S)
@@ -299,7 +301,7 @@ class EventLoop:
             return False
 
     def _give_turn(self) -> None:
-        with self._turn:
+        with self._turn_lock:
             self._driver = None
             self._turn.notify_all()
 

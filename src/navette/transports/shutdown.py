@@ -2,24 +2,30 @@
 
 Python kills a thread that returns to it while the interpreter ends. If the thread
 returns from Zenoh, this aborts the whole process (SIGABRT, "exception not rethrown"),
-so that a run whose results were saved seems to have failed. Such a thread exists while
-a session closes: closing waits for links that are being opened, up to 10 s if the other
-process is stopped (Ctrl-Z) or the machine is busy. The interpreter therefore waits.
+so that a run whose results were saved seems to have failed. Such threads are
+
+- a thread in which a session closes: closing waits for links that are being opened, up
+  to 10 s if the other process is stopped (Ctrl-Z) or the machine is busy;
+- daemon threads of a program that publishes, or creates publishers, in them.
+
+The interpreter therefore waits.
 """
 
 import atexit
-import logging
 import os
 import sys
 import threading
 import weakref
-from contextlib import suppress
+from pathlib import Path
+from types import FrameType
+
+_ZENOH = str(Path(__file__).with_name("zenoh"))
+# Calls on closed sessions return at once; a program may begin others for ever.
+_CALLS_S = 2.0
+_POLL_S = 0.001
 
 _inside: "weakref.WeakSet[threading.Thread]" = weakref.WeakSet()
-
-
-class _End:
-    exit_code: int | None = None
+_skips_waiting = threading.Event()
 
 
 def wait_for_at_end(thread: threading.Thread) -> None:
@@ -27,26 +33,27 @@ def wait_for_at_end(thread: threading.Thread) -> None:
     _inside.add(thread)
 
 
-def end_with(exit_code: int) -> None:
-    """End the process with that code at once if a thread is still inside Zenoh.
-
-    For commands that people type: they skip the rest of the interpreter's own end
-    instead of waiting. All other programs wait.
-    """
-    _End.exit_code = exit_code
+def skip_waiting() -> None:
+    """Do not wait: the process ends without the end of the interpreter."""
+    _skips_waiting.set()
 
 
 @atexit.register
 def _wait_for_all() -> None:
-    threads = [thread for thread in list(_inside) if thread.is_alive()]
-    if threads and _End.exit_code is not None:
-        logging.shutdown()
-        for stream in (sys.stdout, sys.stderr):
-            with suppress(OSError, ValueError):  # the reader has closed it
-                stream.flush()
-        os._exit(_End.exit_code)
-    for thread in threads:
-        thread.join()
+    if _skips_waiting.is_set():
+        return
+    for thread in list(_inside):
+        if thread.is_alive():
+            thread.join()
+    for _ in range(round(_CALLS_S / _POLL_S)):
+        if not any(map(_is_call, sys._current_frames().values())):
+            return
+        _skips_waiting.wait(_POLL_S)
+
+
+def _is_call(frame: FrameType) -> bool:
+    """Return whether a thread executes a function of the transport."""
+    return frame.f_code.co_filename.startswith(_ZENOH)
 
 
 # A forked child has none of its parent's threads.

@@ -1,5 +1,9 @@
 """Virtual, paced and system clocks, with a fake wall clock."""
 
+import signal
+from contextlib import suppress
+
+import numpy as np
 import pytest
 
 from navette.errors import InvalidValueError
@@ -132,3 +136,29 @@ def test_wakeup_ends_a_wait() -> None:
     assert wakeup.wait(None)
     wakeup.clear()
     assert not wakeup.wait(0.0)
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="POSIX timers")
+def test_ctrl_c_in_any_line_of_a_wait_leaves_it_usable() -> None:
+    """With threading.Event, one in a few thousand interrupts locked it for ever."""
+    wakeup = Wakeup()
+    rng = np.random.default_rng(0)
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    try:
+        for delay_s in rng.uniform(1e-6, 60e-6, 3000):
+            with suppress(KeyboardInterrupt):
+                signal.setitimer(signal.ITIMER_REAL, delay_s)
+                while True:
+                    try:
+                        wakeup.wait(1e-6)
+                    finally:
+                        wakeup.clear()
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert not wakeup.wait(0.0)
+    wakeup.set()
+    wakeup.set()
+    assert wakeup.is_pending
+    assert wakeup.wait(None)
+    wakeup.clear()
+    assert not wakeup.is_pending

@@ -51,6 +51,10 @@ class ZenohSession:
         self.last_received = LastReceived()
         self._tokens = f"{SPACE}/{domain_id}/**"
         self._role = RouterRole(settings)
+        self._closing = threading.Event()
+        self._reader = threading.Thread(
+            target=self._read, name="navette-graph", daemon=True
+        )
         provide_threads(settings)
         router = self._role.find_or_serve()
         try:
@@ -58,24 +62,20 @@ class ZenohSession:
         except zenoh.ZError as error:
             self._role.close()
             raise refuse(settings, error) from error
+        _open.add(self)  # at once: Ctrl-C may raise in the next line
         self.zid = str(self.zenoh.zid())
         self.graph = RemoteGraph(self.zid, self.log_once)
         # A channel, because a callback would run in the thread that declares a token
         # here, and would swallow a Ctrl-C that arrives in it.
-        self._closing = threading.Event()
         self._samples: Any = self.zenoh.liveliness().declare_subscriber(
             self._tokens, zenoh.handlers.FifoChannel(_CHANNEL_SIZE), history=True
         )
-        self._reader = threading.Thread(
-            target=self._read, name="navette-graph", daemon=True
-        )
-        self._reader.start()
         wait_for_at_end(self._reader)
+        self._reader.start()
         self._role.watch(self.zenoh)
         if router is not None:
             self._complete_discovery(router)
             router.close()
-        _open.add(self)
 
     @property
     def serves_as_router(self) -> bool:
@@ -83,17 +83,17 @@ class ZenohSession:
 
     def close(self) -> None:
         """Leave the network; may be called again."""
-        _open.discard(self)
         self._closing.set()
         self._role.stop_watching()
         if not self.zenoh.is_closed():
             closer = threading.Thread(target=self._close, daemon=True)
-            closer.start()
             wait_for_at_end(closer)
+            closer.start()
             closer.join(_CLOSE_S)
-        if self._reader is not threading.current_thread():
+        if self._reader.is_alive() and self._reader is not threading.current_thread():
             self._reader.join(_CLOSE_S)
         self._role.close()
+        _open.discard(self)  # last: a close that Ctrl-C interrupts is completed at exit
 
     def _close(self) -> None:
         # Zenoh reports an error when it stops waiting for a link; nothing is lost.
