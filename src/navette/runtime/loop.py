@@ -52,7 +52,7 @@ class EventLoop:
         self._driver: int | None = None
         self._running: Entity | None = None
         self._lock = threading.Lock()
-        # Taken by itself: Ctrl-C inside the condition's __enter__ would leave it locked.
+        # Entered by itself: Ctrl-C inside the condition's __enter__ leaves it locked.
         self._turn_lock = threading.RLock()
         self._turn = threading.Condition(self._turn_lock)
         self._others = 0  # threads that wait while another thread drives
