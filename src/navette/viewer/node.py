@@ -20,8 +20,13 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from navette import __version__
-from navette.errors import NavetteError, ParameterError, UnknownNameError
-from navette.msgs import definition_text, get_interface
+from navette.errors import (
+    MessageError,
+    NavetteError,
+    ParameterError,
+    UnknownNameError,
+)
+from navette.msgs import definition_text, get_interface, serialize
 from navette.msgs.rcl_interfaces.msg import ParameterEvent, SetParametersResult
 from navette.params import Params
 from navette.runtime.client import Client
@@ -422,9 +427,11 @@ class ViewerNode(StageNode):
 
 def _parameter(name: str, value: Any) -> Parameter[Any]:
     try:
-        return Parameter(name, value=value)
-    except (TypeError, ValueError) as error:
+        parameter: Parameter[Any] = Parameter(name, value=value)
+        serialize(parameter.to_parameter_msg())  # must be possible
+    except (MessageError, TypeError, ValueError) as error:
         raise ParameterError(str(error)) from None
+    return parameter
 
 
 def _is_hidden(name: str) -> bool:

@@ -6,7 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 from navette.errors import DecodeError
-from navette.msgs import Message, deserialize, fields, from_dict, get_interface
+from navette.msgs import (
+    Message,
+    deserialize,
+    fields,
+    from_dict,
+    get_interface,
+    serialize,
+)
 from navette.untrusted.budget import CLIENT_MESSAGE, BudgetMeter
 from navette.viewer.frames import ClientChannel
 
@@ -68,7 +75,9 @@ def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
         raise DecodeError(f"message is not JSON: {error}") from None
     if not isinstance(document, dict):
         raise DecodeError("message is not a JSON object")
-    return from_dict(cls, _with_ros_names(document, BudgetMeter(CLIENT_MESSAGE)))
+    msg = from_dict(cls, _with_ros_names(document, BudgetMeter(CLIENT_MESSAGE)))
+    serialize(msg)  # raises for text that is not Unicode, before any node receives it
+    return msg
 
 
 @functools.cache

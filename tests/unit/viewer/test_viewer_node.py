@@ -422,6 +422,20 @@ def test_pages_of_other_origins_cannot_open_the_socket(program: Program) -> None
         pass
 
 
+def test_parameters_that_no_message_holds_are_refused(
+    program: Program, client: Client
+) -> None:
+    for value in (2**64, [2**64], "\ud800", {"a": 1}, [[1]], [1, "a"]):
+        parameter = {"name": "/talker.depth", "value": value}
+        client.send(op="setParameters", parameters=[parameter])
+        reason = client.wait_for_op("status")["message"]
+        assert reason.startswith("parameter '/talker.depth': ")
+    parameter = {"name": "/talker.names", "value": ["\ud800"]}
+    client.send(op="setParameters", parameters=[parameter])
+    assert "not valid Unicode" in client.wait_for_op("status")["message"]
+    assert client.get_parameters("/talker.depth") == {"/talker.depth": 3}
+
+
 def test_an_unknown_subprotocol_is_refused(program: Program) -> None:
     with pytest.raises(InvalidStatus, match="400"):
         Client(program.address, "foxglove.websocket.v9")

@@ -39,6 +39,11 @@ def test_invalid_json_is_refused(data: bytes) -> None:
         decode_message("json", Twist, data)
 
 
+def test_text_that_is_not_unicode_is_refused() -> None:
+    with pytest.raises(MessageError, match="not valid Unicode"):
+        decode_message("json", String, b'{"data": "\\ud800"}')
+
+
 @pytest.mark.parametrize(
     ("encoding", "message", "limit"),
     [
