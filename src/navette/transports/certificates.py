@@ -97,6 +97,7 @@ class _Authority:
         key = ec.generate_private_key(ec.SECP256R1())
         names = [
             x509.DNSName(name),
+            x509.DNSName(f"{name}.local"),  # its name on a network without DNS
             x509.DNSName("localhost"),
             x509.IPAddress(ipaddress.ip_address("127.0.0.1")),
         ]
