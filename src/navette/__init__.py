@@ -4,6 +4,7 @@ rclpy's names are here too (``from navette import Node, spin``); they are loaded
 first used, so that ``import navette`` costs next to nothing.
 """
 
+from importlib import import_module  # noqa: TID251 - see _COMMANDER
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
@@ -30,18 +31,27 @@ _RUNTIME_NAMES = frozenset(
     """.split()
 )
 
-__all__ = ["__version__", *sorted(_RUNTIME_NAMES)]
+# Nav2's commander, for programs that command a robot. Imported by name: the runtime and
+# other layers below it import this module for the version.
+_COMMANDER_NAMES = frozenset({"BasicNavigator", "TaskResult"})
+_COMMANDER = "navette.ros2.packages.nav2_simple_commander"
+
+__all__ = ["__version__", *sorted(_RUNTIME_NAMES | _COMMANDER_NAMES)]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _RUNTIME_NAMES:
-        raise AttributeError(f"module 'navette' has no attribute {name!r}")
-    from navette import runtime
+    value: Any
+    if name in _RUNTIME_NAMES:
+        from navette import runtime
 
-    value = getattr(runtime, name)
+        value = getattr(runtime, name)
+    elif name in _COMMANDER_NAMES:
+        value = getattr(import_module(_COMMANDER), name)
+    else:
+        raise AttributeError(f"module 'navette' has no attribute {name!r}")
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_RUNTIME_NAMES})
+    return sorted({*globals(), *_RUNTIME_NAMES, *_COMMANDER_NAMES})

@@ -53,7 +53,7 @@ class TreeFile:
         trees: dict[str, XmlNode] = {}
         root = _read_into(path, trees, [])
         file = cls(path, trees, _main_of(root, trees))
-        _check_recursion(file, [file.main])
+        _check_recursion(file, [file.main], set())
         return file
 
     def build(self, robot: RobotAccess, blackboard: TreeBlackboard) -> TreeNode:
@@ -114,7 +114,8 @@ def _main_of(root: XmlNode, trees: Mapping[str, XmlNode]) -> str:
     return main
 
 
-def _check_recursion(file: TreeFile, stack: list[str]) -> None:
+def _check_recursion(file: TreeFile, stack: list[str], checked: set[str]) -> None:
+    """Refuse unknown trees and trees that contain themselves; each is visited once."""
     for element in _subtrees(file.trees[stack[-1]].children):
         name = element.need_attribute("ID")
         if name not in file.trees:
@@ -123,7 +124,9 @@ def _check_recursion(file: TreeFile, stack: list[str]) -> None:
             )
         if name in stack:
             raise element.error(f"tree {name!r} contains itself")
-        _check_recursion(file, [*stack, name])
+        if name not in checked:
+            _check_recursion(file, [*stack, name], checked)
+    checked.add(stack[-1])
 
 
 def _subtrees(elements: Iterable[XmlNode]) -> Iterable[XmlNode]:
