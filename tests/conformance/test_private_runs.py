@@ -285,6 +285,16 @@ def test_one_run_is_found_and_a_taken_port_disturbs_no_one(
     )
     assert {"sim", "planner"} <= set(plain.stdout.split())
 
+    # The doctor reports this run's frozen programs.
+    run_program = terminals.start("run", str(tmp_path / "ros.py"))
+    observer.spin_until(lambda: "/ros" in observer.nodes(), "the program joins")
+    run_program.send_signal(signal.SIGSTOP)
+    report = terminals.type("doctor")
+    run_program.send_signal(signal.SIGCONT)
+    run_program.terminate()
+    assert "sim: navette sim, world empty" in report.stdout
+    assert f"process {run_program.pid}" in report.stdout
+
     # A robot of its own does not join: the stage for a system of several processes.
     outside = terminals.start("run", "navette", "costmap", "--world", "empty")
     assert outside.stdout is not None

@@ -10,6 +10,7 @@ from typing import Any
 import zenoh
 
 from free_ports import free_endpoint
+from navette.runs import PrivateRun
 from navette.runtime.clock import Stopwatch
 from navette.transports import (
     Encoded,
@@ -93,8 +94,8 @@ class ZenohPair(Pair):
     def __init__(self, **settings: Any) -> None:
         chosen = Settings(router=(free_endpoint(),), **settings)
         self.retransmits = bool(chosen.retransmit)
-        self.near = self.near_zenoh = ZenohTransport(7, lambda: 5, chosen)
-        self.far = self.far_zenoh = ZenohTransport(7, lambda: 6, chosen)
+        self.near = self.near_zenoh = ZenohTransport(7, lambda: 5, self._of(chosen))
+        self.far = self.far_zenoh = ZenohTransport(7, lambda: 6, self._of(chosen))
         self._count = itertools.count(1)
         self._pongs: list[int] = []
         near, far = self.near_zenoh.session.zenoh, self.far_zenoh.session.zenoh
@@ -102,6 +103,10 @@ class ZenohPair(Pair):
         self._pong = far.declare_publisher("fence/pong")
         far.declare_subscriber("fence/ping", _direct(self._on_ping))
         near.declare_subscriber("fence/pong", _direct(self._on_pong))
+
+    def _of(self, chosen: Settings) -> Settings:
+        """Return the settings of one end."""
+        return chosen
 
     def settle(self) -> None:
         # Each link keeps the order of tokens and the order of samples: what was sent
@@ -142,8 +147,25 @@ def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:
     return zenoh.handlers.Callback(callback, indirect=False)
 
 
+class PrivatePair(ZenohPair):
+    """Two sessions of a private run: sockets in a folder."""
+
+    def __init__(self) -> None:
+        self._run = PrivateRun.claim("pair")
+        super().__init__()
+
+    def _of(self, chosen: Settings) -> Settings:
+        info = self._run.info
+        return chosen.within(info.router, info.new_endpoint())
+
+    def close(self) -> None:
+        super().close()
+        self._run.close()
+
+
 PAIRS: dict[str, Callable[[], Pair]] = {
     "in-process": InProcessPair,
     "zenoh": ZenohPair,
+    "zenoh in a private run": PrivatePair,
     "zenoh with retransmission": lambda: ZenohPair(retransmit=("*",)),
 }

@@ -163,8 +163,9 @@ def app(
         str | None,
         Option(
             metavar="NAME",
-            help="Join this run (navette ps), not the only one; also after the verb."
-            " shared: none of them. With demo and sim: the name of the new run.",
+            help="Join this run; can also follow the verb. Default: the only one"
+            " (navette ps lists them). shared: join none. With demo, sim and explore:"
+            " name of the new run.",
             complete=complete_runs,
         ),
     ] = None,
@@ -279,10 +280,10 @@ def main() -> None:
     """Entry point of the ``navette`` command."""
     if is_completing():
         discard_stderr()
-    run, arguments = split_run(sys.argv[1:])
-    if arguments[:1] != ["run"]:
-        arguments = without_daemon(fill_values(spread_lists(join_pairs(arguments))))
     try:
+        run, arguments = split_run(sys.argv[1:])
+        if arguments[:1] != ["run"]:
+            arguments = without_daemon(fill_values(spread_lists(join_pairs(arguments))))
         app.main(args=[*run, *arguments], prog_name="navette")
     except NavetteError as error:
         print_error(str(error))

@@ -60,6 +60,9 @@ def split_run(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
     """Separate ``--run NAME``, which holds for all verbs, from the other arguments.
 
     The arguments of the program that ``navette run`` runs remain as they are.
+
+    Raises:
+        InvalidValueError: the name is missing.
     """
     chosen: list[str] = []
     kept: list[str] = []
@@ -67,7 +70,9 @@ def split_run(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
     is_run_verb = rest[:1] == ["run"] or rest[2:3] == ["run"]  # --domain-id N run
     while rest:
         word = rest.pop(0)
-        if word == "--run" and rest:
+        if word == "--run":
+            if not rest:
+                raise InvalidValueError("--run: no name; navette ps lists the runs")
             chosen += [word, rest.pop(0)]
         elif word.startswith("--run="):
             chosen.append(word)

@@ -98,7 +98,7 @@ def pin_run() -> None:
 
 
 def _question(runs: Sequence[RunInfo]) -> str:
-    rows = [run.row() for run in runs]
+    rows = [(*run.row()[:-1], f"pid {run.pid}") for run in runs]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = [f"{len(runs)} runs; choose one with --run NAME:", ""]
     for row in rows:

@@ -7,6 +7,7 @@ from navette.cli.arguments import (
     join_pairs,
     parse_goal,
     parse_speed,
+    split_run,
     spread_lists,
     without_daemon,
 )
@@ -82,3 +83,27 @@ def test_the_error_of_a_malformed_speed_lists_what_is_allowed(text: str) -> None
 
 def test_no_words_at_all() -> None:
     assert fill_values(spread_lists(join_pairs([]))) == []
+
+
+def test_the_run_is_chosen_before_or_after_the_verb() -> None:
+    rest = ["topic", "echo", "/map", "--once"]
+    for typed in (
+        "--run demo topic echo /map --once",
+        "topic echo --run demo /map --once",
+        "topic echo /map --once --run demo",
+    ):
+        assert split_run(typed.split()) == (["--run", "demo"], rest)
+    assert split_run([*rest, "--run=demo"]) == (["--run=demo"], rest)
+    assert split_run(rest) == ([], rest)
+    with pytest.raises(InvalidValueError, match="navette ps lists the runs"):
+        split_run(["topic", "list", "--run"])
+
+
+def test_the_arguments_of_a_program_are_its_own() -> None:
+    typed = "run --navette --path lib --run demo drive.py --run fast".split()
+    program = "run --navette --path lib drive.py --run fast".split()
+    assert split_run(typed) == (["--run", "demo"], program)
+    typed = "--domain-id 3 run drive.py --run=fast".split()
+    assert split_run(typed) == ([], typed)
+    typed = "topic pub /x std_msgs/msg/String -- --run x".split()
+    assert split_run(typed) == ([], typed)

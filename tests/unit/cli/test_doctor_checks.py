@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -15,6 +16,7 @@ from navette.cli.doctor.router_diagnosis import PortProbe, Refusal
 from navette.cli.doctor.snapshot import Snapshot, StageStatus
 from navette.cli.doctor.state_checks import check_stages, check_time
 from navette.cli.doctor.up_checks import check_supervised
+from navette.runs import RunInfo
 from navette.transports import (
     DurabilityPolicy,
     Endpoint,
@@ -455,3 +457,27 @@ def test_the_report() -> None:
     assert report_lines(findings, everything=False)[0] == "Topics"
     assert summary(findings) == "1 problem, 1 warning"
     assert summary(findings[:1]) == "no problems"
+
+
+def test_the_joined_run_replaces_the_router() -> None:
+    run = RunInfo(
+        folder=Path("/run/demo"), name="demo", command="navette demo", world="a", pid=7
+    )
+    router = Router(run.router)
+    found = list(check_network(Network(routers=(router,), nodes={}, run=run), 0))
+    finding = of(found, "run")
+    assert finding.level is Rating.GOOD
+    assert "navette demo, world a, process 7; private" in finding.text
+    assert "router" not in {each.what for each in found}
+    frozen = Network(routers=(router,), nodes=None, run=run)
+    finding = of(check_network(frozen, 0), "run")
+    assert finding.level is Rating.PROBLEM
+    assert "does not respond" in finding.text
+    assert "kill -CONT 7" in finding.advice
+
+
+def test_runs_that_are_not_joined_are_named() -> None:
+    finding = of(check_network(Network(nodes={}, other_runs=("a", "b")), 0), "runs")
+    assert finding.level is Rating.NOTE
+    assert "do not join run a, b" in finding.text
+    assert "NAVETTE_RUN=a" in finding.advice

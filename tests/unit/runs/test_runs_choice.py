@@ -60,8 +60,8 @@ def test_of_several_runs_one_must_be_named(demo: PrivateRun) -> None:
     assert str(failed.value).splitlines() == [
         "2 runs; choose one with --run NAME:",
         "",
-        f"  demo  navette demo  arena   http://127.0.0.1:8765  {pid}",
-        f"  sim   navette sim   course                         {pid}",
+        f"  demo  navette demo  arena   http://127.0.0.1:8765  pid {pid}",
+        f"  sim   navette sim   course                         pid {pid}",
         "",
         "or for all programs of this terminal: export NAVETTE_RUN=demo",
     ]

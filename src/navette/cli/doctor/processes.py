@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import psutil
 
+from navette.runs import chosen_run, live_runs
+
 _STOPPED = {psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP}
 # Programs that differ in one of these variables do not see each other.
 _NETWORK_VARIABLES = ("ROS_DOMAIN_ID", "NAVETTE_ROUTER")
@@ -89,7 +91,21 @@ def environment(process: Process) -> dict[str, str]:
 
 def has_nodes(process: Process) -> bool:
     """Whether the process uses Zenoh in the same network as this one."""
-    theirs = environment(process)
+    run = chosen_run()
+    theirs = _folders_of_sockets(process)
+    if run is not None:
+        return run.folder in theirs
+    if any(each.folder in theirs for each in live_runs()):
+        return False
+    variables = environment(process)
     return bool(has_zenoh(process)) and all(
-        theirs.get(name) == os.environ.get(name) for name in _NETWORK_VARIABLES
+        variables.get(name) == os.environ.get(name) for name in _NETWORK_VARIABLES
     )
+
+
+def _folders_of_sockets(process: Process) -> set[Path]:
+    """Return the folders of the Unix sockets on which the process listens."""
+    with suppress(psutil.Error, OSError):
+        ends = psutil.Process(process.pid).net_connections("unix")
+        return {Path(each.laddr).parent for each in ends if each.laddr}
+    return set()
