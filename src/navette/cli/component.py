@@ -7,7 +7,7 @@ import click
 from navette.cli.commands import Group
 from navette.cli.completing import complete_nodes
 from navette.cli.completing_installed import complete_packages
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json, styled
 from navette.cli.service_calls import (
     ServiceRequest,
@@ -39,7 +39,6 @@ Container = Annotated[
 Quiet = Annotated[
     bool, Option("--quiet", "-q", help="Print only ids and names of components.")
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 _SERVICES = {
     "list_nodes": "composition_interfaces/srv/ListNodes",

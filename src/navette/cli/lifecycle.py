@@ -7,7 +7,7 @@ import click
 from navette.cli.commands import Group
 from navette.cli.completing import complete_managed_nodes, complete_transitions
 from navette.cli.nearest import did_you_mean
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, HiddenNodes, Json, Option
 from navette.cli.output import harmless, show, show_json, show_names, styled
 from navette.cli.service_calls import (
     GET_STATE,
@@ -39,10 +39,6 @@ NodeName = Annotated[
         complete=complete_managed_nodes,
     ),
 ]
-Hidden = Annotated[
-    bool, Option("--include-hidden-nodes", help="Include hidden nodes (_name).")
-]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 
 @lifecycle.command()
@@ -73,7 +69,7 @@ def get(
             complete=complete_managed_nodes,
         ),
     ] = None,
-    include_hidden_nodes: Hidden = False,
+    include_hidden_nodes: HiddenNodes = False,
     as_json: Json = False,
 ) -> None:
     """Print the state of managed nodes."""

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from navette.cli.commands import Group
 from navette.cli.completing import complete_nodes
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, Json, Option
 from navette.cli.output import beside, is_terminal, show, show_json, show_names, styled
 from navette.cli.service_calls import chosen_node, node_names, note_none
 from navette.cli.session import connect, is_hidden, is_of_every_node
@@ -17,8 +17,6 @@ node = Group(
     name="node",
     help="List and inspect nodes.",
 )
-
-Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 
 @node.command("list")

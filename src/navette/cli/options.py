@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, is_dataclass
 from pathlib import Path
 from types import UnionType
-from typing import Any, Union, get_args, get_origin
+from typing import Annotated, Any, Union, get_args, get_origin
 
 import click
 from click.shell_completion import CompletionItem
@@ -57,6 +57,12 @@ class Option:
         self.max = max
         self.complete = complete
         self.panel = panel
+
+
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
+HiddenNodes = Annotated[
+    bool, Option("--include-hidden-nodes", help="Include hidden nodes (_name).")
+]
 
 
 class PanelOption(click.Option):

@@ -3,7 +3,6 @@
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from types import TracebackType
 from typing import Any
 
 from navette.runtime.arguments import remove_ros_args as _remove_ros_args
@@ -32,12 +31,7 @@ class InitContextManager:
     def __enter__(self) -> "InitContextManager":
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exc_info: object) -> None:
         is_default = self.context is get_default_context()
         try_shutdown(context=self.context, uninstall_handlers=is_default)
 

@@ -5,7 +5,6 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
-from types import TracebackType
 from typing import Any
 from weakref import WeakSet
 
@@ -224,12 +223,7 @@ class Context:
         self.init_if_needed()
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exc_info: object) -> None:
         self.try_shutdown()
 
     def _join_network(self, domain_id: int | None) -> RunInfo | None:

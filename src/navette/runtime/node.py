@@ -1,7 +1,6 @@
 """Nodes, with rclpy's API."""
 
 from collections.abc import Callable, Iterator, Sequence
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from navette.errors import InvalidValueError, NavetteError
@@ -200,12 +199,7 @@ class Node(GraphQueries, NodeParameters):
     def __enter__(self) -> "Node":
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc_val: BaseException | None,
-        exc_tb: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exc_info: object) -> None:
         self.destroy_node()
 
     # Identity, context and executor.

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-from navette.cli.action.options import ActionName, ActionType, Json
+from navette.cli.action.options import ActionName, ActionType
 from navette.cli.nearest import did_you_mean
-from navette.cli.options import Option
+from navette.cli.options import Json, Option
 from navette.cli.output import show, show_json, show_names
 from navette.cli.service.listing import show_types_of
 from navette.cli.service_calls import note_none

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from navette.cli.completing import complete_actions
 from navette.cli.completing_installed import complete_action_types
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument
 
 ActionName = Annotated[
     str,
@@ -22,4 +22,3 @@ ActionType = Annotated[
         complete=complete_action_types,
     ),
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]

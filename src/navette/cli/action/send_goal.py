@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import click
 
 from navette.cli.action.listing import actions, types_of
-from navette.cli.action.options import ActionName, Json
+from navette.cli.action.options import ActionName
 from navette.cli.completing import complete_goal
 from navette.cli.message_yaml import yaml_of
 from navette.cli.nearest import did_you_mean
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, Json, Option
 from navette.cli.output import is_terminal, show, show_json, styled
 from navette.cli.request_builder import filled, from_stdin, type_and_values
 from navette.cli.session import FAILED, connect, fail, service_endpoints, wait_for

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import click
 
-from navette.cli.bag.options import Bags, Json
-from navette.cli.options import Argument, Option
+from navette.cli.bag.options import Bags
+from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.session import FAILED
 from navette.cli.stderr import note

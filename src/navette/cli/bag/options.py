@@ -13,7 +13,6 @@ Bag = Annotated[
 Bags = Annotated[
     list[Path], Argument(metavar="BAG...", help="Files or rosbag2 folders.")
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]
 Topics = Annotated[
     list[str] | None,
     Option(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import click
 
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, Json, Option
 
 if TYPE_CHECKING:
     from navette.bags.compare import Comparison
@@ -83,7 +83,6 @@ Length = Annotated[
     float | None,
     Option("-u", "--duration", metavar="S", help="Replay S seconds."),
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 
 def replay(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import click
 
 from navette.cli.doctor.findings import Diagnosis, Rating, count
-from navette.cli.options import Option
+from navette.cli.options import Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.session import FAILED, connect
 
@@ -21,7 +21,7 @@ def doctor(
     quiet: Annotated[
         bool, Option("--quiet", "-q", help="Print only warnings and problems.")
     ] = False,
-    as_json: Annotated[bool, Option("--json", help="Print JSON.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Find problems of this system and suggest what to do.
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from navette.cli.commands import Group
 from navette.cli.completing_installed import complete_packages, complete_types
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show as put
 from navette.cli.output import show_json
 from navette.cli.session import fail
@@ -29,7 +29,6 @@ TypeName = Annotated[
 OnlyMsgs = Annotated[bool, Option("--only-msgs", "-m", help="List messages.")]
 OnlySrvs = Annotated[bool, Option("--only-srvs", "-s", help="List services.")]
 OnlyActions = Annotated[bool, Option("--only-actions", "-a", help="List actions.")]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]
 
 
 @interface.command("show")

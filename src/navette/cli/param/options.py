@@ -33,10 +33,6 @@ Names = Annotated[
         complete=complete_parameters,
     ),
 ]
-Hidden = Annotated[
-    bool, Option("--include-hidden-nodes", help="Include hidden nodes (_name).")
-]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]
 Timeout = Annotated[
     float,
     Option("--timeout", min=0, metavar="S", help="Timeout of each response."),

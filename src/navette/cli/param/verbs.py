@@ -8,18 +8,10 @@ import click
 
 from navette.cli.commands import Group
 from navette.cli.completing import complete_parameter_value
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, HiddenNodes, Json, Option
 from navette.cli.output import harmless, is_terminal, show, show_json, styled
 from navette.cli.param import text, values
-from navette.cli.param.options import (
-    AnyNode,
-    Hidden,
-    Json,
-    Name,
-    Names,
-    NodeName,
-    Timeout,
-)
+from navette.cli.param.options import AnyNode, Name, Names, NodeName, Timeout
 from navette.cli.service_calls import (
     RESPONSE_TIMEOUT_S,
     chosen_node,
@@ -56,7 +48,7 @@ def list_(
     types: Annotated[
         bool, Option("--param-type", help="Also print the types.")
     ] = False,
-    include_hidden_nodes: Hidden = False,
+    include_hidden_nodes: HiddenNodes = False,
     timeout_s: Timeout = RESPONSE_TIMEOUT_S,
     as_json: Json = False,
 ) -> None:
@@ -183,7 +175,7 @@ def dump(
             help="Write one file per node to this folder instead of printing.",
         ),
     ] = None,
-    include_hidden_nodes: Hidden = False,
+    include_hidden_nodes: HiddenNodes = False,
     timeout_s: Timeout = RESPONSE_TIMEOUT_S,
 ) -> None:
     """Print the parameters of a node, or of all nodes, as a parameter file.

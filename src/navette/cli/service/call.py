@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from navette.cli.completing import complete_request
 from navette.cli.nearest import did_you_mean
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json, styled
 from navette.cli.request_builder import filled, from_stdin, type_and_values
 from navette.cli.service.listing import services, types_of
-from navette.cli.service.options import Json, ServiceName
+from navette.cli.service.options import ServiceName
 from navette.cli.session import connect, fail, service_endpoints, wait_for
 from navette.cli.stderr import note
 from navette.errors import InvalidValueError

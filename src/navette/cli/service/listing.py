@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING, Annotated
 
 from navette.cli.nearest import did_you_mean
-from navette.cli.options import Option
+from navette.cli.options import Json, Option
 from navette.cli.output import beside, is_terminal, show, show_json, show_names
-from navette.cli.service.options import Hidden, Json, ServiceName, ServiceType
+from navette.cli.service.options import Hidden, ServiceName, ServiceType
 from navette.cli.service_calls import note_none
 from navette.cli.session import (
     connect,

@@ -31,4 +31,3 @@ Hidden = Annotated[
         " terminal, those of every node.",
     ),
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]

@@ -56,7 +56,6 @@ Hidden = Annotated[
 Count = Annotated[
     bool, Option("--count-topics", "-c", "--count", help="Print only the number.")
 ]
-Json = Annotated[bool, Option("--json", help="Print JSON.")]
 JsonLines = Annotated[bool, Option("--json", help="Print one line of JSON each time.")]
 Filter = Annotated[
     str | None,

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from navette.cli.commands import Group
 from navette.cli.completing import complete_topics
-from navette.cli.options import Argument, Option
+from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json, show_names
 from navette.cli.service_calls import note_none
 from navette.cli.session import connect, fail, follow_clock, is_simulated
@@ -14,7 +14,6 @@ from navette.cli.topic.options import (
     Count,
     Filter,
     Hidden,
-    Json,
     JsonLines,
     QosOverrides,
     TopicName,
