@@ -20,6 +20,11 @@ from navette.msgs.geometry_msgs.msg import Point32, PolygonStamped, Twist
 from navette.msgs.nav2_msgs.msg import CollisionMonitorState, SpeedLimit
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.navigation.control.command_gate import InputAges
+from navette.navigation.control.explanations import (
+    EXPLAINED,
+    Situation,
+    explain,
+)
 from navette.navigation.control.limits import NO_CAP, SpeedCap
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
@@ -44,6 +49,9 @@ from navette.runtime.stage.status import StatusReporter, status_output
 from navette.runtime.time import ns_to_stamp
 
 _NEVER = -(1 << 62)
+# A stop that ends by itself, as before the first costmap, needs no explanation.
+_EXPLAIN_AFTER_NS = 1_000_000_000
+_EXPLAIN_PERIOD_NS = 60_000_000_000
 _TICKS_PER_REPORT = 5
 # Status of a planner before its first goal.
 _NO_GOAL_YET = "waiting_for_goal"
@@ -126,6 +134,9 @@ class ControlNode(StageNode):
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
         self._planner_ns = _NEVER
+        self._odometry_frame = ""
+        self._explained_ns: dict[ControlState, int] = {}
+        self._stopped_in, self._stopped_ns = ControlState.IDLE, _NEVER
         self._planner_state = ""
         self._is_paused = False
         self._output_topic = self.resolve_topic_name(topics.CMD_VEL_NAV.name)
@@ -153,7 +164,7 @@ class ControlNode(StageNode):
             raise InvalidInputError(
                 "unknown_frame",
                 f"path in frame {frame!r}; expected map_frame, "
-                f"{self.params.map_frame!r}",
+                f"{self.params.map_frame!r}: transform its poses, or set map_frame",
             )
         if msg.poses and not self._lifecycle.is_active:
             raise InvalidInputError("inactive", "controller_server is not active")
@@ -173,6 +184,7 @@ class ControlNode(StageNode):
         """Store the newest message for the next step."""
         self._odometry = msg
         self._odometry_ns = self._now_ns
+        self._odometry_frame = msg.child_frame_id
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Store the newest costmap until the pose at its stamp is available."""
@@ -362,6 +374,7 @@ class ControlNode(StageNode):
         if self._ticks_to_report > 0 and self._status.state == output.state:
             return
         self._ticks_to_report = _TICKS_PER_REPORT
+        self._explain(output.state)
         self._status.report(
             str(output.state),
             _level(output.state),
@@ -372,6 +385,30 @@ class ControlNode(StageNode):
             distance_left_m=output.distance_left_m,
             clearance_m=output.clearance_m,
         )
+
+    def _explain(self, state: ControlState) -> None:
+        """Log why the robot stays stopped, once a minute for each state."""
+        if state != self._stopped_in:
+            self._stopped_in, self._stopped_ns = state, self._now_ns
+        last_ns = self._explained_ns.get(state, _NEVER)
+        lasts = self._now_ns - self._stopped_ns >= _EXPLAIN_AFTER_NS
+        is_new = not 0 <= self._now_ns - last_ns < _EXPLAIN_PERIOD_NS
+        if state not in EXPLAINED or not (lasts and is_new):
+            return
+        frame = self._odometry_frame
+        base_T_odometry = self._tracker.transform_to_base(frame) if frame else None
+        situation = Situation(
+            pose=self._tracker.latest,
+            path=self._path,
+            odometry_frame=frame,
+            base_T_odometry=base_T_odometry,
+            ages=self._ages(),
+            odometry_arrived=self._odometry_ns != _NEVER,
+        )
+        text = explain(state, situation, self.params)
+        if text:
+            self._explained_ns[state] = self._now_ns
+            self.get_logger().warning(f"{state}: {text}")
 
     def _publish_footprint(self) -> None:
         if not self.has_listeners(topics.LOCAL_FOOTPRINT.name):
