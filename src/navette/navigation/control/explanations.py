@@ -30,7 +30,7 @@ _FAR_M = 0.2
 
 @dataclass(frozen=True)
 class Situation:
-    """What the controller knows when it stops.
+    """Inputs and pose of the controller when it stops.
 
     Attributes:
         pose: of the base in the map; None before odometry.
