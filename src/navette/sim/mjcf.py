@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+from navette.sim.limits import PartCounter, check_mjcf_parts
 from navette.sim.scene import Scene
 from navette.sim.xml_tree import XmlNode, parse_xml
 
@@ -19,11 +20,17 @@ def read_mjcf(path: Path) -> Scene:
     root = parse_xml(path)
     if root.tag != "mujoco":
         raise root.error("the root element must be <mujoco>")
-    _check(root, {path.resolve()})
+    _check(root, {path.resolve()}, PartCounter())
     return Scene(name=root.attributes.get("model", path.stem), mjcf=path)
 
 
-def _check(node: XmlNode, seen: set[Path]) -> None:
+def _check(root: XmlNode, seen: set[Path], counter: PartCounter) -> None:
+    """Check the file of ``root`` and those that it includes."""
+    check_mjcf_parts(root, counter)
+    _check_node(root, seen, counter)
+
+
+def _check_node(node: XmlNode, seen: set[Path], counter: PartCounter) -> None:
     if node.tag in _REFUSED:
         raise node.error("plugins are not allowed")
     for key in _FILE_ATTRIBUTES:
@@ -31,9 +38,9 @@ def _check(node: XmlNode, seen: set[Path]) -> None:
         if value and (Path(value).is_absolute() or ".." in Path(value).parts):
             raise node.error(f"{key}={value!r} is outside the file's folder")
     for child in node.children:
-        _check(child, seen)
+        _check_node(child, seen, counter)
     if node.tag == "include" and "file" in node.attributes:
         inner = (node.path.parent / node.attributes["file"]).resolve()
         if inner in seen:
             raise node.error(f"{inner.name!r} is included twice")
-        _check(parse_xml(inner), seen | {inner})
+        _check(parse_xml(inner), seen | {inner}, counter)

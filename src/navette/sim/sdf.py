@@ -11,6 +11,7 @@ from pathlib import Path
 
 from navette.geometry import Transform3, Vector3
 from navette.geometry.se3 import rotate
+from navette.sim.limits import check_parts
 from navette.sim.scene import (
     DiffDrive,
     Geometry,
@@ -61,6 +62,7 @@ def read_sdf(path: Path) -> Scene:
     root = parse_xml(path)
     if root.tag != "sdf":
         raise root.error("the root element must be <sdf>")
+    check_parts(root)
     unsupported = Unsupported(path)
     worlds = list(root.all("world"))
     for extra in worlds[1:]:

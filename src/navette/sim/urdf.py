@@ -9,6 +9,7 @@ from pathlib import Path
 
 from navette.errors import FileFormatError
 from navette.geometry import Transform3, quaternion_from_rpy
+from navette.sim.limits import check_parts
 from navette.sim.scene import (
     Geometry,
     Inertial,
@@ -68,6 +69,7 @@ def _read(path: Path) -> Model:
     root = parse_xml(path)
     if root.tag != "robot":
         raise root.error("the root element must be <robot>")
+    check_parts(root)
     unsupported = Unsupported(path)
     for node in root.children:
         if node.tag not in _KNOWN:
