@@ -15,7 +15,7 @@ from navette.sim.limits import MOST_MOVING
 @pytest.mark.parametrize("write", models.WORLDS, ids=lambda each: each.__name__)
 def test_worlds(write: Callable[[Path], Path], tmp_path: Path) -> None:
     path = write(tmp_path)
-    with within(), pytest.raises(FileFormatError, match="at most|more than|exceeds"):
+    with within(), pytest.raises(FileFormatError, match=r"at most|more than|exceeds"):
         load_world(path)
 
 

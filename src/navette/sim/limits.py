@@ -34,7 +34,7 @@ _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 
 class PartCounter:
-    """Counts the parts of a file and of those that it includes."""
+    """Counts the parts of a file and of the files it includes."""
 
     def __init__(self) -> None:
         self._count: Counter[str] = Counter()
@@ -76,7 +76,7 @@ def check_parts(root: XmlNode) -> None:
 
 
 def check_mjcf_parts(node: XmlNode, counter: PartCounter, times: int = 1) -> None:
-    """Check the numbers of parts of an MJCF file, with those that it generates.
+    """Check the numbers of parts of an MJCF file, generated ones included.
 
     Raises:
         FileFormatError: more than allowed.

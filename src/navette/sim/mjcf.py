@@ -25,7 +25,7 @@ def read_mjcf(path: Path) -> Scene:
 
 
 def _check(root: XmlNode, seen: set[Path], counter: PartCounter) -> None:
-    """Check the file of ``root`` and those that it includes."""
+    """Check the file of ``root`` and the files it includes."""
     check_mjcf_parts(root, counter)
     _check_node(root, seen, counter)
 
