@@ -78,7 +78,7 @@ subjects = pytest.mark.parametrize(
 def test_a_clock_topic_that_jumps_ends_no_stage(subject: Subject) -> None:
     for seed in rounds():
         rng = Extremes(seed).rng
-        with clocked(subject) as (_, stage):
+        with clocked(subject) as (graph, stage):
             stage.run(0.5)
             for _ in range(10):
                 to_ns = JUMPS_NS[int(rng.integers(len(JUMPS_NS)))]
@@ -86,7 +86,8 @@ def test_a_clock_topic_that_jumps_ends_no_stage(subject: Subject) -> None:
                     message = Clock()
                     message.clock.sec = max(to_ns // S, -(2**31))
                     message.clock.nanosec = 2**32 - 1
-                    stage._graph.publish("/clock", message)
+                    graph.publish("/clock", message)
+                    graph.run_for(0.02)
                 else:
                     stage.now_ns = to_ns
                 with within():
@@ -108,6 +109,36 @@ def test_a_system_clock_that_jumps_ends_no_stage(subject: Subject) -> None:
                 steps = (-3600 * S, -S, -1, 1, S, 3600 * S, -86400 * S)
                 step_ns = steps[int(rng.integers(len(steps)))]
                 graph.context.clock.now_ns += step_ns  # type: ignore[misc]
+
+
+def test_timers_continue_after_the_system_clock_was_set_back() -> None:
+    with GraphHarness(clock=HostClock(_START_NS)) as graph:
+        ticks: list[int] = []
+        graph.node.create_timer(0.1, lambda: ticks.append(graph.now_ns))
+        graph.run_for(1.0)
+        assert len(ticks) == 10
+        for step_ns in (-S, -3600 * S, -(10**6) * S):
+            graph.context.clock.now_ns += step_ns  # type: ignore[misc]
+            ticks.clear()
+            graph.run_for(1.0)
+            assert len(ticks) == 10
+
+
+def test_a_stage_recovers_from_a_system_clock_that_was_set_back() -> None:
+    control = next(each for each in SUBJECTS if each.name == "control")
+    with GraphHarness(clock=HostClock(_START_NS)) as graph:
+        resolve_scene(RunOptions()).override_parameters(graph.context.overrides)
+        node = graph.add(control.make(graph.context))
+        commands = graph.collect("/cmd_vel_nav", "geometry_msgs/msg/Twist")
+        for step_ns in (0, -S, -3600 * S, 3600 * S):
+            graph.context.clock.now_ns += step_ns  # type: ignore[misc]
+            commands.clear()
+            graph.run_for(0.5)  # no input: the robot stands
+            assert not commands.messages or commands.last.linear.x == 0.0
+            for _ in range(20):
+                _feed(graph, node)
+                graph.run_for(0.05)
+            assert commands.last.linear.x > 0.1
 
 
 def _feed(graph: GraphHarness, node: Node) -> None:

@@ -28,6 +28,9 @@ class Entity(ABC):
         """Return the group that is held while a blocking call of this event waits."""
         return self.group
 
+    def on_clock_set_back(self, step_ns: int) -> None:  # noqa: B027 - few store times
+        """Move stored times of the context's clock by ``step_ns`` (< 0)."""
+
     def origin(self) -> tuple[str, str]:
         """Return the node's full name and the topic or timer, for error messages."""
         return "", type(self).__name__

@@ -41,6 +41,8 @@ class EventLoop:
         self.waiting = False
         self._heap: list[tuple[int, int, Any]] = []
         self._sequence = 0
+        self._latest_ns = -(1 << 62)
+        self._set_back_ns = 0  # sum of the steps back of the clock
         self.free_group = ReentrantCallbackGroup()
         #: Groups with their own rules that have parked events.
         self._ruled: list[CallbackGroup] = []
@@ -328,12 +330,17 @@ class EventLoop:
         until_ns, done, limit, stop = end
         count = 0
         is_late = False
+        self._watch_clock()
+        set_back_ns = self._set_back_ns
         while not self._closed:
             self._attention = False
             if stop is not None and stop():
                 self._attention = True  # for the runs around this one
                 return
             self._collect()
+            if until_ns is not None and self._set_back_ns != set_back_ns:
+                until_ns += self._set_back_ns - set_back_ns
+                set_back_ns = self._set_back_ns
             count += self._run_ready(done, None if limit is None else limit - count)
             if done is not None and done():
                 return
@@ -352,7 +359,7 @@ class EventLoop:
 
     def _collect(self) -> None:
         """Move due events to ``ready``; run the calls of other threads."""
-        now = self.clock.now_ns
+        now = self._watch_clock()
         heap = self._heap
         if heap and heap[0][0] <= now:
             with self._lock:
@@ -365,6 +372,27 @@ class EventLoop:
             self.ready.appendleft(self._inbox.popleft())
             # Not interruptible: otherwise the next call would overtake this one.
             self._run_ready(None, 1, interruptible=False)
+
+    def _watch_clock(self) -> int:
+        """Return the current time; move the events if the clock was set back."""
+        now = self.clock.now_ns
+        if now < self._latest_ns:
+            self._follow_step_back(now - self._latest_ns)
+        self._latest_ns = now
+        return now
+
+    def _follow_step_back(self, step_ns: int) -> None:
+        """Move all events by a step back of the system clock.
+
+        Otherwise timers would pause until the clock has reached the old time again.
+        """
+        self._set_back_ns += step_ns
+        with self._lock:
+            moved = [(time_ns + step_ns, *rest) for time_ns, *rest in self._heap]
+            self._heap[:] = moved  # still a heap: the order is the same
+        for _, token, entity in moved:
+            if entity.token == token:
+                entity.on_clock_set_back(step_ns)
 
     def _run_ready(
         self,

@@ -1,5 +1,6 @@
 """``use_sim_time``: let a node's clock follow the topic ``/clock``."""
 
+import logging
 from typing import Any
 
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
@@ -11,7 +12,9 @@ from navette.runtime.parameter import Parameter, ParameterType
 from navette.runtime.qos import QoSProfile, ReliabilityPolicy
 from navette.runtime.ros_clock import ROSClock
 from navette.runtime.subscription import Subscription
-from navette.runtime.time import stamp_to_ns
+from navette.runtime.time import NS_PER_S, stamp_to_ns
+
+_log = logging.getLogger(__name__)
 
 CLOCK_TOPIC = "/clock"
 USE_SIM_TIME_NAME = "use_sim_time"
@@ -35,6 +38,7 @@ class TimeSource:
         self._context = context
         self._clock = clock
         self._topics = topics
+        self._invalid_logged = False
         self._subscription: Subscription[ClockMsg] | None = None
         if not parameters.has_parameter(USE_SIM_TIME_NAME):
             parameters.declare_parameter(USE_SIM_TIME_NAME, False)
@@ -76,4 +80,16 @@ class TimeSource:
             self._clock.clear_override()
 
     def _on_clock(self, message: ClockMsg) -> None:
-        self._clock.set_override_ns(stamp_to_ns(message.clock))
+        time_ns = stamp_to_ns(message.clock)
+        if time_ns < 0 or message.clock.nanosec >= NS_PER_S:
+            if not self._invalid_logged:
+                self._invalid_logged = True
+                _log.warning(
+                    "invalid time on %s ignored: %d s and %d ns; sec must be >= 0 and "
+                    "nanosec below 1e9",
+                    CLOCK_TOPIC,
+                    message.clock.sec,
+                    message.clock.nanosec,
+                )
+            return
+        self._clock.set_override_ns(time_ns)

@@ -165,6 +165,11 @@ class Timer(Destroyable, Entity):
             )
         )
 
+    def on_clock_set_back(self, step_ns: int) -> None:
+        if self._clock.clock_type is not ClockType.STEADY_TIME:
+            self._last_ns += step_ns
+            self._next_ns += step_ns
+
     def _arm(self) -> None:
         self.token = self._clock.schedule(self._next_ns, self)
 

@@ -183,7 +183,8 @@ class StageNode(Node):
         timeout_ns = self._timeouts_ns[topic]
         if arrival_ns is None or timeout_ns is None:
             return arrival_ns is None
-        return self._clock.now_ns - arrival_ns > timeout_ns
+        # Negative: the clock was set back, and the age is unknown.
+        return not 0 <= self._clock.now_ns - arrival_ns <= timeout_ns
 
     @property
     def dropped_inputs(self) -> Mapping[tuple[str, str], int]:
