@@ -55,6 +55,18 @@ class Fleet:
                 stderr=subprocess.STDOUT,
             )
 
+    def verb(self, *words: str) -> str:
+        """Run another verb of ``navette`` to its end and return what it prints."""
+        done = subprocess.run(
+            [sys.executable, "-m", "navette", *words],
+            env={**os.environ, **self._env},
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+            check=False,
+        )
+        return done.stdout
+
     def output(self, name: str) -> list[str]:
         """Return the complete lines that a program has printed."""
         text = (self._folder / name).read_text(encoding="utf-8")

@@ -44,6 +44,7 @@ class RobotIndex:
     qvel: int
     wheels: tuple[DriveWheel, ...]
     wheel_qpos: NDArray[np.int64]
+    wheel_qvel: NDArray[np.int64]
     actuators: NDArray[np.int64]
     bodies: dict[str, int]  # link name → body
 
@@ -171,6 +172,7 @@ def _index_robot(
         qvel=int(model.jnt_dofadr[free]),
         wheels=wheels,
         wheel_qpos=np.array([model.jnt_qposadr[j] for j in joints], dtype=np.int64),
+        wheel_qvel=np.array([model.jnt_dofadr[j] for j in joints], dtype=np.int64),
         actuators=np.array(servos, dtype=np.int64),
         bodies={
             link.name: model.body(f"{robot.name}/{link.name}").id

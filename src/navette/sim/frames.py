@@ -28,7 +28,8 @@ class FixedFrame:
 class RobotFrames:
     """Frames of links and sensors: ``<prefix><link>`` and ``<link's>/<sensor>``.
 
-    A link with the name of the base frame is the base frame.
+    A link with the name of the base frame is the base frame. A sensor whose model names
+    a frame has that frame.
     """
 
     def __init__(self, robot: RobotIndex, params: SimParams) -> None:
@@ -38,6 +39,7 @@ class RobotFrames:
         moving = moving_links(robot.model)
         self.fixed: list[FixedFrame] = []
         self.moving = {name: self.of_link(name) for name in moving}
+        self._link_frames = [self.of_link(link.name) for link in robot.model.links]
         self.base_T_frame = {self.base: Transform3.identity()}
         for link in robot.model.links:
             base_T_link = base_T_model @ link.model_T_link
@@ -48,6 +50,8 @@ class RobotFrames:
 
     def of_sensor(self, link: str, sensor: Sensor) -> str:
         """Frame id of the sensor's messages."""
+        if sensor.frame:
+            return f"{self._prefix}{sensor.frame}"
         frame = f"{self.of_link(link)}/{sensor.name}"
         return f"{frame}/optical" if isinstance(sensor, CameraSensor) else frame
 
@@ -71,10 +75,24 @@ class RobotFrames:
         if is_fixed and frame != self.base:
             self._add(self.base, frame, base_T_link, is_fixed=True)
         for sensor in link.sensors:
+            if sensor.frame:
+                self._add_named(frame, link.name, sensor, is_fixed=is_fixed)
+                continue
             name = f"{frame}/{sensor.name}"
             self._add(frame, name, sensor.link_T_sensor, is_fixed=is_fixed)
             if isinstance(sensor, CameraSensor):
                 self._add(name, f"{name}/optical", _CAMERA_T_OPTICAL, is_fixed=is_fixed)
+
+    def _add_named(
+        self, link_frame: str, link: str, sensor: Sensor, *, is_fixed: bool
+    ) -> None:
+        """Add the frame that a sensor names, unless it is that of a link or sensor."""
+        name, pose = self.of_sensor(link, sensor), sensor.link_T_sensor
+        if isinstance(sensor, CameraSensor):
+            pose = pose @ _CAMERA_T_OPTICAL
+        known = {self.base, *self._link_frames, *(each.name for each in self.fixed)}
+        if name not in known:
+            self._add(link_frame, name, pose, is_fixed=is_fixed)
 
     def _add(
         self, parent: str, name: str, parent_T_frame: Transform3, *, is_fixed: bool

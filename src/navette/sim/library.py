@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Worlds and robots by name (built in) or by file."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+import yaml
 
 from navette.errors import FileFormatError, UnknownNameError
 from navette.sim.mjcf import read_mjcf
@@ -10,10 +12,13 @@ from navette.sim.occupancy_map import read_map
 from navette.sim.scene import Model, Scene
 from navette.sim.sdf import read_sdf
 from navette.sim.urdf import read_urdf_robot, read_urdf_world
+from navette.untrusted.yaml_input import load_yaml
 
 _DATA = Path(__file__).parent / "data"
 _WORLDS = _DATA / "worlds"
 _ROBOTS = _DATA / "robots"
+
+_SHORT_NAMES = {"burger": "turtlebot3_burger"}
 
 _WORLD_READERS = {
     ".sdf": read_sdf,
@@ -35,6 +40,8 @@ class Robot:
     name: str
     model: Model
     params_file: Path | None = None
+    #: Names of its topics, by the stack's names for them; ``names.yaml`` beside it.
+    topic_names: dict[str, str] = field(default_factory=dict)
 
 
 def world_names() -> list[str]:
@@ -73,20 +80,46 @@ def load_robot(name_or_path: str | Path) -> Robot:
         UnknownNameError: neither a built-in name nor a file; lists the names.
         FileFormatError: the file is invalid or has no model with a drive.
     """
-    if str(name_or_path) in robot_names():
-        folder = _ROBOTS / str(name_or_path)
+    name = _SHORT_NAMES.get(str(name_or_path), str(name_or_path))
+    if name in robot_names():
+        folder = _ROBOTS / name
         model = _driven(read_sdf(folder / "model.sdf"), folder / "model.sdf")
-        return Robot(str(name_or_path), model, folder / "params.yaml")
+        return Robot(name, model, folder / "params.yaml", _topic_names(folder))
     path = _existing(name_or_path, "robot", robot_names())
     beside = path.parent / "params.yaml"
     params_file = beside if beside.is_file() else None
+    topic_names = _topic_names(path.parent)
     if path.suffix.lower() == ".urdf":
         model = read_urdf_robot(path)
-        return Robot(model.name, model, params_file)
+        return Robot(model.name, model, params_file, topic_names)
     if path.suffix.lower() in (".sdf", ".world"):
         model = _driven(read_sdf(path), path)
-        return Robot(model.name, model, params_file)
+        return Robot(model.name, model, params_file, topic_names)
     raise FileFormatError(path, "unknown extension of a robot file; known: .sdf, .urdf")
+
+
+def _topic_names(folder: Path) -> dict[str, str]:
+    """Read ``names.yaml`` of a robot's folder; empty without the file.
+
+    Raises:
+        FileFormatError: the file is not a map from topic names to topic names.
+    """
+    path = folder / "names.yaml"
+    if not path.is_file():
+        return {}
+    try:
+        names = load_yaml(path.read_text(encoding="utf-8"))
+    except yaml.YAMLError as error:
+        raise FileFormatError(path, f"not YAML: {error}") from None
+    if not isinstance(names, dict) or not all(
+        isinstance(each, str) and each.startswith("/")
+        for pair in names.items()
+        for each in pair
+    ):
+        raise FileFormatError(
+            path, "expected lines '/name_of_the_stack: /name_of_the_robot'"
+        )
+    return names
 
 
 def identify_robot(model: Model) -> Robot | None:

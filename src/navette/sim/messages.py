@@ -19,14 +19,14 @@ from navette.msgs.geometry_msgs.msg import (
     Vector3,
 )
 from navette.msgs.nav_msgs.msg import Odometry
-from navette.msgs.sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan
+from navette.msgs.sensor_msgs.msg import CameraInfo, Image, Imu, JointState, LaserScan
 from navette.msgs.std_msgs.msg import Header
 from navette.sim.camera import Image as Pixels
 from navette.sim.camera import focal_length
 from navette.sim.contacts import ContactEpisode
 from navette.sim.imu import ImuReading
 from navette.sim.lidar import Scan
-from navette.sim.robot_state import Motion, cross
+from navette.sim.robot_state import JointReadings, Motion, cross
 from navette.sim.scene import CameraSensor, ImuSensor
 from navette.sim.wheel_odometry import Matrix, PlanarCovariances
 
@@ -95,6 +95,15 @@ def odometry_message(
         message.pose.covariance = _spatial(child.pose)
         message.twist.covariance = _spatial(child.twist)
     return message
+
+
+def joint_message(joints: JointReadings, stamp_ns: int) -> JointState:
+    return JointState(
+        header=header(stamp_ns, ""),
+        name=list(joints.names),
+        position=joints.angles,
+        velocity=joints.speeds,
+    )
 
 
 def _spatial(planar: Matrix) -> Matrix:

@@ -70,6 +70,7 @@ class SimNode(StageNode):
         ),
         Output.of(topics.TF, "moving frames", rate_hz=50),
         Output.of(topics.TF_STATIC, "fixed frames"),
+        Output.of(topics.JOINT_STATES, "angles and speeds of the wheels", rate_hz=10),
         Output.of(topics.CONTACTS, "start of each contact with an obstacle"),
         Output.of(topics.EMERGENCY_STOP_ACTIVE, "whether the robot is stopped"),
         Output.of(topics.ROBOT_DESCRIPTION, "URDF of the robot"),
@@ -180,6 +181,8 @@ class SimNode(StageNode):
         self._every(p.odometry_rate_hz, self._publish_odometry, topics.ODOMETRY.name)
         self._every(p.odometry_rate_hz, self._publish_truth, topics.GROUND_TRUTH.name)
         self._every(p.tf_rate_hz, self._publish_base_tf, topics.TF.name)
+        joints = topics.JOINT_STATES.name
+        self._every(p.joint_tf_rate_hz, self._publish_joints, joints)
         if self.frames.moving:
             self._every(p.joint_tf_rate_hz, self._publish_joint_tf, topics.TF.name)
         self._create_sensor_timers(LidarSensor, topics.LIDAR.name, self._publish_scan)
@@ -305,6 +308,11 @@ class SimNode(StageNode):
             for link, frame in self.frames.moving.items()
         ]
         self.publish(topics.TF.name, TFMessage(transforms=transforms))
+
+    def _publish_joints(self, stamp_ns: int) -> None:
+        joints = self.simulator.state.wheel_joints()
+        message = messages.joint_message(joints, stamp_ns)
+        self.publish(topics.JOINT_STATES.name, message)
 
     def _publish_scan(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
         period_s = 1.0 / self.simulator.lidars[index].sensor.rate_hz

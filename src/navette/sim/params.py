@@ -88,7 +88,11 @@ class SimParams(Params):
         50.0, "/tf of the base", unit="Hz", at_least=0.01, at_most=50.0
     )
     joint_tf_rate_hz: float = param(
-        10.0, "/tf of turning wheels", unit="Hz", at_least=0.01, at_most=50.0
+        10.0,
+        "/tf and /joint_states of the wheels",
+        unit="Hz",
+        at_least=0.01,
+        at_most=50.0,
     )
 
     def check(self) -> None:

@@ -20,6 +20,14 @@ class Motion(NamedTuple):
     angular: Vector3
 
 
+class JointReadings(NamedTuple):
+    """Joints with their angles (rad) and speeds (rad/s), each (N,)."""
+
+    names: tuple[str, ...]
+    angles: NDArray[np.float64]
+    speeds: NDArray[np.float64]
+
+
 class RobotState:
     """Reads the robot's state from MuJoCo's arrays; writes only its start pose."""
 
@@ -68,6 +76,15 @@ class RobotState:
         """Mean forward rotation of the left and the right wheels (rad)."""
         angles = self._data.qpos[self._robot.wheel_qpos] * self._direction
         return float(angles[self._left].mean()), float(angles[~self._left].mean())
+
+    def wheel_joints(self) -> JointReadings:
+        """Angles and speeds of the drive wheels' joints."""
+        robot = self._robot
+        return JointReadings(
+            tuple(wheel.joint for wheel in robot.wheels),
+            self._data.qpos[robot.wheel_qpos],
+            self._data.qvel[robot.wheel_qvel],
+        )
 
     def link_in_base(self, name: str) -> Transform3:
         """Pose of a link in the base frame (kinematics must be up to date)."""

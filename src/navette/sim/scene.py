@@ -103,9 +103,12 @@ class Inertial:
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
+    """A sensor of a link; ``frame`` is the frame id of its messages, "" derives it."""
+
     name: str
     link_T_sensor: Transform3 = _IDENTITY
     rate_hz: float = 10.0
+    frame: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

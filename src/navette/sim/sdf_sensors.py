@@ -18,6 +18,7 @@ from navette.sim.scene import (
 from navette.sim.sdf_poses import PoseGraph, read_pose
 from navette.sim.xml_tree import Unsupported, XmlNode
 
+_ROUNDED_RAD = 1e-4  # files write 2 pi with some digits
 MAX_BEAMS = 20_000
 MAX_PIXELS = 4096 * 4096
 
@@ -46,6 +47,7 @@ _REPLACED = (
 class _Common(TypedDict):
     name: str
     link_T_sensor: Transform3
+    frame: str
 
 
 def read_sensors(
@@ -56,6 +58,7 @@ def read_sensors(
         common = _Common(
             name=node.name(),
             link_T_sensor=graph.resolve_in(link_name, read_pose(node)),
+            frame=_frame(node),
         )
         sensor = _read_sensor(node, common, unsupported)
         if sensor is not None:
@@ -80,6 +83,14 @@ def _read_sensor(
         return ContactSensor(**common, rate_hz=rate, collisions=tuple(names))
     unsupported.note(f"sensor of type {kind!r}", node)
     return None
+
+
+def _frame(node: XmlNode) -> str:
+    for tag in ("gz_frame_id", "ignition_frame_id"):
+        found = node.find(tag)
+        if found is not None:
+            return found.text.strip()
+    return ""
 
 
 def _rate(node: XmlNode, default: float) -> float:
@@ -109,7 +120,7 @@ def _lidar(
         raise horizontal.error(f"{samples} samples; expected 1 to {MAX_BEAMS}")
     angle_min = horizontal.number("min_angle", 0.0)
     angle_max = horizontal.number("max_angle", 0.0)
-    if angle_max < angle_min or angle_max - angle_min > math.tau + 1e-6:
+    if angle_max < angle_min or angle_max - angle_min > math.tau + _ROUNDED_RAD:
         raise horizontal.error(
             f"angles {angle_min:g} to {angle_max:g} are not a valid scan"
         )

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
+import navette.sim
 from navette.errors import FileFormatError, UnknownNameError
 from navette.geometry import Footprint, Pose2
 from navette.sim import (
@@ -32,6 +33,25 @@ def test_unknown_names_list_the_known(load: object) -> None:
     assert callable(load)
     with pytest.raises(UnknownNameError, match=r"'nowhere'; known: .*course"):
         load("nowhere")
+
+
+def test_the_burger_has_the_makers_names() -> None:
+    burger = load_robot("burger")
+    assert burger.name == "turtlebot3_burger"
+    assert burger.topic_names == {"/lidar": "/scan", "/odom/filtered": "/odom"}
+    assert load_robot("jackal").topic_names == {}
+
+
+def test_a_models_folder_may_name_its_topics(tmp_path: Path) -> None:
+    model = Path(navette.sim.__file__).parent / "data/robots/husky/model.sdf"
+    (tmp_path / "model.sdf").write_text(model.read_text())
+    names = tmp_path / "names.yaml"
+    names.write_text("/lidar: /front/scan\n")
+    assert load_robot(tmp_path / "model.sdf").topic_names == {"/lidar": "/front/scan"}
+    for wrong in ("/lidar: 3", "[1]", "lidar: /scan", "a: b: c"):
+        names.write_text(wrong)
+        with pytest.raises(FileFormatError, match=r"names\.yaml"):
+            load_robot(tmp_path / "model.sdf")
 
 
 def test_unknown_file_extensions_are_refused(tmp_path: Path) -> None:

@@ -134,12 +134,34 @@ def test_other_robots_have_map_odom_and_base_link() -> None:
     run.listen("/odom/filtered", "/tf_static", "/lidar")
     run.spin(0.3)
     odometry = run.received["/odom/filtered"][-1]
-    assert (odometry.header.frame_id, odometry.child_frame_id) == ("odom", "base_link")
+    frames = odometry.header.frame_id, odometry.child_frame_id
+    assert frames == ("odom", "base_footprint")
     (static,) = run.received["/tf_static"]
     parents = {t.child_frame_id: t.header.frame_id for t in static.transforms}
     assert parents["odom"] == "map"
-    assert parents["chassis"] == "base_link"
-    assert run.received["/lidar"][-1].header.frame_id == "chassis/lidar"
+    assert parents["base_link"] == "base_footprint"
+    assert parents["base_scan"] == parents["imu_link"] == "base_link"
+    assert run.received["/lidar"][-1].header.frame_id == "base_scan"
+
+
+def test_the_burgers_scan_begins_ahead_and_its_joints_are_named() -> None:
+    scene = World().add_box((1.0, 0.0), (0.2, 0.4)).add_box((0.0, 2.0), (0.4, 0.2))
+    run = _run(scene.scene(), robot="burger", lidar_noise_m=0.0)
+    run.listen("/lidar", "/joint_states")
+    run.drive(0.2, 0.0)
+    run.spin(1.0)
+    scan = run.received["/lidar"][0]
+    assert (len(scan.ranges), scan.angle_min) == (360, 0.0)
+    assert scan.angle_max == pytest.approx(2 * math.pi, abs=1e-3)
+    assert (scan.range_min, scan.range_max) == pytest.approx((0.12, 3.5))
+    assert scan.ranges[0] == pytest.approx(0.9 + 0.032, abs=0.02)
+    assert scan.ranges[90] == pytest.approx(1.9, abs=0.05)  # to the left
+    assert math.isinf(scan.ranges[180])
+    stamps = [msg.header.stamp.nanosec for msg in run.received["/lidar"][:2]]
+    assert (stamps[1] - stamps[0]) % 10**9 == 200_000_000
+    joints = run.received["/joint_states"][-1]
+    assert joints.name == ["wheel_left_joint", "wheel_right_joint"]
+    assert joints.velocity == pytest.approx([0.2 / 0.033] * 2, rel=0.05)
 
 
 def test_camera_has_its_camera_info() -> None:

@@ -177,7 +177,7 @@ def test_mjcf_world_takes_a_robot(tmp_path: Path) -> None:
     )
     scene = load_world(path).with_robot(load_robot("turtlebot3_burger").model)
     simulator = Simulator(scene, start=Pose2(0, 0, 0))
-    ahead = simulator.scan().ranges[180]
+    ahead = simulator.scan().ranges[0]
     assert ahead == pytest.approx(1.9 + 0.032, abs=0.02)
 
 

@@ -119,7 +119,7 @@ def test_meshes_are_visible(tmp_path: Path) -> None:
     path.write_text(MESH_WORLD)
     scene = load_world(path).with_robot(load_robot("turtlebot3_burger").model)
     simulator = Simulator(scene, start=Pose2(0, 0, 0))
-    assert simulator.scan().ranges[180] == pytest.approx(2.03, abs=0.05)
+    assert simulator.scan().ranges[0] == pytest.approx(2.03, abs=0.05)
     image = simulator.image()
     assert np.any(image[:, :, 0].astype(int) - image[:, :, 2] > 60)
 

@@ -20,7 +20,8 @@ def simulate_robot(
     """Return one robot in one world as a node, to spin with your own nodes.
 
     The node subscribes to /cmd_vel and publishes /lidar, /odom/filtered, /tf, … at the
-    context's time. ``world``, ``robot`` and ``start`` are as in ``navette sim``.
+    context's time, under the robot's own names if it has some. ``world``, ``robot`` and
+    ``start`` are as in ``navette sim``.
 
     Raises:
         NavetteError: invalid name or file, named in the text.
@@ -34,4 +35,6 @@ def simulate_robot(
     )
     resolved = resolve_scene(options, made)
     resolved.override_parameters(context.overrides)
+    context.init_if_needed()
+    resolved.rename_topics(context)
     return SimNode(resolved.scene, start=start, context=context)

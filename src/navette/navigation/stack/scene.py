@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from navette.navigation.stack.options import RunOptions
+from navette.runtime import Context
+from navette.runtime.names import RemapRule
 from navette.runtime.overrides import ParameterOverrides
 from navette.sim import (
     Robot,
@@ -26,6 +28,19 @@ class ResolvedScene:
     robot_name: str
     params_file: Path | None
     derived: dict[str, dict[str, object]]
+    topic_names: dict[str, str]
+
+    def rename_topics(self, context: Context) -> None:
+        """Give the nodes that are created from now on the robot's names of topics.
+
+        Remapping rules of the user apply first.
+        """
+        context.arguments.remaps += map(RemapRule.parse, self.remappings)
+
+    @property
+    def remappings(self) -> list[str]:
+        """Rules ``FROM:=TO`` from the stack's names of topics to the robot's."""
+        return [f"{ours}:={its}" for ours, its in self.topic_names.items()]
 
     def override_parameters(self, overrides: ParameterOverrides) -> None:
         """Add the robot's parameters for every node of the stack."""
@@ -53,7 +68,9 @@ def resolve_scene(options: RunOptions, scene: Scene | None = None) -> ResolvedSc
     if scene.robot is not robot.model:
         scene = scene.with_robot(robot.model)
     derived = derive_parameters(robot.model)
-    return ResolvedScene(scene, robot.name, robot.params_file, derived)
+    return ResolvedScene(
+        scene, robot.name, robot.params_file, derived, robot.topic_names
+    )
 
 
 def _choose_robot(options: RunOptions, scene: Scene) -> Robot:

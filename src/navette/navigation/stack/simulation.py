@@ -70,6 +70,7 @@ class Simulation:
         try:
             self.context.init(args=[], console_level=LoggingSeverity.WARN)
             self._check_alone()
+            self.resolved.rename_topics(self.context)
             self._create_nodes(on_change)
         except BaseException:
             self.close()

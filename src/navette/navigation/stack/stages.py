@@ -62,6 +62,7 @@ def sim() -> None:
         lambda context: SimNode(resolved.scene, start=start, context=context),
         _profile(resolved, "sim"),
         _clock_of_sim(given),
+        resolved=resolved,
     )
 
 
@@ -176,7 +177,8 @@ def missions() -> None:
     from navette.navigation.missions.node import MissionNode
     from navette.navigation.missions.sequence import REACHED
 
-    profile = _profile(_resolve(given), "missions")
+    resolved = _resolve(given)
+    profile = _profile(resolved, "missions")
     if given.goal:
         goals = [value for goal in given.goal for value in goal]
         profile.add("/**", {"goals_m": goals}, "--goal")
@@ -192,7 +194,7 @@ def missions() -> None:
             node.on_done = context.try_shutdown
         return node
 
-    _run(make, profile)
+    _run(make, profile, resolved=resolved)
     if made[0].on_done is not None:
         missed = [each for each in made[0].all_outcomes if each.result != REACHED]
         for goal in missed:
@@ -259,7 +261,11 @@ def _run_stage(name: str, node_class: Callable[..., Node], text: str) -> None:
     parser = _parser(name, text)
     _add_robot(parser)
     resolved = _resolve(_parse(parser))
-    _run(lambda context: node_class(context=context), _profile(resolved, name))
+    _run(
+        lambda context: node_class(context=context),
+        _profile(resolved, name),
+        resolved=resolved,
+    )
 
 
 def _parser(name: str, text: str) -> argparse.ArgumentParser:
@@ -348,11 +354,13 @@ def _run(
     profile: ParameterOverrides,
     clock: ContextClock | None = None,
     *,
+    resolved: "ResolvedScene | None" = None,
     joins_run: bool = False,
 ) -> None:
     """Create the node and spin it until Ctrl-C or a shutdown.
 
     Args:
+        resolved: the robot whose topic names are used.
         joins_run: join the only private run; False: most stages are in it already, and
             a second one would disturb its robot.
     """
@@ -362,6 +370,8 @@ def _run(
     context.overrides.sets += profile.sets
     try:
         context.init(args=sys.argv)
+        if resolved is not None:
+            resolved.rename_topics(context)
         node = make(context)
         context.overrides.check_used_by([node])
         runtime.spin(node)
