@@ -175,7 +175,7 @@ def test_the_live_view_has_the_robots_frames(
 ) -> None:
     seen = []
 
-    def run(make: object, profile: ParameterOverrides) -> None:
+    def run(make: object, profile: ParameterOverrides, **options: object) -> None:
         values = profile.for_node("/viewer")
         seen.append({name: override.value for name, override in values.items()})
 
