@@ -62,12 +62,14 @@ class BagTopic:
             return self
         return replace(self, encoding=self.channel.encoding)
 
-    @cached_property
-    def _hash(self) -> int:
-        parts = (self.name, self.type_name, self.type_hash, self.encoding, self.channel)
-        return hash(parts)
+    _hash: int = field(init=False, repr=False, compare=False)
 
-    def __hash__(self) -> int:  # topics are the keys of every count
+    def __post_init__(self) -> None:
+        # Once: topics are the keys of every count.
+        parts = (self.name, self.type_name, self.type_hash, self.encoding, self.channel)
+        object.__setattr__(self, "_hash", hash(parts))
+
+    def __hash__(self) -> int:
         return self._hash
 
     @property

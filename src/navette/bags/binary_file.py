@@ -1,11 +1,13 @@
 """Checked reads from a bag file, and resynchronisation after damaged records."""
 
+import os
 import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
 
 from navette.errors import DecodeError, FileFormatError
+from navette.untrusted.files import open_regular
 
 _BLOCK = 1 << 20
 _MOST_PROBLEMS = 100
@@ -20,13 +22,8 @@ class BinaryFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            self._stream = path.open("rb")
-            self.size = path.stat().st_size
-        except OSError as error:
-            raise FileFormatError(
-                path, f"cannot be opened: {error.strerror}"
-            ) from error
+        self._stream = open_regular(path)
+        self.size = os.fstat(self._stream.fileno()).st_size
 
     def read(self, position: int, length: int) -> bytes:
         if position < 0 or length < 0 or position + length > self.size:

@@ -193,10 +193,11 @@ class ChunkedReader(BagReader):
     def _query(
         self, topics: Collection[str] | None, start_ns: int | None, end_ns: int | None
     ) -> ChunkQuery:
+        names = None if topics is None else frozenset(topics)
         channels = frozenset(
             number
             for number, topic in self._topic_of.items()
-            if topics is None or topic.name in topics
+            if names is None or topic.name in names
         )
         return ChunkQuery(
             channels if topics is not None else None,

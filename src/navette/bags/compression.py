@@ -1,13 +1,15 @@
 """Decompression of chunks and messages, bounded by the stated size."""
 
 import bz2
+from io import BytesIO
 from typing import Any
 
 import zstandard
 
 from navette.errors import DecodeError
 
-LARGEST = 1 << 30
+_BLOCK = 8 << 20
+LARGEST = 1 << 29
 """Maximum uncompressed size of a chunk or message, bytes."""
 
 
@@ -73,13 +75,25 @@ def _zstd_of_any_size(data: bytes) -> bytes:
 def _lz4(data: bytes, size: int) -> bytes:
     import lz4.frame
 
-    decompressor: Any = lz4.frame.LZ4FrameDecompressor()
-    unpacked: bytes = decompressor.decompress(data, max_length=size + 1)
-    return unpacked
+    return _in_blocks(lz4.frame.LZ4FrameDecompressor(), data, size)
 
 
 def _bz2(data: bytes, size: int) -> bytes:
-    return bz2.BZ2Decompressor().decompress(data, max_length=size + 1)
+    return _in_blocks(bz2.BZ2Decompressor(), data, size)
+
+
+def _in_blocks(decompressor: Any, data: bytes, size: int) -> bytes:
+    """Decompress at most one byte more than stated; memory grows with the output."""
+    found = BytesIO()
+    while found.tell() <= size and not decompressor.eof:
+        block = decompressor.decompress(
+            data, max_length=min(_BLOCK, size + 1 - found.tell())
+        )
+        if not block and decompressor.needs_input:
+            break
+        found.write(block)
+        data = b""
+    return found.getvalue()
 
 
 _KINDS = {"zstd": _zstd, "lz4": _lz4, "bz2": _bz2}

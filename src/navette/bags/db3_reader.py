@@ -23,6 +23,7 @@ from navette.bags.compression import LARGEST, is_zstd, unpack_zstd_message
 from navette.bags.definitions import msg_text, ros2_name
 from navette.bags.qos import parse_qos
 from navette.errors import DecodeError, FileFormatError
+from navette.untrusted.files import open_regular
 
 MAGIC = b"SQLite format 3\0"
 _SMALLEST_ROW = 16  # minimum bytes of a row; bounds the number of rows
@@ -92,10 +93,11 @@ class Db3Reader(BagReader):
         end_ns: int | None = None,
         on_damage: OnDamage | None = None,
     ) -> Iterator[BagMessage]:
+        names = None if topics is None else frozenset(topics)
         wanted = {
             number
             for number, topic in self._topic_of.items()
-            if topics is None or topic.name in topics
+            if names is None or topic.name in names
         }
         last = 0, -(2**63)  # number of rows read of the last stamp
         try:
@@ -131,14 +133,9 @@ class Db3Reader(BagReader):
     def _connect(self) -> sqlite3.Connection:
         """Open read-only, including the write-ahead log of a killed recorder."""
         path = self.path
-        try:
-            with path.open("rb") as file:
-                if file.read(len(MAGIC)) != MAGIC:
-                    raise FileFormatError(path, "is not an SQLite database")
-        except OSError as error:
-            raise FileFormatError(
-                path, f"cannot be opened: {error.strerror}"
-            ) from error
+        with open_regular(path) as file:
+            if file.read(len(MAGIC)) != MAGIC:
+                raise FileFormatError(path, "is not an SQLite database")
         uri = f"file:{quote(str(path.absolute()))}?mode=ro"
         log = path.with_name(path.name + _LOG_SUFFIX)
         if log.exists() and log.stat().st_size:

@@ -114,7 +114,7 @@ def read_attachment(file: RecordFile, position: int) -> BagAttachment:
         found = AttachmentHead.parse(start)
     except struct.error as error:
         raise file.error(position, f"attachment: {error}") from error
-    if found.begin + found.size + 4 != length:
+    if found.begin + found.size + 4 > length:  # more may follow
         raise file.error(
             position, f"attachment of {found.size} bytes in a record of {length}"
         )
@@ -124,20 +124,22 @@ def read_attachment(file: RecordFile, position: int) -> BagAttachment:
         found.size,
         found.log_ns,
         found.create_ns,
-        partial(_blocks, file, head),
+        partial(_blocks, file, head.position, head.begin, found),
     )
 
 
-def _blocks(file: RecordFile, head: Head) -> Iterator[bytes]:
+def _blocks(
+    file: RecordFile, position: int, start: int, head: AttachmentHead
+) -> Iterator[bytes]:
     """Yield the record's content; raises at its end if its checksum does not match."""
-    crc, end = 0, head.end - 4
-    for begin in range(head.begin, end, _BLOCK):
+    crc, end = 0, start + head.begin + head.size
+    for begin in range(start, end, _BLOCK):
         block = file.read(begin, min(_BLOCK, end - begin))
         crc = zlib.crc32(block, crc)
         yield block
     stated = file.read(end, 4)
     if any(stated) and stated != crc.to_bytes(4, "little"):
-        raise file.error(head.position, "attachment: its checksum does not match")
+        raise file.error(position, "attachment: its checksum does not match")
     yield stated
 
 

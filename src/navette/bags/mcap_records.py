@@ -181,7 +181,7 @@ def parse_message_index(content: bytes) -> tuple[int, list[int]]:
     """
     try:
         channel, size = struct.unpack_from("<HI", content)
-        if size != len(content) - 6 or size % 16:
+        if size > len(content) - 6 or size % 16:  # more may follow
             raise DecodeError(f"{size} bytes of message index in {len(content)}")
         numbers = struct.unpack_from(f"<{size // 8}Q", content, 6)
     except struct.error as error:

@@ -1,10 +1,10 @@
 """Open a recording of any format."""
 
-import shutil
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import BinaryIO
 
 import zstandard
 
@@ -16,9 +16,12 @@ from navette.bags.mcap_reader import McapReader
 from navette.bags.mcap_records import MAGIC as MCAP_MAGIC
 from navette.bags.ros1_reader import Ros1Reader
 from navette.errors import FileFormatError
+from navette.untrusted.files import open_regular
 
 SUFFIXES = (".mcap", ".bag", ".db3")
 PACKED = ".zstd"
+_MOST_RATIO = 1000
+_FREE_BYTES = 64 << 20
 
 
 def open_bag(path: Path | str) -> BagReader:
@@ -52,11 +55,8 @@ def holds_bag(path: Path) -> bool:
 
 
 def _open_file(path: Path) -> BagReader:
-    try:
-        with path.open("rb") as file:
-            start = file.read(16)
-    except OSError as error:
-        raise FileFormatError(path, f"cannot be opened: {error.strerror}") from error
+    with open_regular(path) as file:
+        start = file.read(16)
     if not start:
         raise FileFormatError(path, "is empty")
     if start.startswith(DB3_MAGIC):
@@ -86,13 +86,28 @@ def _open_packed(path: Path) -> BagReader:
         folder = Path(stack.enter_context(TemporaryDirectory(prefix="navette-bag-")))
         unpacked = folder / path.name.removesuffix(PACKED)
         try:
-            with path.open("rb") as packed, unpacked.open("wb") as out:
-                stream = zstandard.ZstdDecompressor().stream_reader(packed)
-                shutil.copyfileobj(stream, out, 1 << 20)
+            with open_regular(path) as packed, unpacked.open("wb") as out:
+                _unpack(path, packed, out)
         except (zstandard.ZstdError, OSError) as error:
             raise FileFormatError(path, f"cannot be decompressed: {error}") from error
         reader = stack.enter_context(_open_file(unpacked))
         return _Unpacked(path, reader, stack.pop_all())
+
+
+def _unpack(path: Path, packed: BinaryIO, out: BinaryIO) -> None:
+    """Decompress a recording; refuse what is none, and what expands too far."""
+    most = _FREE_BYTES + _MOST_RATIO * path.stat().st_size
+    size = 0
+    stream = zstandard.ZstdDecompressor().stream_reader(packed)
+    while block := stream.read(1 << 20):
+        if size == 0 and not block.startswith((DB3_MAGIC, b"#ROS", MCAP_MAGIC)):
+            raise FileFormatError(path, "is not a compressed recording")
+        size += len(block)
+        if size > most:
+            raise FileFormatError(
+                path, f"expands more than {_MOST_RATIO} times; not a recording"
+            )
+        out.write(block)
 
 
 class _Unpacked(FolderReader):

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import yaml
@@ -86,16 +87,21 @@ def parse_qos(text: object) -> tuple[OfferedQos, ...]:
 
     Invalid values become the default: QoS is a hint and never a reason to refuse a bag.
     """
-    if isinstance(text, str):
-        if not text:
-            return ()
-        try:
-            text = load_yaml(text, _QosLoader)
-        except yaml.YAMLError:
-            return ()
-    if not isinstance(text, list):
+    return _parsed(text) if isinstance(text, str) else _offers(text)
+
+
+@lru_cache(maxsize=1024)  # topics with the same text are many
+def _parsed(text: str) -> tuple[OfferedQos, ...]:
+    try:
+        return _offers(load_yaml(text, _QosLoader)) if text else ()
+    except yaml.YAMLError:
         return ()
-    offers = text[:_MOST_OFFERS]
+
+
+def _offers(found: object) -> tuple[OfferedQos, ...]:
+    if not isinstance(found, list):
+        return ()
+    offers = found[:_MOST_OFFERS]
     return tuple(_offer(each) for each in offers if isinstance(each, dict))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +63,7 @@ class BagSummary:
     compression: dict[str, int]
     topics: tuple[TopicSummary, ...]
     problems: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
 
     @property
     def duration_s(self) -> float:
@@ -81,6 +83,7 @@ class BagSummary:
             "compression": self.compression,
             "topics": [each.to_json() for each in self.topics],
             "problems": list(self.problems),
+            "remarks": list(self.remarks),
         }
 
 
@@ -110,6 +113,7 @@ def summarise(
         compression=dict(reader.compression),
         topics=topics,
         problems=reader.problems,
+        remarks=reader.remarks,
     )
 
 
@@ -161,13 +165,18 @@ def _summarise_topic(
 
 def is_installed(topic: BagTopic) -> bool:
     """Whether the installed type equals the recorded one."""
+    return _is_installed(topic.type_name, topic.type_hash, topic.definition)
+
+
+@lru_cache(maxsize=1024)  # topics of one type are many
+def _is_installed(type_name: str, recorded_hash: str, definition: str) -> bool:
     try:
-        get_interface(topic.type_name)
-        if topic.type_hash.startswith("RIHS01_"):
-            return topic.type_hash == type_hash(topic.type_name)
-        if not topic.definition:
+        get_interface(type_name)
+        if recorded_hash.startswith("RIHS01_"):
+            return recorded_hash == type_hash(type_name)
+        if not definition:
             return True
-        specs = read_definition(topic.type_name, topic.definition)
+        specs = read_definition(type_name, definition)
         return not any(differs(spec) for spec in specs)
     except NavetteError:
         return False

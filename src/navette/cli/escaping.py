@@ -5,12 +5,20 @@ import re
 # Cursor movement, colours, bell and text direction; newline and tab are kept.
 _ACTING = "\x7f-\x9f\u2028-\u202e\u2066-\u2069"
 _CONTROL = re.compile(f"[\x00-\x08\x0b-\x1f{_ACTING}]")
+_COLOUR_OR_CONTROL = re.compile(
+    rf"(?P<colour>\x1b\[(?:[0-4]|[39][0-7]|39)?(?:;(?:[0-4]|[39][0-7]|39))*m)|{_CONTROL.pattern}"
+)
 _CONTROL_IN_JSON = re.compile(f"[{_ACTING}]")
 
 
 def escaped(text: str) -> str:
     r"""Replace control characters by ``\x1b`` or ``\u202e``."""
     return _CONTROL.sub(_escape, text)
+
+
+def escaped_but_coloured(text: str) -> str:
+    """Escape as :func:`escaped` does, except for colours and bold, dim, underlined."""
+    return _COLOUR_OR_CONTROL.sub(lambda m: m["colour"] or _escape(m), text)
 
 
 def escaped_json(text: str) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 
 import click
 
-from navette.cli.escaping import escaped, escaped_json
+from navette.cli.escaping import escaped, escaped_but_coloured, escaped_json
 from navette.cli.session import fail
 
 
@@ -52,11 +52,14 @@ def harmless(text: str) -> str:
 
 
 def show(text: str = "") -> None:
-    """Print lines and flush them.
+    """Print lines and flush them; on a terminal, only colours act on it.
 
     The command fails if they cannot be written; a broken pipe raises.
     """
     try:
+        harmless_text = escaped_but_coloured(text)
+        if harmless_text != text and is_terminal():
+            text = harmless_text
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
     except BrokenPipeError:
@@ -78,7 +81,7 @@ def show_names(names: Sequence[str], *, count: bool, as_json: bool) -> None:
     elif as_json:
         show_json(list(names))
     elif names:
-        show("\n".join(names))
+        show("\n".join(map(escaped, names)))
 
 
 def json_text(value: Any, *, indent: int | None = None) -> str:
@@ -111,7 +114,7 @@ def beside(
     Args:
         fades: whether a name is printed dim.
     """
-    rows = list(pairs)
+    rows = [(escaped(name), escaped(text)) for name, text in pairs]
     width = max((len(name) for name, _ in rows), default=0)
     room = shutil.get_terminal_size().columns - indent - width - 2
     lines = []

@@ -95,7 +95,7 @@ class BudgetMeter:
         self.depth -= 1
 
 
-DOCUMENT = Budget(octets=4 << 20, items=200_000)
+DOCUMENT = Budget(octets=4 << 20, items=100_000)
 """YAML and XML files that people write: parameters, launch files, manifests."""
 
 SCENE = Budget(octets=32 << 20, items=4_000_000)

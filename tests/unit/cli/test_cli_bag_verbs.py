@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bag_samples import POINT, START_NS, STEP_NS, sample, write_sample
-from navette.bags import BagMessage, open_bag
+from navette.bags import BagMessage, BagTopic, BagWriter, open_bag
 from navette.bags.writing import open_writer
 from navette.cli.bag import bag
 from navette.cli.bag.text import (
@@ -190,3 +190,53 @@ def test_figures_in_words() -> None:
     assert (rate_text(0.01), rate_text(104.2)) == ("every 100 s", "104 Hz")
     assert count_text(26566, grouped=True) == "26\u202f566"
     assert count_text(26566) == "26566"
+
+
+ESCAPES = "/\x1b]0;owned\x07\x1b[2J\x1b[31m\u202ered\x9b31m\r\n"
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+@pytest.mark.parametrize(
+    "words", [["info"], ["info", "-v"], ["info", "-t"], ["info", "-k", "topics"]]
+)
+def test_recorded_names_cannot_act_on_the_terminal(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    words: list[str],
+    terminal: bool,
+) -> None:
+    if terminal:
+        monkeypatch.setattr("navette.cli.output.is_terminal", lambda: True)
+    writer = open_writer(tmp_path / "a.mcap")
+    writer.write(BagMessage(BagTopic(ESCAPES, ESCAPES, encoding="json"), 1, b"{}"))
+    writer.close()
+    shown = run(*words, tmp_path / "a.mcap").stdout
+    assert "\\x1b]0;owned" in shown
+    assert not set(shown) & set("\x1b\x07\x9b\u202e\r")
+
+
+def test_what_a_format_cannot_hold_is_listed(tmp_path: Path) -> None:
+    writer = open_writer(tmp_path / "a.mcap")
+    for stamp in (1, 2):
+        writer.write(BagMessage(BagTopic("/a", "A", encoding="json"), stamp, b"{}"))
+    writer.write(sample(1)[0])
+    writer.close()
+    result = run("convert", tmp_path / "a.mcap", "-o", tmp_path / "a.bag")
+    assert result.exit_code == 0
+    assert (
+        "not kept: 2 messages: json messages are not ROS messages (/a)" in result.stderr
+    )
+    assert "1 messages" in result.stderr
+
+
+def test_an_unfinished_recording_names_the_way_to_recover_it(tmp_path: Path) -> None:
+    writer = BagWriter(tmp_path / "a.mcap")
+    writer.flush()
+    assert "being recorded" in run("info", tmp_path / "a.mcap").stdout
+    writer.abandon()
+    data = (tmp_path / "a.mcap").read_bytes()
+    (tmp_path / "b.mcap").write_bytes(data[:-20])
+    assert (
+        f"navette bag recover {tmp_path}/b.mcap"
+        in run("info", tmp_path / "b.mcap").stdout
+    )

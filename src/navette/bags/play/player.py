@@ -55,7 +55,8 @@ class Player:
         self._source = source
         self._make_feed = make_feed
         self.names = options.choose(topic.name for topic in source.topics)
-        self.topics = tuple(t for t in source.topics if t.name in self.names)
+        chosen = frozenset(self.names)
+        self.topics = tuple(t for t in source.topics if t.name in chosen)
         self.begin_ns, self.end_ns = _range(source, options)
         self._head = Playhead(options.rate)
         self._feed: Feed | None = None

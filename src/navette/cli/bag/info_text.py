@@ -6,6 +6,7 @@ from rich.console import Console
 from rich.text import Text
 
 from navette.bags.qos import OfferedQos
+from navette.bags.recording_file import is_being_recorded
 from navette.bags.summary import BagSummary, TopicSummary
 from navette.cli.bag.tables import Table, new_table, open_console, show_table
 from navette.cli.bag.text import (
@@ -23,6 +24,8 @@ _FORMATS = {"mcap": "MCAP", "rosbag1": "ROS 1 bag", "sqlite3": "rosbag2 SQLite"}
 _GAP_MESSAGES = 5
 # Messages arrive in bursts if the median rate exceeds the mean rate by this factor.
 _BURST = 10
+_MOST_ROWS = 2000
+_MOST_REMARKS = 20
 
 
 def show_info(summary: BagSummary, *, verbose: bool = False) -> None:
@@ -33,18 +36,33 @@ def show_info(summary: BagSummary, *, verbose: bool = False) -> None:
     if verbose and len(summary.files) > 1:
         for path in summary.files:
             console.print(Text(f"{'':<13}{path.name}", style="dim"))
-    for problem in summary.problems:
-        console.print(Text.assemble((f"{'damaged:':<13}", "bold yellow"), problem))
+    _show_problems(console, summary)
     if not summary.topics:
         return
     console.print()
     show_table(console, _table(summary))
+    if len(summary.topics) > _MOST_ROWS:
+        more = len(summary.topics) - _MOST_ROWS
+        console.print(Text(f"… and {more} more; --json prints all", style="dim"))
     if verbose:
         _show_details(console, summary)
     if any(not each.known for each in summary.topics):
         console.print(
             Text("* not installed or another version; still readable", style="dim")
         )
+
+
+def _show_problems(console: Console, summary: BagSummary) -> None:
+    for problem in summary.problems:
+        console.print(Text.assemble((f"{'damaged:':<13}", "bold yellow"), problem))
+    for remark in summary.remarks[:_MOST_REMARKS]:
+        console.print(Text.assemble((f"{'note:':<13}", "dim"), remark))
+    if is_being_recorded(summary.path):
+        text = "being recorded; it has no index until then"
+        console.print(Text.assemble((f"{'note:':<13}", "dim"), text))
+    elif summary.problems:
+        hint = f"navette bag recover {summary.path} -o FILE.mcap writes an intact copy"
+        console.print(Text.assemble((f"{'':<13}", "dim"), (hint, "dim")))
 
 
 def value_of(summary: BagSummary, key: str) -> str:
@@ -98,7 +116,7 @@ def _compression(summary: BagSummary) -> str:
 
 def _table(summary: BagSummary) -> Table:
     table = new_table("topic", "type", ">messages", ">rate", ">longest gap", "qos")
-    for each in summary.topics:
+    for each in summary.topics[:_MOST_ROWS]:
         table.add_row(
             Text(each.topic.name, style="cyan"),
             Text(each.topic.type_name + ("" if each.known else " *")),

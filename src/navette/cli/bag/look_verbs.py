@@ -6,6 +6,7 @@ from typing import Annotated
 import click
 
 from navette.cli.bag.options import Bags
+from navette.cli.escaping import escaped
 from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.session import FAILED
@@ -47,10 +48,10 @@ def info(
         return
     for number, summary in enumerate(summaries):
         if key:
-            show(info_text.value_of(summary, key))
+            show(escaped(info_text.value_of(summary, key)))
         elif topic_name:
             for each in summary.topics:
-                show(each.topic.name)
+                show(escaped(each.topic.name))
         else:
             if number:
                 show()

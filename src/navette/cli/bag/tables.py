@@ -1,19 +1,55 @@
-"""Rich tables whose columns are never wrapped."""
+"""Rich tables with columns that are never wrapped and harmless text."""
+
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
+
+from navette.cli.escaping import escaped
 
 _WIDTH = 1000
+_LONGEST = 200
+
+
+class SafeConsole(Console):
+    """Escapes control characters of texts, such as names in a recording."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        super().print(*map(_safe, objects), **options)
+
+
+class SafeTable(Table):
+    """Escapes control characters of cells, and cuts very long ones."""
+
+    def add_row(self, *cells: Any, **options: Any) -> None:
+        super().add_row(*(_cut(_safe(cell)) for cell in cells), **options)
+
+
+def _safe(found: Any) -> Any:
+    if isinstance(found, str):
+        return escaped(found)
+    if isinstance(found, Text) and escaped(found.plain) != found.plain:
+        return Text(escaped(found.plain).replace("\n", "\\n"), style=found.style)
+    return found
+
+
+def _cut(cell: Any) -> Any:
+    plain = cell.plain if isinstance(cell, Text) else str(cell)
+    if len(plain) <= _LONGEST:
+        return cell
+    style = cell.style if isinstance(cell, Text) else ""
+    return Text(f"{plain[: _LONGEST - 1]}…", style=style)
 
 
 def open_console() -> Console:
     """Return a console that does not break lines."""
-    return Console(highlight=False, soft_wrap=True, width=_WIDTH)
+    return SafeConsole(highlight=False, soft_wrap=True, width=_WIDTH)
 
 
 def new_table(*names: str) -> Table:
     """Return a table without borders; a leading ``>`` aligns a column to the right."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    table = SafeTable(box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for name in names:
         table.add_column(
             name.removeprefix(">"),

@@ -13,6 +13,7 @@ from rich.spinner import Spinner
 from rich.table import Table
 from rich.text import Text
 
+from navette.cli.escaping import escaped_but_coloured
 from navette.cli.output import aligned, is_terminal, show
 from navette.supervisor.log_store import LogLine
 from navette.supervisor.service_config import ProcessState
@@ -206,7 +207,9 @@ class LogView:
                     timespec="milliseconds"
                 )
                 mark = "* " if line.event else ""
-                sys.stdout.write(f"{stamp} {line.label}: {mark}{line.text}\n")
+                sys.stdout.write(
+                    f"{stamp} {line.label}: {mark}{escaped_but_coloured(line.text)}\n"
+                )
         sys.stdout.flush()
 
     def _styled(self, line: LogLine) -> Text:

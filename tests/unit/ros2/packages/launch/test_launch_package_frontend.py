@@ -265,5 +265,5 @@ def test_the_expansion_of_aliases_is_limited(
         lines.append(f"- group: &a{i} [{inside}]")
     file = tmp_path / "a.launch.yaml"
     file.write_text("\n".join(lines))
-    with pytest.raises(InvalidLaunchFileError, match="more than 200000 items"):
+    with pytest.raises(InvalidLaunchFileError, match="more than 100000 items"):
         parse_launch_file(file)
