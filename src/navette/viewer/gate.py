@@ -26,7 +26,7 @@ class Gate:
 
     Args:
         on_refused: called with the reason when an origin is refused, once per origin.
-        on_denied: called when a visitor is not accepted.
+        on_denied: called when another user of this machine is not accepted.
     """
 
     def __init__(
@@ -65,7 +65,8 @@ class Gate:
         token = token_of(request.target, request.authorization)
         denied = self._login.refusal(request.visitor, token)
         if denied is not None:
-            self._on_denied()
+            if request.visitor.user is not None:
+                self._on_denied()
             return denied
         refused = self._policy.origin_refusal(request.origin, request.host)
         if not refused:

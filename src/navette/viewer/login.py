@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from urllib.parse import parse_qs, urlsplit
 
 from navette.errors import InvalidValueError
+from navette.viewer.peer_user import is_trusted
 from navette.viewer.token_bucket import TokenBucket
 from navette.viewer.web import HttpResponse, refuse
 
@@ -30,12 +31,12 @@ class Visitor:
 
     Args:
         address: IP address.
-        is_same_user: a program of this machine and user, according to the kernel.
+        user: user id of a program of this machine, according to the kernel.
         has_certificate: presented a certificate that the server's authority signed.
     """
 
     address: str
-    is_same_user: bool = False
+    user: int | None = None
     has_certificate: bool = False
 
 
@@ -69,7 +70,7 @@ class Login:
 
     def refusal(self, visitor: Visitor, token: str | None) -> HttpResponse | None:
         """Return the response to a visitor who is not accepted, else None."""
-        if not self._is_required or visitor.is_same_user or visitor.has_certificate:
+        if not self._is_required or is_trusted(visitor.user) or visitor.has_certificate:
             return None
         if token is None:
             return refuse(

@@ -18,22 +18,27 @@ Endpoint = tuple[str, int]
 """IP address and port."""
 
 
-def is_same_user(client: Endpoint, server: Endpoint) -> bool:
-    """Whether a connection from this machine belongs to this process's user or root.
+def user_of(client: Endpoint, server: Endpoint) -> int | None:
+    """Return the user id of a client; None for another machine or a closed connection.
 
-    True on systems without these tables: there the users of a machine are not
-    distinguished.
+    On systems without these tables, the user of this process: there the users of a
+    machine are not distinguished.
     """
     if not ipaddress.ip_address(client[0]).is_loopback:
-        return False
+        return None
     tables = [table for table in _TABLES if table.exists()]
     if not tables:
-        return True
+        return os.geteuid()
     for table in tables:
         owner = owner_of(client, server, table.read_text(encoding="ascii"))
         if owner is not None:
-            return owner in (os.geteuid(), _ROOT)
-    return False
+            return owner
+    return None
+
+
+def is_trusted(user: int | None) -> bool:
+    """Whether a user is that of this process, or root."""
+    return user in (os.geteuid(), _ROOT)
 
 
 def owner_of(

@@ -31,7 +31,7 @@ from navette.viewer.login import Visitor
 from navette.viewer.offers import OfferQueue
 from navette.viewer.outbox import Outbox
 from navette.viewer.peer import Peer
-from navette.viewer.peer_user import is_same_user
+from navette.viewer.peer_user import user_of
 from navette.viewer.session import Watch
 from navette.viewer.throttled_selector import ThrottledSelector
 from navette.viewer.web import HttpResponse, refuse
@@ -261,7 +261,7 @@ def _visitor(connection: ServerConnection) -> Visitor:
     encryption = connection.transport.get_extra_info("ssl_object")
     return Visitor(
         client[0],
-        is_same_user(client, server),
+        user_of(client, server),
         encryption is not None and bool(encryption.getpeercert()),
     )
 

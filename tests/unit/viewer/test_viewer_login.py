@@ -18,19 +18,18 @@ from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatu
 from navette.errors import FileFormatError, InvalidValueError
 from navette.runtime import Context, Node, SystemClock
 from navette.transports.certificates import create_keys
-from navette.viewer import peer_user
 from navette.viewer.access import Access, is_loopback
 from navette.viewer.gate import Gate, WebRequest
 from navette.viewer.login import Login, Visitor, new_token, token_of
 from navette.viewer.params import ViewerParams
-from navette.viewer.peer_user import is_same_user, owner_of
+from navette.viewer.peer_user import is_trusted, owner_of, user_of
 from navette.viewer.web import AccessPolicy, Site
 
 NOW = datetime.datetime.fromtimestamp(SystemClock().now_ns / 1e9, datetime.UTC)
 REFUSED = (ConnectionError, ConnectionClosed, ssl.SSLError, InvalidMessage)
 TOKEN = "correct-horse-battery"
-OWN = Visitor("127.0.0.1", is_same_user=True)
-OTHER = Visitor("127.0.0.1")
+OWN = Visitor("127.0.0.1", user=os.geteuid())
+OTHER = Visitor("127.0.0.1", user=os.geteuid() + 1)
 LAN = Visitor("192.168.1.9")
 KEY = Visitor("192.168.1.9", has_certificate=True)
 
@@ -226,13 +225,15 @@ def test_a_connection_of_this_process_belongs_to_this_user(
         socket.create_connection(server.getsockname()) as client,
     ):
         ends = client.getsockname(), server.getsockname()
-        assert is_same_user(*ends)
-        assert not is_same_user(("192.168.1.9", 5), ends[1])
-        assert not is_same_user(("127.0.0.1", 1), ends[1])
         uid = os.geteuid()
-        monkeypatch.setattr(peer_user, "_ROOT", uid + 1)
-        monkeypatch.setattr(os, "geteuid", lambda: uid + 2)
-        assert not is_same_user(*ends)
+        assert user_of(*ends) == uid
+        assert is_trusted(uid)
+        assert user_of(("192.168.1.9", 5), ends[1]) is None
+        assert user_of(("127.0.0.1", 1), ends[1]) is None
+    assert not is_trusted(None)
+    monkeypatch.setattr(os, "geteuid", lambda: uid + 1)
+    assert is_trusted(uid + 1)
+    assert not is_trusted(uid + 2)
 
 
 # -- beyond this machine ---------------------------------------------------------------
@@ -304,7 +305,7 @@ def talker(context: Context) -> Node:
 @pytest.fixture
 def other_users(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every connection belongs to another user."""
-    monkeypatch.setattr("navette.viewer.server.is_same_user", lambda *_: False)
+    monkeypatch.setattr("navette.viewer.server.user_of", lambda *_: os.geteuid() + 1)
 
 
 @pytest.fixture
