@@ -23,13 +23,15 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import ExitStack, closing, suppress
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 GOALS = ((-6.0, -12.0), (6.0, -12.0), (12.0, 0.0), (-6.0, 0.0))
 TEXT, BINARY, CONTINUATION, PING = 1, 2, 0, 9
+TIMEOUT_S = 5.0  # of a client that sends
 
 
 # -- the robot's process ---------------------------------------------------------------
@@ -104,7 +106,16 @@ class Wire:
     """A WebSocket client without rules of its own: sends any bytes."""
 
     def __init__(self, port: int, *, reads: bool = True) -> None:
-        self._socket = socket.create_connection(("127.0.0.1", port), timeout=5.0)
+        self._socket = socket.create_connection(("127.0.0.1", port), timeout=TIMEOUT_S)
+        try:
+            self._open(port)
+        except OSError:
+            self._socket.close()
+            raise
+        if reads:
+            threading.Thread(target=self._read, daemon=True).start()
+
+    def _open(self, port: int) -> None:
         self._socket.sendall(handshake(port))
         head = b""
         while b"\r\n\r\n" not in head:
@@ -114,17 +125,12 @@ class Wire:
             head += received
         if b" 101 " not in head.split(b"\r\n")[0]:
             raise ConnectionError(head.split(b"\r\n")[0].decode())
-        if reads:
-            threading.Thread(target=self._read, daemon=True).start()
-
-    def send(self, opcode: int, data: bytes, *, fin: bool = True) -> None:
-        self._socket.sendall(frame(opcode, data, fin=fin))
 
     def send_raw(self, data: bytes) -> None:
         self._socket.sendall(data)
 
     def text(self, **document: Any) -> None:
-        self.send(TEXT, json.dumps(document).encode())
+        self.send_raw(text_frame(document))
 
     def close(self) -> None:
         self._socket.close()
@@ -136,15 +142,15 @@ class Wire:
 
 
 def _tcp(port: int) -> socket.socket:
-    return socket.create_connection(("127.0.0.1", port), timeout=5.0)
+    return socket.create_connection(("127.0.0.1", port), timeout=TIMEOUT_S)
 
 
-def handshake(port: int, extra: str = "") -> bytes:
+def handshake(port: int) -> bytes:
     return (
         f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\n"
         "Connection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
         "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: foxglove.sdk.v1\r\n"
-        f"{extra}\r\n"
+        "\r\n"
     ).encode()
 
 
@@ -170,7 +176,7 @@ Attack = Callable[[int, random.Random], Iterator[None]]
 """Given a port, sends until it is stopped; yields between two sends."""
 
 ATTACKS: dict[str, Attack] = {}
-_15_MB = 15_000_000
+LARGE, SMALL = 15_000_000, 60_000  # bytes
 
 
 def attack(name: str) -> Callable[[Attack], Attack]:
@@ -181,16 +187,17 @@ def attack(name: str) -> Callable[[Attack], Attack]:
     return register
 
 
-def _flood(data: bytes, *, reads: bool = True) -> Attack:
+def _flood(make: Callable[[], bytes], *, reads: bool = True) -> Attack:
     """Send the same bytes again and again, and reconnect when the server refuses."""
 
     def run(port: int, _random: random.Random) -> Iterator[None]:
+        data = make()
         while True:
             try:
-                wire = Wire(port, reads=reads)
-                while True:
-                    wire.send_raw(data)
-                    yield
+                with closing(Wire(port, reads=reads)) as wire:
+                    while True:
+                        wire.send_raw(data)
+                        yield
             except OSError:
                 time.sleep(0.01)
                 yield
@@ -198,147 +205,145 @@ def _flood(data: bytes, *, reads: bool = True) -> Attack:
     return run
 
 
-def _list(item: Any, size: int = _15_MB) -> list[Any]:
+def _list(item: Any, size: int) -> list[Any]:
     return [item] * (size // (len(json.dumps(item, separators=(",", ":"))) + 1))
 
 
-def _lists(size: int) -> dict[str, dict[str, Any]]:
-    """An object for each operation with a list of about ``size`` bytes."""
-    pair = {"id": 1, "channelId": 1}
-    channel = {"id": 1, "topic": "/a", "encoding": "json", "schemaName": "a/msg/B"}
-    value = {"name": "/planner.x", "value": 1}
-    return {
-        "subscribe": {"op": "subscribe", "subscriptions": _list(pair, size)},
-        "unsubscribe": {"op": "unsubscribe", "subscriptionIds": _list(1, size)},
-        "advertise": {"op": "advertise", "channels": _list(channel, size)},
-        "unadvertise": {"op": "unadvertise", "channelIds": _list(1, size)},
-        "getParameters": {"op": "getParameters", "parameterNames": _list("/a", size)},
-        "setParameters": {"op": "setParameters", "parameters": _list(value, size)},
-        "subscribeParameterUpdates": {
-            "op": "subscribeParameterUpdates",
-            "parameterNames": [f"/a.{i}" for i in range(size // 10)],
-        },
-    }
+#: Each operation with the name and an entry of its list.
+_LISTS: dict[str, tuple[str, Any]] = {
+    "subscribe": ("subscriptions", {"id": 1, "channelId": 1}),
+    "unsubscribe": ("subscriptionIds", 1),
+    "advertise": (
+        "channels",
+        {"id": 1, "topic": "/a", "encoding": "json", "schemaName": "a/msg/B"},
+    ),
+    "unadvertise": ("channelIds", 1),
+    "getParameters": ("parameterNames", "/a"),
+    "setParameters": ("parameters", {"name": "/planner.x", "value": 1}),
+    "subscribeParameterUpdates": ("parameterNames", "/a.b"),
+}
 
 
-for _name, _document in _lists(_15_MB).items():
-    ATTACKS[f"15 MB {_name}"] = _flood(text_frame(_document))
-for _name, _document in _lists(60_000).items():
-    ATTACKS[f"60 kB {_name}, flood"] = _flood(text_frame(_document))
-
-ATTACKS["15 MB of ["] = _flood(frame(TEXT, b"[" * _15_MB))
-ATTACKS["60 kB of [], flood"] = _flood(frame(TEXT, b"[" + b"[]," * 20_000 + b"1]"))
-ATTACKS["60 kB of numbers, flood"] = _flood(frame(TEXT, b"1" * 60_000))
-ATTACKS["random text, flood"] = _flood(frame(TEXT, b"\xc3\xa4{" * 20))
-ATTACKS["random binary, flood"] = _flood(b"".join(
-    frame(BINARY, random.Random(i).randbytes(i)) for i in range(1, 200)
-))  # fmt: skip
-ATTACKS["service calls, flood"] = _flood(
-    frame(BINARY, struct.pack("<BIII", 2, 1, 1, 4) + b"json{}") * 200
-)
-ATTACKS["assets, flood"] = _flood(
-    text_frame({"op": "fetchAsset", "uri": "package://navette/" + "a/" * 99,
-                "requestId": 1}) * 100
-)  # fmt: skip
-ATTACKS["graph, flood"] = _flood(
-    (text_frame({"op": "subscribeConnectionGraph"})
-     + text_frame({"op": "unsubscribeConnectionGraph"})) * 100
-)  # fmt: skip
-ATTACKS["nodes, flood"] = _flood(text_frame({"op": "subscribeNodes"}) * 100)
-ATTACKS["all parameters, flood"] = _flood(
-    text_frame({"op": "getParameters", "parameterNames": [], "id": "a"}) * 100
-)
-ATTACKS["all parameters, never read"] = _flood(
-    text_frame({"op": "getParameters", "parameterNames": [], "id": "a"}) * 100,
-    reads=False,
-)
-ATTACKS["nonsense, never read"] = _flood(text_frame({"op": "?"}) * 1000, reads=False)
-ATTACKS["playback control, flood"] = _flood(
-    frame(BINARY, struct.pack("<BBfBQI", 3, 0, 1.0, 1, 5, 0)) * 200
-)
-ATTACKS["pings, flood"] = _flood(frame(PING, b"p" * 125) * 1000)
-ATTACKS["pings, never read"] = _flood(frame(PING, b"p" * 125) * 1000, reads=False)
-ATTACKS["tiny fragments"] = _flood(
-    frame(TEXT, b"a", fin=False) + frame(CONTINUATION, b"a", fin=False) * 10_000
-)
-ATTACKS["empty fragments"] = _flood(frame(CONTINUATION, b"", fin=False) * 10_000)
-ATTACKS["empty fragments of one message"] = _flood(b"")  # replaced below
-ATTACKS["compressed bomb"] = _flood(frame(TEXT, b"\0" * 60_000, bits=0x40))
-ATTACKS["16 MB binary, flood"] = _flood(frame(BINARY, b"\1" + bytes(16_000_000)))
+def _request(operation: str, size: int) -> bytes:
+    name, item = _LISTS[operation]
+    return text_frame({"op": operation, name: _list(item, size)})
 
 
-@attack("empty fragments of one message")
-def empty_fragments(port: int, _random: random.Random) -> Iterator[None]:
-    while True:
-        try:
-            wire = Wire(port)
-            wire.send(BINARY, b"", fin=False)
-            while True:
-                wire.send_raw(frame(CONTINUATION, b"", fin=False) * 10_000)
-                yield
-        except OSError:
-            yield
+def _large_request(operation: str) -> bytes:
+    return _request(operation, LARGE)
 
 
-def _publishing(topic: str, schema: str, encoding: str, data: bytes) -> Attack:
+for _operation in _LISTS:
+    ATTACKS[f"15 MB {_operation}"] = _flood(partial(_large_request, _operation))
+    ATTACKS[f"60 kB {_operation}, flood"] = _flood(
+        partial(_request, _operation, 60_000)
+    )
+
+_GET_ALL = {"op": "getParameters", "parameterNames": [], "id": "a"}
+_ASSET = {"op": "fetchAsset", "uri": "package://navette/" + "a/" * 99, "requestId": 1}
+
+
+def _graph() -> bytes:
+    operations = ("subscribeConnectionGraph", "unsubscribeConnectionGraph")
+    return b"".join(text_frame({"op": each}) for each in operations) * 100
+
+
+def _random_binary() -> bytes:
+    frames = (random.Random(i).randbytes(i) for i in range(1, 200))
+    return b"".join(frame(BINARY, each) for each in frames)
+
+
+def _fragments(first: bytes, more: bytes) -> bytes:
+    begin = frame(TEXT, first, fin=False)
+    return begin + frame(CONTINUATION, more, fin=False) * 10_000
+
+
+ATTACKS |= {
+    "15 MB of [": _flood(lambda: frame(TEXT, b"[" * LARGE)),
+    "60 kB of [], flood": _flood(lambda: frame(TEXT, b"[" + b"[]," * 20_000 + b"1]")),
+    "60 kB of digits, flood": _flood(lambda: frame(TEXT, b"1" * 60_000)),
+    "random text, flood": _flood(lambda: frame(TEXT, b"\xc3\xa4{" * 20)),
+    "random binary, flood": _flood(_random_binary),
+    "service calls, flood": _flood(
+        lambda: frame(BINARY, struct.pack("<BIII", 2, 1, 1, 4) + b"json{}") * 200
+    ),
+    "assets, flood": _flood(lambda: text_frame(_ASSET) * 100),
+    "graph, flood": _flood(_graph),
+    "nodes, flood": _flood(lambda: text_frame({"op": "subscribeNodes"}) * 100),
+    "all parameters, flood": _flood(lambda: text_frame(_GET_ALL) * 100),
+    "all parameters, never read": _flood(
+        lambda: text_frame(_GET_ALL) * 100, reads=False
+    ),
+    "nonsense, never read": _flood(lambda: text_frame({"op": "?"}) * 1000, reads=False),
+    "playback control, flood": _flood(
+        lambda: frame(BINARY, struct.pack("<BBfBQI", 3, 0, 1.0, 1, 5, 0)) * 200
+    ),
+    "pings, flood": _flood(lambda: frame(PING, b"p" * 125) * 1000),
+    "pings, never read": _flood(lambda: frame(PING, b"p" * 125) * 1000, reads=False),
+    "tiny fragments": _flood(lambda: _fragments(b"a", b"a")),
+    "empty fragments": _flood(lambda: _fragments(b"", b"")),
+    "fragments without a beginning": _flood(
+        lambda: frame(CONTINUATION, b"", fin=False) * 10_000
+    ),
+    "compressed bomb": _flood(lambda: frame(TEXT, b"\0" * 60_000, bits=0x40)),
+    "16 MB binary, flood": _flood(lambda: frame(BINARY, b"\1" + bytes(16_000_000))),
+}
+
+
+def _publishing(
+    topic: str, schema: str, encoding: str, make: Callable[[], bytes]
+) -> Attack:
     channel = {"id": 1, "topic": topic, "encoding": encoding, "schemaName": schema}
 
-    def run(port: int, _random: random.Random) -> Iterator[None]:
-        while True:
-            try:
-                wire = Wire(port)
-                wire.text(op="advertise", channels=[channel])
-                while True:
-                    wire.send_raw(frame(BINARY, struct.pack("<BI", 1, 1) + data))
-                    yield
-            except OSError:
-                time.sleep(0.01)
-                yield
+    def publications() -> bytes:
+        opening = text_frame({"op": "advertise", "channels": [channel]})
+        return opening + frame(BINARY, struct.pack("<BI", 1, 1) + make()) * 2
 
-    return run
+    return _flood(publications)
 
 
 def _cdr_path(size: int) -> bytes:
+    """Return a path whose poses have 72 bytes each."""
     from navette.msgs import serialize
     from navette.msgs.geometry_msgs.msg import PoseStamped
     from navette.msgs.nav_msgs.msg import Path as PathMessage
 
-    return serialize(PathMessage(poses=[PoseStamped()] * (size // 72)))
+    two, three = (serialize(PathMessage(poses=[PoseStamped()] * n)) for n in (2, 3))
+    count = size // 72
+    data = bytearray(two + three[len(two) :] * (count - 2))
+    struct.pack_into("<I", data, 20, count)
+    return bytes(data)
 
 
+def _json_array() -> bytes:
+    return json.dumps({"data": [0] * 20_000}, separators=(",", ":")).encode()
+
+
+_ARRAY = "std_msgs/msg/Float64MultiArray"
 ATTACKS["published strings, flood"] = _publishing(
-    "/noise", "std_msgs/msg/String", "json", b'{"data": "a"}'
+    "/noise", "std_msgs/msg/String", "json", lambda: b'{"data": "a"}'
 )
-ATTACKS["published 60 kB JSON arrays, flood"] = _publishing(
-    "/noise", "std_msgs/msg/Float64MultiArray", "json",
-    json.dumps({"data": [0] * 20_000}, separators=(",", ":")).encode(),
-)  # fmt: skip
-ATTACKS["published 60 kB paths, flood"] = _publishing(
-    "/noise", "nav_msgs/msg/Path", "cdr", _cdr_path(60_000)
+ATTACKS["published 60 kB JSON, flood"] = _publishing(
+    "/noise", _ARRAY, "json", _json_array
 )
-ATTACKS["published 1 MB paths, flood"] = _publishing(
-    "/noise", "nav_msgs/msg/Path", "cdr", _cdr_path(1_000_000)
-)
-ATTACKS["published 4 MB paths, flood"] = _publishing(
-    "/noise", "nav_msgs/msg/Path", "cdr", _cdr_path(4_000_000)
-)
-ATTACKS["published 15 MB paths, flood"] = _publishing(
-    "/noise", "nav_msgs/msg/Path", "cdr", _cdr_path(_15_MB)
-)
+for _name, _size in (("60 kB", 60_000), ("1 MB", 10**6), ("4 MB", 4 * 10**6)):
+    ATTACKS[f"published {_name} paths, flood"] = _publishing(
+        "/noise", "nav_msgs/msg/Path", "cdr", partial(_cdr_path, _size)
+    )
 
 
 @attack("new topics, flood")
 def new_topics(port: int, generator: random.Random) -> Iterator[None]:
     while True:
         try:
-            wire = Wire(port)
-            while True:
-                name = f"/t{generator.getrandbits(60)}"
-                channel = {"id": 1, "topic": name, "encoding": "json",
-                           "schemaName": "std_msgs/msg/String"}  # fmt: skip
-                wire.text(op="advertise", channels=[channel])
-                wire.text(op="unadvertise", channelIds=[1])
-                yield
+            with closing(Wire(port)) as wire:
+                while True:
+                    name = f"/t{generator.getrandbits(60)}"
+                    channel = {"id": 1, "topic": name, "encoding": "json",
+                               "schemaName": "std_msgs/msg/String"}  # fmt: skip
+                    wire.text(op="advertise", channels=[channel])
+                    wire.text(op="unadvertise", channelIds=[1])
+                    yield
         except OSError:
             time.sleep(0.01)
             yield
@@ -350,21 +355,21 @@ def subscriptions(port: int, _random: random.Random) -> Iterator[None]:
     data = text_frame({"op": "subscribe", "subscriptions": every}) + text_frame(
         {"op": "unsubscribe", "subscriptionIds": list(range(1, 100))}
     )
-    yield from _flood(data)(port, _random)
+    yield from _flood(lambda: data)(port, _random)
 
 
 @attack("subscribed to everything, never reads")
 def non_readers(port: int, _random: random.Random) -> Iterator[None]:
     every = [{"id": i, "channelId": i} for i in range(1, 100)]
-    wires = []
-    for _ in range(20):
-        with suppress(OSError):
-            wires.append(Wire(port, reads=False))
-            wires[-1].text(op="subscribe", subscriptions=every)
-        yield
-    while True:
-        time.sleep(0.1)
-        yield
+    with ExitStack() as stack:
+        for _ in range(20):
+            with suppress(OSError):
+                wire = stack.enter_context(closing(Wire(port, reads=False)))
+                wire.text(op="subscribe", subscriptions=every)
+            yield
+        while True:
+            time.sleep(0.1)
+            yield
 
 
 @attack("connect and disconnect, storm")
@@ -383,20 +388,22 @@ def tcp_storm(port: int, _random: random.Random) -> Iterator[None]:
         yield
 
 
-@attack("2000 silent TCP connections (slowloris)")
+@attack("slow HTTP requests (slowloris)")
 def slowloris(port: int, _random: random.Random) -> Iterator[None]:
-    opened: list[socket.socket] = []
-    while True:
-        try:
-            opened.append(socket.create_connection(("127.0.0.1", port), timeout=0.2))
-            opened[-1].sendall(b"GET / HTTP/1.1\r\nX: ")
-        except OSError:
-            time.sleep(0.01)
-        for each in opened[-50:]:
-            with suppress(OSError):
-                each.sendall(b"a")
-        del opened[:-500]
-        yield
+    with ExitStack() as stack:
+        opened: list[socket.socket] = []
+        while True:
+            try:
+                address = ("127.0.0.1", port)
+                opened.append(socket.create_connection(address, timeout=0.2))
+                stack.enter_context(opened[-1])
+                opened[-1].sendall(b"GET / HTTP/1.1\r\nX: ")
+            except OSError:
+                time.sleep(0.01)
+            for each in opened[-50:]:
+                with suppress(OSError):
+                    each.sendall(b"a")
+            yield
 
 
 @attack("HTTP requests, flood")
@@ -433,8 +440,7 @@ def garbage(port: int, generator: random.Random) -> Iterator[None]:
 @attack("random WebSocket frames")
 def random_frames(port: int, generator: random.Random) -> Iterator[None]:
     while True:
-        with suppress(OSError):
-            wire = Wire(port)
+        with suppress(OSError), closing(Wire(port)) as wire:
             while True:
                 wire.send_raw(generator.randbytes(generator.randrange(1, 2000)))
                 yield
