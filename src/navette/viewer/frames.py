@@ -22,6 +22,8 @@ SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 MAX_BINARY = 4 * 2**20
 """Bytes of a frame; the connection is closed with code 1009 beyond."""
 
+_MAX_CONTAINERS = 2500  # lists and objects of a request
+
 _U32 = 2**32
 _PLAYBACK = struct.Struct("<BBfBQI")
 
@@ -179,8 +181,22 @@ def decode(frame: str | bytes) -> ClientFrame:
         raise DecodeError(f"{error}: send several requests") from None
 
 
+def check_containers(count: int, most: int) -> None:
+    """Refuse JSON by the number of its lists and objects, before it is parsed.
+
+    Each of them makes the garbage collector run, which stops all threads. Brackets in
+    strings count too.
+
+    Raises:
+        BudgetError: too many.
+    """
+    if count > most:
+        raise BudgetError(f"JSON with {count} lists and objects; at most {most}")
+
+
 def _decode_text(text: str) -> ClientFrame:
     FRAME.check_octets(len(text), "text frame")
+    check_containers(text.count("[") + text.count("{"), _MAX_CONTAINERS)
     try:
         # Python's parser accepts NaN, which is not JSON.
         document = json.loads(text, parse_constant=_refuse_constant)

@@ -15,7 +15,9 @@ from navette.msgs import (
     serialize,
 )
 from navette.untrusted.budget import CLIENT_MESSAGE, BudgetMeter
-from navette.viewer.frames import ClientChannel
+from navette.viewer.frames import ClientChannel, check_containers
+
+_MAX_CONTAINERS = 10_000  # lists and objects of a JSON message
 
 
 class ClientPublishers:
@@ -69,6 +71,7 @@ def decode_message(encoding: str, cls: type[Message], data: bytes) -> Message:
             CLIENT_MESSAGE.check_octets(len(data), f"{cls._type_name_} message")
         return deserialize(data, cls)
     CLIENT_MESSAGE.check_octets(len(data), "JSON message")
+    check_containers(data.count(b"[") + data.count(b"{"), _MAX_CONTAINERS)
     try:
         document = json.loads(data)
     except (ValueError, RecursionError) as error:

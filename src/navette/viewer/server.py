@@ -42,7 +42,7 @@ _log.setLevel(logging.ERROR)
 _log.addFilter(lambda record: record.msg != "opening handshake failed")
 
 # Work of the socket thread: the robot's nodes may run in the same process.
-_WORK_SHARE, _WORK_BURST_S = 0.3, 0.1
+_WORK_SHARE, _WORK_BURST_S = 0.2, 0.05
 _MAX_OPENING = 32  # connections besides the clients: HTTP requests and handshakes
 _BACKLOG = 32  # connections accepted in one turn
 _SEND_BUFFER = 256 * 1024  # bytes in flight per client before frames queue up
