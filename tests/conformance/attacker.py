@@ -57,6 +57,29 @@ def attempt(config: dict[str, Any], topic: str, service: str) -> dict[str, Any]:
     return found
 
 
+def impersonate(config: dict[str, Any], seconds: float) -> dict[str, int]:
+    """Serve as the router; return what the programs that connect disclose."""
+    settings = zenoh.Config()
+    for key, value in config.items():
+        settings.insert_json5(key, json.dumps(value))
+    settings.insert_json5("scouting/multicast/enabled", "false")
+    samples: list[str] = []
+    with zenoh.open(settings) as session:
+        print("serving", flush=True)  # noqa: T201
+        subscriber = session.declare_subscriber(
+            "**", lambda sample: samples.append(str(sample.key_expr))
+        )
+        peers: set[str] = set()
+        pause = threading.Event()
+        for _ in range(round(seconds / 0.1)):
+            pause.wait(0.1)
+            peers.update(map(str, session.info.peers_zid()))
+        replies = session.liveliness().get("@ros2_lv/**", timeout=_WATCH_S)
+        tokens = sum(1 for _ in replies)
+        subscriber.undeclare()
+    return {"peers": len(peers), "samples": len(samples), "tokens": tokens}
+
+
 def listening() -> list[int]:
     """Return the TCP ports on which programs of the namespace listen."""
     ports = set()
@@ -93,6 +116,10 @@ def main() -> None:
     order = json.load(sys.stdin)
     if "seconds" in order:
         print(json.dumps(eavesdrop(order["seconds"], order["texts"])))  # noqa: T201
+        return
+    if "impersonate" in order:
+        found = impersonate(order["impersonate"], order["for_s"])
+        print(json.dumps(found))  # noqa: T201
         return
     ports = listening()
     results = {}

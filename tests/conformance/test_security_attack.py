@@ -67,7 +67,7 @@ class Scene:
         (folder / "talker.py").write_text(TALKER)
 
     def start(self, keys: Mapping[str, Path], protocol: str) -> None:
-        """Start a talker on each machine; return when each receives the other."""
+        """Start a talker on each machine."""
         for name, machine, address in (
             ("robot", self.machines.robot, ROBOT),
             ("laptop", self.machines.laptop, LAPTOP),
@@ -80,6 +80,9 @@ class Scene:
             prefix = ("ip", "netns", "exec", machine)
             path = str(self.folder / "talker.py")
             self.fleet.start(name, path, name, prefix=prefix, env=env)
+
+    def await_exchange(self) -> None:
+        """Wait until each talker receives the other."""
         for name, other in (("robot", "laptop"), ("laptop", "robot")):
             line = f"received {SECRET} of {other}"
             until(
@@ -114,10 +117,39 @@ class Scene:
             allowed = {f"received {SECRET} of {end}" for end in ("robot", "laptop")}
             assert set(lines) == allowed
 
+    def impersonated(self, config: dict[str, Any], keys: Mapping[str, Path]) -> Any:
+        """Serve as the robot's router, start the talkers; return what they disclose."""
+        order = {"impersonate": config, "for_s": 12.0}
+        with subprocess.Popen(
+            self._command(self.machines.robot),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        ) as router:
+            assert router.stdin is not None
+            assert router.stdout is not None
+            router.stdin.write(json.dumps(order))
+            router.stdin.close()
+            assert router.stdout.readline() == "serving\n"
+            self.start(keys, "tls")
+            for name in ("robot", "laptop"):
+                until(
+                    lambda name=name: (
+                        "does not accept this"
+                        in "\n".join(self.fleet.output(name))
+                    ),
+                    f"{name} reports the router",
+                )
+            return json.loads(router.stdout.readline())
+
     @staticmethod
-    def _run(machine: str, order: dict[str, Any]) -> dict[str, Any]:
+    def _command(machine: str) -> list[str]:
+        return ["ip", "netns", "exec", machine, sys.executable, str(ATTACKER)]
+
+    @classmethod
+    def _run(cls, machine: str, order: dict[str, Any]) -> dict[str, Any]:
         done = subprocess.run(
-            ["ip", "netns", "exec", machine, sys.executable, str(ATTACKER)],
+            cls._command(machine),
             input=json.dumps(order),
             capture_output=True,
             text=True,
@@ -157,6 +189,7 @@ def test_without_a_key_nothing_is_reached_and_nothing_is_readable(
     robot, laptop = create_keys(tmp_path / "ours", ["robot", "laptop"], now=NOW)
     (foreign,) = create_keys(tmp_path / "theirs", ["robot"], now=NOW)
     scene.start({"robot": robot, "laptop": laptop}, "tls")
+    scene.await_exchange()
 
     # The attacker has the authority's certificate, which is not secret.
     trusts = {"transport/link/tls": {"root_ca_certificate": str(robot / "ca.pem")}}
@@ -209,6 +242,7 @@ def test_passwords_keep_the_attacker_out_but_not_from_reading(
         lines = [f"{user}:{secret}\n" for user, secret in users.items()]
         (keys[name] / "users").write_text("".join(lines))
     scene.start(keys, "tcp")
+    scene.await_exchange()
     guess = {"user": "robot", "password": "steel"}
     attempts = {
         f"{name} {mode}": {"protocol": "tcp", "mode": mode, "config": config}
@@ -226,3 +260,17 @@ def test_passwords_keep_the_attacker_out_but_not_from_reading(
     # As the documentation warns: the messages are readable, the passwords are not.
     assert seen["readable"][SECRET] > 10
     assert [seen["readable"][password] for password in PASSWORDS] == [0, 0]
+
+
+@pytest.mark.parametrize("protocol", ["tcp", "tls"])
+def test_an_attacker_in_the_place_of_the_router_learns_nothing(
+    scene: Scene, tmp_path: Path, protocol: str
+) -> None:
+    robot, laptop = create_keys(tmp_path / "ours", ["robot", "laptop"], now=NOW)
+    (foreign,) = create_keys(tmp_path / "theirs", ["robot"], now=NOW)
+    config = {"mode": "router", "listen/endpoints": [f"{protocol}/{ROBOT}:{PORT}"]}
+    if protocol == "tls":
+        config |= tls(foreign, foreign)
+        config["transport/link/tls"]["enable_mtls"] = False  # accepts every client
+    disclosed = scene.impersonated(config, {"robot": robot, "laptop": laptop})
+    assert disclosed == {"peers": 0, "samples": 0, "tokens": 0}
