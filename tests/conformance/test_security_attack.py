@@ -135,8 +135,7 @@ class Scene:
             for name in ("robot", "laptop"):
                 until(
                     lambda name=name: (
-                        "does not accept this"
-                        in "\n".join(self.fleet.output(name))
+                        "does not accept this" in "\n".join(self.fleet.output(name))
                     ),
                     f"{name} reports the router",
                 )
