@@ -12,8 +12,8 @@ from typing import Any
 
 import click
 
-from navette.cli.escaping import escaped, escaped_but_coloured, escaped_json
 from navette.cli.session import fail
+from navette.untrusted.escaping import escaped, escaped_but_coloured, escaped_json
 
 
 def is_terminal() -> bool:

@@ -7,6 +7,7 @@ from typing import TextIO
 from navette.errors import FileFormatError
 from navette.runtime.log import LogRecord
 from navette.runtime.log_levels import LoggingSeverity
+from navette.untrusted.escaping import escaped_but_coloured
 
 _COLOURS = {
     LoggingSeverity.DEBUG: "\x1b[32m",
@@ -52,7 +53,7 @@ class ConsoleSink:
         colour = _COLOURS.get(record.severity, "")
         if colour and stream.isatty():
             line = f"{colour}{line}{_RESET}"
-        stream.write(line + "\n")
+        stream.write(escaped_but_coloured(line) + "\n")
         stream.flush()
 
 

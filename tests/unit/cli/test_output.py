@@ -9,7 +9,6 @@ from typing import Any
 import click
 import pytest
 
-from navette.cli.escaping import escaped
 from navette.cli.output import beside, json_text, show
 from navette.cli.session import fail
 from navette.cli.stderr import note
@@ -17,6 +16,7 @@ from navette.cli.topic.echo_options import Style
 from navette.cli.topic.printing import text_of
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import String
+from navette.untrusted.escaping import escaped
 
 
 def strict(text: str) -> Any:

@@ -20,7 +20,7 @@ from navette.bags.message_types import message_class
 from navette.bags.play.feed import DirectFeed, PrefetchingFeed
 from navette.bags.play.offers import joint_offer
 from navette.bags.play.options import PlayOptions
-from navette.bags.play.player import Player, PlayState
+from navette.bags.play.player import LAST_PLAYED_NS, Player, PlayState
 from navette.bags.play.services import SERVICES
 from navette.bags.play.source import Source
 from navette.bags.qos import OfferedQos
@@ -37,6 +37,7 @@ from navette.runtime.qos import (
     ReliabilityPolicy,
 )
 from navette.runtime.time import Duration, ns_to_stamp
+from navette.untrusted.escaping import escaped
 
 CLOCK_TOPIC = "/clock"
 _CLOCK_QOS = QoSProfile(depth=1)
@@ -110,6 +111,10 @@ class PlayerNode(Node):
             if clock_rate_hz
             else None
         )
+        if source.end_ns > LAST_PLAYED_NS:
+            self.get_logger().warning(
+                "messages after 2038 are not played: ROS 2 has no such time"
+            )
         self._outlets = {t: p for t in self.player.topics if (p := self._open_topic(t))}
         self._serve()
 
@@ -294,11 +299,11 @@ class PlayerNode(Node):
         try:
             name = _valid_name(topic.name)
             if name.lstrip("/") != topic.name.lstrip("/"):
-                self.get_logger().warning(f"{topic.name} is played as {name}")
+                self.get_logger().warning(f"{escaped(topic.name)} is played as {name}")
             profile = _profile(joint_offer(topic))
             return self.create_publisher(message_class(topic), name, profile)
         except NavetteError as error:
-            self.get_logger().warning(f"{topic.name} is not played: {error}")
+            self.get_logger().warning(f"{escaped(topic.name)} is not played: {error}")
             return None
 
     def _serve(self) -> None:

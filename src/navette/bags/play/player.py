@@ -16,6 +16,8 @@ from navette.bags.play.playhead import Playhead
 from navette.bags.play.source import Source
 from navette.errors import InvalidValueError
 
+LAST_PLAYED_NS = 2**31 * 1_000_000_000 - 1
+"""Last time that a message of ROS 2 can hold: January 2038."""
 # Minimum period of a looped recording with a single stamp.
 _SHORTEST_PASS_NS = 10_000_000
 # After a longer pause (a suspended process) playback does not catch up.
@@ -192,11 +194,17 @@ def _range(source: Source, options: PlayOptions) -> tuple[int, int]:
     """Return the first and last stamp to play."""
     length_s = (source.end_ns - source.start_ns) / 1e9
     begin_ns = source.start_ns + round(options.start_offset_s * 1e9)
+    if begin_ns > LAST_PLAYED_NS:
+        raise InvalidValueError(
+            f"the first stamp to play is {begin_ns} ns; messages of ROS 2 hold times "
+            "up to 2038"
+        )
     if begin_ns > source.end_ns:
         raise InvalidValueError(
             f"start offset {options.start_offset_s:g} s: the bag has "
             f"only {length_s:.3f} s"
         )
-    if options.duration_s is None:
-        return begin_ns, source.end_ns
-    return begin_ns, min(source.end_ns, begin_ns + round(options.duration_s * 1e9))
+    end_ns = min(source.end_ns, LAST_PLAYED_NS)
+    if options.duration_s is not None:
+        end_ns = min(end_ns, begin_ns + round(options.duration_s * 1e9))
+    return begin_ns, max(begin_ns, end_ns)

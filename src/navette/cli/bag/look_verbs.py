@@ -6,11 +6,11 @@ from typing import Annotated
 import click
 
 from navette.cli.bag.options import Bags
-from navette.cli.escaping import escaped
 from navette.cli.options import Argument, Json, Option
 from navette.cli.output import show, show_json
 from navette.cli.session import FAILED
 from navette.cli.stderr import note
+from navette.untrusted.escaping import escaped
 
 
 def info(
