@@ -1,11 +1,11 @@
 // An operator at the live view's page: takes over by keys, lets go, stops, releases.
 //
-//   node operator.mjs http://127.0.0.1:PORT CHROMIUM TRIES
+//   node operator.mjs http://127.0.0.1:PORT CHROMIUM TRIES [only-keys]
 //
 // Prints the times (ms since the epoch) of the key presses, and what the page shows.
 import { chromium } from "playwright-core";
 
-const [url, executablePath, tries] = process.argv.slice(2);
+const [url, executablePath, tries, only] = process.argv.slice(2);
 const browser = await chromium.launch({
   executablePath,
   args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-background-networking",
@@ -36,6 +36,11 @@ try {
     await pause(40 + 13 * (number % 7));
     await page.keyboard.up(key);
     await pause(10);
+  }
+  if (only) {
+    console.log(JSON.stringify({ presses: await page.evaluate(() => presses) }));
+    await browser.close();
+    process.exit(0);
   }
   await shows("Operator");
   seen.operator = await page.textContent("#commander");
