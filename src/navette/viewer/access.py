@@ -74,6 +74,13 @@ class Access:
         return self.url(host, port) + fragment
 
 
+def scheme_of(host: str, environment: Mapping[str, str]) -> str:
+    """Return the scheme of the page's address: https with keys, beyond this machine."""
+    folder = environment.get(VARIABLE, "")
+    is_encrypted = folder and (Path(folder) / "cert.pem").exists()
+    return "https" if is_encrypted and not is_loopback(host) else "http"
+
+
 def is_loopback(host: str) -> bool:
     """Whether only programs of this machine reach a listening address."""
     try:

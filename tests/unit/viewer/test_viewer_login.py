@@ -18,7 +18,7 @@ from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatu
 from navette.errors import FileFormatError, InvalidValueError
 from navette.runtime import Context, Node, SystemClock
 from navette.transports.certificates import create_keys
-from navette.viewer.access import Access, is_loopback
+from navette.viewer.access import Access, is_loopback, scheme_of
 from navette.viewer.gate import Gate, WebRequest
 from navette.viewer.login import Login, Visitor, new_token, token_of
 from navette.viewer.params import ViewerParams
@@ -269,6 +269,9 @@ def test_other_machines_need_encryption_or_a_plain_permission(keys: Path) -> Non
     encrypted = access({"NAVETTE_SECURITY": str(keys / "robot")}, host="0.0.0.0")
     assert encrypted.tls is not None
     assert encrypted.url("0.0.0.0", 8765) == "https://127.0.0.1:8765"
+    environment = {"NAVETTE_SECURITY": str(keys / "robot")}
+    schemes = [scheme_of(host, environment) for host in ("0.0.0.0", "127.0.0.1")]
+    assert schemes == ["https", "http"]
 
 
 def test_a_login_is_dropped_only_by_its_own_parameter() -> None:

@@ -1,6 +1,7 @@
 """What a run needs before its first node exists: a port, and a name of its own."""
 
 import logging
+import os
 from dataclasses import dataclass, replace
 
 from navette.errors import InvalidValueError, NetworkError, ParameterError
@@ -13,6 +14,7 @@ from navette.runtime.network import (
     environment_domain,
 )
 from navette.runtime.overrides import ParameterOverrides
+from navette.viewer.access import scheme_of
 from navette.viewer.listening import Listeners, listen, port_of, url_of
 from navette.viewer.params import ViewerParams
 
@@ -62,7 +64,7 @@ def reserve(
             world=options.world,
             domain=environment_domain(),
         )
-        run.publish(url_of(address[0], port_of(listeners)) if address else "")
+        run.publish(_page(address[0], port_of(listeners)) if address else "")
     except NetworkError as error:
         _log.warning("other programs cannot join this run without --share: %s", error)
         return replace(reserved, transport=IN_PROCESS)
@@ -83,12 +85,16 @@ def _address(overrides: ParameterOverrides) -> tuple[str, int] | None:
     return params.host, params.port
 
 
+def _page(host: str, port: int) -> str:
+    return url_of(host, port, scheme_of(host, os.environ))
+
+
 def _listen(host: str, port: int) -> Listeners:
     try:
         return listen(host, port)
     except InvalidValueError as error:
         for run in live_runs():
-            if run.page and run.page == url_of(host, port):
+            if run.page and run.page == _page(host, port):
                 raise InvalidValueError(
                     f"port {port} is in use by run {run.name!r} ({run.command}, pid "
                     f"{run.pid}); end that run, or choose another port: --port 0 takes "
