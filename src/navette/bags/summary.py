@@ -1,7 +1,7 @@
 """Statistics of a recording."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -98,8 +98,13 @@ def summarise(
     stamps = _stamps_by_topic(reader, on_stamps)
     counts = reader.counts()
     topics = tuple(
-        _summarise_topic(topic, counts[topic], stamps.get(topic), reader.start_ns)
-        for topic in sorted(reader.topics, key=lambda t: (t.name, t.type_name))
+        _summarise_topic(
+            _joined(group),
+            sum(counts[topic] for topic in group),
+            [part for topic in group for part in stamps.get(topic, ())],
+            reader.start_ns,
+        )
+        for _, group in sorted(_by_name_and_type(reader.topics).items())
     )
     return BagSummary(
         path=reader.path,
@@ -115,6 +120,23 @@ def summarise(
         problems=reader.problems,
         remarks=reader.remarks,
     )
+
+
+def _by_name_and_type(
+    topics: Sequence[BagTopic],
+) -> dict[tuple[str, str, str], list[BagTopic]]:
+    """Group the channels of several publishers of one topic."""
+    groups: dict[tuple[str, str, str], list[BagTopic]] = {}
+    for topic in topics:
+        key = topic.name, topic.type_name, topic.encoding
+        groups.setdefault(key, []).append(topic)
+    return groups
+
+
+def _joined(group: list[BagTopic]) -> BagTopic:
+    """Return one topic with the QoS of all channels."""
+    qos = dict.fromkeys(offer for topic in group for offer in topic.qos)
+    return group[0] if len(group) == 1 else replace(group[0], qos=tuple(qos))
 
 
 def _stamps_by_topic(

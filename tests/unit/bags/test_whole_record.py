@@ -14,6 +14,7 @@ from navette.bags import BagReader, open_bag
 from navette.bags.checking import check_bag
 from navette.bags.editing import MessageFilter, copy, join
 from navette.bags.message_types import Decoder
+from navette.bags.summary import summarise
 from navette.bags.topic_writer import TopicWriter
 from navette.bags.writing import open_writer
 from navette.msgs import serialize
@@ -312,3 +313,13 @@ def test_formats_without_channels_gain_nothing(tmp_path: Path) -> None:
     stamps = [START_NS + n * STEP_NS for n in range(6)]
     assert [message[2] for message in after.messages] == stamps
     assert [message[3] for message in after.messages] == stamps
+
+
+def test_channels_of_several_publishers_are_one_topic_in_the_summary(
+    tmp_path: Path,
+) -> None:
+    with open_bag(write_all(tmp_path / "a.mcap")) as reader:
+        found = {each.topic.name: each.count for each in summarise(reader).topics}
+    assert len(found) == 10
+    assert found["/3"] == 10
+    assert found["/silent"] == 0
