@@ -59,3 +59,18 @@ def test_poses_are_driven_through(simulate: MakeSimulation) -> None:
     assert path is not None
     assert len(path.poses) > 10
     assert simulation.sim.simulator.contacts.count == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("x", "y", "yaw"), [(2.0, 1.0, 1.57), (1.0, -1.0, -2.5)])
+def test_a_precise_goal_is_reached_within_centimetres(
+    simulate: MakeSimulation, x: float, y: float, yaw: float
+) -> None:
+    simulation = simulate(world="arena", robot="jackal")
+    navigator = BasicNavigator(context=simulation.context)
+    assert navigator.goToPose(pose(x, y, yaw), behavior_tree="precise")
+    assert wait(navigator) is TaskResult.SUCCEEDED
+    here = simulation.sim.simulator.pose().to_pose2()
+    assert math.dist((here.x, here.y), (x, y)) <= 0.06
+    assert abs(math.remainder(here.yaw - yaw, math.tau)) <= 0.07
+    assert simulation.sim.simulator.contacts.count == 0

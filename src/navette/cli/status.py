@@ -108,6 +108,11 @@ class StatusScreen:
                 ),
                 soft_wrap=True,
             )
+            more = "more goals" if options.goals else "goals"
+            self._console.print(
+                Text(f"{more}      click in the map of the live view", style="dim"),
+                soft_wrap=True,
+            )
             if simulation.viewer.remote_url:
                 remote = Text(simulation.viewer.remote_url, style="underline")
                 head = Text("elsewhere  ", style="dim") + remote

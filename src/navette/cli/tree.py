@@ -62,9 +62,10 @@ def _list_nodes() -> None:
 
 def _check(file: Path) -> None:
     from navette.cli.output import show
+    from navette.navigation.missions.params import tree_path
     from navette.navigation.missions.tree.drawing import file_text
 
-    show(file_text(file))
+    show(file_text(tree_path(str(file))))
 
 
 def _watch(once_s: float | None) -> None:

@@ -1,6 +1,7 @@
 """Parameters of the missions stage."""
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,6 +9,12 @@ from navette.errors import ParameterError
 from navette.params import Params, param
 
 TREES = Path(__file__).parent / "trees"
+
+
+def tree_path(name: str) -> Path:
+    """Return the file of a behaviour tree: one of Navette's by its name, or a path."""
+    own = TREES / f"{name}.xml"
+    return own if re.fullmatch(r"\w+", name) and own.is_file() else Path(name)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +37,8 @@ class MissionParams(Params):
         at_least=1.0, at_most=1000.0,
     )  # fmt: skip
     default_nav_to_pose_bt_xml: str = param(
-        "", "file of the behaviour tree of navigate_to_pose; empty: Navette's"
+        "",
+        "behaviour tree of navigate_to_pose: a file, or precise; empty: Navette's",
     )
     default_nav_through_poses_bt_xml: str = param(
         "", "file of the behaviour tree of navigate_through_poses; empty: Navette's"
@@ -60,10 +68,9 @@ class MissionParams(Params):
     @property
     def to_pose_tree(self) -> Path:
         """File of the behaviour tree of navigate_to_pose."""
-        return Path(self.default_nav_to_pose_bt_xml or TREES / "navigate.xml")
+        return tree_path(self.default_nav_to_pose_bt_xml or "navigate")
 
     @property
     def through_poses_tree(self) -> Path:
         """File of the behaviour tree of navigate_through_poses."""
-        named = self.default_nav_through_poses_bt_xml
-        return Path(named or TREES / "navigate_through.xml")
+        return tree_path(self.default_nav_through_poses_bt_xml or "navigate_through")

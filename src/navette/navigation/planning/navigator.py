@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
 from navette.navigation.grids import GridSpec
+from navette.navigation.planning.avoided_places import AvoidedPlaces
 from navette.navigation.planning.footprint_check import check_path
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams
@@ -53,6 +54,8 @@ class Navigator:
         self.params = params
         self.planner = Planner(params)
         self.report = NavigatorReport()
+        self._map: tuple[NDArray[np.int8], GridSpec] | None = None
+        self._avoided = AvoidedPlaces()
         self._has_map = False
         self._map_changed = False
         self._goal: Goal | None = None
@@ -68,8 +71,21 @@ class Navigator:
 
     def set_map(self, occupancy: NDArray[np.int8], spec: GridSpec) -> None:
         """Replace the map (H, W); the next step checks the path against it."""
-        self.planner.set_map(occupancy, spec)
-        self._has_map = self._map_changed = True
+        self._map = occupancy, spec
+        self._apply_map()
+
+    def _apply_map(self) -> None:
+        if self._map is not None:
+            occupancy, spec = self._map
+            self.planner.set_map(self._avoided.marked(occupancy, spec), spec)
+            self._has_map = self._map_changed = True
+
+    def avoid_place(self) -> bool:
+        """Plan around the place where the robot got stuck; False if there is none."""
+        avoided = self._avoided.avoid()
+        if avoided:
+            self._apply_map()
+        return avoided
 
     def set_goal(self, goal: Goal, now_ns: int) -> None:
         """Replace the goal; the next step plans."""
@@ -78,6 +94,8 @@ class Navigator:
             self._finish(Outcome.GOAL_NOT_FINITE)
             return
         self._goal = goal
+        if self._avoided.note_goal((goal.x, goal.y)):
+            self._apply_map()
         self._set_out = False
         self._checker.begin(now_ns)
         if self._paused_ns is not None:
@@ -189,6 +207,7 @@ class Navigator:
         changed, self._map_changed = self._map_changed, False
         if self._checker.no_progress(now_ns):
             if self._checker.exhausted:
+                self._avoided.note_stuck(progress.ahead, self._front_m())
                 self._finish(Outcome.STUCK)
                 return
             # The path may have been lost: publish it again even if unchanged.
@@ -240,6 +259,9 @@ class Navigator:
     def _replan(self, here: Pose2, goal: Goal) -> None:
         first = not self.report.plan
         plan = self.planner.plan(here, goal)
+        if not plan.outcome.has_path and self._avoided.clear():
+            self._apply_map()  # there is no other path
+            plan = self.planner.plan(here, goal)
         self._cost_seen, self._map_changed = self.planner.grid().cost, False
         if plan.outcome.has_path:
             self._accept(plan)
@@ -292,6 +314,11 @@ class Navigator:
         error = abs(angle_difference(goal.yaw, pose.yaw))
         return error <= self.params.goal_yaw_tolerance_rad
 
+    def _front_m(self) -> float:
+        """Return the distance of the body's farthest corner."""
+        corners = np.array(self.params.footprint_m).reshape(-1, 2)
+        return float(np.hypot(*corners.T).max())
+
     def _replace_goal(self, goal: Goal) -> None:
         if self.has_path:
             self._drop_path()
@@ -302,6 +329,8 @@ class Navigator:
     def _finish(self, how: Outcome | Phase) -> None:
         """End the goal, reached or failed, and stop the robot."""
         self._goal = None
+        if how is Phase.REACHED and self._avoided.clear():
+            self._apply_map()
         if how is not Phase.REACHED:
             self._published = None  # a failure publishes an empty path in any case
         self._drop_path()

@@ -132,6 +132,7 @@ class PlannerNode(StageNode):
         )
         self._path_server = PathServer(self, context, lambda: self._lifecycle.is_active)
         self.create_service(Trigger, "~/cancel", self.on_cancel)
+        self.create_service(Trigger, "~/avoid_place", self.on_avoid_place)
         self._report()
 
     def on_map(self, msg: OccupancyGrid) -> None:
@@ -214,6 +215,15 @@ class PlannerNode(StageNode):
         if not self._missions_send_goals():
             self._navigator.cancel()
             self._publish_news()
+
+    def on_avoid_place(
+        self, request: Trigger_Request, response: Trigger_Response
+    ) -> Trigger_Response:
+        """Plan around the place where the robot got stuck."""
+        response.success = self._navigator.avoid_place()
+        found = "the place ahead is avoided" if response.success else "no such place"
+        response.message = found
+        return response
 
     def on_commander(self, msg: DiagnosticStatus) -> None:
         """Pause while navigation is masked."""

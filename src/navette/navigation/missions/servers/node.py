@@ -29,7 +29,7 @@ from navette.navigation.missions.navigation import (
     NavigationProgress,
     TreeNavigator,
 )
-from navette.navigation.missions.params import MissionParams
+from navette.navigation.missions.params import MissionParams, tree_path
 from navette.navigation.missions.robot.node import NodeRobot, stamped
 from navette.navigation.missions.sequence import CANCELED, REACHED
 from navette.runtime.action import (
@@ -125,20 +125,24 @@ class NavigationServers:
     async def _to_pose(self, handle: Any) -> Any:
         goal = handle.request
         result = NavigateToPose.Result()
-        tree = goal.behavior_tree or self._params.to_pose_tree
-        await self._navigate(handle, [goal.pose], Path(tree), result, through=False)
+        tree = self._tree(goal, self._params.to_pose_tree)
+        await self._navigate(handle, [goal.pose], tree, result, through=False)
         return result
 
     async def _through_poses(self, handle: Any) -> Any:
         goal = handle.request
         result = NavigateThroughPoses.Result()
-        tree = goal.behavior_tree or self._params.through_poses_tree
+        tree = self._tree(goal, self._params.through_poses_tree)
         if not goal.poses:
             result.error_msg = NO_GOALS
             handle.abort()
             return result
-        await self._navigate(handle, goal.poses, Path(tree), result, through=True)
+        await self._navigate(handle, goal.poses, tree, result, through=True)
         return result
+
+    @staticmethod
+    def _tree(goal: Any, default: Path) -> Path:
+        return tree_path(goal.behavior_tree) if goal.behavior_tree else default
 
     async def _navigate(
         self,

@@ -613,6 +613,23 @@ class BackUpAlongPathNode(ActionLeaf):
         return self.new_goal(path=path)
 
 
+class AvoidPlaceNode(ServiceLeaf):
+    """Navette: plan around the place where the robot got stuck; fail without one."""
+
+    TYPE, IS_RECOVERY = "std_srvs/srv/Trigger", True
+    PORTS: ClassVar[Ports] = {
+        "service_name": Port(default="/planner/avoid_place"),
+        "server_timeout": Port(parse_milliseconds),
+    }
+
+    def update(self) -> Status:
+        status = super().update()
+        if status is not SUCCESS or self._call is None or self._call.result is None:
+            return status
+        self.feedback_message = self._call.result.message.message
+        return SUCCESS if self._call.result.message.success else FAILURE
+
+
 class SetBlackboardNode(LeafNode):
     """Write a blackboard entry."""
 

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from py_trees.common import Status
 
-from navette.geometry import Pose2
+from navette.geometry import Pose2, angle_difference, yaw_of
 from navette.navigation.missions.tree.behaviour import (
     FAILURE,
     RUNNING,
@@ -47,6 +47,32 @@ class GoalReachedNode(LeafNode):
             return FAILURE
         near: float = self.blackboard.get("@goal_reached_tol", 0.25)
         return to_status(math.dist(point_of(goal), (pose.x, pose.y)) <= near)
+
+
+class PoseReachedNode(LeafNode):
+    """Navette: whether position and heading are within tolerances (m, rad) of a goal.
+
+    A goal with an orientation of zeros has any heading.
+    """
+
+    PORTS: ClassVar[Ports] = {
+        "goal": Port(parse_message, entry="goal"),
+        "tolerance": Port(parse_float, "0.05"),
+        "yaw_tolerance": Port(parse_float, "0.1"),
+    }
+
+    def update(self) -> Status:
+        pose, goal = self.robot.pose(), self.input("goal")
+        if pose is None or goal is None:
+            return FAILURE
+        off_m = math.dist(point_of(goal), (pose.x, pose.y))
+        q = goal.pose.orientation
+        quaternion = (q.x, q.y, q.z, q.w)
+        yaw = yaw_of(quaternion) if any(quaternion) else pose.yaw
+        off_rad = abs(angle_difference(yaw, pose.yaw))
+        self.feedback_message = f"{off_m:.3f} m, {off_rad:.3f} rad off"
+        near = off_m <= self.input("tolerance")
+        return to_status(near and off_rad <= self.input("yaw_tolerance"))
 
 
 class IsStuckNode(LeafNode):

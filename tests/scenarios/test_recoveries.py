@@ -1,0 +1,77 @@
+"""The recovery ladder of the default tree, with real wheels that do not turn at first."""
+
+import pytest
+
+from navette.msgs.nav2_msgs.msg import BehaviorTreeLog
+from navette.navigation.stack.simulation import Simulation
+from navette.sim import World
+
+from .conftest import MakeSimulation
+
+SECOND = 1_000_000_000
+
+
+def hold_wheels(simulation: Simulation, until_s: float) -> None:
+    """Let the wheels stand although they are commanded, as with a switched-off motor."""
+    simulator, clock = simulation.sim.simulator, simulation.context.clock
+    drive = simulator.command
+
+    def command(linear: float, angular: float) -> bool:
+        held = clock.now_ns < until_s * SECOND
+        return drive(0.0, 0.0) if held else drive(linear, angular)
+
+    simulator.command = command  # type: ignore[method-assign]
+
+
+def started(simulation: Simulation) -> list[str]:
+    """Names of the tree's leaves in the order in which they started to run."""
+    names: list[str] = []
+
+    def note(msg: BehaviorTreeLog) -> None:
+        names.extend(
+            event.node_name
+            for event in msg.event_log
+            if event.current_status == "RUNNING" and event.node_name in LEAVES
+        )
+
+    simulation.monitor.create_subscription(
+        BehaviorTreeLog, "/behavior_tree_log", note, 10
+    )
+    return names
+
+
+LEAVES = {"Navigate", "ClearCostmapAroundRobot", "Spin", "Wait", "AvoidPlace"}
+
+
+@pytest.mark.slow
+def test_a_stuck_robot_recovers_and_arrives(simulate: MakeSimulation) -> None:
+    room = World("room").add_walls((10.0, 10.0)).scene()
+    simulation = simulate(
+        scene=room, robot="jackal", goals=((-3.0, 0.0),), max_time_s=120.0
+    )
+    hold_wheels(simulation, until_s=65.0)
+    names = started(simulation)
+    simulation.run()
+    (outcome,) = simulation.summary().goals
+    assert outcome.result == "reached"
+    clear = "ClearCostmapAroundRobot"
+    assert names[:5] == ["Navigate", clear, clear, "Navigate", "Spin"]
+    assert simulation.summary().contacts == 0
+
+
+@pytest.mark.slow
+def test_a_robot_that_never_moves_gives_up_with_the_reason(
+    simulate: MakeSimulation,
+) -> None:
+    room = World("room").add_walls((10.0, 10.0)).scene()
+    simulation = simulate(
+        scene=room, robot="jackal", goals=((-3.0, 0.0),), max_time_s=300.0
+    )
+    hold_wheels(simulation, until_s=300.0)
+    names = started(simulation)
+    simulation.run()
+    (outcome,) = simulation.summary().goals
+    assert outcome.result == "stuck"
+    assert outcome.time_s < 260.0
+    assert names.count("Navigate") == 6
+    assert {"Spin", "Wait", "AvoidPlace"} <= set(names)
