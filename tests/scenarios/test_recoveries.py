@@ -1,4 +1,4 @@
-"""The recovery ladder of the default tree, with real wheels that do not turn at first."""
+"""The recovery ladder of the default tree, with wheels that do not turn at first."""
 
 import pytest
 
@@ -12,7 +12,7 @@ SECOND = 1_000_000_000
 
 
 def hold_wheels(simulation: Simulation, until_s: float) -> None:
-    """Let the wheels stand although they are commanded, as with a switched-off motor."""
+    """Stop the wheels although they are commanded, as a motor without power does."""
     simulator, clock = simulation.sim.simulator, simulation.context.clock
     drive = simulator.command
 
