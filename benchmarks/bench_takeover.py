@@ -146,7 +146,7 @@ def planning(tries: int) -> None:
         run.executor.call_soon_threadsafe(
             lambda: maps.publish(grid_to_message(cells, spec, "map", 0))
         )
-        pilot.create_timer(0.3, request)
+        pilot.create_timer(3.0, request)
 
         def send(twist: Twist) -> None:
             def publish() -> None:
@@ -158,7 +158,9 @@ def planning(tries: int) -> None:
         pressed = press(send, tries)
         report("planning", delays(pressed, wheels), tries)
         own = [
-            (wheels.arrived[turn][1] - at_ns) / 1e6 for turn, at_ns in robot_ns.items()
+            (wheels.arrived[turn][1] - at_ns) / 1e6
+            for turn, at_ns in robot_ns.items()
+            if turn in wheels.arrived
         ]
         report("planning, robot's time", own, tries)
         if held_ms:
