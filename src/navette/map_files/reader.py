@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,22 +50,31 @@ def read_cells(described: MapDescription) -> NDArray[np.int8]:
         FileFormatError: the image is invalid, missing or too large.
     """
     grey, alpha = _pixels(described)
+    cells = _table(described)[grey]
+    if alpha is not None and described.mode != "raw":
+        cells[alpha < 255] = _UNKNOWN
+    return np.ascontiguousarray(np.flipud(cells))
+
+
+def _table(described: MapDescription) -> NDArray[np.int8]:
+    """Return (256,) the cell of each grey value."""
+    grey = np.arange(256)
     if described.mode == "raw":
-        raw = np.where(grey > _OCCUPIED, _UNKNOWN, grey)
-        return np.flipud(raw).astype(np.int8)
+        return np.where(grey > _OCCUPIED, _UNKNOWN, grey).astype(np.int8)
     share = grey / 255.0 if described.negate else 1.0 - grey / 255.0
     free, occupied = described.free_threshold, described.occupied_threshold
-    cells = np.full(grey.shape, _UNKNOWN, np.int8)
+    cells = np.full(256, _UNKNOWN, np.int8)
     if described.mode == "scale":
         cells[:] = np.rint(np.clip((share - free) / (occupied - free), 0, 1) * 100)
     cells[share >= occupied] = _OCCUPIED
     cells[share <= free] = _FREE
-    cells[alpha < 255] = _UNKNOWN
-    return np.ascontiguousarray(np.flipud(cells))
+    return cells
 
 
-def _pixels(described: MapDescription) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return grey values and opacities (H, W), 0 … 255."""
+def _pixels(
+    described: MapDescription,
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8] | None]:
+    """Return grey values and opacities (H, W), 0 … 255; None: all opaque."""
     try:
         with Image.open(described.image, formats=("PPM", "PNG", "BMP")) as image:
             if image.width * image.height > MAX_PIXELS:
@@ -75,8 +83,10 @@ def _pixels(described: MapDescription) -> tuple[NDArray[Any], NDArray[Any]]:
                     f"image of {image.width} x {image.height} pixels; "
                     f"at most {MAX_PIXELS}",
                 )
-            grey = np.asarray(image.convert("L"), dtype=np.float64)
-            alpha = np.asarray(image.convert("RGBA"))[:, :, 3]
+            grey = np.asarray(image.convert("L"))
+            alpha = None
+            if image.has_transparency_data:
+                alpha = np.asarray(image.convert("LA"))[:, :, 1]
     except (
         OSError,
         ValueError,

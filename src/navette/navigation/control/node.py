@@ -299,10 +299,13 @@ class ControlNode(StageNode):
         self._begin(goal=True, method=method)
         self._set_path(poses)
 
-    def _stop_goal(self) -> None:
-        if self._follows_goal:
+    def _stop_goal(self) -> bool:
+        """Stop if the path is that of a goal; return whether it was."""
+        was_goal = self._follows_goal
+        if was_goal:
             self._begin(goal=False)
             self._follower.reset()
+        return was_goal
 
     def _tick(self) -> None:
         """Locate the robot, place the costmap, step the follower, publish."""

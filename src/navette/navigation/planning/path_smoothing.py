@@ -28,6 +28,7 @@ def smooth_path(
     """
     if len(poses) < 2:
         return poses
+    poses = _with_headings(poses)
     travel = directions(poses)
     cuts = np.flatnonzero(np.diff(travel)) + 1
     bounds = [0, *cuts.tolist(), len(travel)]
@@ -47,3 +48,17 @@ def smooth_path(
     whole = joined(*pieces)
     x, y, yaw = whole[-1].tolist()
     return joined(whole, turn_in_place(x, y, yaw, float(poses[-1, 2])))
+
+
+def _with_headings(poses: Poses) -> Poses:
+    """Return the path with headings along it if its publisher did not set them.
+
+    Headings across the travel (all are zero, for example) cannot mean reverse either.
+    """
+    steps = np.diff(poses[:, :2], axis=0)
+    moves = np.hypot(steps[:, 0], steps[:, 1]) > 1e-6
+    travel = np.arctan2(steps[:, 1], steps[:, 0])
+    along = np.abs(np.cos(travel[:, None] - np.stack([poses[:-1, 2], poses[1:, 2]], 1)))
+    if not np.any(along.max(axis=1)[moves] < 0.5):
+        return poses
+    return headed(poses[np.concatenate([[True], moves]), :2])

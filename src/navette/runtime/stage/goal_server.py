@@ -14,6 +14,8 @@ PREEMPTED = "preempted by a new goal"
 # odometry reports motion although it is commanded zero must not block its client.
 _REST_MPS, _REST_RADPS = 0.03, 0.05
 _LONGEST_STOP_NS = 2_000_000_000
+# A robot that has just been commanded to move may still be measured at rest.
+_SETTLE_NS = 200_000_000
 
 
 class GoalServer:
@@ -134,18 +136,25 @@ class DriveGoalServer(GoalServer):
     """
 
     _ending: Callable[[], None] | None = None
-    _deadline_ns = 0
+    _settled_ns = _deadline_ns = 0
 
     @property
     def is_ending(self) -> bool:
         """Whether the goal has a result and the robot is not known to be at rest."""
         return self._ending is not None
 
-    def end_at_rest(self, result: Any, now_ns: int) -> None:
-        """Store the result, to :meth:`end` the goal with when the robot is at rest."""
+    def end_at_rest(self, result: Any, now_ns: int, *, has_moved: bool = True) -> None:
+        """Store the result, to :meth:`end` the goal with when the robot is at rest.
+
+        Args:
+            result: the result.
+            now_ns: time of the node's clock.
+            has_moved: whether the goal has commanded motion.
+        """
         if self._goal is None or self._ending is not None:
             return
         self._ending = lambda: self.end(result)
+        self._settled_ns = now_ns + _SETTLE_NS if has_moved else now_ns
         self._deadline_ns = now_ns + _LONGEST_STOP_NS
 
     def check_rest(self, motion: tuple[float, float] | None, now_ns: int) -> None:
@@ -163,7 +172,8 @@ class DriveGoalServer(GoalServer):
             and abs(motion[0]) <= _REST_MPS
             and abs(motion[1]) <= _REST_RADPS
         )
-        if resting or not 0 <= self._deadline_ns - now_ns <= _LONGEST_STOP_NS:
+        settled = resting and now_ns >= self._settled_ns
+        if settled or not 0 <= self._deadline_ns - now_ns <= _LONGEST_STOP_NS:
             self._ending()
 
     def _take(self) -> ServerGoalHandle | None:

@@ -68,6 +68,15 @@ def test_reverse_pieces_turns_and_the_goal_heading_are_kept(
     assert abs(angle_difference(poses[-1, 2], 2.0)) < 1e-9
 
 
+def test_a_path_without_headings_gets_them(graph: GraphHarness) -> None:
+    World(graph).ready()
+    points = np.array([(8, 2), (5, 2), (5, 6), (1, 6.0)])
+    unset = np.column_stack([points, np.zeros(len(points))])
+    poses = poses_of(smoothed(graph, unset).result.path)
+    assert (directions(poses) >= 0).all()
+    assert abs(angle_difference(poses[10, 2], math.pi)) < 0.3
+
+
 @pytest.mark.parametrize(
     ("poses", "frame", "fields", "code"),
     [

@@ -112,7 +112,10 @@ class BehaviorServer:
             text = f"{self.spec.name}: {end.code}: {end.reason}"
             self._node.get_logger().warning(text)
         if self.spec.output:
-            self._goals.end_at_rest(self._result(end), self._now_ns)
+            has_moved = self.behavior is not None
+            self._goals.end_at_rest(
+                self._result(end), self._now_ns, has_moved=has_moved
+            )
         else:
             self._goals.end(self._result(end))
 

@@ -35,13 +35,14 @@ class FollowContext:
         frame_on_map: pose of a frame in the map frame; None if unknown.
         follow: starts to follow poses (N, 3), map, with a steering method; raises
             InvalidValueError if they are not a path.
-        stop: stops the robot if it follows a path of ``follow``.
+        stop: stops the robot if it follows a path of ``follow``; returns whether it
+            did.
     """
 
     params: Callable[[], ControlParams]
     frame_on_map: Callable[[str], Pose2 | None]
     follow: Callable[[Poses, str], None]
-    stop: Callable[[], None]
+    stop: Callable[[], bool]
 
 
 class FollowPathServer:
@@ -151,8 +152,8 @@ class FollowPathServer:
 
     def _end(self, result: Any) -> None:
         """Stop the robot; the result follows when it is at rest."""
-        self._context.stop()
-        self._goals.end_at_rest(result, self._now_ns)
+        has_moved = self._context.stop()
+        self._goals.end_at_rest(result, self._now_ns, has_moved=has_moved)
 
     @property
     def _now_ns(self) -> int:

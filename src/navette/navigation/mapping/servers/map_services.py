@@ -60,7 +60,7 @@ class MapServices:
 
     def _load(self, request: Any, response: Any) -> Any:
         path = _path(request.map_url)
-        if path is None or not path.exists():
+        if path is None or not _exists(path):
             self._error(f"map {request.map_url!r} not loaded: the file does not exist")
             response.result = response.RESULT_MAP_DOES_NOT_EXIST
             return response
@@ -109,7 +109,7 @@ class MapServices:
                 free_threshold=request.free_thresh or _FREE_THRESHOLD,
                 occupied_threshold=request.occupied_thresh or _OCCUPIED_THRESHOLD,
             )
-        except (InvalidValueError, OSError) as error:
+        except (OSError, ValueError) as error:
             self._error(f"map not saved: {error}")
             return response
         self._node.get_logger().info(f"map saved: {written}")
@@ -147,4 +147,16 @@ class MapServices:
 def _path(url: str) -> Path | None:
     """Return the path of a URL or path of a file; None if it is empty."""
     text = url.removeprefix("file://")
-    return Path(text).expanduser() if text else None
+    if not text:
+        return None
+    try:
+        return Path(text).expanduser()
+    except RuntimeError:  # a user without a home
+        return Path(text)
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # such as a name that is too long
+        return False

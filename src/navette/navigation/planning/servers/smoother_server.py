@@ -5,6 +5,7 @@ from typing import Any
 
 from navette.msgs.nav2_msgs.action import SmoothPath
 from navette.navigation.planning.footprint_check import check_path
+from navette.navigation.planning.path_shape import lengths
 from navette.navigation.planning.path_smoothing import smooth_path
 from navette.navigation.planning.servers.path_server import PlanningContext
 from navette.runtime import Stopwatch
@@ -15,6 +16,8 @@ from navette.runtime.time import Duration
 
 SMOOTHERS = ("", "simple_smoother")
 """The empty name selects the only one; the other is that of Nav2's parameters."""
+
+_MOST_POSES = 100_000
 
 Result = SmoothPath.Result
 
@@ -50,6 +53,9 @@ class SmootherServer:
             text = "no map has arrived yet"
             return Result(error_code=Result.FAILED_TO_SMOOTH_PATH, error_msg=text)
         grid = planner.grid()
+        if lengths(poses).sum() > _MOST_POSES * params.path_spacing_m:
+            text = f"the path is longer than {_MOST_POSES} poses of path_spacing_m"
+            return Result(error_code=Result.INVALID_PATH, error_msg=text)
         poses = smooth_path(poses, grid, planner.body, params.path_spacing_m)
         stamp_ns = self._node.get_clock().now().nanoseconds
         path = path_message(poses, params.map_frame, stamp_ns)
