@@ -45,9 +45,15 @@ def planar_covariance(values: tuple[float, ...], name: str) -> Array:
     return planar
 
 
+_LARGEST_VARIANCE = 1e18
+
+
 def is_covariance(matrix: Array) -> bool:
-    """Return whether a matrix is finite, symmetric and positive semidefinite."""
-    if not np.all(np.isfinite(matrix)):
+    """Return whether a matrix is finite, symmetric and positive semidefinite.
+
+    Entries beyond 1e18 count as not finite: their products would overflow.
+    """
+    if not np.all(np.abs(matrix) <= _LARGEST_VARIANCE):
         return False
     scale = float(np.abs(matrix).max(initial=0.0))
     if not np.allclose(matrix, matrix.T, rtol=0.0, atol=1e-6 * scale):
