@@ -13,8 +13,8 @@ from navette.cli.options import Argument, Json, Option
 if TYPE_CHECKING:
     from navette.bags.compare import Comparison
     from navette.navigation.stack.replay import MakeNode
+    from navette.navigation.stack.scene import ResolvedScene
     from navette.runtime import Node
-    from navette.runtime.overrides import ParameterOverrides
 
 FAILED = 1
 
@@ -124,13 +124,18 @@ def replay(
             shown_record = record
         _check_record(record, file, golden)
         source = stack.enter_context(open_bag(file))
+        resolved = _robot(world, robot)
         replayed = Replay(
             source,
             [_maker(name) for name in nodes],
             record=record,
             overwrite=overwrite,
-            overrides=_robot_parameters(world, robot),
-            arguments=_arguments(parameters or [], params_files or []),
+            overrides=resolved.override_parameters if resolved else _no_parameters,
+            arguments=_arguments(
+                parameters or [],
+                params_files or [],
+                resolved.remappings if resolved else [],
+            ),
             also=inputs or (),
             options=PlayOptions(start_offset_s=start_offset, duration_s=duration),
         )
@@ -169,21 +174,27 @@ def _maker(name: str) -> "MakeNode":
     return lambda context: kind()
 
 
-def _robot_parameters(
-    world: str | None, robot: str | None
-) -> "Callable[[ParameterOverrides], None]":
+def _robot(world: str | None, robot: str | None) -> "ResolvedScene | None":
+    """Return the chosen robot, whose parameters and names of topics are used."""
     if world is None and robot is None:
-        return lambda overrides: None
+        return None
     from navette.navigation.stack.options import RunOptions
     from navette.navigation.stack.scene import resolve_scene
 
     options = RunOptions(world=world or "empty", robot=robot)
-    return resolve_scene(options).override_parameters
+    return resolve_scene(options)
 
 
-def _arguments(parameters: list[str], files: list[Path]) -> list[str]:
+def _no_parameters(overrides: object) -> None:
+    """Use the recorded values."""
+
+
+def _arguments(
+    parameters: list[str], files: list[Path], remappings: list[str]
+) -> list[str]:
     words = [word for each in files for word in ("--params-file", str(each))]
     words += [word for each in parameters for word in ("-p", each)]
+    words += [word for each in remappings for word in ("-r", each)]
     return ["--ros-args", *words] if words else []
 
 
