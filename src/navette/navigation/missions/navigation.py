@@ -23,8 +23,8 @@ from navette.navigation.missions.sequence import (
     PREEMPTED,
     REACHED,
 )
-from navette.navigation.missions.tree.actions import ERROR_CODES
 from navette.navigation.missions.tree.behaviour import FAILURE, SUCCESS
+from navette.navigation.missions.tree.own_nodes import ERROR_CODES
 from navette.navigation.missions.tree.paths import nearest_index, path_length_m
 from navette.navigation.missions.tree.robot_access import RobotAccess
 from navette.navigation.missions.tree.tree_file import TreeFile

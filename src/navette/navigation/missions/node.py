@@ -35,6 +35,7 @@ from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.stage_node import Input, Output, StageNode
 from navette.runtime.time import ns_to_stamp
 
+_EXPLAIN_AFTER_NS = 5_000_000_000
 ANY_HEADING = Quaternion(x=0.0, y=0.0, z=0.0, w=0.0)
 
 
@@ -121,6 +122,8 @@ class MissionNode(StageNode):
         )
         self._sent = 0  # goals of the list sent so far
         self._list_goal: _ListGoal | None = None
+        self._waiting_since_ns: int | None = None
+        self._has_explained = False
         self._robot = NodeRobot(self, self._tracker, self._step)
         self._navigator = TreeNavigator(self._robot, params.error_code_names)
         self._load_trees()
@@ -276,7 +279,10 @@ class MissionNode(StageNode):
             if self._sequence.total and self.on_done is not None:
                 self.on_done()
             return
-        if self._navigator.active is not None or not self._is_ready():
+        if self._navigator.active is not None:
+            return
+        if not self._is_ready():
+            self._explain_waiting()
             return
         goal = self._sequence.start_next(self._now_ns)
         if goal is None:
@@ -300,6 +306,30 @@ class MissionNode(StageNode):
         planners = topics.PLANNER_STATUS.name
         reported = self._planner_reported or not self.count_publishers(planners)
         return map_ready and reported and self._robot.planner_listens()
+
+    def _explain_waiting(self) -> None:
+        """Log once what the first goal waits for, when that takes long."""
+        if self._has_explained or self._sequence.active is not None:
+            return
+        if self._waiting_since_ns is None:
+            self._waiting_since_ns = self._now_ns
+        if self._now_ns - self._waiting_since_ns < _EXPLAIN_AFTER_NS:
+            return
+        self._has_explained = True
+        missing = []
+        if not self._robot.planner_listens():
+            missing.append(
+                f"no node subscribes to {topics.PLANNER_GOAL.name} or "
+                f"{topics.GOAL_POINT.name} (is a planner running?)"
+            )
+        if self.params.wait_for_map and not self._map_arrived:
+            missing.append(
+                f"no map has arrived on {topics.MAP.name} (is map_memory running? A "
+                "planner that needs no map: set wait_for_map to false)"
+            )
+        if not missing:
+            missing.append(f"no status has arrived on {topics.PLANNER_STATUS.name}")
+        self.get_logger().warning(f"no goal sent yet: {'; '.join(missing)}")
 
     def _send(self, pose: PoseStamped, of_list: "_ListGoal | None" = None) -> None:
         """Send a goal to the own action, as Nav2 does with those of ``goal_pose``."""

@@ -108,6 +108,29 @@ def test_no_goal_is_sent_before_map_and_planner_are_available(
     assert len(planner.goals) == 1
 
 
+def test_what_the_first_goal_waits_for_is_logged_once(graph: GraphHarness) -> None:
+    logged = graph.collect("/rosout", "rcl_interfaces/msg/Log")
+    mission(graph, goals_m=[1.0, 0.0])
+    graph.run_for(30.0)
+    (text,) = [m.msg for m in logged.messages if "no goal sent yet" in m.msg]
+    assert "/goal_point (is a planner running?)" in text
+    assert "no map has arrived on /map" in text
+    assert "wait_for_map" in text
+
+
+def test_a_planner_without_status_gets_the_goal(graph: GraphHarness) -> None:
+    goals: list[PointStamped] = []
+    graph.node.create_subscription(PointStamped, "/goal_point", goals.append, 10)
+    send_map(graph)
+    node = mission(graph, goals_m=[1.0, 0.0])
+    send_odometry(graph, 1.0)
+    graph.run_for(0.5)
+    assert [(goal.point.x, goal.point.y) for goal in goals] == [(1.0, 0.0)]
+    # The robot rests at the goal.
+    assert graph.run_until(lambda: node.done, 5.0)
+    assert node.outcomes[0].result == "reached"
+
+
 @pytest.mark.parametrize(
     ("on_failure", "results"),
     [

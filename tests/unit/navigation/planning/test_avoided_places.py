@@ -37,7 +37,7 @@ def test_places_belong_to_a_goal() -> None:
     assert not places
 
 
-def test_a_path_too_short_or_outside_the_map_is_no_error() -> None:
+def test_a_path_may_be_too_short_or_leave_the_map() -> None:
     places = AvoidedPlaces()
     places.note_stuck(AHEAD[:3], front_m=0.3)
     assert not places.avoid()

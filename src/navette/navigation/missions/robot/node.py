@@ -294,8 +294,8 @@ class NodeRobot:
             call.poll()
         self._calls = [call for call in self._calls if call.result is None]
         pose = self.pose()
-        if self._goal is not None and pose is not None and self.is_at_rest:
-            self._goal.on_rest(pose)
+        if self._goal is not None and pose is not None:
+            self._goal.on_motion(pose, self.now_ns, at_rest=self.is_at_rest)
 
     def _action_client(self, action_type: str, name: str) -> ActionClient:
         client = self._clients.get((action_type, name))

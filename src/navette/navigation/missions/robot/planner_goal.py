@@ -13,8 +13,9 @@ from navette.navigation.missions.tree.robot_access import (
     CallResult,
 )
 
-# Without any status, this close and at rest counts as reached.
+# Without a status that names results, resting this close for this long is arrival.
 _NEAR_M = 0.5
+_REST_NS = 2_000_000_000
 
 
 class PlannerGoal:
@@ -36,7 +37,8 @@ class PlannerGoal:
         self._stop = stop
         self._filter = StatusFilter(last_report)
         self._result: CallResult | None = None
-        self.reported = False
+        self._names_results = False
+        self._resting_since_ns: int | None = None
 
     @property
     def result(self) -> CallResult | None:
@@ -60,7 +62,7 @@ class PlannerGoal:
         """Process a status; an old one concerns an earlier goal."""
         if self._result is not None or not self._filter.is_new(report):
             return
-        self.reported = True
+        self._names_results |= report.result is not None
         if report.end == REACHED:
             self._result = CallResult(SUCCEEDED)
         elif report.end:
@@ -68,9 +70,15 @@ class PlannerGoal:
             reason = f"goal ({x:g}, {y:g}): {report.end}"
             self._result = CallResult(ABORTED, report.end, reason)
 
-    def on_rest(self, pose: Pose2) -> None:
-        """Note that the robot rests; a goal without any status may be reached."""
+    def on_motion(self, pose: Pose2, now_ns: int, *, at_rest: bool) -> None:
+        """Note the robot's pose: it may rest at a goal of a planner without status."""
         point = self.goal.pose.position
         near = math.dist((point.x, point.y), (pose.x, pose.y)) <= _NEAR_M
-        if self._result is None and not self.reported and near:
+        if not (at_rest and near):
+            self._resting_since_ns = None
+            return
+        if self._resting_since_ns is None:
+            self._resting_since_ns = now_ns
+        rested = now_ns - self._resting_since_ns >= _REST_NS
+        if rested and not self._names_results and self._result is None:
             self._result = CallResult(SUCCEEDED)

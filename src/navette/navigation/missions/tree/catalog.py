@@ -1,6 +1,15 @@
 """The kinds of tree nodes by their names in the XML."""
 
-from navette.navigation.missions.tree import actions, conditions, controls, decorators
+from navette.navigation.missions.tree import (
+    actions,
+    basic_nodes,
+    conditions,
+    controls,
+    decorators,
+    own_nodes,
+    path_nodes,
+    service_nodes,
+)
 from navette.navigation.missions.tree.behaviour import LeafNode
 from navette.navigation.missions.tree.controls import BranchNode
 from navette.navigation.missions.tree.decorators import DecoratorNode
@@ -11,9 +20,21 @@ _OTHER_NAMES = {"RecoveryControlNode": "RecoveryNode"}
 _ABSTRACT = {"ActionLeaf", "CallLeaf", "ServiceLeaf"}
 
 
+_MODULES = (
+    controls,
+    decorators,
+    conditions,
+    actions,
+    service_nodes,
+    path_nodes,
+    basic_nodes,
+    own_nodes,
+)
+
+
 def _kinds() -> dict[str, Kind]:
     found: dict[str, Kind] = {}
-    for module in (controls, decorators, conditions, actions):
+    for module in _MODULES:
         for name, value in vars(module).items():
             is_kind = (
                 isinstance(value, type)
@@ -34,8 +55,8 @@ _BASES = {
     decorators.MappedStatusNode,
     decorators.CountedNode,
     decorators.PacedNode,
-    actions.CancelNode,
-    actions.SelectorNode,
+    service_nodes.CancelNode,
+    path_nodes.SelectorNode,
 }
 
 KINDS: dict[str, Kind] = _kinds()
