@@ -33,7 +33,7 @@ def write_occupancy_map(
     """Write ``STEM.yaml`` and its image; return the path of the YAML file.
 
     Args:
-        stem: path without suffix; existing files are replaced.
+        stem: path without suffix in an existing folder; files there are replaced.
         occupancy: the map.
         mode: trinary, scale or raw, as :func:`read_cells` reads them.
         image_format: pgm, png or bmp; default: pgm, and png for ``scale``, whose
@@ -59,7 +59,6 @@ def write_occupancy_map(
         "negate": 0,
         **(_TRINARY if mode == "trinary" else thresholds),
     }
-    stem.parent.mkdir(parents=True, exist_ok=True)
     with _Replacing(image) as part:
         Image.fromarray(pixels).save(part, format=IMAGE_FORMATS[image_format])
     with _Replacing(description) as part:

@@ -63,6 +63,7 @@ def test_what_is_written_is_read(tmp_path: Path, mode: str, image_format: str) -
     cells = np.arange(-1, 101, dtype=np.int8).reshape(6, 17)
     if mode == "trinary":
         cells = np.random.default_rng(0).choice([-1, 0, 100], (6, 17)).astype(np.int8)
+    (tmp_path / "deep").mkdir()
     path = write_occupancy_map(
         tmp_path / "deep" / "v1.2",
         OccupancyMap(cells, 0.1, ORIGIN),

@@ -88,7 +88,7 @@ def test_scans_continue_a_loaded_map(graph: GraphHarness, tmp_path: Path) -> Non
 
 def test_failures_to_load_have_their_codes(graph: GraphHarness, tmp_path: Path) -> None:
     codes = LoadMap.Response
-    for url in ("", tmp_path / "missing.yaml"):
+    for url in ("", tmp_path / "missing.yaml", "a" * 5000, "\0"):
         assert load(graph, url).result == codes.RESULT_MAP_DOES_NOT_EXIST
     invalid = tmp_path / "invalid.yaml"
     invalid.write_text("image: [")
@@ -143,6 +143,8 @@ def test_another_topic_can_be_saved(graph: GraphHarness, tmp_path: Path) -> None
 def test_a_map_that_cannot_be_saved(graph: GraphHarness, tmp_path: Path) -> None:
     assert not save(graph, "")
     assert not save(graph, tmp_path / "m", map_mode="grey")
+    assert not save(graph, tmp_path / "m", map_topic="no topic")
+    assert not save(graph, tmp_path / "missing" / "m")
     assert not save(graph, tmp_path / "m", image_format="gif")
     assert not save(graph, tmp_path / "m", occupied_thresh=0.1)
     (tmp_path / "file").write_text("")

@@ -21,6 +21,7 @@ from navette.msgs.nav_msgs.srv import GetMap
 from navette.navigation.grids import FREE, LETHAL, GridSpec, grid_from_message
 from navette.runtime import Future
 from navette.runtime.callback_groups import ReentrantCallbackGroup
+from navette.runtime.exceptions import InvalidTopicNameException
 from navette.runtime.node import Node
 from navette.runtime.qos import DurabilityPolicy, QoSProfile
 
@@ -90,7 +91,11 @@ class MapServices:
 
     async def _save(self, request: Any, response: Any) -> Any:
         path = _path(request.map_url)
-        grid, own = await self._grid(request.map_topic)
+        try:
+            grid, own = await self._grid(request.map_topic)
+        except InvalidTopicNameException as error:
+            self._error(f"map not saved: {error}")
+            return response
         if path is None or grid is None:
             missing = "map_url is empty" if path is None else "no map has arrived"
             self._error(f"map of {request.map_topic or 'map'!r} not saved: {missing}")
