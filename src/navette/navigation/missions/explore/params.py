@@ -13,7 +13,7 @@ class ExplorerParams(Params):
     map_frame: str = param("map", "frame of the map and of the goals")
     base_frame: str = param("base_link", "frame that is driven")
     clearance_m: float = param(
-        0.35, "distance of a goal from obstacles", unit="m", at_least=0.0
+        0.35, "distance of a goal from obstacles", unit="m", at_least=0.0, at_most=10.0
     )
     lethal_cost: int = param(
         100, "map cost from which a cell is an obstacle", at_least=1, at_most=100
@@ -23,7 +23,7 @@ class ExplorerParams(Params):
     )
     viewpoint_m: float = param(
         2.0, "largest distance from a frontier to the goal in front of it", unit="m",
-        above=0.0,
+        above=0.0, at_most=10.0,
     )  # fmt: skip
     frontier_gain: float = param(
         1.0, "metres of way that a metre of frontier is worth", at_least=0.0
