@@ -25,9 +25,9 @@ from navette.navigation.control.explanations import (
     Situation,
     explain,
 )
+from navette.navigation.control.followers import make_follower
 from navette.navigation.control.limits import NO_CAP, SpeedCap
 from navette.navigation.control.params import ControlParams
-from navette.navigation.control.path_follower import PathFollower
 from navette.navigation.control.records import (
     PAUSED,
     UNKNOWN_POSE,
@@ -123,7 +123,7 @@ class ControlNode(StageNode):
         super().__init__("control", **kwargs)
         params: ControlParams = self.params
         self._tracker = PoseTracker(self, params.base_frame, params.map_frame)
-        self._follower = PathFollower(params)
+        self._follower = make_follower(params)
         self._speed_limits = NO_CAP
         self._path = np.empty((0, 3))
         self._follows_goal = False  # the path is that of a follow_path goal …
@@ -264,7 +264,7 @@ class ControlNode(StageNode):
         """Replace the follower; obstacles are placed for it before it moves."""
         if self._method:
             params = replace(params, method=self._method)
-        self._follower = PathFollower(params)
+        self._follower = make_follower(params)
         self._follower.limit_speed(self._speed_limits)
         self._placed_ns = _NEVER
 

@@ -7,7 +7,7 @@ from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint
 from navette.params import Params, param
 
-METHODS = ("pure_pursuit", "cross_track_pid")
+METHODS = ("pure_pursuit", "cross_track_pid", "mppi")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,6 +118,38 @@ class ControlParams(Params):
     )
     lethal_cost: int = param(
         100, "costmap value from which a cell is an obstacle", at_least=1, at_most=100
+    )
+
+    mppi_samples: int = param(
+        265, "mppi: command sequences tried per step", at_least=50, at_most=10_000
+    )
+    mppi_steps: int = param(28, "mppi: predicted steps", at_least=5, at_most=200)
+    mppi_step_s: float = param(
+        0.1, "mppi: time of a predicted step", unit="s", at_least=0.02, at_most=0.5
+    )
+    mppi_temperature: float = param(
+        0.3, "mppi: cost difference that matters", above=0.0
+    )
+    mppi_align_weight: float = param(
+        6.0, "mppi: cost of the squared distance from the path", at_least=0.0
+    )
+    mppi_heading_weight: float = param(
+        0.6, "mppi: cost of the squared heading error", at_least=0.0
+    )
+    mppi_progress_weight: float = param(
+        4.0, "mppi: cost of a metre of path not driven", at_least=0.0
+    )
+    mppi_clearance_weight: float = param(
+        6.0, "mppi: cost of low clearance", at_least=0.0
+    )
+    mppi_clearance_m: float = param(
+        0.25, "mppi: clearance below which it costs", unit="m", above=0.0
+    )
+    mppi_reverse_weight: float = param(
+        5.0, "mppi: cost of driving against the path's direction", at_least=0.0
+    )
+    mppi_effort_weight: float = param(
+        0.02, "mppi: cost of changing the turn rate", at_least=0.0
     )
 
     odometry_timeout_s: float = param(

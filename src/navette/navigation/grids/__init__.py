@@ -15,6 +15,16 @@ from navette.navigation.grids.collision_check import CollisionCheck, MovingBody
 from navette.navigation.grids.compare import Changes, compare
 from navette.navigation.grids.distance import distance_field
 from navette.navigation.grids.evidence import accumulate
+from navette.navigation.grids.exact_clearance import (
+    ObstacleGrid,
+    Outline,
+    body_distance,
+    exact_clearance,
+    exact_clearances,
+    make_obstacles,
+    make_outline,
+    signed_distance,
+)
 from navette.navigation.grids.footprint_cells import cells_in_footprint
 from navette.navigation.grids.inflation import cost_table, inflate
 from navette.navigation.grids.merge import merge
@@ -42,6 +52,14 @@ __all__ = [
     "distance_at",
     "pose_clearance",
     "pose_is_clear",
+    "Outline",
+    "ObstacleGrid",
+    "make_outline",
+    "make_obstacles",
+    "exact_clearance",
+    "exact_clearances",
+    "body_distance",
+    "signed_distance",
     "cost_table",
     "inflate",
     "beam_directions",

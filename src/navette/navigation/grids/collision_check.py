@@ -1,9 +1,7 @@
 """Predict the commanded motion and keep the body clear of the obstacles.
 
-The clearance is exact: signed distance from obstacle points (cell centres, less half
-a cell) to the outline, at each predicted pose. A sampled distance field, as the planner
-uses for its thousands of poses, changes by a cell when the body moves by a millimetre,
-which is too coarse to decide whether a motion leads away from an obstacle.
+The clearance is exact at each predicted pose; see
+:mod:`navette.navigation.grids.exact_clearance`.
 """
 
 import math
@@ -14,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Footprint, Pose2
+from navette.navigation.grids.exact_clearance import body_distance
 from navette.storage.kernels import kernel
 
 Array = NDArray[np.float64]
@@ -124,52 +123,6 @@ class CollisionCheck:
                 )
             ),
         )
-
-
-@kernel(signature="float64(float64[:, ::1], float64, float64)")
-def signed_distance(outline: Array, x: float, y: float) -> float:
-    """Return the distance (m) of (x, y) to the polygon (K, 2), negative inside."""
-    best = np.inf
-    inside = False
-    count = outline.shape[0]
-    ax, ay = outline[count - 1, 0], outline[count - 1, 1]
-    for k in range(count):
-        bx, by = outline[k, 0], outline[k, 1]
-        ex, ey = bx - ax, by - ay
-        px, py = x - ax, y - ay
-        t = min(1.0, max(0.0, (px * ex + py * ey) / (ex * ex + ey * ey)))
-        dx, dy = px - t * ex, py - t * ey
-        best = min(best, dx * dx + dy * dy)
-        if (ay > y) != (by > y) and px < ex * py / ey:
-            inside = not inside
-        ax, ay = bx, by
-    distance = math.sqrt(best)
-    return -distance if inside else distance
-
-
-@kernel(
-    signature="float64(float64[:, ::1], float64[:, ::1], float64, float64, float64,"
-    " float64, float64)",
-)
-def body_distance(
-    points: Array,
-    outline: Array,
-    x: float,
-    y: float,
-    yaw: float,
-    radius: float,
-    horizon: float,
-) -> float:
-    """Return the least signed distance (m) from the body to the points, ≤ horizon."""
-    c, s = math.cos(yaw), math.sin(yaw)
-    best = horizon
-    for i in range(points.shape[0]):
-        dx, dy = points[i, 0] - x, points[i, 1] - y
-        near = radius + best
-        if near <= 0.0 or dx * dx + dy * dy >= near * near:
-            continue
-        best = min(best, signed_distance(outline, c * dx + s * dy, c * dy - s * dx))
-    return best
 
 
 @kernel(

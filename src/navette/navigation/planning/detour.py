@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from navette.geometry import Pose2
+from navette.navigation.grids import make_obstacles, make_outline
 from navette.navigation.planning import lattice, path_shape
 from navette.navigation.planning.dijkstra import Field, cost_to_go
 from navette.navigation.planning.footprint_check import check_path
@@ -124,6 +125,8 @@ class DetourPlanner:
             margin_m=grid.margin_m,
             comfort_m=grid.margin_m + max(params.comfort_m, 0.05),
             outside_m=grid.outside_m,
+            obstacles=make_obstacles(grid.obstacles, grid.spec),
+            outline=make_outline(self.body.footprint),
         )
         goal = lattice.LatticeGoal(
             target.x, target.y, target.tolerance_m, yaw=target.yaw, pull=_GOAL_PULL

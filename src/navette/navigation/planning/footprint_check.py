@@ -5,7 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids import body_clearance
+from navette.navigation.grids import (
+    body_clearance,
+    exact_clearances,
+    make_obstacles,
+    make_outline,
+)
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 
@@ -32,10 +37,19 @@ def check_path(
 
     From a start with less clearance than the margin, the path may continue along poses
     with no less clearance than the start; from the first pose with the margin on, the
-    margin applies.
+    margin applies. Where the distance field cannot prove the margin, the clearance is
+    the exact one that control checks its commands with.
     """
     margin = grid.margin_m if margin_m is None else margin_m
     clearance = clearances(poses, grid, body, enough_m=margin)
+    tight = clearance < margin
+    if tight.any():
+        clearance[tight] = exact_clearances(
+            make_obstacles(grid.obstacles, grid.spec),
+            make_outline(body.footprint),
+            poses[tight],
+            margin,
+        )
     needed = np.full(len(poses), margin)
     if clearance[0] < margin:
         enough = clearance >= margin

@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2
-from navette.navigation.grids import DistanceGrid, GridSpec, grid_frame, make_body
+from navette.navigation.grids import (
+    DistanceGrid,
+    GridSpec,
+    ObstacleGrid,
+    Outline,
+    grid_frame,
+    make_body,
+)
 from navette.navigation.planning.bucket_queue import BucketQueue, new_pool
 from navette.navigation.planning.dijkstra import Field
 from navette.navigation.planning.lattice_kernels import (
@@ -50,6 +57,8 @@ class LatticeWorld:
         margin_m: clearance that the body keeps.
         comfort_m: clearance, above the margin, beyond which more has no value.
         outside_m: distance to obstacles assumed outside the grid.
+        obstacles: the lethal cells, for exact clearances in tight places.
+        outline: outline of the body.
     """
 
     distance_m: NDArray[np.float32]
@@ -60,6 +69,8 @@ class LatticeWorld:
     margin_m: float
     comfort_m: float
     outside_m: float
+    obstacles: ObstacleGrid
+    outline: Outline
 
 
 @dataclass(frozen=True)
@@ -131,6 +142,8 @@ def _scene(world: LatticeWorld) -> LatticeScene:
         world.factor,
         np.ascontiguousarray(world.guide),
         make_body(world.body),
+        world.obstacles,
+        world.outline,
         float(world.margin_m),
         float(world.comfort_m),
     )

@@ -9,7 +9,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from navette.navigation.grids import Body, DistanceGrid, pose_clearance, pose_is_clear
+from navette.navigation.grids import (
+    Body,
+    DistanceGrid,
+    ObstacleGrid,
+    Outline,
+    exact_clearance,
+    pose_clearance,
+    pose_is_clear,
+)
 from navette.navigation.planning.bucket_queue import (
     WAITING,
     BucketQueue,
@@ -44,6 +52,8 @@ class LatticeScene(NamedTuple):
     factor: NDArray[np.float32]
     guide: NDArray[np.int64]
     body: Body
+    obstacles: ObstacleGrid
+    outline: Outline
     margin_m: float
     comfort_m: float
 
@@ -219,21 +229,30 @@ def _fits(
     cos, sin = math.cos(yaw), math.sin(yaw)
     for k in range(moves.counts[m]):
         dx, dy = moves.offsets[m, k, 0], moves.offsets[m, k, 1]
-        if not pose_is_clear(
-            scene.grid,
-            scene.body,
-            x + cos * dx - sin * dy,
-            y + sin * dx + cos * dy,
-            yaw + moves.offsets[m, k, 2],
-            needed_m,
-        ):
+        px, py = x + cos * dx - sin * dy, y + sin * dx + cos * dy
+        pyaw = yaw + moves.offsets[m, k, 2]
+        if pose_is_clear(scene.grid, scene.body, px, py, pyaw, needed_m):
+            continue
+        if _exact(scene, px, py, pyaw, needed_m) < needed_m:
             return False
     return True
 
 
 @kernel
+def _exact(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> float:
+    """Return the exact clearance, where the distance field cannot prove enough."""
+    clearance: float = exact_clearance(
+        scene.obstacles, scene.outline, x, y, yaw, enough_m
+    )
+    return clearance
+
+
+@kernel
 def _clearance(scene: Any, x: float, y: float, yaw: float, enough_m: float) -> float:
-    return pose_clearance(scene.grid, scene.body, x, y, yaw, enough_m)
+    clearance: float = pose_clearance(scene.grid, scene.body, x, y, yaw, enough_m)
+    if clearance < scene.margin_m:
+        return _exact(scene, x, y, yaw, scene.margin_m)
+    return clearance
 
 
 @kernel

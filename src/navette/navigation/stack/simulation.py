@@ -1,7 +1,7 @@
 """A run of the simulated robot with its navigation, from options to summary."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -43,6 +43,7 @@ class Simulation:
         on_change: called when the planner's goal or state changes.
         scene: a world made in Python (:class:`navette.sim.World`) instead of that of
             the options.
+        parameters: node → parameter → value, over those of the robot.
 
     Raises:
         NavetteError: invalid name, file, parameter or option, named in the text.
@@ -54,8 +55,10 @@ class Simulation:
         on_change: Callable[[RunProgress], None] = lambda progress: None,
         *,
         scene: Scene | None = None,
+        parameters: Mapping[str, Mapping[str, object]] | None = None,
     ) -> None:
         self.options = options
+        self._parameters = parameters or {}
         self.resolved = resolve_scene(options, scene)
         overrides = self._overrides(self.resolved)
         clock = _clock(options.speed)
@@ -114,6 +117,8 @@ class Simulation:
         if not self.options.headless:
             overrides.add("viewer", {"port": self.options.port}, "--port")
             overrides.add("viewer", _access(self.options), "--host")
+        for node, values in self._parameters.items():
+            overrides.add(node, dict(values), "parameters of the run")
         for path in self.options.params_files:
             overrides.add_file(path)
         return overrides

@@ -13,7 +13,7 @@ from navette.navigation.control import (
     InputAges,
     PathFollower,
 )
-from navette.navigation.grids.collision_check import body_distance
+from navette.navigation.grids import body_distance
 
 METHODS = ("pure_pursuit", "cross_track_pid")
 _X = np.linspace(0, 12, 200)

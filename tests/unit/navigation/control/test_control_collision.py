@@ -18,8 +18,8 @@ from navette.navigation.grids import (
     GridSpec,
     MovingBody,
     obstacle_points,
+    signed_distance,
 )
-from navette.navigation.grids.collision_check import signed_distance
 
 BODY = Footprint(((1.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (1.5, -0.5)))
 ORIGIN = Pose2(0.0, 0.0, 0.0)

@@ -175,7 +175,7 @@ def test_a_path_is_bad_from_its_first_pose_without_margin() -> None:
 
 def test_from_a_start_without_margin_the_clearance_must_not_decrease() -> None:
     _, grid, _ = walled()
-    out = np.array([[1.95 + 0.1 * i, 4.0, math.pi] for i in range(20)])
+    out = np.array([[1.9 + 0.1 * i, 4.0, math.pi] for i in range(20)])
     assert check_path(out, grid, BODY).clearance_m[0] < grid.margin_m
     assert check_path(out, grid, BODY).fits
     closer = out - (0.1, 0, 0)

@@ -15,7 +15,7 @@ from planning_worlds import (
 
 from navette.errors import InvalidValueError
 from navette.geometry import Footprint, Pose2
-from navette.navigation.grids import GridSpec
+from navette.navigation.grids import GridSpec, make_obstacles, make_outline
 from navette.navigation.planning.dijkstra import cost_to_go
 from navette.navigation.planning.lattice import (
     LatticeGoal,
@@ -56,6 +56,8 @@ def plan(
         margin_m=MARGIN,
         comfort_m=0.4,
         outside_m=grid.outside_m,
+        obstacles=make_obstacles(grid.obstacles, grid.spec),
+        outline=make_outline(COURSE),
     )
     return search(world, start, goal, MOTIONS, max_expansions=max_expansions)
 
@@ -127,7 +129,16 @@ def test_start_outside_is_refused() -> None:
     nothing = np.zeros(spec.shape, np.float32)
     guide = np.zeros(spec.shape, np.int64)
     world = LatticeWorld(
-        nothing, nothing, guide, spec, np.zeros((1, 3)), MARGIN, 0.4, 0.0
+        nothing,
+        nothing,
+        guide,
+        spec,
+        np.zeros((1, 3)),
+        MARGIN,
+        0.4,
+        0.0,
+        make_obstacles(np.zeros(spec.shape, np.uint8), spec),
+        make_outline(COURSE),
     )
     with pytest.raises(InvalidValueError, match="outside the grid"):
         search(world, Pose2(9, 9, 0), LatticeGoal(2, 2, 0.3), MOTIONS)

@@ -1,0 +1,98 @@
+"""Run one trial in this process, in virtual time."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.bench.losses import lost_seconds
+from navette.bench.observer import TrialObserver
+from navette.bench.trial import Trial, TrialResult, barn_score
+from navette.navigation.stack.options import RunOptions
+from navette.navigation.stack.simulation import Simulation
+from navette.runtime import Stopwatch
+
+
+def run_trial(trial: Trial) -> TrialResult:
+    """Drive the trial and measure it; deterministic for its seed except ``wall_s``.
+
+    Raises:
+        NavetteError: invalid world, robot or parameter.
+    """
+    stopwatch = Stopwatch()
+    options = RunOptions(
+        world=trial.world,
+        robot=trial.robot,
+        start=trial.start,
+        goals=trial.goals,
+        headless=True,
+        speed=math.inf,
+        seed=trial.seed,
+        params_files=trial.params_files,
+        max_time_s=trial.limit_s,
+    )
+    simulation = Simulation(options, parameters=trial.parameters)
+    try:
+        observer = TrialObserver(
+            trial.goals[-1], trial.reach_m, simulation.stop, context=simulation.context
+        )
+        simulation.executor.add_node(observer)
+        simulation.run()
+        return _measure(trial, simulation, observer, stopwatch.elapsed_s)
+    finally:
+        simulation.close()
+
+
+def _measure(
+    trial: Trial, simulation: Simulation, observer: TrialObserver, wall_s: float
+) -> TrialResult:
+    summary = simulation.summary()
+    samples = observer.samples
+    outcome = _outcome(trial, simulation, observer)
+    began_s = 0.0 if observer.began_ns is None else observer.began_ns / 1e9
+    time_s = float(samples[-1, 0] - began_s) if len(samples) else 0.0
+    cruise = simulation.stack.control.params.cruise_speed_mps
+    return TrialResult(
+        suite=trial.suite,
+        name=trial.name,
+        seed=trial.seed,
+        outcome=outcome,
+        time_s=time_s,
+        score=barn_score(
+            outcome == "reached", time_s, trial.shortest_m, trial.fastest_mps
+        ),
+        contacts=summary.contacts,
+        path_m=float(np.hypot(*np.diff(samples[:, 1:3], axis=0).T).sum()),
+        shortest_m=trial.shortest_m,
+        min_clearance_m=summary.min_clearance_m,
+        lost_s=lost_seconds(samples, observer.states, cruise),
+        jerk=_roughness(samples),
+        wall_s=wall_s,
+    )
+
+
+def _outcome(trial: Trial, simulation: Simulation, observer: TrialObserver) -> str:
+    if simulation.sim.simulator.contacts.count:
+        return "contact"
+    if trial.reach_m > 0:
+        if observer.arrived:
+            return "reached"
+    elif all(goal.result == "reached" for goal in simulation.summary().goals):
+        return "reached"
+    failed = [
+        goal.result
+        for goal in simulation.summary().goals
+        if goal.result not in ("reached", "unfinished")
+    ]
+    return failed[0] if failed else "timed_out"
+
+
+def _roughness(samples: NDArray[np.float64]) -> float:
+    """Return the root mean square of the acceleration's change (m/s³), at 10 Hz."""
+    if len(samples) < 4:
+        return 0.0
+    grid = np.arange(samples[0, 0], samples[-1, 0], 0.1)
+    speed = np.interp(grid, samples[:, 0], samples[:, 3])
+    if len(speed) < 3:
+        return 0.0
+    return float(np.sqrt(np.mean((np.diff(speed, 2) / 0.01) ** 2)))

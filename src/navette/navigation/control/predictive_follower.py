@@ -1,0 +1,231 @@
+"""Follow a path by model-predictive path integral control."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Footprint, Pose2
+from navette.navigation.control.collision_check import CollisionCheck
+from navette.navigation.control.command_gate import CommandGate
+from navette.navigation.control.limits import (
+    STOP,
+    SpeedCap,
+    VelocityCommand,
+    approach,
+    brake,
+    clamp,
+)
+from navette.navigation.control.mppi import MotionState, Mppi
+from navette.navigation.control.params import ControlParams
+from navette.navigation.control.prediction import advanced
+from navette.navigation.control.records import (
+    FARTHEST_M,
+    FollowerInputs,
+    FollowerOutput,
+)
+from navette.navigation.control.rollouts import (
+    METRES_PER_RADIAN,
+    LocalField,
+    PathWindow,
+)
+from navette.navigation.control.states import ControlState
+from navette.navigation.grids import body_points, distance_field
+
+_DELAY_S = 0.05  # from the command to the motion
+_BEHIND = 2  # poses of the path behind the robot that stay in the window
+_SEARCH_M = 2.0  # how far ahead on the path the robot may already be
+_BLOCKED_SCALE = 0.1
+_BODY_SPACING_M = 0.15  # of the points that represent the body in rollouts
+
+
+class PredictiveFollower:
+    """Follow paths of poses; the interface is that of ``PathFollower``."""
+
+    def __init__(self, params: ControlParams) -> None:
+        self._params = params
+        self._gate = CommandGate(params)
+        self._collision = CollisionCheck(params)
+        footprint = Footprint.from_flat(params.footprint_m)
+        self._body = body_points(footprint, _BODY_SPACING_M)
+        self._mppi = Mppi(params, self._body)
+        self._field = _open_field()
+        self.reset()
+
+    def reset(self, rest: ControlState = ControlState.IDLE) -> None:
+        """Drop the path and stop at once; ``rest`` is the state to report."""
+        self._path: PathWindow | None = None
+        self._at = 0
+        self._rest: ControlState | None = rest
+        self._last: VelocityCommand | None = None
+        self._clearance = math.inf
+        self._mppi.reset()
+
+    @property
+    def has_path(self) -> bool:
+        """Whether a path is being followed."""
+        return self._rest is None
+
+    @property
+    def obstacle_reach_m(self) -> float:
+        """Distance around the robot within which obstacles matter."""
+        params = self._params
+        return max(
+            self._collision.reach(params.max_speed_mps),
+            params.cruise_speed_mps * self._mppi.horizon_s + 0.5,
+        )
+
+    def set_path(self, poses: NDArray[np.float64]) -> None:
+        """Replace the path by (N, 3) x, y, yaw (m, rad, map); an empty one stops.
+
+        Raises:
+            InvalidValueError: not (N, 3) or not finite; the follower is then reset.
+        """
+        if poses.ndim != 2 or poses.shape[1] != 3 or not np.isfinite(poses).all():
+            self.reset()
+            raise InvalidValueError(
+                f"path of shape {poses.shape}: expected finite poses (N, 3)"
+            )
+        if len(poses) and np.abs(poses[:, :2]).max() > FARTHEST_M:
+            self.reset()
+            raise InvalidValueError(f"path: farther than {FARTHEST_M:g} m")
+        last, clearance, drove = self._last, self._clearance, self.has_path
+        if len(poses) == 0:
+            self.reset()
+            return
+        if not drove:
+            self.reset()
+        self._path = _window(poses)
+        self._at = 0
+        self._rest = None
+        self._last, self._clearance = last, clearance
+
+    def pause(self) -> None:
+        """Continue later from the robot's motion then, not from the last command."""
+        self._last = None
+        self._mppi.reset()
+
+    def limit_speed(self, limits: SpeedCap) -> None:
+        """Drive no faster than these limits, from the next step on."""
+        self._mppi.limit_speed(limits)
+
+    def set_obstacles(self, points: NDArray[np.float64], half_cell: float) -> None:
+        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
+        self._collision.set_obstacles(points, half_cell)
+        self._field = local_field(
+            points, 2 * half_cell, self._params.mppi_clearance_m + 1.0
+        )
+
+    def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
+        """Return the command for the next ``dt`` seconds."""
+        stale = self._gate.stale(inputs.ages)
+        if self._rest is not None or stale is not None or not inputs.plausible:
+            return self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
+        assert self._path is not None, "a path is being followed"
+        self._advance(self._path, inputs.pose)
+        if self._arrived(self._path, inputs):
+            return self._stop(self._rest or ControlState.REACHED)
+        off = self._cross_track(self._path, inputs.pose)
+        last = self._last or VelocityCommand(inputs.speed, inputs.turn_rate)
+        last = clamp(last, self._params)
+        if off > self._params.max_deviation_m:
+            command = brake(last, self._params, dt)
+            return self._emit(command, ControlState.OFF_PATH)
+        ahead = advanced(inputs.pose, *last, _DELAY_S)
+        wanted = self._mppi.step(
+            MotionState(*ahead, *last), self._near(self._path), self._field, dt
+        )
+        command = approach(last, wanted, self._params, dt)
+        return self._keep_clear(inputs.pose, command)
+
+    def _keep_clear(self, pose: Pose2, command: VelocityCommand) -> FollowerOutput:
+        if not self._params.collision_check:
+            return self._emit(command, ControlState.FOLLOWING)
+        scale, self._clearance = self._collision.check(pose, command)
+        if scale < _BLOCKED_SCALE:
+            return self._emit(STOP, ControlState.BLOCKED)
+        scale = min(1.0, scale)
+        scaled = VelocityCommand(command.speed * scale, command.turn_rate * scale)
+        return self._emit(scaled, ControlState.FOLLOWING)
+
+    def _advance(self, path: PathWindow, pose: Pose2) -> None:
+        """Move to the pose of the path nearest to the robot; never back."""
+        stop = int(np.searchsorted(path.measure, path.measure[self._at] + _SEARCH_M))
+        near = slice(self._at, max(stop, self._at + 1))
+        away = np.hypot(path.x[near] - pose.x, path.y[near] - pose.y)
+        c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+        error = np.arccos(np.clip(c * path.cos[near] + s * path.sin[near], -1, 1))
+        self._at += int(np.argmin(away + METRES_PER_RADIAN * error))
+
+    def _near(self, path: PathWindow) -> PathWindow:
+        """Return the stretch that the robot can drive within the horizon."""
+        first = max(0, self._at - _BEHIND)
+        reach = self._params.cruise_speed_mps * self._mppi.horizon_s + 0.5
+        stop = int(np.searchsorted(path.measure, path.measure[self._at] + reach)) + 1
+        return PathWindow(*(column[first:stop] for column in path))
+
+    def _arrived(self, path: PathWindow, inputs: FollowerInputs) -> bool:
+        off = math.hypot(path.x[-1] - inputs.pose.x, path.y[-1] - inputs.pose.y)
+        left = path.measure[-1] - path.measure[self._at]
+        if off <= self._params.goal_tolerance_m and left <= 0.15:
+            self._rest = ControlState.REACHED
+            return True
+        return False
+
+    def _cross_track(self, path: PathWindow, pose: Pose2) -> float:
+        return math.hypot(path.x[self._at] - pose.x, path.y[self._at] - pose.y)
+
+    def _stop(self, state: ControlState) -> FollowerOutput:
+        self._mppi.reset()
+        return self._emit(STOP, state)
+
+    def _emit(self, command: VelocityCommand, state: ControlState) -> FollowerOutput:
+        refusal = self._gate.refusal(command)
+        if refusal is not None:
+            command, state = STOP, refusal
+        self._last = None if state.rests else command
+        left = off = 0.0
+        if self._path is not None and not state.rests:
+            left = float(self._path.measure[-1] - self._path.measure[self._at])
+        return FollowerOutput(command, state, off, 0.0, left, self._clearance)
+
+
+def local_field(
+    points: NDArray[np.float64], resolution: float, far_m: float
+) -> LocalField:
+    """Return the distance field of obstacle points (N, 2) of a grid, map frame."""
+    if not len(points):
+        return _open_field()
+    low = points.min(axis=0) - far_m
+    high = points.max(axis=0) + far_m
+    width, height = np.ceil((high - low) / resolution).astype(int) + 1
+    lethal = np.zeros((height, width), np.uint8)
+    column, row = np.floor((points - low) / resolution).astype(np.int64).T
+    lethal[row, column] = 1
+    return LocalField(
+        distance_field(lethal, resolution, far_m),
+        float(low[0]),
+        float(low[1]),
+        float(resolution),
+    )
+
+
+def _open_field() -> LocalField:
+    return LocalField(np.full((1, 1), 1e3, np.float32), 0.0, 0.0, 1.0)
+
+
+def _window(poses: NDArray[np.float64]) -> PathWindow:
+    steps = np.diff(poses[:, :2], axis=0)
+    metres = np.hypot(steps[:, 0], steps[:, 1])
+    turned = np.abs(np.remainder(np.diff(poses[:, 2]) + np.pi, 2 * np.pi) - np.pi)
+    spin = np.where(metres < 1e-6, METRES_PER_RADIAN * turned, 0.0)
+    measure = np.concatenate([[0.0], np.cumsum(metres + spin)])
+    along = steps[:, 0] * np.cos(poses[:-1, 2]) + steps[:, 1] * np.sin(poses[:-1, 2])
+    direction = np.where(along >= 0, 1, -1).astype(np.int8)
+    direction[metres < 1e-6] = 0
+    direction = np.append(direction, direction[-1:] if len(direction) else [0])
+    x, y, yaw = np.ascontiguousarray(poses.T)
+    return PathWindow(
+        x, y, np.cos(yaw), np.sin(yaw), measure, direction.astype(np.int8)
+    )

@@ -1,0 +1,163 @@
+"""Exact signed distance between a polygon and obstacles, without a distance field.
+
+Planning and control use the same measure: the distance from the outline to the centre
+of each lethal cell, less half a cell. The sampled distance field of
+:mod:`navette.navigation.grids.clearance` is a fast lower bound for thousands of poses,
+but changes by a cell when the body moves by a millimetre, which is too coarse to decide
+whether a motion leads away from an obstacle or whether a body fits a tight gap.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.geometry import Footprint
+from navette.navigation.grids.spec import GridFrame, GridSpec, grid_frame
+from navette.storage.kernels import kernel
+
+Array = NDArray[np.float64]
+
+
+class Outline(NamedTuple):
+    """A body's outline for kernels: vertices (K, 2) and circumscribed radius, m."""
+
+    vertices: Array
+    radius_m: float
+
+
+class ObstacleGrid(NamedTuple):
+    """Lethal cells for kernels: (H, W) uint8, 1 = lethal, and the grid's frame."""
+
+    lethal: NDArray[np.uint8]
+    frame: GridFrame
+
+
+def make_outline(footprint: Footprint) -> Outline:
+    """Return the outline of a footprint (base frame)."""
+    vertices = np.array(footprint.vertices, np.float64)
+    return Outline(vertices, float(footprint.circumscribed_radius))
+
+
+def make_obstacles(lethal: NDArray[np.uint8], spec: GridSpec) -> ObstacleGrid:
+    """Return the lethal cells (H, W) with their frame."""
+    return ObstacleGrid(np.ascontiguousarray(lethal), grid_frame(spec))
+
+
+def exact_clearances(
+    obstacles: ObstacleGrid, outline: Outline, poses: Array, horizon_m: float
+) -> Array:
+    """Return (N,) the clearance in metres of the outline at poses (N, 3), at most the
+    horizon; negative = the body overlaps an obstacle's cell.
+    """
+    clearance = np.empty(len(poses))
+    _exact_clearances(obstacles, outline, np.ascontiguousarray(poses), horizon_m,
+                      clearance)  # fmt: skip
+    return clearance
+
+
+@kernel(signature="float64(float64[:, ::1], float64, float64)")
+def signed_distance(outline: Array, x: float, y: float) -> float:
+    """Return the distance (m) of (x, y) to the polygon (K, 2), negative inside."""
+    best = np.inf
+    inside = False
+    count = outline.shape[0]
+    ax, ay = outline[count - 1, 0], outline[count - 1, 1]
+    for k in range(count):
+        bx, by = outline[k, 0], outline[k, 1]
+        ex, ey = bx - ax, by - ay
+        px, py = x - ax, y - ay
+        t = min(1.0, max(0.0, (px * ex + py * ey) / (ex * ex + ey * ey)))
+        dx, dy = px - t * ex, py - t * ey
+        best = min(best, dx * dx + dy * dy)
+        if (ay > y) != (by > y) and px < ex * py / ey:
+            inside = not inside
+        ax, ay = bx, by
+    distance = math.sqrt(best)
+    return -distance if inside else distance
+
+
+@kernel(
+    signature="float64(float64[:, ::1], float64[:, ::1], float64, float64, float64,"
+    " float64, float64)",
+)
+def body_distance(
+    points: Array,
+    outline: Array,
+    x: float,
+    y: float,
+    yaw: float,
+    radius: float,
+    horizon: float,
+) -> float:
+    """Return the least signed distance (m) from the body to the points, ≤ horizon."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    best = horizon
+    for i in range(points.shape[0]):
+        dx, dy = points[i, 0] - x, points[i, 1] - y
+        near = radius + best
+        if near <= 0.0 or dx * dx + dy * dy >= near * near:
+            continue
+        best = min(best, signed_distance(outline, c * dx + s * dy, c * dy - s * dx))
+    return best
+
+
+@kernel
+def exact_clearance(
+    obstacles: ObstacleGrid,
+    outline: Outline,
+    x: float,
+    y: float,
+    yaw: float,
+    horizon_m: float,
+) -> float:
+    """:func:`exact_clearances` at one pose, for other kernels."""
+    frame = obstacles.frame
+    size = frame.resolution
+    half_cell = 0.5 * size
+    dx, dy = x - frame.x, y - frame.y
+    u = (frame.cos * dx + frame.sin * dy) / size
+    v = (frame.cos * dy - frame.sin * dx) / size
+    reach = (outline.radius_m + horizon_m) / size + 1.0
+    height, width = obstacles.lethal.shape
+    # In this form a pose that is not finite overlaps.
+    if not (-reach <= u <= width + reach and -reach <= v <= height + reach):
+        return -outline.radius_m
+    first_row, last_row = max(0, int(v - reach)), min(height, int(v + reach) + 1)
+    first, last = max(0, int(u - reach)), min(width, int(u + reach) + 1)
+    # Rotation from the grid's axes to the body's.
+    c, s = math.cos(yaw), math.sin(yaw)
+    cos = c * frame.cos + s * frame.sin
+    sin = s * frame.cos - c * frame.sin
+    best = horizon_m + half_cell
+    for row in range(first_row, last_row):
+        line = obstacles.lethal[row]
+        gy = (row + 0.5 - v) * size
+        for column in range(first, last):
+            if not line[column]:
+                continue
+            gx = (column + 0.5 - u) * size
+            near = outline.radius_m + best
+            if near <= 0.0 or gx * gx + gy * gy >= near * near:
+                continue
+            distance = signed_distance(
+                outline.vertices, cos * gx + sin * gy, cos * gy - sin * gx
+            )
+            best = min(best, distance)
+    clearance: float = best - half_cell
+    return clearance
+
+
+@kernel
+def _exact_clearances(
+    obstacles: ObstacleGrid,
+    outline: Outline,
+    poses: Array,
+    horizon_m: float,
+    clearance: Array,
+) -> None:
+    for n in range(poses.shape[0]):
+        clearance[n] = exact_clearance(
+            obstacles, outline, poses[n, 0], poses[n, 1], poses[n, 2], horizon_m
+        )
