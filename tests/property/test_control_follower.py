@@ -15,6 +15,8 @@ from navette.navigation.control import (
     InputAges,
     PathFollower,
 )
+from navette.navigation.control.followers import make_follower
+from navette.navigation.control.params import METHODS
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)
 metres = st.floats(-20, 20)
@@ -26,7 +28,7 @@ inputs = st.builds(
     any_float | st.floats(-2, 2),
     st.builds(InputAges, st.sampled_from([0.0, 0.1, 9.0, math.inf, math.nan])),
 )
-methods = st.sampled_from(["pure_pursuit", "cross_track_pid"])
+methods = st.sampled_from(METHODS)
 points = st.lists(st.tuples(metres, metres), max_size=30)
 
 
@@ -47,7 +49,7 @@ def test_commands_are_finite_and_within_limits(
         max_wheel_speed_mps=0.6,
         max_deviation_m=100.0,
     )
-    follower = PathFollower(params)
+    follower = make_follower(params)
     follower.set_obstacles(as_array(obstacles, 2), 0.05)
     for path in [*paths, []]:
         for step in steps:

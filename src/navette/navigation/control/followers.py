@@ -1,11 +1,53 @@
-"""The controllers by name."""
+"""The controllers by name, and what every controller offers."""
 
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.navigation.control.limits import SpeedCap
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
 from navette.navigation.control.predictive_follower import PredictiveFollower
+from navette.navigation.control.records import FollowerInputs, FollowerOutput
+from navette.navigation.control.states import ControlState
 
 
-def make_follower(params: ControlParams) -> PathFollower | PredictiveFollower:
+class Follower(Protocol):
+    """A controller: a path and obstacles in, a command at every step out."""
+
+    @property
+    def has_path(self) -> bool:
+        """Whether a path is being followed."""
+
+    @property
+    def obstacle_reach_m(self) -> float:
+        """Distance around the robot within which obstacles matter."""
+
+    def reset(self, rest: ControlState = ...) -> None:
+        """Drop the path and stop at once; ``rest`` is the state to report."""
+
+    def set_path(self, poses: NDArray[np.float64]) -> None:
+        """Replace the path by (N, 3) x, y, yaw (m, rad, map); an empty one stops.
+
+        Raises:
+            InvalidValueError: not (N, 3) or not finite; the follower is then reset.
+        """
+
+    def set_obstacles(self, points: NDArray[np.float64], half_cell: float) -> None:
+        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
+
+    def pause(self) -> None:
+        """Continue later from the robot's motion then, not from the last command."""
+
+    def limit_speed(self, limits: SpeedCap) -> None:
+        """Drive no faster than these limits, from the next step on."""
+
+    def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
+        """Return the command for the next ``dt`` seconds."""
+
+
+def make_follower(params: ControlParams) -> Follower:
     """Return the controller of ``params.method``."""
     if params.method == "mppi":
         return PredictiveFollower(params)

@@ -60,6 +60,8 @@ class PredictiveFollower:
         self._rest: ControlState | None = rest
         self._last: VelocityCommand | None = None
         self._clearance = math.inf
+        self._cross_track = self._heading_error = 0.0
+        self._scale = 1.0
         self._mppi.reset()
 
     @property
@@ -123,13 +125,13 @@ class PredictiveFollower:
         if self._rest is not None or stale is not None or not inputs.plausible:
             return self._stop(self._rest or stale or ControlState.STALE_ODOMETRY)
         assert self._path is not None, "a path is being followed"
+        self._scale = 1.0
         self._advance(self._path, inputs.pose)
         if self._arrived(self._path, inputs):
             return self._stop(self._rest or ControlState.REACHED)
-        off = self._cross_track(self._path, inputs.pose)
         last = self._last or VelocityCommand(inputs.speed, inputs.turn_rate)
         last = clamp(last, self._params)
-        if off > self._params.max_deviation_m:
+        if abs(self._cross_track) > self._params.max_deviation_m:
             command = brake(last, self._params, dt)
             return self._emit(command, ControlState.OFF_PATH)
         ahead = advanced(inputs.pose, *last, _DELAY_S)
@@ -140,12 +142,13 @@ class PredictiveFollower:
         return self._keep_clear(inputs.pose, command)
 
     def _keep_clear(self, pose: Pose2, command: VelocityCommand) -> FollowerOutput:
+        """Scale the command to what the obstacles allow, at worst a stop."""
         if not self._params.collision_check:
             return self._emit(command, ControlState.FOLLOWING)
         scale, self._clearance = self._collision.check(pose, command)
         if scale < _BLOCKED_SCALE:
             return self._emit(STOP, ControlState.BLOCKED)
-        scale = min(1.0, scale)
+        self._scale = scale = min(1.0, scale)
         scaled = VelocityCommand(command.speed * scale, command.turn_rate * scale)
         return self._emit(scaled, ControlState.FOLLOWING)
 
@@ -153,17 +156,31 @@ class PredictiveFollower:
         """Move to the pose of the path nearest to the robot; never back."""
         stop = int(np.searchsorted(path.measure, path.measure[self._at] + _SEARCH_M))
         near = slice(self._at, max(stop, self._at + 1))
-        away = np.hypot(path.x[near] - pose.x, path.y[near] - pose.y)
+        dx, dy = pose.x - path.x[near], pose.y - path.y[near]
+        away = np.hypot(dx, dy)
         c, s = math.cos(pose.yaw), math.sin(pose.yaw)
         error = np.arccos(np.clip(c * path.cos[near] + s * path.sin[near], -1, 1))
-        self._at += int(np.argmin(away + METRES_PER_RADIAN * error))
+        best = int(np.argmin(away + METRES_PER_RADIAN * error))
+        self._at += best
+        side = path.cos[self._at] * dy[best] - path.sin[self._at] * dx[best]
+        self._cross_track = math.copysign(float(away[best]), side)
+        turned = path.cos[self._at] * s - path.sin[self._at] * c
+        self._heading_error = math.copysign(float(error[best]), turned)
 
     def _near(self, path: PathWindow) -> PathWindow:
         """Return the stretch that the robot can drive within the horizon."""
         first = max(0, self._at - _BEHIND)
         reach = self._params.cruise_speed_mps * self._mppi.horizon_s + 0.5
         stop = int(np.searchsorted(path.measure, path.measure[self._at] + reach)) + 1
-        return PathWindow(*(column[first:stop] for column in path))
+        near = slice(first, stop)
+        return PathWindow(
+            path.x[near],
+            path.y[near],
+            path.cos[near],
+            path.sin[near],
+            path.measure[near],
+            path.direction[near],
+        )
 
     def _arrived(self, path: PathWindow, inputs: FollowerInputs) -> bool:
         off = math.hypot(path.x[-1] - inputs.pose.x, path.y[-1] - inputs.pose.y)
@@ -173,22 +190,28 @@ class PredictiveFollower:
             return True
         return False
 
-    def _cross_track(self, path: PathWindow, pose: Pose2) -> float:
-        return math.hypot(path.x[self._at] - pose.x, path.y[self._at] - pose.y)
-
     def _stop(self, state: ControlState) -> FollowerOutput:
         self._mppi.reset()
         return self._emit(STOP, state)
 
     def _emit(self, command: VelocityCommand, state: ControlState) -> FollowerOutput:
+        """Pass the command through the gate and store it as the last one."""
         refusal = self._gate.refusal(command)
         if refusal is not None:
             command, state = STOP, refusal
-        self._last = None if state.rests else command
-        left = off = 0.0
-        if self._path is not None and not state.rests:
+        self._last = command if self._rest is None else None
+        left = 0.0
+        if self._path is not None and self._rest is None:
             left = float(self._path.measure[-1] - self._path.measure[self._at])
-        return FollowerOutput(command, state, off, 0.0, left, self._clearance)
+        return FollowerOutput(
+            command,
+            state,
+            self._cross_track,
+            self._heading_error,
+            left,
+            self._clearance,
+            self._scale,
+        )
 
 
 def local_field(

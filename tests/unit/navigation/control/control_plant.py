@@ -14,6 +14,7 @@ from navette.navigation.control import (
     FollowerOutput,
     PathFollower,
 )
+from navette.navigation.control.followers import Follower
 
 SUBSTEPS = 10
 
@@ -73,7 +74,7 @@ class Run:
         return float(np.linalg.norm(p[:, None] - near, axis=2).min(axis=1).max())
 
 
-def run(follower: PathFollower, plant: Plant, seconds: float, dt: float = 0.05) -> Run:
+def run(follower: Follower, plant: Plant, seconds: float, dt: float = 0.05) -> Run:
     """Close the loop until the follower rests or the time is over."""
     record = Run(dt=dt)
     while record.time_s < seconds:

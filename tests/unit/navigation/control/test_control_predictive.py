@@ -1,0 +1,124 @@
+"""The predictive controller drives a lagging robot along paths and around obstacles."""
+
+import math
+
+import numpy as np
+import pytest
+from control_plant import Plant, big_robot, run, tangent_path
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+from navette.navigation.control.limits import SpeedCap
+from navette.navigation.control.predictive_follower import (
+    PredictiveFollower,
+    local_field,
+)
+
+PATHS = {
+    "straight": np.array([[0, 0], [10, 0.0]]),
+    "corner_45": np.array([[0, 0], [5, 0], [10, 5.0]]),
+    "zigzag": np.array([[0, 0], [2, 0], [4, 0.7], [6, 0], [8, 0.7], [10, 0.0]]),
+}
+
+
+def follower(**values: object) -> PredictiveFollower:
+    return PredictiveFollower(big_robot(method="mppi", **values))
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_a_path_is_followed_to_its_end(name: str) -> None:
+    line = PATHS[name]
+    path = tangent_path(line)
+    robot, plant = follower(), Plant(Pose2(*path[0]))
+    robot.set_path(path)
+    result = run(robot, plant, 40.0)
+    assert result.final.state == "reached"
+    assert result.off(line) < 0.6, "free corners are cut, by less than the body"
+    assert math.dist((plant.pose.x, plant.pose.y), line[-1]) < 0.15
+    v = np.array([o.command.speed for o in result.outputs])
+    omega = np.array([o.command.turn_rate for o in result.outputs])
+    assert np.abs(np.diff(omega)).max() <= 0.1 + 1e-9
+    assert np.diff(v).max() <= 0.05 + 1e-9
+    assert result.final.command == (0.0, 0.0)
+
+
+def test_a_path_in_reverse_is_driven_in_reverse() -> None:
+    path = tangent_path(np.array([[0, 0], [3, 0.0]]), reverse=True)
+    robot, plant = follower(), Plant(Pose2(*path[0]))
+    robot.set_path(path)
+    result = run(robot, plant, 40.0)
+    assert result.final.state == "reached"
+    assert max(o.command.speed for o in result.outputs) < 0.05
+
+
+def test_a_turn_in_place_is_driven() -> None:
+    robot, plant = follower(), Plant(Pose2(0, 0, 0))
+    yaws = np.linspace(0, 2.5, 14)
+    robot.set_path(np.stack((0 * yaws, 0 * yaws, yaws), axis=1))
+    run(robot, plant, 30.0)
+    assert plant.pose.yaw == pytest.approx(2.5, abs=0.4)
+    assert math.hypot(plant.pose.x, plant.pose.y) < 0.3
+
+
+def test_an_obstacle_beside_the_path_is_given_room() -> None:
+    """The path passes 0.8 m beside a post; half of the body is 0.7 m wide."""
+    path = tangent_path(np.array([[0, 0], [10, 0.0]]))
+    post = np.array([[5.0, 0.8], [5.0, 0.9], [5.1, 0.8]])
+    robot, plant = follower(), Plant(Pose2(*path[0]))
+    robot.set_obstacles(post, 0.05)
+    robot.set_path(path)
+    result = run(robot, plant, 40.0)
+    assert result.final.state == "reached"
+    abeam = [p.y for p in result.poses if 4.5 < p.x < 5.5]
+    assert max(abeam) < -0.02, "the robot moves away from the post"
+
+
+def test_a_wall_across_the_path_stops_the_robot() -> None:
+    path = tangent_path(np.array([[0, 0], [10, 0.0]]))
+    wall = np.stack((np.full(120, 6.0), np.arange(-6, 6, 0.1)), axis=1)
+    robot, plant = follower(), Plant(Pose2(*path[0]))
+    robot.set_obstacles(wall, 0.05)
+    robot.set_path(path)
+    result = run(robot, plant, 20.0)
+    front = 1.5  # the body's front edge ahead of the axle
+    assert max(p.x for p in result.poses) + front < 5.95 - 0.02
+    assert abs(plant.speed) < 0.1
+
+
+def test_the_same_inputs_give_the_same_commands() -> None:
+    def drive() -> list[tuple[float, float]]:
+        path = tangent_path(PATHS["zigzag"])
+        robot, plant = follower(), Plant(Pose2(*path[0]))
+        robot.set_path(path)
+        return [tuple(o.command) for o in run(robot, plant, 5.0).outputs]
+
+    assert drive() == drive()
+
+
+def test_a_speed_limit_holds() -> None:
+    path = tangent_path(PATHS["straight"])
+    robot, plant = follower(), Plant(Pose2(*path[0]))
+    robot.limit_speed(SpeedCap(0.4, 0.4))
+    robot.set_path(path)
+    result = run(robot, plant, 10.0)
+    assert 0.3 < max(o.command.speed for o in result.outputs) <= 0.4 + 1e-9
+
+
+@pytest.mark.parametrize(
+    "path",
+    [np.zeros((3, 2)), np.array([[0, 0, math.nan]]), np.array([[1e12, 0, 0.0]])],
+)
+def test_an_invalid_path_is_refused_and_the_old_one_dropped(path: np.ndarray) -> None:
+    robot = follower()
+    robot.set_path(tangent_path(PATHS["straight"]))
+    with pytest.raises(InvalidValueError, match="path"):
+        robot.set_path(path)
+    assert not robot.has_path
+
+
+def test_the_local_field_measures_from_cell_centres() -> None:
+    field = local_field(np.array([[1.0, 2.0]]), 0.1, 1.0)
+    row, column = np.unravel_index(field.distance_m.argmin(), field.distance_m.shape)
+    assert field.x + column * 0.1 <= 1.0 <= field.x + (column + 1) * 0.1
+    assert field.y + row * 0.1 <= 2.0 <= field.y + (row + 1) * 0.1
+    assert field.distance_m[row, column + 5] == pytest.approx(0.5)
