@@ -5,12 +5,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.bench.generators import generate
 from navette.bench.losses import lost_seconds
 from navette.bench.observer import TrialObserver
 from navette.bench.trial import Trial, TrialResult, barn_score
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.simulation import Simulation
 from navette.runtime import Stopwatch
+from navette.sim import Scene
 
 
 def run_trial(trial: Trial) -> TrialResult:
@@ -20,8 +22,9 @@ def run_trial(trial: Trial) -> TrialResult:
         NavetteError: invalid world, robot or parameter.
     """
     stopwatch = Stopwatch()
+    scene = scene_of(trial.world)
     options = RunOptions(
-        world=trial.world,
+        world="empty" if scene else trial.world,
         robot=trial.robot,
         start=trial.start,
         goals=trial.goals,
@@ -31,7 +34,7 @@ def run_trial(trial: Trial) -> TrialResult:
         params_files=trial.params_files,
         max_time_s=trial.limit_s,
     )
-    simulation = Simulation(options, parameters=trial.parameters)
+    simulation = Simulation(options, scene=scene, parameters=trial.parameters)
     try:
         observer = TrialObserver(
             trial.goals[-1], trial.reach_m, simulation.stop, context=simulation.context
@@ -41,6 +44,12 @@ def run_trial(trial: Trial) -> TrialResult:
         return _measure(trial, simulation, observer, stopwatch.elapsed_s)
     finally:
         simulation.close()
+
+
+def scene_of(world: str) -> Scene | None:
+    """Return the generated world ``KIND:SEED``; None for a name or a file."""
+    kind, _, seed = world.partition(":")
+    return generate(kind, int(seed)).scene if seed.isdigit() else None
 
 
 def _measure(
@@ -68,6 +77,7 @@ def _measure(
         lost_s=lost_seconds(samples, observer.states, cruise),
         jerk=_roughness(samples),
         wall_s=wall_s,
+        track=np.round(samples[::5, 1:3], 2).tolist(),
     )
 
 

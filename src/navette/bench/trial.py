@@ -17,7 +17,7 @@ class Trial:
     Attributes:
         suite: name of the set of worlds.
         name: name of the trial within the suite.
-        world: name of a built-in world, or a file.
+        world: name of a built-in world, a file, or ``KIND:SEED`` of a generated one.
         robot: built-in name or file; None = the world's own.
         start: pose in the map; None = that of the world.
         goals: goals in the map (m), one after another.
@@ -57,7 +57,8 @@ class TrialResult:
         path_m: length of the driven path.
         min_clearance_m: least distance of the body to an obstacle.
         lost_s: cause → seconds lost against driving at cruise speed.
-        smoothness: mean square of the change of curvature and speed; lower is smoother.
+        jerk: root mean square change of the acceleration (m/s³); lower is smoother.
+        track: every tenth of a second x, y (m, map), for the pictures.
     """
 
     suite: str
@@ -73,6 +74,7 @@ class TrialResult:
     lost_s: dict[str, float]
     jerk: float
     wall_s: float
+    track: list[list[float]] = field(default_factory=list)
 
     @property
     def succeeded(self) -> bool:

@@ -12,6 +12,11 @@ VERBS = (
         settings={"allow_interspersed_args": False},
     ),
     LazyCommand(
+        "bench",
+        "navette.cli.bench:bench",
+        "Drive a set of worlds, and measure success, contacts, time and score.",
+    ),
+    LazyCommand(
         "launch",
         "navette.cli.launch:launch",
         "Run a launch file: all its nodes in this process, or each in its own process.",

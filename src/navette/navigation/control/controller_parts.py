@@ -37,12 +37,17 @@ class ControllerParts:
     def of(cls, params: ControlParams) -> "ControllerParts":
         pursues = params.method == "pure_pursuit"
         steering = PurePursuit(params) if pursues else CrossTrackPid(params)
-        body = MovingBody(
-            footprint=Footprint.from_flat(params.footprint_m),
-            margin_m=params.collision_margin_m,
-            horizon_m=params.slow_clearance_m,
-            reaction_s=params.reaction_s,
-            deceleration_mps2=params.deceleration_mps2,
-            turn_acceleration_radps2=params.turn_acceleration_radps2,
-        )
-        return cls(params, steering, CollisionCheck(body), TurnGain())
+        return cls(params, steering, collision_check(params), TurnGain())
+
+
+def collision_check(params: ControlParams) -> CollisionCheck:
+    """Return the check of commands against the obstacles."""
+    body = MovingBody(
+        footprint=Footprint.from_flat(params.footprint_m),
+        margin_m=params.collision_margin_m,
+        horizon_m=params.slow_clearance_m,
+        reaction_s=params.reaction_s,
+        deceleration_mps2=params.deceleration_mps2,
+        turn_acceleration_radps2=params.turn_acceleration_radps2,
+    )
+    return CollisionCheck(body)

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
-from navette.geometry import Footprint, Pose2
-from navette.navigation.control.collision_check import CollisionCheck
+from navette.geometry import Footprint, Pose2, advanced
 from navette.navigation.control.command_gate import CommandGate
+from navette.navigation.control.controller_parts import collision_check
 from navette.navigation.control.limits import (
     STOP,
     SpeedCap,
@@ -19,7 +19,6 @@ from navette.navigation.control.limits import (
 )
 from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
-from navette.navigation.control.prediction import advanced
 from navette.navigation.control.records import (
     FARTHEST_M,
     FollowerInputs,
@@ -46,7 +45,7 @@ class PredictiveFollower:
     def __init__(self, params: ControlParams) -> None:
         self._params = params
         self._gate = CommandGate(params)
-        self._collision = CollisionCheck(params)
+        self._collision = collision_check(params)
         footprint = Footprint.from_flat(params.footprint_m)
         self._body = body_points(footprint, _BODY_SPACING_M)
         self._mppi = Mppi(params, self._body)

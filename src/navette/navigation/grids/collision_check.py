@@ -21,7 +21,7 @@ _STEP_M = 0.05  # largest motion of a body point between predicted poses
 _SLACK_M = 0.02  # a body within the margin may come this much closer …
 _FLOOR_M = 0.02  # … but not below this
 _MAX_POSES = 400
-_COSTMAP_AGE_S = 0.25  # obstacles are gathered once and used until the next costmap
+_COSTMAP_AGE_S = 0.6  # obstacles are gathered once and used until the next costmap
 
 
 class Verdict(NamedTuple):

@@ -39,6 +39,8 @@ _WORTH_SWITCHING_M = 0.5
 _SET_OUT_M = 0.1
 # Period of looking for a cheaper path, if any cost in the map fell.
 _COMPARE_PERIOD_NS = 2_000_000_000
+# Least time between plans because the controller is blocked.
+_BLOCKED_PERIOD_NS = 1_000_000_000
 # Within this distance of the path's end, every odometry is checked for arrival.
 _NEAR_END_M = 1.0
 
@@ -66,6 +68,8 @@ class Navigator:
         self._published: Poses | None = None
         self._to_publish: Poses | None = None
         self._stepped_ns = self._compared_ns = 0
+        self._blocked = False
+        self._blocked_ns = -_BLOCKED_PERIOD_NS  # of the last plan because of it
         self._set_out = False
         self._paused_ns: int | None = None
 
@@ -141,6 +145,10 @@ class Navigator:
     def is_paused(self) -> bool:
         return self._paused_ns is not None
 
+    def note_blocked(self) -> None:
+        """Note that obstacles stop the controller; the next step plans from there."""
+        self._blocked = True
+
     def take_path(self) -> Poses | None:
         """Return poses (N, 3) to publish, empty = stop; None if unchanged."""
         path, self._to_publish = self._to_publish, None
@@ -205,6 +213,7 @@ class Navigator:
         self._checker.note(progress.covered, now_ns)
         self._set_out |= progress.covered >= _SET_OUT_M
         changed, self._map_changed = self._map_changed, False
+        blocked, self._blocked = self._blocked, False
         if self._checker.no_progress(now_ns):
             if self._checker.exhausted:
                 self._avoided.note_stuck(progress.ahead, self._front_m())
@@ -213,6 +222,9 @@ class Navigator:
             # The path may have been lost: publish it again even if unchanged.
             self._published = None
             self._replan(robot.pose, self._goal)
+        elif blocked and now_ns - self._blocked_ns >= _BLOCKED_PERIOD_NS:
+            self._blocked_ns = now_ns
+            self._replan(robot.pose, self._goal, exact_start=True)
         elif progress.off_path_m > self.params.deviation_m or (
             # Before the robot has started, replanning costs nothing.
             changed and (not self._set_out or not self._still_valid(plan, progress))
@@ -256,12 +268,13 @@ class Navigator:
             return True
         return bool((after < before).any())
 
-    def _replan(self, here: Pose2, goal: Goal) -> None:
+    def _replan(self, here: Pose2, goal: Goal, *, exact_start: bool = False) -> None:
         first = not self.report.plan
         plan = self.planner.plan(here, goal)
         if not plan.outcome.has_path and self._avoided.clear():
             self._apply_map()  # there is no other path
             plan = self.planner.plan(here, goal)
+        plan = self.planner.plan(here, goal, exact_start=exact_start)
         self._cost_seen, self._map_changed = self.planner.grid().cost, False
         if plan.outcome.has_path:
             self._accept(plan)

@@ -45,6 +45,8 @@ from navette.runtime.stage.status import StatusReporter, status_output
 _WATCH_PERIOD_S = 0.1
 _check_pose = input_check(topics.GOAL_POSE.type)
 _check_point = input_check(topics.GOAL_POINT.type)
+# Status of a controller that obstacles stop.
+_BLOCKED = "blocked"
 # Temporary failures; all others end the goal.
 _TEMPORARY = (Outcome.STALE_ODOMETRY,)
 
@@ -85,6 +87,12 @@ class PlannerNode(StageNode):
             topics.COMMANDER,
             "who commands; the goal is paused while it is not navigation",
             callback="on_commander",
+        ),
+        Input.of(
+            topics.CONTROL_STATUS,
+            "whether obstacles stop the controller",
+            callback="on_control_status",
+            checks_contents=False,
         ),
         Input.of(
             topics.PLANNER_GOAL,
@@ -134,6 +142,12 @@ class PlannerNode(StageNode):
         self.create_service(Trigger, "~/cancel", self.on_cancel)
         self.create_service(Trigger, "~/avoid_place", self.on_avoid_place)
         self._report()
+
+    def on_control_status(self, msg: DiagnosticStatus) -> None:
+        """Plan at once from the robot's pose if obstacles stop the controller."""
+        if msg.message == _BLOCKED and self._navigator.has_path:
+            self._navigator.note_blocked()
+            self.on_timer()
 
     def on_map(self, msg: OccupancyGrid) -> None:
         """Store the map; a path that it blocks is replaced at once."""

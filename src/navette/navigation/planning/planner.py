@@ -28,6 +28,8 @@ _CUT_SHARE = 0.5
 # A path longer than _LONG_WAY times the straight line plus _LONG_WAY_M is replaced by
 # one with the tight margin that costs less than _SQUEEZE_SHARE of it.
 _LONG_WAY, _LONG_WAY_M, _SQUEEZE_SHARE = 1.5, 4.0, 0.6
+# Heading error at an exact start above which the path begins with a turn in place.
+_EXACT_START_RAD = 0.1
 # Clearance at the path's end in margins: a robot stops slightly early or late.
 _ROOMY_END = 2.0
 
@@ -113,12 +115,16 @@ class Planner:
             self._grids[margin] = planning_grid(*self._map, self.body, params)
         return self._grids[margin]
 
-    def plan(self, start: Pose2, goal: Goal) -> Plan:
+    def plan(self, start: Pose2, goal: Goal, *, exact_start: bool = False) -> Plan:
         """Plan from ``start`` to ``goal``; without a path the outcome names the reason.
 
         If the body does not fit with its margin, or only on a long detour, the tight
-        margin is tried.
+        margin is tried. With ``exact_start`` the path begins with the heading of the
+        start: a robot between obstacles cannot steer towards another heading.
         """
+        if exact_start:
+            params = replace(self.params, turn_threshold_rad=_EXACT_START_RAD)
+            return self.with_params(params).plan(start, goal)
         refused = self._refusal(start, goal)
         if refused is not None:
             return Plan(refused)

@@ -1,0 +1,89 @@
+"""Run trials on all cores; finished ones are kept in a file and not run again."""
+
+import dataclasses
+import hashlib
+import json
+import multiprocessing
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+from navette.bench.trial import Trial, TrialResult
+from navette.errors import FileFormatError
+
+
+def run_trials(
+    trials: Sequence[Trial], *, jobs: int, results_file: Path | None = None
+) -> Iterator[TrialResult]:
+    """Yield the result of every trial, finished ones of the file first.
+
+    Args:
+        trials: what to run.
+        jobs: number of processes.
+        results_file: one JSON object per line; results are appended as they arrive,
+            so that an interrupted benchmark continues.
+
+    Raises:
+        FileFormatError: the file has other content.
+        NavetteError: invalid world, robot or parameter of a trial.
+    """
+    finished = {} if results_file is None else read_results(results_file)
+    waiting = []
+    for trial in trials:
+        key = trial_key(trial)
+        if key in finished:
+            yield finished[key]
+        else:
+            waiting.append(trial)
+    for trial, result in _run(waiting, jobs):
+        if results_file is not None:
+            row = {"key": trial_key(trial), **dataclasses.asdict(result)}
+            with results_file.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(row) + "\n")
+        yield result
+
+
+def _run(trials: Sequence[Trial], jobs: int) -> Iterator[tuple[Trial, TrialResult]]:
+    from navette.bench.run import run_trial
+
+    if jobs == 1 or len(trials) <= 1:
+        for trial in trials:
+            yield trial, run_trial(trial)
+        return
+    context = multiprocessing.get_context("forkserver")
+    with ProcessPoolExecutor(jobs, context) as pool:
+        running = {pool.submit(run_trial, trial): trial for trial in trials}
+        try:
+            for future in as_completed(running):
+                yield running[future], future.result()
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def trial_key(trial: Trial) -> str:
+    """Return a name of the trial that changes with any of its values."""
+    text = json.dumps(dataclasses.asdict(trial), sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def read_results(file: Path) -> dict[str, TrialResult]:
+    """Return key → result of a results file; empty if there is no file.
+
+    Raises:
+        FileFormatError: a line is not a result; names file and line.
+    """
+    if not file.exists():
+        return {}
+    results = {}
+    with file.open(encoding="utf-8") as lines:
+        for number, line in enumerate(lines, 1):
+            try:
+                row: dict[str, Any] = json.loads(line)
+                key = str(row.pop("key"))
+                results[key] = TrialResult(**row)
+            except (ValueError, KeyError, TypeError) as error:
+                raise FileFormatError(
+                    file, f"not a result of navette bench ({error})", number
+                ) from error
+    return results

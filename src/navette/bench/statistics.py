@@ -1,0 +1,121 @@
+"""Summaries of trials, and comparison of two methods."""
+
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+import numpy as np
+
+from navette.bench.trial import TrialResult
+
+# Resamples of the sign-flip test; its smallest p-value is 1 / _RESAMPLES.
+_RESAMPLES = 10_000
+_Z95 = 1.96
+
+
+@dataclass(frozen=True, kw_only=True)
+class Summary:
+    """Measures over all trials; means unless named otherwise, seconds simulated.
+
+    Attributes:
+        success: share of trials that succeeded; ``success_low`` and ``success_high``
+            are Wilson's 95 % interval.
+        time_s, path_ratio: over the trials that succeeded; the ratio is the driven
+            path to the shortest.
+        outcomes: outcome → number of trials.
+        lost_s: cause → mean seconds lost per trial.
+    """
+
+    trials: int
+    success: float
+    success_low: float
+    success_high: float
+    contacts: int
+    score: float
+    time_s: float
+    path_ratio: float
+    min_clearance_m: float
+    jerk: float
+    outcomes: dict[str, int]
+    lost_s: dict[str, float]
+
+
+def summarize(results: Sequence[TrialResult]) -> Summary:
+    """Return the summary of at least one trial."""
+    reached = [each for each in results if each.succeeded]
+    outcomes: defaultdict[str, int] = defaultdict(int)
+    lost: defaultdict[str, float] = defaultdict(float)
+    for each in results:
+        outcomes[each.outcome] += 1
+        for cause, seconds in each.lost_s.items():
+            lost[cause] += seconds / len(results)
+    low, high = wilson_interval(len(reached), len(results))
+    clearances = [
+        each.min_clearance_m for each in results if each.min_clearance_m is not None
+    ]
+    return Summary(
+        trials=len(results),
+        success=len(reached) / len(results),
+        success_low=low,
+        success_high=high,
+        contacts=sum(each.contacts for each in results),
+        score=fmean(each.score for each in results),
+        time_s=fmean(each.time_s for each in reached) if reached else math.nan,
+        path_ratio=fmean(each.path_m / each.shortest_m for each in reached)
+        if reached
+        else math.nan,
+        min_clearance_m=min(clearances, default=math.nan),
+        jerk=fmean(each.jerk for each in results),
+        outcomes=dict(sorted(outcomes.items())),
+        lost_s=dict(sorted(lost.items(), key=lambda item: -item[1])),
+    )
+
+
+def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
+    """Return the 95 % interval of a share (Wilson 1927)."""
+    share, z2 = successes / trials, _Z95 * _Z95
+    middle = share + z2 / (2 * trials)
+    spread = _Z95 * math.sqrt(share * (1 - share) / trials + z2 / (4 * trials * trials))
+    scale = 1 + z2 / trials
+    return max(0.0, (middle - spread) / scale), min(1.0, (middle + spread) / scale)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Mean difference of a measure, mine − baseline, over paired trials."""
+
+    measure: str
+    pairs: int
+    difference: float
+    p_value: float
+
+
+def compare(
+    baseline: Sequence[TrialResult], mine: Sequence[TrialResult], seed: int = 0
+) -> list[Comparison]:
+    """Compare score and time of the trials that both have, by sign-flip tests.
+
+    Under the null hypothesis the sign of each pair's difference is random (Fisher's
+    paired permutation test, sampled).
+    """
+    before = {(each.suite, each.name, each.seed): each for each in baseline}
+    pairs = [
+        (before[key], each)
+        for each in mine
+        if (key := (each.suite, each.name, each.seed)) in before
+    ]
+    rng = np.random.default_rng(seed)
+    found = []
+    for measure in ("score", "time_s", "path_m"):
+        gaps = np.array(
+            [getattr(new, measure) - getattr(old, measure) for old, new in pairs]
+        )
+        if not len(gaps):
+            break
+        signs = rng.choice((-1.0, 1.0), (_RESAMPLES, len(gaps)))
+        extreme = np.abs((signs * gaps).mean(axis=1)) >= abs(gaps.mean()) - 1e-12
+        p_value = max(1 / _RESAMPLES, float(extreme.mean()))
+        found.append(Comparison(measure, len(gaps), float(gaps.mean()), p_value))
+    return found

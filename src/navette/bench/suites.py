@@ -1,0 +1,102 @@
+"""The sets of trials by name."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+from navette.bench.barn import barn_trials
+from navette.bench.generators import GENERATORS, generate
+from navette.bench.trial import Trial
+from navette.errors import InvalidValueError, UnknownNameError
+from navette.geometry import Pose2
+
+SUITES = ("barn", "course", "random", *GENERATORS)
+"""``barn`` requires its data set; ``random`` is every generator in turn."""
+
+_COURSE_LIMIT_S = 124.0
+_COURSE = ((-6, -12), (6, -12), (12, 0), (6, 12.5), (-12, 11), (-3, 3), (-6, 0))
+# Start (x, y, degrees), goal and limit: hard runs in the reference world.
+_HARD_RUNS = (
+    ("corridor", (1, -12.9, 0), (-6, -12.9), 90),
+    ("round-the-box", (1, -12.9, 180), (1, -7.2), 90),
+    ("box-and-wall", (6, -12.8, 90), (2.8, -6.5), 90),
+    ("into-the-corner", (-12, -9, -110), (-13.2, -13.2), 60),
+    ("out-of-the-corner", (-13.2, -13.2, -135), (-12, -9), 90),
+    ("behind-the-box", (0, 12.6, 0), (4, 6), 90),
+    ("between-boxes", (11.5, 7.5, 180), (6, 4.5), 90),
+    ("up-to-a-face", (-3, 6, 180), (-5.3, 6), 60),
+    ("past-the-box", (-12, -1, 90), (-4.5, 9), 90),
+    ("along-the-wall", (-11, 12.6, 0), (11, 12.6), 90),
+)
+
+
+def suite_trials(
+    suite: str, *, data: Path | None, worlds: tuple[int, ...], robot: str | None
+) -> list[Trial]:
+    """Return the trials of a suite with seed 0.
+
+    Args:
+        suite: one of :data:`SUITES`.
+        data: folder of a data set.
+        worlds: numbers of worlds; empty = all of a data set, 0 … 9 of a generator.
+        robot: instead of the suite's own.
+
+    Raises:
+        UnknownNameError: unknown suite; the text lists the known ones.
+        InvalidValueError: a missing folder or world.
+    """
+    if suite not in SUITES:
+        raise UnknownNameError.of("suite", suite, list(SUITES))
+    if suite == "barn":
+        if data is None:
+            raise InvalidValueError(
+                "suite barn: --data FOLDER with worlds/world_N.world and "
+                "paths/path_N.npy is required; barn-like needs no data"
+            )
+        trials = barn_trials(data, worlds)
+    elif suite == "course":
+        trials = _course_trials()
+    else:
+        kinds = tuple(GENERATORS) if suite == "random" else (suite,)
+        seeds = worlds or tuple(range(10))
+        trials = [_generated(suite, kind, seed) for kind in kinds for seed in seeds]
+    return [replace(t, robot=robot) for t in trials] if robot else trials
+
+
+def _course_trials() -> list[Trial]:
+    runs = [
+        Trial(
+            suite="course",
+            name=name,
+            world="arena",
+            robot="course",
+            start=Pose2(x, y, math.radians(degrees)),
+            goals=(goal,),
+            limit_s=limit_s,
+        )
+        for name, (x, y, degrees), goal, limit_s in _HARD_RUNS
+    ]
+    whole = Trial(
+        suite="course",
+        name="seven-goals",
+        world="arena",
+        robot="course",
+        goals=_COURSE,
+        limit_s=_COURSE_LIMIT_S,
+    )
+    return [*runs, whole]
+
+
+def _generated(suite: str, kind: str, seed: int) -> Trial:
+    world = generate(kind, seed)
+    return Trial(
+        suite=suite,
+        name=f"{kind}-{seed}",
+        world=f"{kind}:{seed}",
+        robot="jackal",
+        start=world.start,
+        goals=(world.goal,),
+        reach_m=1.0,
+        limit_s=max(100.0, 6 * world.shortest_m),
+        shortest_m=world.shortest_m,
+    )
