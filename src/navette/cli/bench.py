@@ -51,7 +51,7 @@ def bench(
             "--results",
             help="keep results in this file; finished trials of it are not run again",
         ),
-    ] = None,  # fmt: skip
+    ] = None,
     compare: Annotated[
         Path | None, Option("--compare", help="results of a baseline, by --results")
     ] = None,
