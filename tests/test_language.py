@@ -98,6 +98,7 @@ DIMENSIONLESS = (
     r".*_rejection_threshold",  # Mahalanobis distances
     r"(process_noise|initial_estimate)_covariance|initial_state",  # mixed units
     r"\w+_probability|belief_limit|occupied_threshold|lidar_dropout",
+    r"mppi_(\w+_weight|temperature|samples|steps)",
     r"(clearance|map_cost)_weight|unknown_cost|reverse_factor|(switch|frontier)_gain",
 )
 

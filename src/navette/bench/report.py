@@ -4,7 +4,7 @@ import html
 import math
 from collections.abc import Sequence
 
-from navette.bench.statistics import Comparison, Summary
+from navette.bench.statistics import MeasureDifference, Summary
 from navette.bench.trial import TrialResult
 
 _WORST = 12
@@ -39,7 +39,7 @@ def report_page(
     title: str,
     summary: Summary,
     results: Sequence[TrialResult],
-    comparisons: Sequence[Comparison],
+    comparisons: Sequence[MeasureDifference],
     replay: Sequence[str],
 ) -> str:
     """Return the page.
@@ -104,7 +104,7 @@ def _losses(summary: Summary) -> str:
     )
 
 
-def _comparison(comparisons: Sequence[Comparison]) -> str:
+def _comparison(comparisons: Sequence[MeasureDifference]) -> str:
     if not comparisons:
         return ""
     rows = "".join(

@@ -83,7 +83,7 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class MeasureDifference:
     """Mean difference of a measure, mine − baseline, over paired trials."""
 
     measure: str
@@ -94,7 +94,7 @@ class Comparison:
 
 def compare(
     baseline: Sequence[TrialResult], mine: Sequence[TrialResult], seed: int = 0
-) -> list[Comparison]:
+) -> list[MeasureDifference]:
     """Compare score and time of the trials that both have, by sign-flip tests.
 
     Under the null hypothesis the sign of each pair's difference is random (Fisher's
@@ -117,5 +117,5 @@ def compare(
         signs = rng.choice((-1.0, 1.0), (_RESAMPLES, len(gaps)))
         extreme = np.abs((signs * gaps).mean(axis=1)) >= abs(gaps.mean()) - 1e-12
         p_value = max(1 / _RESAMPLES, float(extreme.mean()))
-        found.append(Comparison(measure, len(gaps), float(gaps.mean()), p_value))
+        found.append(MeasureDifference(measure, len(gaps), float(gaps.mean()), p_value))
     return found

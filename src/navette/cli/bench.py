@@ -16,7 +16,7 @@ from navette.cli.options import Argument, Option
 from navette.errors import InvalidValueError
 
 if TYPE_CHECKING:
-    from navette.bench.statistics import Comparison, Summary
+    from navette.bench.statistics import MeasureDifference, Summary
     from navette.bench.trial import Trial, TrialResult
 
 
@@ -179,7 +179,7 @@ def _write_report(
     suite: str,
     summary: "Summary",
     results: Sequence["TrialResult"],
-    against: Sequence["Comparison"],
+    against: Sequence["MeasureDifference"],
     trials: Sequence["Trial"],
 ) -> None:
     from navette.bench.report import report_page
@@ -196,16 +196,16 @@ def _write_report(
     sys.stderr.write(f"report: {file}\n")
 
 
-def _print(summary: "Summary", against: Sequence["Comparison"]) -> None:
+def _print(summary: "Summary", against: Sequence["MeasureDifference"]) -> None:
     low, high = 100 * summary.success_low, 100 * summary.success_high
     click.echo(
         f"trials             {summary.trials}\n"
         f"success            {100 * summary.success:.1f} %  "
         f"(95 % interval {low:.1f}–{high:.1f} %)\n"
         f"contacts           {summary.contacts}\n"
-        f"score              {summary.score:.4f}  (at most 0.5; this simulator)\n"
-        f"time               {summary.time_s:.2f} s\n"
-        f"path / shortest    {summary.path_ratio:.2f}\n"
+        f"score              {_known(summary.score, 4)}  (of 0.5; this simulator)\n"
+        f"time               {_known(summary.time_s, 2)} s\n"
+        f"path / shortest    {_known(summary.path_ratio, 2)}\n"
         f"minimum clearance  {summary.min_clearance_m:.3f} m\n"
         f"outcomes           {_listed(summary.outcomes)}\n"
         "lost seconds       "
@@ -218,11 +218,17 @@ def _print(summary: "Summary", against: Sequence["Comparison"]) -> None:
         )
 
 
+def _known(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if math.isfinite(value) else "–"
+
+
 def _listed(outcomes: dict[str, int]) -> str:
     return ", ".join(f"{name} {count}" for name, count in outcomes.items())
 
 
-def _plain(summary: "Summary", against: Sequence["Comparison"]) -> dict[str, Any]:
+def _plain(
+    summary: "Summary", against: Sequence["MeasureDifference"]
+) -> dict[str, Any]:
     """Return the summary for JSON; NaN as null."""
     values = {
         key: None if isinstance(value, float) and math.isnan(value) else value

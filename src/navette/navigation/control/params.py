@@ -154,13 +154,13 @@ class ControlParams(Params):
 
     odometry_timeout_s: float = param(
         0.5,
-        "largest age of odometry; five measured periods stop the robot earlier",
+        "largest age of odometry; 4.5 measured periods stop the robot earlier",
         unit="s",
         above=0.0,
     )
     costmap_timeout_s: float = param(
         1.0,
-        "largest age of the costmap; five measured periods stop the robot earlier",
+        "largest age of the costmap; 4.5 measured periods stop the robot earlier",
         unit="s",
         above=0.0,
     )

@@ -6,8 +6,8 @@ from statistics import median
 
 _INTERVALS = 9
 _FEWEST_INTERVALS = 3
-# A message may be as late as this many periods: four in a row may be lost.
-_PERIODS_ALLOWED = 5.5
+# A message may be as late as this many periods: three in a row may be lost.
+_PERIODS_ALLOWED = 4.5
 
 
 class ArrivalRate:

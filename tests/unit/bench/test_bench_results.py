@@ -1,0 +1,112 @@
+"""Statistics, files of results, and the report."""
+
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from navette.bench.losses import lost_seconds
+from navette.bench.report import report_page
+from navette.bench.runner import read_results, run_trials
+from navette.bench.statistics import compare, summarize, wilson_interval
+from navette.bench.trial import Trial, TrialResult
+from navette.errors import FileFormatError
+
+
+def result(name: str = "a", **values: object) -> TrialResult:
+    given: dict[str, object] = {
+        "suite": "rooms",
+        "name": name,
+        "seed": 0,
+        "outcome": "reached",
+        "time_s": 10.0,
+        "score": 0.5,
+        "contacts": 0,
+        "path_m": 11.0,
+        "shortest_m": 10.0,
+        "min_clearance_m": 0.2,
+        "lost_s": {"following": 1.0},
+        "jerk": 2.0,
+        "wall_s": 0.5,
+        "track": [[0.0, 0.0], [1.0, 2.0]],
+    }
+    return TrialResult(**(given | values))  # type: ignore[arg-type]
+
+
+def test_the_summary_counts_outcomes_and_averages_successes() -> None:
+    summary = summarize(
+        [
+            result("a"),
+            result("b", time_s=20.0, lost_s={"turning": 2.0}, min_clearance_m=0.1),
+            result("c", outcome="contact", score=0.0, contacts=2, time_s=99.0),
+        ]
+    )
+    assert summary.outcomes == {"contact": 1, "reached": 2}
+    assert (summary.success, summary.contacts) == (2 / 3, 2)
+    assert summary.time_s == 15.0
+    assert summary.min_clearance_m == 0.1
+    assert summary.path_ratio == pytest.approx(1.1)
+    assert summary.lost_s == pytest.approx({"following": 2 / 3, "turning": 2 / 3})
+
+
+def test_the_interval_of_a_share_is_wilsons() -> None:
+    # Newcombe 1998, table I: 81 of 263
+    low, high = wilson_interval(81, 263)
+    assert (low, high) == (
+        pytest.approx(0.2553, abs=1e-4),
+        pytest.approx(0.3662, abs=1e-4),
+    )
+    assert wilson_interval(5, 5)[1] == 1.0
+
+
+def test_a_clear_difference_is_significant_and_noise_is_not() -> None:
+    rng = np.random.default_rng(5)
+    before = [result(str(i), time_s=10.0 + rng.normal()) for i in range(30)]
+    same = [dataclasses.replace(r, time_s=r.time_s + rng.normal()) for r in before]
+    faster = [
+        dataclasses.replace(r, time_s=r.time_s - 1 + rng.normal()) for r in before
+    ]
+    p_of = {c.measure: c.p_value for c in compare(before, same)}
+    assert p_of["time_s"] > 0.05
+    [time] = [c for c in compare(before, faster) if c.measure == "time_s"]
+    assert time.difference == pytest.approx(-1, abs=0.5)
+    assert time.p_value < 0.01
+    assert compare(before, [result("other")]) == []
+
+
+def test_lost_seconds_are_those_below_cruise_speed() -> None:
+    time = np.arange(0, 4, 0.5)
+    speed = np.array([0, 0, 1, 1, 2, 2, 2, 2.0])
+    samples = np.stack([time, time, time, speed, 0 * time], axis=1)
+    causes = ["blocked"] * 2 + ["following"] * 6
+    assert lost_seconds(samples, causes, 2.0) == {"blocked": 1.0, "following": 0.5}
+
+
+def test_finished_trials_are_read_and_damage_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "results.jsonl"
+    trial = Trial(suite="empty", name="e", world="empty", robot="jackal",
+                  goals=((2.0, 0.0),), limit_s=20.0, shortest_m=2.0)  # fmt: skip
+    [first] = run_trials([trial], jobs=1, results_file=file)
+    [again] = run_trials([trial], jobs=1, results_file=file)
+    assert first.outcome == "reached"
+    assert again == first, "read, not driven: the time on the clock is the same"
+    [slower] = run_trials(
+        [dataclasses.replace(trial, seed=1)], jobs=1, results_file=file
+    )
+    assert slower.seed == 1
+    assert len(read_results(file)) == 2
+    file.write_text(file.read_text(encoding="utf-8") + "{}\n", encoding="utf-8")
+    with pytest.raises(FileFormatError, match=r"results\.jsonl:3"):
+        read_results(file)
+
+
+def test_the_report_escapes_names_and_refers_to_nothing_outside() -> None:
+    results = [result("<b>"), result("x", outcome="stuck", score=0.0, track=[])]
+    page = report_page("t & u", summarize(results), results, [], ["cmd 1", "cmd 2"])
+    assert "&lt;b&gt;" in page
+    assert "<b>" not in page
+    assert "t &amp; u" in page
+    assert "http" not in page
+    assert math.isclose(page.count("<polyline"), 1)
