@@ -72,14 +72,14 @@ class ControlNode(StageNode):
             topics.ODOMETRY,
             "pose and velocity",
             rate_hz=10.0,
-            timeout_s=0.5,
+            timeout_s=0.41,
             callback="on_odometry",
         ),
         Input.of(
             topics.COSTMAP,
             "obstacles to keep clear of",
             rate_hz=10.0,
-            timeout_s=1.0,
+            timeout_s=0.41,
             callback="on_costmap",
         ),
         Input.of(

@@ -153,14 +153,14 @@ class ControlParams(Params):
     )
 
     odometry_timeout_s: float = param(
-        0.5,
-        "largest age of odometry; 4.5 measured periods stop the robot earlier",
+        0.41,
+        "largest age of odometry; 2.95 measured periods stop the robot earlier",
         unit="s",
         above=0.0,
     )
     costmap_timeout_s: float = param(
-        1.0,
-        "largest age of the costmap; 4.5 measured periods stop the robot earlier",
+        0.41,
+        "largest age of the costmap; 2.95 measured periods stop the robot earlier",
         unit="s",
         above=0.0,
     )

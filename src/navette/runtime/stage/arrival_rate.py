@@ -6,8 +6,9 @@ from statistics import median
 
 _INTERVALS = 9
 _FEWEST_INTERVALS = 3
-# A message may be as late as this many periods: three in a row may be lost.
-_PERIODS_ALLOWED = 4.5
+# A message may be as late as this many periods: one may be lost, and the
+# robot still stops within half a second.
+_PERIODS_ALLOWED = 2.95
 
 
 class ArrivalRate:
