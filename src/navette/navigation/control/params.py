@@ -154,13 +154,13 @@ class ControlParams(Params):
 
     odometry_timeout_s: float = param(
         0.41,
-        "largest age of odometry; 2.95 measured periods stop the robot earlier",
+        "largest age of odometry; 2.45 measured periods stop the robot earlier",
         unit="s",
         above=0.0,
     )
     costmap_timeout_s: float = param(
         0.41,
-        "largest age of the costmap; 2.95 measured periods stop the robot earlier",
+        "largest age of the costmap; 2.45 measured periods stop the robot earlier",
         unit="s",
         above=0.0,
     )

@@ -8,7 +8,7 @@ _INTERVALS = 9
 _FEWEST_INTERVALS = 3
 # A message may be as late as this many periods: one may be lost, and the
 # robot still stops within half a second.
-_PERIODS_ALLOWED = 2.95
+_PERIODS_ALLOWED = 2.45
 
 
 class ArrivalRate:

@@ -176,7 +176,6 @@ def test_the_live_view_has_the_robots_frames(
     seen = []
 
     def run(make: object, profile: ParameterOverrides, **options: object) -> None:
-    def run(make: object, profile: ParameterOverrides, **options: bool) -> None:
         values = profile.for_node("/viewer")
         seen.append({name: override.value for name, override in values.items()})
 
