@@ -12,16 +12,11 @@ _ROUNDING = 1e-6
 
 @dataclass(frozen=True)
 class InputAges:
-    """Seconds since each input last arrived; ``inf``: never.
-
-    The allowed ages follow the measured rates; the parameters limit them.
-    """
+    """Seconds since each input last arrived; ``inf``: never."""
 
     odometry_s: float = 0.0
     costmap_s: float = 0.0
     planner_s: float = 0.0
-    odometry_allowed_s: float = math.inf
-    costmap_allowed_s: float = math.inf
 
 
 FRESH = InputAges()
@@ -43,11 +38,9 @@ class CommandGate:
         Written so that an age of NaN counts as stale.
         """
         params = self.params
-        odometry_s = min(params.odometry_timeout_s, ages.odometry_allowed_s)
-        if not ages.odometry_s <= odometry_s:
+        if not ages.odometry_s <= params.odometry_timeout_s:
             return ControlState.STALE_ODOMETRY
-        costmap_s = min(params.costmap_timeout_s, ages.costmap_allowed_s)
-        if params.collision_check and not ages.costmap_s <= costmap_s:
+        if params.collision_check and not ages.costmap_s <= params.costmap_timeout_s:
             return ControlState.STALE_COSTMAP
         planner_timeout_s = params.planner_timeout_s or math.inf
         if not ages.planner_s <= planner_timeout_s:

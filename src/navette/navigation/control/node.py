@@ -41,7 +41,6 @@ from navette.navigation.control.servers.follow_path import (
 from navette.navigation.control.states import ControlState
 from navette.navigation.grids import ObstacleTracker
 from navette.navigation.servers.lifecycle import StageLifecycle
-from navette.runtime.stage.arrival_rate import ArrivalRate
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import Poses, poses_of
@@ -72,14 +71,14 @@ class ControlNode(StageNode):
             topics.ODOMETRY,
             "pose and velocity",
             rate_hz=10.0,
-            timeout_s=0.41,
+            timeout_s=0.14,
             callback="on_odometry",
         ),
         Input.of(
             topics.COSTMAP,
             "obstacles to keep clear of",
             rate_hz=10.0,
-            timeout_s=0.41,
+            timeout_s=0.19,
             callback="on_costmap",
         ),
         Input.of(
@@ -131,7 +130,6 @@ class ControlNode(StageNode):
         self._method = ""  # … which may name a steering method
         self._collision_action = CollisionMonitorState.DO_NOTHING
         self._obstacles = ObstacleTracker(self._tracker)
-        self._odometry_rate, self._costmap_rate = ArrivalRate(), ArrivalRate()
         self._placed_ns = _NEVER  # arrival of the costmap that the follower uses
         self._odometry: Odometry | None = None  # newest, not used yet
         self._odometry_ns = self._located_ns = _NEVER  # arrivals of newest and used
@@ -187,12 +185,10 @@ class ControlNode(StageNode):
         self._odometry = msg
         self._odometry_ns = self._now_ns
         self._odometry_frame = msg.child_frame_id
-        self._odometry_rate.note(self._now_ns)
 
     def on_costmap(self, msg: OccupancyGrid) -> None:
         """Store the newest costmap until the pose at its stamp is available."""
         self._obstacles.receive(msg, self._now_ns)
-        self._costmap_rate.note(self._now_ns)
 
     def on_planner_status(self, msg: DiagnosticStatus) -> None:
         """Note that the planner is alive; drop the path if the planner restarted."""
@@ -341,8 +337,6 @@ class ControlNode(StageNode):
             costmap_s=self._age_s(self._placed_ns),
             # The client of a goal need not be alive: its path has an end.
             planner_s=0.0 if self._follows_goal else self._age_s(self._planner_ns),
-            odometry_allowed_s=self._odometry_rate.allowed_age_s,
-            costmap_allowed_s=self._costmap_rate.allowed_age_s,
         )
 
     def _age_s(self, arrival_ns: int) -> float:

@@ -153,16 +153,10 @@ class ControlParams(Params):
     )
 
     odometry_timeout_s: float = param(
-        0.41,
-        "largest age of odometry; 2.45 measured periods stop the robot earlier",
-        unit="s",
-        above=0.0,
+        0.14, "age of odometry that stops the robot", unit="s", above=0.0
     )
     costmap_timeout_s: float = param(
-        0.41,
-        "largest age of the costmap; 2.45 measured periods stop the robot earlier",
-        unit="s",
-        above=0.0,
+        0.19, "age of the costmap that stops the robot", unit="s", above=0.0
     )
     planner_timeout_s: float = param(
         2.0, "no /path or /planner/status for this long stops the robot; 0: never",

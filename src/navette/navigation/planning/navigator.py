@@ -270,11 +270,10 @@ class Navigator:
 
     def _replan(self, here: Pose2, goal: Goal, *, exact_start: bool = False) -> None:
         first = not self.report.plan
-        plan = self.planner.plan(here, goal)
+        plan = self.planner.plan(here, goal, exact_start=exact_start)
         if not plan.outcome.has_path and self._avoided.clear():
             self._apply_map()  # there is no other path
-            plan = self.planner.plan(here, goal)
-        plan = self.planner.plan(here, goal, exact_start=exact_start)
+            plan = self.planner.plan(here, goal, exact_start=exact_start)
         self._cost_seen, self._map_changed = self.planner.grid().cost, False
         if plan.outcome.has_path:
             self._accept(plan)

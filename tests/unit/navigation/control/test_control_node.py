@@ -72,7 +72,7 @@ def test_the_robot_stops_within_half_a_second_of_a_lost_input(
     world.graph.run_for(3.0)
     assert world.plant.speed > 0.4
     setattr(world, lost, False)
-    world.graph.run_for(0.5)
+    world.graph.run_for(0.36)
     assert (world.commands.last.linear.x, world.state) == (0.0, state)
     world.graph.run_for(0.6)
     assert world.plant.speed < 0.01
@@ -140,7 +140,7 @@ def test_invalid_costmaps_stop_the_robot_as_missing_ones(
     world.send_path(STRAIGHT)
     world.graph.run_for(3.0)
     world.resolution = resolution
-    world.graph.run_for(0.6)
+    world.graph.run_for(0.36)
     assert (world.commands.last.linear.x, world.state) == (0.0, "stale_costmap")
     world.resolution = 0.1
     assert world.graph.run_until(lambda: world.state == "reached", 15.0)
