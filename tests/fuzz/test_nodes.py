@@ -18,10 +18,10 @@ from navette.msgs.rcl_interfaces.srv import SetParameters
 from navette.runtime import Node, Parameter
 from navette.testing import GraphHarness
 
-_INPUTS = 200
-_REQUESTS = 100
+_INPUTS = 120
+_REQUESTS = 60
 #: Of the services that every node has: parameters, types, action bookkeeping.
-_COMMON_REQUESTS = 20
+_COMMON_REQUESTS = 10
 _COMMON = ("parameter", "get_type_description", "cancel_goal", "get_result", "frames")
 #: No return of a beam is infinite, and goals are passed on to the planner, which
 #: refuses them by a named status.

@@ -14,7 +14,8 @@ TREES = Path(__file__).parent / "trees"
 def tree_path(name: str) -> Path:
     """Return the file of a behaviour tree: one of Navette's by its name, or a path."""
     own = TREES / f"{name}.xml"
-    return own if re.fullmatch(r"\w+", name) and own.is_file() else Path(name)
+    # A longer name is an error of the file system.
+    return own if re.fullmatch(r"\w{1,64}", name) and own.is_file() else Path(name)
 
 
 @dataclass(frozen=True, kw_only=True)
