@@ -20,9 +20,9 @@ from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.nav_msgs.msg import Path as PathMessage
 from navette.msgs.rosgraph_msgs.msg import Clock
 from navette.msgs.std_msgs.msg import String
-from navette.runs import VARIABLE, RunInfo, live_runs
-from navette.runs.choice import NETWORK_VARIABLES
 from navette.runtime import Executor
+from navette.storage.runs import VARIABLE, RunInfo, live_runs
+from navette.storage.runs.choice import NETWORK_VARIABLES
 
 pytestmark = [
     pytest.mark.slow,

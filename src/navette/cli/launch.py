@@ -53,7 +53,7 @@ def launch(
     from navette.ros2.launch import parse_launch_arguments, show_arguments
     from navette.ros2.launch.session import find_launch_file
     from navette.ros2.names import install
-    from navette.runs import pin_run
+    from navette.storage.runs import pin_run
     from navette.supervisor import ForkServer, ProcessManager
 
     install(instead_of_ros=on_navette)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from navette.errors import FileFormatError
 from navette.geometry import Transform3, quaternion_from_yaw
-from navette.map_files import read_cells, read_description
+from navette.geometry.map_files import read_cells, read_description
 from navette.sim.scene import Box, Geometry, Link, Model, Plane, Scene
 
 WALL_HEIGHT_M = 1.0

@@ -105,7 +105,7 @@ def play(
     ↑ and ↓ change the rate, q quits.
     """
     from navette.bags.play import PlayOptions
-    from navette.runs import stay_shared
+    from navette.storage.runs import stay_shared
 
     stay_shared()  # recorded sensor data and commands would disturb a run's robot
     options = PlayOptions(

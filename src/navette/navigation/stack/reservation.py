@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 from navette.errors import InvalidValueError, NetworkError, ParameterError
 from navette.navigation.stack.options import RunOptions
-from navette.runs import PrivateRun, live_runs, named_run, shares
 from navette.runtime import ContextClock
 from navette.runtime.network import (
     IN_PROCESS,
@@ -14,6 +13,7 @@ from navette.runtime.network import (
     environment_domain,
 )
 from navette.runtime.overrides import ParameterOverrides
+from navette.storage.runs import PrivateRun, live_runs, named_run, shares
 from navette.viewer.access import scheme_of
 from navette.viewer.listening import Listeners, listen, port_of, url_of
 from navette.viewer.params import ViewerParams

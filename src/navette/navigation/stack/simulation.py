@@ -14,7 +14,6 @@ from navette.navigation.stack.reservation import reserve
 from navette.navigation.stack.scene import ResolvedScene, resolve_scene
 from navette.navigation.stack.stack import NavigationStack
 from navette.navigation.stack.summary import RunSummary
-from navette.runs import RunInfo
 from navette.runtime import (
     Context,
     ContextClock,
@@ -27,6 +26,7 @@ from navette.runtime import (
 from navette.runtime.overrides import ParameterOverrides
 from navette.sim import Scene
 from navette.sim.node import SimNode
+from navette.storage.runs import RunInfo
 from navette.transports import EndpointKind
 from navette.viewer.node import ViewerNode
 from navette.viewer.params import ViewerParams

@@ -8,7 +8,11 @@ import numpy as np
 import pytest
 
 from navette.geometry import Pose2
-from navette.map_files import OccupancyMap, read_occupancy_map, write_occupancy_map
+from navette.geometry.map_files import (
+    OccupancyMap,
+    read_occupancy_map,
+    write_occupancy_map,
+)
 from navette.msgs.nav2_msgs.srv import LoadMap, SaveMap
 from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry
 from navette.msgs.nav_msgs.srv import GetMap

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.errors import FileFormatError, InvalidValueError
-from navette.map_files import (
+from navette.geometry.map_files import (
     OccupancyMap,
     read_cells,
     read_description,

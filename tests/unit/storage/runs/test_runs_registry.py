@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from navette.errors import FileFormatError, InvalidValueError, NetworkError
-from navette.runs import PrivateRun, RunInfo, live_runs
-from navette.runs.entry import MAX_BYTES, PROTOCOL, is_run_name
-from navette.runs.folder import make_private
+from navette.storage.runs import PrivateRun, RunInfo, live_runs
+from navette.storage.runs.entry import MAX_BYTES, PROTOCOL, is_run_name
+from navette.storage.runs.folder import make_private
 
 CLAIM = """
 import sys
-from navette.runs import PrivateRun
+from navette.storage.runs import PrivateRun
 run = PrivateRun.claim("demo", world="hall")
 run.publish("")
 print(run.info.name, flush=True)

@@ -7,7 +7,7 @@ import pytest
 
 from navette import __version__
 from navette.errors import InvalidValueError, NetworkError
-from navette.runs import PrivateRun, chosen_run, pin_run, shares, stay_shared
+from navette.storage.runs import PrivateRun, chosen_run, pin_run, shares, stay_shared
 
 
 def test_the_only_run_is_joined_with_nothing_prepared(demo: PrivateRun) -> None:

@@ -7,10 +7,10 @@ from itertools import count
 from pathlib import Path
 
 from navette.errors import FileFormatError, InvalidValueError, NetworkError
-from navette.runs.entry import MAX_TEXT, RunInfo, check_run_name
-from navette.runs.folder import make_private, runtime_folder
-from navette.runs.locks import FileLock, is_locked
-from navette.runs.registry import ENTRY, LOCK, RUNS, live_runs
+from navette.storage.runs.entry import MAX_TEXT, RunInfo, check_run_name
+from navette.storage.runs.folder import make_private, runtime_folder
+from navette.storage.runs.locks import FileLock, is_locked
+from navette.storage.runs.registry import ENTRY, LOCK, RUNS, live_runs
 
 # "/runs/", a name of 24 bytes, "/", and a socket of 13 bytes.
 _LONGEST_PATH = 44

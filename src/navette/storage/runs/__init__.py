@@ -1,6 +1,6 @@
 """Private runs of this user: found by the user's other programs, by no one else."""
 
-from navette.runs.choice import (
+from navette.storage.runs.choice import (
     SHARED,
     VARIABLE,
     chosen_run,
@@ -9,9 +9,9 @@ from navette.runs.choice import (
     shares,
     stay_shared,
 )
-from navette.runs.entry import RunInfo
-from navette.runs.private_run import PrivateRun
-from navette.runs.registry import live_runs
+from navette.storage.runs.entry import RunInfo
+from navette.storage.runs.private_run import PrivateRun
+from navette.storage.runs.registry import live_runs
 
 __all__ = [
     "PrivateRun",

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 from navette import __version__
 from navette.errors import NetworkError
-from navette.runs.entry import PROTOCOL, RunInfo, check_run_name
-from navette.runs.registry import live_runs
+from navette.storage.runs.entry import PROTOCOL, RunInfo, check_run_name
+from navette.storage.runs.registry import live_runs
 
 _log = logging.getLogger(__name__)
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from navette.errors import InvalidValueError
-from navette.map_files.description import MAP_MODES
-from navette.map_files.reader import OccupancyMap
+from navette.geometry.map_files.description import MAP_MODES
+from navette.geometry.map_files.reader import OccupancyMap
 
 IMAGE_FORMATS = {"pgm": "PPM", "png": "PNG", "bmp": "BMP"}
 """Formats of the image, and their names in Pillow."""

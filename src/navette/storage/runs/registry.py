@@ -17,9 +17,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from navette.errors import FileFormatError
-from navette.runs.entry import MAX_BYTES, RunInfo, is_run_name
-from navette.runs.folder import access_problem, existing_folders
-from navette.runs.locks import is_locked
+from navette.storage.runs.entry import MAX_BYTES, RunInfo, is_run_name
+from navette.storage.runs.folder import access_problem, existing_folders
+from navette.storage.runs.locks import is_locked
 
 _log = logging.getLogger(__name__)
 

@@ -7,8 +7,8 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from navette.runs import PrivateRun
-from navette.runs.choice import NETWORK_VARIABLES, VARIABLE
+from navette.storage.runs import PrivateRun
+from navette.storage.runs.choice import NETWORK_VARIABLES, VARIABLE
 
 
 @pytest.fixture(autouse=True)

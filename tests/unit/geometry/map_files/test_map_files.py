@@ -9,7 +9,11 @@ from PIL import Image
 
 from navette.errors import FileFormatError, InvalidValueError
 from navette.geometry import Pose2
-from navette.map_files import OccupancyMap, read_occupancy_map, write_occupancy_map
+from navette.geometry.map_files import (
+    OccupancyMap,
+    read_occupancy_map,
+    write_occupancy_map,
+)
 
 ORIGIN = Pose2(-3.5, 2.25, 0.5)
 

@@ -9,7 +9,7 @@ from PIL import Image, UnidentifiedImageError
 
 from navette.errors import FileFormatError
 from navette.geometry import Pose2
-from navette.map_files.description import MapDescription, read_description
+from navette.geometry.map_files.description import MapDescription, read_description
 
 MAX_PIXELS = 16_000_000
 _UNKNOWN, _FREE, _OCCUPIED = -1, 0, 100
