@@ -161,9 +161,9 @@ class RecorderNode(StageNode):
                 key = topic, type_name
                 is_new = key not in self._recorded or topic in self.undefined
                 if is_new and selection.takes(topic, type_name):
-                    self._record_topic(topic, type_name)
+                    self._record_topic(topic, type_name, type_names)
 
-    def _record_topic(self, topic: str, type_name: str) -> None:
+    def _record_topic(self, topic: str, type_name: str, all_types: list[str]) -> None:
         is_first = (topic, type_name) not in self._recorded
         self._recorded.add((topic, type_name))
         try:
@@ -185,6 +185,7 @@ class RecorderNode(StageNode):
             _QOS,
             raw=True,  # messages of other processes are serialized already
             shared=True,
+            other_types=[each for each in all_types if each != type_name],
         )
 
     def _announce(self, recorded: RecordedTopic) -> None:

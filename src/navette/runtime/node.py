@@ -269,12 +269,12 @@ class Node(GraphQueries, NodeParameters):
         event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[Any]] = Publisher,
-        other_types: Sequence[type] = (),
+        other_types: Sequence[type | str] = (),
     ) -> Publisher[MsgT]:
         """Create a publisher on ``topic`` (relative, private or global; remapped).
 
         Args:
-            other_types: further types that the topic may have.
+            other_types: further types that the topic may have, or their names.
         """
         return self._node_topics.create_publisher(
             msg_type,
@@ -299,7 +299,7 @@ class Node(GraphQueries, NodeParameters):
         raw: bool = False,
         content_filter_options: ContentFilterOptions | None = None,
         shared: bool = False,
-        other_types: Sequence[type] = (),
+        other_types: Sequence[type | str] = (),
         ignore_local_publications: bool = False,
     ) -> Subscription[MsgT]:
         """Call ``callback(msg)`` or ``callback(msg, info)`` for every sample.

@@ -48,7 +48,7 @@ class NodeTopics:
         event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher[Any]] = Publisher,
-        other_types: Sequence[type] = (),
+        other_types: Sequence[type | str] = (),
     ) -> Publisher[MsgT]:
         kind = EndpointKind.PUBLISHER
         qos = self._profile(kind, topic, qos_profile, qos_overriding_options)
@@ -82,7 +82,7 @@ class NodeTopics:
         raw: bool = False,
         content_filter_options: ContentFilterOptions | None = None,
         shared: bool = False,
-        other_types: Sequence[type] = (),
+        other_types: Sequence[type | str] = (),
         ignore_local_publications: bool = False,
     ) -> Subscription[MsgT]:
         if not callable(callback):
@@ -139,9 +139,12 @@ class NodeTopics:
         msg_type: type,
         topic: str,
         qos: QoSProfile,
-        other_types: Sequence[type],
+        other_types: Sequence[type | str],
     ) -> Endpoint:
         type_name = interface_name(msg_type, "msg")
-        others = tuple(interface_name(other, "msg") for other in other_types)
+        others = tuple(
+            other if isinstance(other, str) else interface_name(other, "msg")
+            for other in other_types
+        )
         endpoint = self._entities.new_endpoint(kind, type_name, topic, qos)
         return replace(endpoint, other_types=others) if others else endpoint

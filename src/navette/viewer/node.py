@@ -233,6 +233,7 @@ class ViewerNode(StageNode):
                 partial(self._forward, watch),
                 qos_profile_best_available,  # latched messages too
                 raw=True,  # forwarded without decoding
+                other_types=self.context.graph.topics().get(channel.topic, ()),
             )
         except NavetteError as error:  # the topic changed after it was advertised
             self.get_logger().warning(f"cannot watch {channel.topic}: {error}")

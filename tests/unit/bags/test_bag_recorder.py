@@ -12,13 +12,14 @@ from navette.bags.node import RecorderNode
 from navette.errors import FileFormatError, ParameterError
 from navette.msgs.nav_msgs.msg import OccupancyGrid
 from navette.msgs.sensor_msgs.msg import Image, LaserScan
-from navette.msgs.std_msgs.msg import String
+from navette.msgs.std_msgs.msg import Float64, String
 from navette.runtime import Context, Executor, Node, Parameter, VirtualClock
 from navette.runtime.qos import (
     QoSDurabilityPolicy,
     QoSProfile,
     qos_profile_sensor_data,
 )
+from navette.testing import GraphHarness
 
 SECOND = 1_000_000_000
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
@@ -201,3 +202,25 @@ def test_closing_twice_has_no_effect(tmp_path: Path) -> None:
     run.go(1)
     run.end()
     assert run.recorder.error is None
+
+
+def test_a_topic_with_two_types_is_recorded(tmp_path: Path) -> None:
+    """As /cmd_vel: subscriptions for Twist and TwistStamped in another process."""
+    with GraphHarness() as graph:
+        kinds = (String, Float64)
+        for kind, other in (kinds, kinds[::-1]):
+            graph.node.create_subscription(
+                kind, "t", lambda msg: None, 10, other_types=[other]
+            )
+        recorder = graph.add(RecorderNode(tmp_path / "b.mcap", context=graph.context))
+        graph.run_for(0.1)
+        for publisher in list(graph.node.subscriptions):
+            publisher.destroy()  # then only the recorder's own subscriptions remain
+        graph.run_for(0.1)
+        graph.publish("t", Float64(data=1.0))
+        graph.run_for(0.1)
+        recorder.destroy_node()
+    with open_bag(tmp_path / "b.mcap") as bag:
+        assert [m.topic.type_name for m in bag.messages(["/t"])] == [
+            "std_msgs/msg/Float64"
+        ]
