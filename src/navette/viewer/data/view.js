@@ -1,7 +1,10 @@
 // Top-down view: a canvas that pans, zooms and follows the robot, with a layer per topic.
 "use strict";
 
+const REST_FACTOR = 2, LONGEST_REST_MS = 250;
+
 const view = {
+  rest: 0, // ms until the next frame may begin
   canvas: null, fixed: null, dirty: false,
   centre: [0, 0], scale: 30, // pixels per metre
   follows: true,
@@ -73,7 +76,12 @@ const view = {
   invalidate() {
     if (this.dirty || !this.canvas) return;
     this.dirty = true;
-    requestAnimationFrame(() => { this.dirty = false; drawView(this); });
+    // Rest after each frame: where drawing is slow, a key must not wait behind frames.
+    setTimeout(() => requestAnimationFrame((begin) => {
+      this.dirty = false;
+      drawView(this);
+      this.rest = Math.min(REST_FACTOR * (performance.now() - begin), LONGEST_REST_MS);
+    }), this.rest);
   },
 
   /** Pixels of the canvas → metres in the fixed frame. */
