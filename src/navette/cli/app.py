@@ -28,7 +28,7 @@ from navette.cli.completion import discard_stderr, is_completing
 from navette.cli.ending import end_with
 from navette.cli.options import Argument, Option
 from navette.cli.stderr import print_error
-from navette.cli.verbs import VERBS
+from navette.cli.verbs import DRIVE, VERBS
 from navette.errors import NavetteError
 
 if TYPE_CHECKING:
@@ -101,8 +101,8 @@ Tree = Annotated[
     Path | None,
     Option(
         metavar="FILE.xml",
-        help="Behaviour tree of a goal, in BehaviorTree.CPP's or Nav2's words; default:"
-        " Navette's (navette tree --default).",
+        help="Behaviour tree that drives to a goal, in the XML of BehaviorTree.CPP and"
+        " Nav2. Default: Navette's own (navette tree --default).",
     ),
 ]
 MaxTime = Annotated[
@@ -118,30 +118,32 @@ Host = Annotated[
     str,
     Option(
         metavar="ADDRESS",
-        help="Address of the live view; 0.0.0.0 lets other machines connect, with the"
-        " keys of NAVETTE_SECURITY and a token.",
+        help="Address of the live view. 0.0.0.0 lets other machines connect; they need"
+        " the token, and the keys of NAVETTE_SECURITY encrypt the connection.",
     ),
 ]
 Unencrypted = Annotated[
     bool,
-    Option("--unencrypted", help="Let other machines connect without keys."),
+    Option(
+        "--unencrypted", help="With --host: connect other machines without encryption."
+    ),
 ]
 Origins = Annotated[
     list[str] | None,
     Option(
         "--origin",
         metavar="ORIGIN",
-        help="Web pages of this origin may connect too, such as file:// for the"
-        " Foxglove desktop app. Repeat for several.",
+        help="Also accept web pages of this origin, such as file:// for the Foxglove"
+        " desktop app. Repeat for several.",
     ),
 ]
 Share = Annotated[
     bool,
     Option(
         "--share",
-        help="Share the network with all programs of this machine (or as"
-        " ROS_DOMAIN_ID and NAVETTE_ROUTER select it). Default: only your own programs"
-        " can join.",
+        help="Open the run to all programs of this machine, or of the network that"
+        " ROS_DOMAIN_ID and NAVETTE_ROUTER select. Default: only your own programs can"
+        " join.",
     ),
 ]
 
@@ -157,15 +159,15 @@ Share = Annotated[
 def app(
     domain_id: Annotated[
         int | None,
-        Option(min=0, max=232, metavar="N", help="Use this domain, not ROS_DOMAIN_ID."),
+        Option(min=0, max=232, metavar="N", help="Domain instead of ROS_DOMAIN_ID."),
     ] = None,
     run: Annotated[
         str | None,
         Option(
             metavar="NAME",
-            help="Join this run; can also follow the verb. Default: the only one"
-            " (navette ps lists them). shared: join none. With demo, sim and explore:"
-            " name of the new run.",
+            help="Use this running robot (navette ps lists them); default: the only"
+            " one. With demo, sim and explore: name of the new run. shared: the network"
+            " of all programs instead. Can also follow the verb.",
             complete=complete_runs,
         ),
     ] = None,
@@ -177,7 +179,7 @@ def app(
         os.environ["NAVETTE_RUN"] = run
 
 
-@app.command()
+@app.command(panel=DRIVE)
 def demo(
     robot: Robot = None,
     tree: Tree = None,
@@ -213,7 +215,7 @@ def demo(
     _run(options, as_json=False)
 
 
-@app.command()
+@app.command(panel=DRIVE)
 def sim(
     world: World = "arena",
     robot: Robot = None,

@@ -21,52 +21,83 @@ if TYPE_CHECKING:
 
 
 def bench(
-    suite: Annotated[str, Argument(help="barn, course, random, barn-like, forest, …")],
+    suite: Annotated[
+        str,
+        Argument(
+            help="BARN's 300 worlds (barn, with --data), generated worlds (random,"
+            " barn-like, forest, …) or the course."
+        ),
+    ],
     data: Annotated[
-        Path | None, Option("--data", help="folder of a data set such as BARN")
+        Path | None, Option("--data", help="Folder of the data set, such as BARN's.")
     ] = None,
     worlds: Annotated[
-        str, Option("--worlds", metavar="N,…", help="numbers (default: all)")
+        str,
+        Option(
+            "--worlds",
+            metavar="N,…",
+            help="Worlds by number, as 1,4,7-9. Default: all; of generated ones 0-9.",
+        ),
     ] = "",
-    robot: Annotated[str | None, Option("--robot", help="another robot")] = None,
+    robot: Annotated[
+        str | None, Option("--robot", help="Robot to use instead of the suite's.")
+    ] = None,
     controller: Annotated[
-        str | None, Option("--controller", help="method of the controller")
+        str | None,
+        Option("--controller", help="Method of the controller, such as mppi."),
     ] = None,
     planner: Annotated[
-        str | None, Option("--planner", help="method of the planner")
+        str | None, Option("--planner", help="Method of the planner.")
     ] = None,
     param: Annotated[
         list[str] | None,
-        Option("-p", "--param", metavar="NODE.NAME=VALUE", help="a parameter"),
+        Option(
+            "-p",
+            "--param",
+            metavar="NODE.NAME=VALUE",
+            help="Set a parameter. Repeat for several.",
+        ),
     ] = None,
     seeds: Annotated[
-        str, Option("--seeds", metavar="N,…", help="seeds of the noise")
+        str,
+        Option(
+            "--seeds",
+            metavar="N,…",
+            help="Seeds of the noise; every world is driven once per seed.",
+        ),
     ] = "0",
     jobs: Annotated[
-        int, Option("--jobs", help="processes (default: one per core)", min=1)
+        int,
+        Option("--jobs", help="Trials at the same time. Default: one per core.", min=1),
     ] = os.cpu_count() or 1,
     results: Annotated[
         Path | None,
         Option(
             "--results",
-            help="keep results in this file; finished trials of it are not run again",
+            help="Keep results in this file; trials that it contains are not repeated.",
         ),
     ] = None,
     compare: Annotated[
-        Path | None, Option("--compare", help="results of a baseline, by --results")
+        Path | None,
+        Option("--compare", help="Compare with the results in this file of --results."),
     ] = None,
     report: Annotated[
-        Path | None, Option("--report", help="write a report as HTML")
+        Path | None, Option("--report", help="Write a report as HTML.")
     ] = None,
     as_json: Annotated[
-        bool, Option("--json", help="print the summary as JSON")
+        bool, Option("--json", help="Print the summary as JSON.")
     ] = False,
     min_success: Annotated[
         float,
-        Option("--min-success", help="exit with 1 below this share", min=0, max=1),
+        Option(
+            "--min-success",
+            help="Exit with 1 if a smaller share of the trials succeeds.",
+            min=0,
+            max=1,
+        ),
     ] = 0.0,
 ) -> None:
-    """Drive a set of worlds, and measure success, contacts, time and score."""
+    """Drive a set of worlds and measure success, contacts, time and score."""
     from navette.bench.runner import read_results, run_trials
     from navette.bench.statistics import compare as compared
     from navette.bench.statistics import summarize

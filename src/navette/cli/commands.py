@@ -12,7 +12,11 @@ from navette.cli.options import call_arguments, click_parameters
 
 
 class AnnotatedCommand(click.Command):
-    """A command whose parameters are the annotated parameters of its function."""
+    """A command whose parameters are the annotated parameters of its function.
+
+    Args:
+        panel: heading of the command in its group's help.
+    """
 
     def __init__(
         self,
@@ -20,6 +24,7 @@ class AnnotatedCommand(click.Command):
         *,
         callback: Callable[..., Any] | None = None,
         params: list[click.Parameter] | None = None,
+        panel: str = "Commands",
         **attributes: Any,
     ) -> None:
         if callback is not None:
@@ -30,6 +35,7 @@ class AnnotatedCommand(click.Command):
                 return function(**call_arguments(function, values))
 
         super().__init__(name, callback=callback, params=params, **attributes)
+        self.panel = panel
 
     def get_help(self, ctx: click.Context) -> str:
         from navette.cli.help_page import help_page
@@ -54,6 +60,7 @@ class LazyCommand(click.Command):
     Args:
         target: ``module:attribute`` of the function, command or group.
         help: first line of its help.
+        panel: heading of the command in its group's help.
         read_only: Ctrl-C may end the process at any time until the verb connects.
         settings: click's context settings.
     """
@@ -64,10 +71,12 @@ class LazyCommand(click.Command):
         target: str,
         help: str,
         *,
+        panel: str,
         read_only: bool = False,
         settings: dict[str, Any] | None = None,
     ) -> None:
         super().__init__(name, help=help, context_settings=settings)
+        self.panel = panel
         self.read_only = read_only
         self._target = target
 

@@ -43,11 +43,12 @@ def _panels(
             panel = param.panel if isinstance(param, PanelOption) else "Options"
             panels.setdefault(panel, []).append(_option_row(param, ctx))
     if isinstance(command, click.Group):
-        commands = command.commands.items()
-        panels["Commands"] = [
-            [Text(name, style="bold cyan"), each.get_short_help_str(limit=200)]
-            for name, each in commands
-        ]
+        width = max(map(len, command.commands), default=0)
+        for name, each in command.commands.items():
+            title = getattr(each, "panel", "Commands")
+            label = Text(name.ljust(width), style="bold cyan")
+            row: list[RenderableType] = [label, each.get_short_help_str(limit=200)]
+            panels.setdefault(title, []).append(row)
     return {title: rows for title, rows in panels.items() if rows}
 
 

@@ -171,9 +171,10 @@ def ps(
         bool, Option("--json", help="Print a JSON list of processes.")
     ] = False,
 ) -> None:
-    """List the processes of services: state, pid, time, CPU, memory, restarts.
+    """List running robots, and the processes of services.
 
-    And the runs that navette demo and navette sim started.
+    Robots are the runs of navette demo, sim and explore. Each process of the services
+    of navette up has its state, pid, time, CPU, memory and restarts.
     """
     from navette.cli.runs import run_record, show_runs
     from navette.cli.up.view import as_record, show_processes
