@@ -83,7 +83,8 @@ class PathLayer {
 
 /** geometry_msgs/PoseStamped, PoseWithCovarianceStamped and PoseArray as arrows. */
 class PosesLayer {
-  constructor() { this.order = 3; this.frame = ""; this.poses = []; }
+  // The marks of the robot and of the goal show these already.
+  constructor(topic) { this.isQuiet = ["/amcl_pose", "/planner/goal_pose"].includes(topic); this.order = 3; this.frame = ""; this.poses = []; }
   read(reader) { this.frame = reader.header(); this.poses = this.readPoses(reader); }
   readPoses(reader) { return [readTransform(reader)]; }
   draw(context, pose, pixel, ink) {
@@ -101,7 +102,7 @@ class PoseArrayLayer extends PosesLayer {
 
 /** geometry_msgs/PolygonStamped as an outline. */
 class PolygonLayer {
-  constructor() { this.order = 3; this.frame = ""; this.points = []; }
+  constructor(topic) { this.isQuiet = topic.endsWith("/published_footprint"); this.order = 3; this.frame = ""; this.points = []; }
   read(reader) {
     this.frame = reader.header();
     this.points = Array.from({ length: reader.u32() }, () => [reader.f32(), reader.f32(), reader.f32()]);

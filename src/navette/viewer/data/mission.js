@@ -3,6 +3,10 @@
 
 const SAME_GOAL_M = 0.06;  // the status gives three decimals, the page sends more
 
+const STATUSES = { "*": "running", "✓": "succeeded", "✕": "failed", "-": "idle" };
+const STATUS_SIGNS = { running: "●", succeeded: "✓", failed: "✕", idle: "○" };
+const TREE_KINDS = { "{-}": "sequence", "[-]": "sequence", "{o}": "fallback", "[o]": "fallback", "/_/": "parallel", "-^-": "decorator" };
+
 const mission = {
   goal: null,       // newest goal on a topic, [x, y]
   sent: null,       // goal sent from this page, until the planner has reported on it
@@ -17,9 +21,13 @@ const mission = {
   readTree(reader) {
     this.parts.card.hidden = false;
     const lines = reader.text().split("\n").map((line) => {
-      const row = document.createElement("div");
-      row.textContent = line;
-      row.className = line.includes("[*]") ? "running" : line.includes("[✓]") ? "succeeded" : line.includes("[✕]") ? "failed" : "idle";
+      const row = document.createElement("li"), node = treeNode(line);
+      if (!node) { row.textContent = line; return row; }
+      row.className = node.status;
+      row.style.paddingLeft = `${1.35 * node.depth}rem`;
+      const parts = [["i", STATUS_SIGNS[node.status]], ["span", node.name], ["small", node.note]];
+      row.append(...parts.map(([tag, text]) => Object.assign(document.createElement(tag), { textContent: text })));
+      row.firstChild.ariaLabel = node.status;
       return row;
     });
     this.parts.tree.replaceChildren(...lines);
@@ -42,3 +50,12 @@ const mission = {
     return result && result !== "reached" && result !== "canceled" ? result : null;
   },
 };
+
+/** "    {o} Ladder [*] -- note" → depth, status, name and note; null for other text. */
+function treeNode(line) {
+  const found = /^( *)(\S+) (.*) \[([*✓✕-])\](?: -- (.*))?$/u.exec(line);
+  if (!found) return null;
+  const [, indent, sign, name, mark, message] = found;
+  const note = [TREE_KINDS[sign], message].filter(Boolean).join(" · ");
+  return { depth: indent.length / 4, status: STATUSES[mark], name, note };
+}

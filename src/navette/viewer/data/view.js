@@ -38,6 +38,7 @@ const view = {
 
   add(topic, layer) {
     if (layer.isQuiet && !this.known.has(topic)) this.hidden.add(topic); // the user decides afterwards
+    if (topic === "/path" && !this.known.has(topic)) this.hidden.add("/plan"); // the same under Nav2's name
     this.known.add(topic);
     this.layers.set(topic, layer);
     const order = (l) => l.order;
