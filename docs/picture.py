@@ -27,7 +27,7 @@ from navette.navigation.stack import RunOptions, demo_goals
 from navette.navigation.stack.simulation import Simulation
 
 PICTURE = Path(__file__).parent / "images" / "drive.png"
-MOMENT_S = 41.0
+MOMENT_S = 39.5
 SEED = 1
 VIEW = View(size=(1600, 1000), origin=(1100, 500), scale=46)
 LEFT = 60  # left edge of the text, pixels

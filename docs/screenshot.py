@@ -18,7 +18,7 @@ from websockets.sync.client import ClientConnection, connect
 
 PICTURE = Path(__file__).parent / "images" / "page.png"
 MOMENT = "0:42"  # as the page shows the robot's time
-WIDTH, HEIGHT, SCALE = 1060, 851, 1.5
+WIDTH, HEIGHT, SCALE = 1240, 886, 1.5
 SHOW_ALL = """
 [...document.querySelectorAll('button')]
   .find(button => button.textContent.trim() === 'Whole map').click()
