@@ -15,6 +15,7 @@ from navette.runtime.exceptions import RCLError
 from navette.runtime.graph import Graph
 from navette.runtime.handles import Handle
 from navette.runtime.lockstep import LockStepClock, clock_of_environment
+from navette.runtime.input_check import SharedInputChecks
 from navette.runtime.log import LogHub, StdlibHandler
 from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.log_sinks import ConsoleSink, FileSink
@@ -75,6 +76,7 @@ class Context:
         self.overrides = ParameterOverrides()
         self.log = LogHub(lambda: self.loop.clock.now_ns)
         self.arguments = RosArguments()
+        self.input_checks = SharedInputChecks()
         #: The nodes, oldest first (typed Any because Node imports this module).
         self.nodes: list[Any] = []
         #: The executor of module-level ``spin``; created on demand.

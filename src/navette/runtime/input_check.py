@@ -49,6 +49,36 @@ def input_check(type_name: str, *, contents: bool = True) -> Check:
     return check
 
 
+class SharedInputChecks:
+    """The checks of the messages that the nodes of a context share: each one once.
+
+    A shared message arrives at its receivers one after another, and none of them may
+    change it: what has passed the check for one of them passes it for the others.
+    """
+
+    def __init__(self) -> None:
+        self._checks: dict[tuple[str, bool], Check] = {}
+
+    def of(self, type_name: str, *, contents: bool = True) -> Check:
+        """As :func:`input_check`; skips the message that passed it last."""
+        key = type_name, contents
+        if key not in self._checks:
+            self._checks[key] = _once(input_check(type_name, contents=contents))
+        return self._checks[key]
+
+
+def _once(check: Check) -> Check:
+    passed: Any = None
+
+    def check_once(msg: Any) -> None:
+        nonlocal passed
+        if msg is not passed:
+            check(msg)
+            passed = msg
+
+    return check_once
+
+
 def _check_of_fields(
     spec: MessageSpec, *, geometry: bool, headers: bool = True
 ) -> Check | None:

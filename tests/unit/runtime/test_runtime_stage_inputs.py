@@ -14,7 +14,7 @@ from navette.msgs.nav_msgs.msg import OccupancyGrid, Odometry, Path
 from navette.msgs.sensor_msgs.msg import LaserScan
 from navette.msgs.std_msgs.msg import String
 from navette.runtime import Input, StageNode
-from navette.runtime.input_check import input_check
+from navette.runtime.input_check import SharedInputChecks, input_check
 from navette.testing import GraphHarness
 
 
@@ -217,6 +217,29 @@ def test_only_the_stamp_is_checked_on_request() -> None:
     check(odometry(math.nan))
     with pytest.raises(InvalidInputError, match=r"header\.stamp is -1 s"):
         check(stamped(-1, 0))
+
+
+def test_a_message_that_two_nodes_receive_is_checked_for_both() -> None:
+    with GraphHarness() as graph:
+        nodes = [
+            graph.add(Listener(context=graph.context, namespace=name)) for name in "ab"
+        ]
+        for x in (1.0, math.nan, 2.0):
+            graph.publish("/odom", odometry(x))
+        graph.run_for(0.1)
+        for node in nodes:
+            assert [msg.pose.pose.position.x for msg in node.received] == [1.0, 2.0]
+            assert node.dropped_inputs == {("/odom", "not_finite"): 1}
+
+
+def test_a_shared_check_skips_only_the_message_that_passed_it_last() -> None:
+    check = SharedInputChecks().of("nav_msgs/msg/Odometry")
+    good, bad = odometry(1.0), odometry(math.nan)
+    check(good)
+    for _ in range(2):
+        with pytest.raises(InvalidInputError):
+            check(bad)
+    check(good)
 
 
 def test_a_type_of_a_user_is_checked_by_its_parts() -> None:

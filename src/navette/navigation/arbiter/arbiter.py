@@ -75,18 +75,17 @@ class _SourceState:
         self.refusal = ""
 
     def is_live(self, now_ns: int) -> bool:
+        if self.stamp_ns is None:
+            return False
         timeout_ns = self.source.timeout_ns
-        age_ns = self._age_ns(now_ns)
-        return age_ns is not None and (not timeout_ns or age_ns < timeout_ns)
+        return not timeout_ns or now_ns - self.stamp_ns < timeout_ns
 
-    def masks_lower(self, now_ns: int) -> bool:
-        """Whether the source is live, or expired and still holds."""
-        age_ns = self._age_ns(now_ns)
+    def holds(self, now_ns: int) -> bool:
+        """Whether the newest command has expired and lower priorities stay masked."""
+        if self.stamp_ns is None or not self.source.hold_ns:
+            return False
         end_ns = self.source.timeout_ns + self.source.hold_ns
-        return self.is_live(now_ns) or (age_ns is not None and age_ns < end_ns)
-
-    def _age_ns(self, now_ns: int) -> int | None:
-        return None if self.stamp_ns is None else now_ns - self.stamp_ns
+        return now_ns - self.stamp_ns < end_ns and not self.is_live(now_ns)
 
 
 class Arbiter:
@@ -103,13 +102,16 @@ class Arbiter:
     ) -> None:
         ordered = sorted(sources, key=lambda each: -each.priority)
         self._sources = {each.name: _SourceState(each) for each in ordered}
-        self._locks = {each.name: each for each in locks}
+        ordered_locks = sorted(locks, key=lambda each: -each.priority)
+        self._locks = {each.name: each for each in ordered_locks}
         self._locked: dict[str, bool] = {}
         self._locked_ns: dict[str, int] = {}
         self._published = ZERO
         self._published_ns: int | None = None
         self._commander = IDLE
         self.limits = limits or CommandLimits()
+        #: That of the newest command, lock or step.
+        self.decision = Decision(IDLE, 0, None)
         #: Whether the emergency stop is engaged.
         self.is_stopped = False
 
@@ -129,7 +131,7 @@ class Arbiter:
             command = self.limits.scaled(command)
         state.refusal = self.limits.refusal(command)
         state.command = ZERO if state.refusal else command
-        decision = self.decide(now_ns)
+        decision = self.decision = self.decide(now_ns)
         if decision.commander == name:
             self._commander = name
             return self._publish(decision.command, now_ns)
@@ -158,11 +160,9 @@ class Arbiter:
 
     def step(self, now_ns: int) -> Velocity | None:
         """Return the command to publish because time has passed or a lock changed."""
-        decision = self.decide(now_ns)
-        changed, self._commander = (
-            decision.commander != self._commander,
-            decision.commander,
-        )
+        decision = self.decision = self.decide(now_ns)
+        changed = decision.commander != self._commander
+        self._commander = decision.commander
         if decision.is_held:
             due = (
                 self._published_ns is None or now_ns - self._published_ns >= _REPEAT_NS
@@ -184,12 +184,13 @@ class Arbiter:
         floor = 0 if lock is None else lock.priority
         for name, state in self._sources.items():
             priority = state.source.priority
-            if priority < floor or not state.masks_lower(now_ns):
-                continue
-            if not state.is_live(now_ns):
+            if priority < floor:
+                break  # so are the others
+            if state.is_live(now_ns):
+                command = None if state.source.is_direct else state.command
+                return Decision(name, max(priority, floor), command)
+            if state.holds(now_ns):
                 return Decision(name, priority, ZERO, is_held=True)
-            command = None if state.source.is_direct else state.command
-            return Decision(name, max(priority, floor), command)
         if lock is not None:
             return Decision(lock.name, floor, ZERO, is_held=True)
         return Decision(IDLE, 0, None)
@@ -211,14 +212,15 @@ class Arbiter:
         return state
 
     def _highest_lock(self, now_ns: int) -> CommandLock | None:
-        engaged = [each for each in self._locks.values() if self._engaged(each, now_ns)]
-        return max(engaged, key=lambda each: each.priority, default=None)
+        for lock in self._locks.values():  # the highest priority first
+            if self._engaged(lock, now_ns):
+                return lock
+        return None
 
     def _engaged(self, lock: CommandLock, now_ns: int) -> bool:
-        if self._locked.get(lock.name, False):
-            return True
-        if not lock.timeout_ns:
-            return False
+        is_locked = self._locked.get(lock.name, False)
+        if is_locked or not lock.timeout_ns:
+            return is_locked
         stamp_ns = self._locked_ns.get(lock.name)
         return stamp_ns is None or now_ns - stamp_ns >= lock.timeout_ns
 

@@ -23,6 +23,7 @@ from navette.navigation.arbiter.arbiter import (
     Arbiter,
     CommandLock,
     CommandSource,
+    Decision,
 )
 from navette.navigation.arbiter.command_limits import CommandLimits, Velocity
 from navette.navigation.arbiter.params import (
@@ -113,7 +114,7 @@ class ArbiterNode(StageNode):
             self._limits(),
         )
         self._status = StatusReporter(self, topics.COMMANDER.name)
-        self._reported = ""
+        self._reported = ("", 0, "")  # commander, floor, refusal
         self._masked_nav = self._was_stopped = False
         #: Runs when the newest command of a source expires.
         self._expiries = {
@@ -122,7 +123,7 @@ class ArbiterNode(StageNode):
             if each.timeout
         }
         self.create_timer(_STEP_S, self.on_timer)
-        self._report()
+        self._report(self._arbiter.decide(self._now_ns))
 
     def declare_params(self) -> Any:
         """Declare the sources and locks too, as twist_mux names them."""
@@ -274,7 +275,7 @@ class ArbiterNode(StageNode):
         if command is not None:
             self._moves = any(command)
             self.publish(topics.CMD_VEL.name, self._message(command))
-        self._report()
+        self._report(self._arbiter.decision)
 
     def _message(self, command: Velocity) -> Twist | TwistStamped:
         twist = Twist()
@@ -287,15 +288,13 @@ class ArbiterNode(StageNode):
         msg.header.frame_id = self.params.base_frame
         return msg
 
-    def _report(self) -> None:
-        now_ns = self._now_ns
-        decision = self._arbiter.decide(now_ns)
+    def _report(self, decision: Decision) -> None:
         refusal = self._arbiter.refusal(decision.commander)
-        state = f"{decision.commander} {decision.floor} {refusal}"
+        state = decision.commander, decision.floor, refusal
         if state == self._reported:
             return
         self._reported = state
-        masked = self._arbiter.masked(now_ns)
+        masked = self._arbiter.masked(self._now_ns)
         self._end_goal(decision.commander, masked)
         source = self._sources.get(decision.commander)
         is_lock = source is None and decision.commander != IDLE

@@ -200,6 +200,11 @@ class ActionServer(Waitable[Any]):
             self._node.get_fully_qualified_name(),
         )
 
+    @property
+    def feedback_subscription_count(self) -> int:
+        """Number of matched subscriptions to the feedback."""
+        return self._feedback.get_subscription_count()
+
     def publish_feedback(self, goal_id: UUID, feedback: Any) -> None:
         message = self._action_type.Impl.FeedbackMessage
         self._feedback.publish(message(goal_id=goal_id, feedback=feedback))

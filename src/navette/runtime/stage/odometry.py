@@ -1,5 +1,6 @@
 """Pose of the robot's base in the map frame, from odometry and tf."""
 
+import math
 from bisect import bisect_right
 from collections import deque
 
@@ -84,12 +85,8 @@ class PoseTracker:
         map_T_base = odom_T_child @ child_T_base
         if map_T_odom is not _HERE:
             map_T_base = map_T_odom @ map_T_base
-        total = sum(map_T_base)
-        if total - total != 0.0:  # inf or nan
-            self._drop("not_finite", "odometry is not finite")
-            return False
         if not _is_near(map_T_base):
-            self._drop("out_of_range", f"pose {map_T_base} in {self.map_frame!r}")
+            self._drop_pose(map_T_base)
             return False
         self._store(stamp_to_ns(odometry.header.stamp), map_T_base)
         twist = odometry.twist.twist
@@ -209,6 +206,13 @@ class PoseTracker:
             self._drop("unknown_frame", str(error))
             return None
 
+    def _drop_pose(self, map_T_base: Pose2) -> None:
+        if all(map(math.isfinite, map_T_base)):
+            detail = f"pose {map_T_base} in {self.map_frame!r}"
+            self._drop("out_of_range", detail)
+        else:
+            self._drop("not_finite", "odometry is not finite")
+
     def _drop(self, reason: str, detail: str) -> None:
         if isinstance(self._node, StageNode):
             self._node.drop_input(self._topic, InvalidInputError(reason, detail))
@@ -219,8 +223,9 @@ class PoseTracker:
 
 
 def _is_near(pose: Pose2) -> bool:
-    """Whether cells and distances can be computed with it."""
-    return max(abs(pose.x), abs(pose.y)) <= FARTHEST
+    """Whether cells and distances can be computed with it; not if it is not finite."""
+    x, y, yaw = pose
+    return -FARTHEST <= x <= FARTHEST and -FARTHEST <= y <= FARTHEST and yaw == yaw
 
 
 def _velocity_of_base(
@@ -230,7 +235,6 @@ def _velocity_of_base(
 
     v_base = v_child + ω × p (rigid body), rotated into the base's axes.
     """
-    at_base = (vx - omega * child_T_base.y, vy + omega * child_T_base.x)
-    base_T_child = Pose2(0.0, 0.0, -child_T_base.yaw)
-    forward = (base_T_child @ Pose2(at_base[0], at_base[1], 0.0)).x
-    return forward, omega
+    x, y, yaw = child_T_base
+    along, across = vx - omega * y, vy + omega * x
+    return math.cos(yaw) * along + math.sin(yaw) * across, omega

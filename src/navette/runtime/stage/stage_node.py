@@ -16,7 +16,6 @@ from navette.msgs import get_interface, type_name
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.msgs.topics import StackTopic
 from navette.params import Params
-from navette.runtime.input_check import input_check
 from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher
@@ -242,8 +241,9 @@ class StageNode(Node):
         if isinstance(callback, str):
             callback = getattr(self, callback)
         topic, arrivals = declared.topic, self._arrivals_ns
+        shared = self.context.input_checks
         checks = {
-            get_interface(each): input_check(each, contents=declared.checks_contents)
+            get_interface(each): shared.of(each, contents=declared.checks_contents)
             for each in (declared.type, *declared.other_types)
         }
         clock = self._clock

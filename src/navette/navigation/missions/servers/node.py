@@ -100,12 +100,19 @@ class NavigationServers:
         return params
 
     def publish_feedback(self) -> None:
-        """Publish the feedback of the navigation under way."""
+        """Publish the feedback of the navigation under way, if a program receives it."""
         for handle, navigation in self._running.values():
-            if navigation is self._navigator.active:
+            if navigation is self._navigator.active and self._is_watched(navigation):
                 handle.publish_feedback(
                     _feedback(handle, self._navigator.progress(), self._robot)
                 )
+
+    def _is_watched(self, navigation: Navigation) -> bool:
+        """Whether a program subscribes to the feedback beside this node's client."""
+        to_pose, through_poses = self._servers[:2]
+        if navigation.through:
+            return through_poses.feedback_subscription_count > 0
+        return to_pose.feedback_subscription_count > 1
 
     def cancel_all(self) -> None:
         """Request the cancellation of every goal."""
