@@ -14,8 +14,8 @@ from navette.runtime.clock import ContextClock
 from navette.runtime.exceptions import RCLError
 from navette.runtime.graph import Graph
 from navette.runtime.handles import Handle
-from navette.runtime.lockstep import LockStepClock, clock_of_environment
 from navette.runtime.input_check import SharedInputChecks
+from navette.runtime.lockstep import LockStepClock, clock_of_environment
 from navette.runtime.log import LogHub, StdlibHandler
 from navette.runtime.log_levels import LoggingSeverity
 from navette.runtime.log_sinks import ConsoleSink, FileSink

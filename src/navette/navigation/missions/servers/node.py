@@ -100,7 +100,7 @@ class NavigationServers:
         return params
 
     def publish_feedback(self) -> None:
-        """Publish the feedback of the navigation under way, if a program receives it."""
+        """Publish feedback on the navigation under way if a program receives it."""
         for handle, navigation in self._running.values():
             if navigation is self._navigator.active and self._is_watched(navigation):
                 handle.publish_feedback(
