@@ -40,3 +40,12 @@ def test_an_exploration_ends_when_its_goal_is_cancelled(
     simulation.stack.missions.on_cancel_goal(Empty())
     simulation.run()
     assert node.report.reason == "canceled"
+
+
+def test_an_exploration_can_be_interrupted(simulate: MakeSimulation) -> None:
+    simulation = simulate(world="arena", max_time_s=60.0)
+    node = add_explorer(simulation)
+    simulation.executor.spin_until(2_000_000_000)
+    assert node.report.goals == 1
+    simulation.close()  # no callback of the active goal raises
+    assert not node.done

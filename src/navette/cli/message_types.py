@@ -10,7 +10,7 @@ from navette.cli.stderr import note
 from navette.errors import InvalidNameError, NavetteError, UnknownNameError
 from navette.msgs.registry import full_name, interface_names
 from navette.runtime import Node
-from navette.transports import Endpoint
+from navette.transports import Endpoint, EndpointKind
 
 
 def topic_class(
@@ -18,8 +18,8 @@ def topic_class(
 ) -> Any:
     """Return the message class of a topic, by default of the type in use.
 
-    Waits for the first endpoint of the topic. The command fails if the topic has
-    several types, another type than given, or no endpoint before the timeout.
+    Waits for the first endpoint of the topic. The command fails if several types are
+    published, the topic has another type than given, or no endpoint before the timeout.
     """
     name = node.resolve_topic_name(topic)
     if type_name is not None:
@@ -32,10 +32,16 @@ def topic_class(
         if not wait_for(node, lambda: bool(endpoints(node, name)), timeout_s):
             fail(f"no publisher on {name} in {timeout_s:g} s")
     found = endpoints(node, name)
-    types = sorted({each.type_name for each in found})
+    types = _types_in_use(found)
     if len(types) > 1:
         fail(f"{name} has several types ({', '.join(types)}): give one after the name")
     return interface_class(node, types[0], found, kind="msg")
+
+
+def _types_in_use(found: list[Endpoint]) -> list[str]:
+    """Return the types that are published; without publishers, those subscribed to."""
+    published = {e.type_name for e in found if e.kind == EndpointKind.PUBLISHER}
+    return sorted(published or {each.type_name for each in found})
 
 
 def interface_class(

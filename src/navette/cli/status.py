@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 _REFRESH_HZ = 8
 _WIDTH = 24
 _BESIDE_BAR = 60  # columns that the figures beside the bar may take
+_LONG_M = 1e6  # coordinates from here on are shown with an exponent
+_CANCELED = "canceled"
 
 
 class StatusScreen:
@@ -145,6 +147,8 @@ class StatusScreen:
             return Text(f"✓ {where} reached", style="green")
         if progress.failed:
             return Text(f"✗ {where} {progress.state}", style="red")
+        if progress.state == _CANCELED:
+            return Text(f"✗ {where} {progress.state}", style="yellow")
         if progress.goal_id not in self._longest_m:
             self._longest_m[progress.goal_id] = 0.0
             return Text(f"→ {where}")
@@ -176,7 +180,7 @@ class StatusScreen:
 
 
 def _left(progress: "RunProgress") -> str:
-    if progress.goal is None:
+    if progress.goal is None or progress.state == _CANCELED:
         return "waiting for a goal"
     to = f"to {_point(progress.goal)}"
     if progress.distance_left_m is None:
@@ -185,4 +189,5 @@ def _left(progress: "RunProgress") -> str:
 
 
 def _point(goal: tuple[float, float]) -> str:
-    return f"({goal[0]:.1f}, {goal[1]:.1f})"
+    x, y = (f"{v:.1f}" if abs(v) < _LONG_M else f"{v:g}" for v in goal)
+    return f"({x}, {y})"

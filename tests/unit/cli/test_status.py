@@ -1,6 +1,7 @@
 """The live line on terminals of several widths."""
 
 import io
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -56,3 +57,28 @@ def test_takeovers_are_printed_once() -> None:
         "■ emergency stop; navette stop --release",
         "▸ navigation may drive again",
     ]
+
+
+def test_a_cancelled_goal_and_one_far_away_are_a_line_each() -> None:
+    screen = StatusScreen(RunOptions())
+    shown = io.StringIO()
+    screen._console = Console(file=shown, width=80, force_terminal=False)
+    driven = RunProgress(goal=(1.0, 2.0), goal_id="1", state="ok", distance_left_m=9.0)
+    canceled = replace(driven, state="canceled")
+    for progress in (
+        driven,
+        canceled,
+        RunProgress(
+            goal=(1e308, -3.0), goal_id="2", state="goal_outside_map", failed=True
+        ),
+    ):
+        screen.on_change(progress)
+    lines = [line.split("s  ", 1)[1] for line in shown.getvalue().splitlines()]
+    assert lines == [
+        "→ goal (1.0, 2.0)",
+        "✗ goal (1.0, 2.0) canceled",
+        "✗ goal (1e+308, -3.0) goal_outside_map",
+    ]
+    run = SimpleNamespace(progress=lambda: canceled, real_time_factor=lambda: 1.0)
+    screen._console.print(screen._line(run))
+    assert "waiting for a goal" in shown.getvalue()

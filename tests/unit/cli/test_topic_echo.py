@@ -393,3 +393,16 @@ def test_on_a_terminal_numbers_stand_beside_each_other(
     latch(talker, "poses", PoseArray(poses=[Pose()]))
     echo_of(talker, "poses", count=1, paths=["poses"])
     assert capsys.readouterr().out.splitlines()[:2] == ["- position:", "    x: 0.0"]
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_of_several_types_the_published_one_is_printed(
+    talker: Node, capsys: pytest.CaptureFixture[str]
+) -> None:
+    both = [Int32, String]
+    for kind in both:
+        talker.create_subscription(kind, "both", print, 10, other_types=both)
+    message = String(data="here")
+    talker.create_publisher(String, "both", LATCHED, other_types=both).publish(message)
+    echo_of(talker, "both", once=True)
+    assert "data: here" in capsys.readouterr().out

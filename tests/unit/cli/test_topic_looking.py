@@ -141,6 +141,24 @@ def test_info_lists_mismatches_with_the_reason(talker: Node) -> None:
     )
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_a_node_that_accepts_two_types_is_no_mismatch(talker: Node) -> None:
+    with program("base") as base, program("other") as other:
+        both = [String, OccupancyGrid]
+        for kind in both:
+            base.create_subscription(kind, "command", print, 10, other_types=both)
+        talker.create_publisher(String, "command", 10, other_types=both)
+        assert "Mismatch" not in navette("topic", "info", "/command").stdout
+        other.create_subscription(
+            OccupancyGrid, "command", print, 10, other_types=[String]
+        )
+        shown = navette("topic", "info", "/command").stdout
+    assert shown.splitlines()[-1] == (
+        "Mismatch: /talker → /other: "
+        "std_msgs/msg/String is not nav_msgs/msg/OccupancyGrid"
+    )
+
+
 @pytest.mark.parametrize("verb", ["info", "type"])
 def test_an_unknown_topic_suggests_similar_names(talker: Node, verb: str) -> None:
     shown = navette("topic", verb, "/chater")

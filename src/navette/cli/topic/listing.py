@@ -31,18 +31,24 @@ class TopicListing:
 
     @property
     def types(self) -> list[str]:
-        """Sorted type names; more than one is an error of the programs."""
+        """Sorted type names; more than one if nodes accept several, or disagree."""
         every = (*self.publishers, *self.subscriptions)
         return sorted({endpoint.type_name for endpoint in every})
 
     @property
     def mismatches(self) -> list[str]:
         """Publisher and subscription pairs that do not match, each with the reason."""
+        accepted = {(e.node_full_name, e.type_name) for e in self.subscriptions}
         return [
             _mismatch(publisher, subscription)
             for publisher in self.publishers
             for subscription in self.subscriptions
             if _mismatch(publisher, subscription)
+            # A node that accepts several types has a subscription for each.
+            and (
+                publisher.type_name == subscription.type_name
+                or (subscription.node_full_name, publisher.type_name) not in accepted
+            )
         ]
 
     def to_json(self) -> dict[str, Any]:

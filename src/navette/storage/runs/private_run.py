@@ -44,7 +44,11 @@ class PrivateRun:
             InvalidValueError: the name is invalid, or a living run has it.
         """
         runs = _folder_of_runs()
+        # Also in the folders of other terminals, whose locks are elsewhere.
+        taken = {run.name for run in live_runs()}
         for candidate in [check_run_name(name)] if name else _names(kind):
+            if candidate in taken:
+                continue
             folder = runs / candidate
             make_private(folder)
             lock = FileLock.take(folder / LOCK)

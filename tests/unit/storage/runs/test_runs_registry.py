@@ -11,6 +11,7 @@ import pytest
 
 from navette.errors import FileFormatError, InvalidValueError, NetworkError
 from navette.storage.runs import PrivateRun, RunInfo, live_runs
+from navette.storage.runs import folder as folder_module
 from navette.storage.runs.entry import MAX_BYTES, PROTOCOL, is_run_name
 from navette.storage.runs.folder import make_private
 
@@ -54,6 +55,27 @@ def test_the_second_run_gets_a_number_and_the_first_name_becomes_free_again(
     assert live_runs() == []  # neither is published yet
     second.close()
     third.close()
+
+
+def test_runs_of_terminals_with_other_runtime_folders_have_other_names(
+    monkeypatch: pytest.MonkeyPatch, runtime: Path
+) -> None:
+    own = f"navette-{os.getuid()}"
+    monkeypatch.delenv("NAVETTE_RUNTIME_DIR")
+    for name in ("a", "b"):
+        (runtime / name).mkdir(mode=0o700)
+    bases = [runtime / "a" / own, runtime / "b" / own]
+    monkeypatch.setattr(folder_module, "_candidates", lambda: iter(bases))
+    first = PrivateRun.claim("demo")
+    first.publish("")
+    bases.reverse()
+    second = PrivateRun.claim("demo")
+    assert second.info.folder.parent != first.info.folder.parent
+    assert second.info.name == "demo-2"
+    with pytest.raises(InvalidValueError, match="'demo' exists already"):
+        PrivateRun.claim("demo", name="demo")
+    first.close()
+    second.close()
 
 
 def test_a_named_run_is_refused_while_another_has_the_name(demo: PrivateRun) -> None:

@@ -247,9 +247,11 @@ class ExplorerNode(StageNode):
                 return
             self._handle = handle
             result: Any = handle.get_result_async()
-            result.add_done_callback(
-                lambda _: self._on_result(number, frontier, result.result().status)
-            )
+            result.add_done_callback(on_result)
+
+        def on_result(result: Any) -> None:
+            if not result.cancelled():  # as at the end of the program
+                self._on_result(number, frontier, result.result().status)
 
         future.add_done_callback(on_response)
 
