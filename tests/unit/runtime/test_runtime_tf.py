@@ -77,6 +77,17 @@ def test_interpolated_between_samples(core: BufferCore) -> None:
     assert pose == pytest.approx((2.5, 2.5, 0))
 
 
+def test_the_newest_transform_follows_every_change(core: BufferCore) -> None:
+    assert core.lookup("map", "base", 0)[0].to_pose2().x == pytest.approx(4)
+    core.set("odom", "base", 4 * S, at(7), is_static=False)
+    assert core.lookup("map", "base", 0)[0].to_pose2().x == pytest.approx(7)
+    core.set("base", "lidar", 0, at(1), is_static=True)
+    assert core.lookup("map", "lidar", 0)[0].to_pose2().x == pytest.approx(8)
+    core.drop_moving()
+    with pytest.raises(LookupException):
+        core.lookup("map", "base", 0)
+
+
 def test_time_zero_is_the_newest_common_time(core: BufferCore) -> None:
     core.set("odom", "base", 9 * S // 2, at(7), is_static=False)
     pose, stamp = core.lookup("map", "lidar", 0)

@@ -58,6 +58,7 @@ class PoseTracker:
         )
         self._moving_listener: TransformListener | None = None
         self._child_T_base: tuple[str, Pose2] | None = None
+        self._map_T_odom: tuple[Transform3, Pose2] | None = None
 
     @property
     def latest(self) -> Pose2 | None:
@@ -188,7 +189,7 @@ class PoseTracker:
         if frame == self.map_frame:
             return _HERE
         try:
-            return self.buffer.lookup(self.map_frame, frame, 0).to_pose2()
+            transform = self.buffer.lookup(self.map_frame, frame, 0)
         except TransformException as error:
             if self._moving_listener is None:
                 self._moving_listener = TransformListener(
@@ -196,6 +197,9 @@ class PoseTracker:
                 )
             self._drop("unknown_frame", str(error))
             return None
+        if self._map_T_odom is None or self._map_T_odom[0] is not transform:
+            self._map_T_odom = transform, transform.to_pose2()
+        return self._map_T_odom[1]
 
     def _static(self, target: str, source: str) -> Transform3 | None:
         if target == source:

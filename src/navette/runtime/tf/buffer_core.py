@@ -76,6 +76,9 @@ class BufferCore:
         self._frames: dict[str, FrameHistory] = {}
         self._parents: set[str] = set()
         self._chains: dict[tuple[str, str], _Chain] = {}
+        # Lookups of the newest time since the last sample. Replaced, not cleared: a
+        # lookup of another thread must not store its result after the change.
+        self._newest: dict[tuple[str, str], tuple[Transform3, int]] = {}
 
     def set(
         self,
@@ -104,6 +107,7 @@ class BufferCore:
             self._chains.clear()
         history.insert(stamp_ns, parent_T_child, parent)
         self._parents.add(parent)
+        self._newest = {}
 
     def lookup(self, target: str, source: str, stamp_ns: int) -> tuple[Transform3, int]:
         """Return target_T_source and its stamp; 0 stands for the newest common time.
@@ -111,6 +115,15 @@ class BufferCore:
         Raises:
             LookupException, ConnectivityException, ExtrapolationException
         """
+        if stamp_ns != 0:
+            return self._found(target, source, stamp_ns)
+        newest = self._newest
+        found = newest.get((target, source))
+        if found is None:
+            found = newest[target, source] = self._found(target, source, 0)
+        return found
+
+    def _found(self, target: str, source: str, stamp_ns: int) -> tuple[Transform3, int]:
         target, source = frame_name(target), frame_name(source)
         if target == source:
             self._check_known(target)
@@ -143,6 +156,7 @@ class BufferCore:
         """Delete all moving frames, after a jump backward in time."""
         self._frames = {n: h for n, h in self._frames.items() if h.is_static}
         self._chains.clear()
+        self._newest = {}
 
     def _chain(self, target: str, source: str) -> _Chain:
         chain = self._chains.get((target, source))
