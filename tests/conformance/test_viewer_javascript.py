@@ -27,6 +27,9 @@ sys.path.append(str(Path(__file__).parents[1] / "unit" / "viewer"))
 from viewer_harness import Program  # noqa: E402 - from the unit tests' folder
 
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+TREE = """{o} Drive [*]
+    --> Follow [*] -- 3 m
+    --> Wait [-]"""
 RANGES = [1.5, float("inf"), 2.25]
 
 
@@ -56,6 +59,9 @@ class Robot(Node):
         self.create_publisher(DiagnosticStatus, "/planner/status", LATCHED).publish(
             status
         )
+        tree = self.create_publisher(String, "/behavior_tree", LATCHED)
+        tree.publish(String(data=TREE))
+        self.create_publisher(String, "/drive/_action/status", 10)
         self.create_timer(0.02, self.on_timer)
 
     def on_timer(self) -> None:
@@ -145,6 +151,13 @@ def test_the_page_works_in_a_browser(program: Program) -> None:
     assert rows["/chatter"][3].endswith("Hz")
     # A camera is subscribed on request only.
     assert rows["/camera"][3] == "measure"
+    assert seen["tree"] == [
+        ["running", "●Drivefallback", "0rem"],
+        ["running", "●Follow3 m", "1.35rem"],
+        ["idle", "○Wait", "1.35rem"],
+    ]
+    assert seen["listed"] == [name for name in rows if "/_action/" not in name]
+    assert len(seen["listed"]) < len(rows)
     assert "/robot" in seen["nodes"]
     assert seen["slider"] == ["0.5", "2"]
     assert "9.0" in seen["refusal"]

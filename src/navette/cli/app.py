@@ -112,7 +112,13 @@ Json = Annotated[
     bool, Option("--json", help="Print a summary of the run as JSON on stdout.")
 ]
 Port = Annotated[
-    int, Option(min=0, max=65535, help="Port of the live view; 0 selects a free port.")
+    int,
+    Option(
+        min=0,
+        max=65535,
+        metavar="PORT",
+        help="Port of the live view; 0 selects a free port.",
+    ),
 ]
 Host = Annotated[
     str,

@@ -98,8 +98,8 @@ class LazyGroup(Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         name, command, rest = super().resolve_command(ctx, args)
         read_only = isinstance(command, LazyCommand) and command.read_only
-        if isinstance(command, LazyCommand) and name is not None:
-            command = self.commands[name] = command.load()
+        if isinstance(command, LazyCommand):
+            command = command.load()
         if not read_only:
             raise_at_interrupt()
             collect()

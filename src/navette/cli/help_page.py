@@ -64,10 +64,10 @@ def _option_row(param: click.Option, ctx: click.Context) -> list[RenderableType]
     long = [name for name in names if name.startswith("--")]
     short = [name for name in names if not name.startswith("--")]
     extra = param.get_help_extra(ctx)
-    metavar = "" if param.is_flag else param.make_metavar(ctx)
-    if "range" in extra:
-        metavar += f" [{extra['range']}]"
+    metavar = "" if param.is_flag else param.make_metavar(ctx).removesuffix(" RANGE")
     text = Text.from_markup(param.help or "")
+    if "range" in extra:
+        text.append(f" [{extra['range']}]", style="dim")
     if param.required:
         text.append(" [required]", style="dim red")
     elif "default" in extra and not param.is_flag and extra["default"]:

@@ -44,6 +44,8 @@ try {
   await page.keyboard.up("ArrowUp");
   await page.keyboard.up("ArrowLeft");
   const rows = await page.$$eval("#topics tr", (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  const listed = await page.$$eval("#topics tr:not([hidden])", (all) => all.map((row) => row.cells[0].textContent));
+  const tree = await page.$$eval("#tree li", (all) => all.map((row) => [row.className, row.textContent, row.style.paddingLeft]));
   // A parameter set by its slider.
   await page.selectOption("#node", "/robot");
   await page.locator('input[aria-label="/robot.speed_mps, slider"]').fill("1.5");
@@ -58,7 +60,7 @@ try {
   const open = new URL(await page.getAttribute("#open", "href"));
   console.log(JSON.stringify({
     title: await page.title(), address: await text("#address"), foxglove: open.searchParams.get("ds.url"),
-    position: await text("#position"), rows, place, layers, nodes: await text("#nodes"), slider, refusal, problems,
+    position: await text("#position"), rows, listed, tree, place, layers, nodes: await text("#nodes"), slider, refusal, problems,
   }));
 } finally {
   await browser.close();

@@ -1,5 +1,6 @@
 """Verbs are imported when they are called; the list has the texts of the verbs."""
 
+import re
 import subprocess
 import sys
 
@@ -49,6 +50,16 @@ def test_every_verb_is_listed_and_can_be_called() -> None:
         assert navette(name, "--help").exit_code == 0
     assert navette("topics", "list").exit_code == 2
     assert "'topic'?" in navette("topics", "list").stderr
+
+
+def test_the_help_begins_with_what_newcomers_need() -> None:
+    shown = navette("--help").stdout
+    panels = re.findall(r"─ ([A-Z][a-z ]+) ─", shown)
+    assert panels[:2] == ["Options", "Drive"]
+    assert len(set(panels)) == len(panels) == 5
+    names = re.findall(r"^│ ([a-z]+) ", shown, re.MULTILINE)
+    assert names[:3] == ["demo", "sim", "explore"]
+    assert names.index("stop") < names.index("run") < names.index("topic")
 
 
 def test_a_group_lists_its_commands() -> None:
