@@ -142,7 +142,7 @@ def test_info_lists_mismatches_with_the_reason(talker: Node) -> None:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_node_that_accepts_two_types_is_no_mismatch(talker: Node) -> None:
+def test_a_node_that_accepts_two_types_has_no_mismatch(talker: Node) -> None:
     with program("base") as base, program("other") as other:
         both = [String, OccupancyGrid]
         for kind in both:
