@@ -84,7 +84,7 @@ def test_the_newest_transform_follows_every_change(core: BufferCore) -> None:
     core.set("base", "lidar", 0, at(1), is_static=True)
     assert core.lookup("map", "lidar", 0)[0].to_pose2().x == pytest.approx(8)
     core.drop_moving()
-    with pytest.raises(LookupException):
+    with pytest.raises(ConnectivityException):
         core.lookup("map", "base", 0)
 
 
