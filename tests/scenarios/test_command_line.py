@@ -40,9 +40,7 @@ def refusal(
 
     def refuse(*arguments: str) -> str:
         monkeypatch.setattr(sys, "argv", ["navette", *arguments])
-        monkeypatch.setattr(
-            app, "_exit_without_waiting", lambda code: None
-        )  # this process continues
+        monkeypatch.setattr(app, "end_with", lambda code: None)  # the tests continue
         with pytest.raises(SystemExit) as ended:
             app.main()
         assert ended.value.code == 2
