@@ -22,9 +22,10 @@ def pose(x: float, y: float, yaw: float = 0.0) -> PoseStamped:
 
 
 def wait(navigator: BasicNavigator) -> TaskResult:
-    while not navigator.isTaskComplete():
-        pass
-    return navigator.getResult()
+    for _ in range(3000):  # of 0.1 s
+        if navigator.isTaskComplete():
+            return navigator.getResult()
+    raise AssertionError(f"no result: {navigator.getFeedback()}")
 
 
 @pytest.mark.slow

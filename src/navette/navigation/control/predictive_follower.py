@@ -37,6 +37,9 @@ _BEHIND = 2  # poses of the path behind the robot that stay in the window
 _SEARCH_M = 2.0  # how far ahead on the path the robot may already be
 _BLOCKED_SCALE = 0.1
 _BODY_SPACING_M = 0.15  # of the points that represent the body in rollouts
+# Rest of the path, turns included, and heading error at which the end is reached.
+_END_M = 0.15
+_END_YAW_RAD = 0.08
 
 
 class PredictiveFollower:
@@ -184,10 +187,16 @@ class PredictiveFollower:
     def _arrived(self, path: PathWindow, inputs: FollowerInputs) -> bool:
         off = math.hypot(path.x[-1] - inputs.pose.x, path.y[-1] - inputs.pose.y)
         left = path.measure[-1] - path.measure[self._at]
-        if off <= self._params.goal_tolerance_m and left <= 0.15:
-            self._rest = ControlState.REACHED
-            return True
-        return False
+        if off > self._params.goal_tolerance_m or left > _END_M:
+            return False
+        c, s = math.cos(inputs.pose.yaw), math.sin(inputs.pose.yaw)
+        # A path that ends with a turn in place ends with a heading asked for.
+        if path.direction[-1] == 0 and (
+            c * path.cos[-1] + s * path.sin[-1] < math.cos(_END_YAW_RAD)
+        ):
+            return False
+        self._rest = ControlState.REACHED
+        return True
 
     def _stop(self, state: ControlState) -> FollowerOutput:
         self._mppi.reset()

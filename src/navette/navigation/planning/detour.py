@@ -20,7 +20,7 @@ from navette.navigation.planning.goals import cells_within
 from navette.navigation.planning.lattice_kernels import GOOD_ENOUGH_M, HEURISTIC_WEIGHT
 from navette.navigation.planning.lattice_motions import Motions
 from navette.navigation.planning.params import PlannerParams
-from navette.navigation.planning.path_shape import Poses, joined
+from navette.navigation.planning.path_shape import Poses, joined, turn_in_place
 from navette.navigation.planning.planning_grid import BodyShape, PlanningGrid
 from navette.navigation.planning.route import GridRouter
 from navette.navigation.planning.traversal import STRAIGHT
@@ -81,6 +81,7 @@ class DetourPlanner:
         if not len(found.poses):
             return DetourResult(None, effort, found.exhausted)
         poses = self._with_route_after(found.poses, target)
+        poses = self._turned_to_goal(poses, target)
         return DetourResult(joined(before, poses), effort, False)
 
     def cost(self, poses: Poses) -> float:
@@ -162,6 +163,19 @@ class DetourPlanner:
             if whole is not None and self.cost(whole) < best_cost:
                 best, best_cost = whole, self.cost(whole)
         return best
+
+    def _turned_to_goal(self, poses: Poses, target: Target) -> Poses:
+        """Return the poses with a turn in place to the goal's heading, if it fits.
+
+        The search ends within a tolerance of the heading; without the turn, the
+        controller's own error comes on top and the goal may never be reached.
+        """
+        if target.yaw is None:
+            return poses
+        x, y, yaw = poses[-1].tolist()
+        turn = turn_in_place(x, y, yaw, target.yaw)
+        fits = check_path(turn, self.grid, self.body).fits
+        return joined(poses, turn) if fits else poses
 
     def _route_from(self, poses: Poses, i: int, target: Target) -> Poses | None:
         here = Pose2(*map(float, poses[i]))

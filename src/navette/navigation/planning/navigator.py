@@ -257,7 +257,7 @@ class Navigator:
             return  # not even the straight line is cheaper by the margin
         other = self.planner.plan_on_grid(here, goal)
         if other is not None and other.cost < worth:
-            self._accept(other)
+            self._accept(other, here)
 
     def _some_cost_fell(self) -> bool:
         before, after = self._cost_seen, self.planner.grid().cost
@@ -276,7 +276,7 @@ class Navigator:
             plan = self.planner.plan(here, goal, exact_start=exact_start)
         self._cost_seen, self._map_changed = self.planner.grid().cost, False
         if plan.outcome.has_path:
-            self._accept(plan)
+            self._accept(plan, here)
             return
         self._checker.spend()
         # A robot that has not started gets one more attempt only.
@@ -288,12 +288,15 @@ class Navigator:
         self._drop_path()
         self._set_status(Phase.PLANNING, plan=plan.outcome.value)
 
-    def _accept(self, plan: Plan) -> None:
+    def _accept(self, plan: Plan, here: Pose2) -> None:
         before = None if self._progress is None else self._progress.poses
         new = before is None or not np.array_equal(plan.poses, before)
         replans = self.report.replans + int(new) if self.report.plan else 0
         self._plan, self._progress = plan, PathProgress(plan.poses)
-        self._checker.new_path()
+        # Where a path passes its start again, the robot is matched farther along it
+        # at once: that is no progress.
+        self._progress.update(here)
+        self._checker.new_path(self._progress.covered)
         self._publish(plan.poses)
         self._set_status(
             Phase.FOLLOWING,

@@ -36,9 +36,9 @@ class ProgressChecker:
         self._goal_since_ns += span_ns
         self._resting_since_ns = None
 
-    def new_path(self) -> None:
-        """Count progress from the start of a new path; the timers continue."""
-        self._mark_m = 0.0
+    def new_path(self, covered_m: float) -> None:
+        """Count progress from ``covered_m`` of a new path; the timers continue."""
+        self._mark_m = covered_m
 
     def note(self, covered_m: float, now_ns: int) -> None:
         """Update the distance covered along the path (m)."""

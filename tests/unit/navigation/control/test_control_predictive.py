@@ -56,7 +56,7 @@ def test_a_turn_in_place_is_driven() -> None:
     yaws = np.linspace(0, 2.5, 14)
     robot.set_path(np.stack((0 * yaws, 0 * yaws, yaws), axis=1))
     run(robot, plant, 30.0)
-    assert plant.pose.yaw == pytest.approx(2.5, abs=0.4)
+    assert plant.pose.yaw == pytest.approx(2.5, abs=0.1)
     assert math.hypot(plant.pose.x, plant.pose.y) < 0.3
 
 

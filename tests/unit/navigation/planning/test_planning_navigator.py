@@ -256,6 +256,15 @@ def test_without_progress_the_planner_replans_and_ends_stuck() -> None:
     assert not len(drive.published[-1])
 
 
+def test_a_path_that_is_matched_near_its_end_at_once_is_no_progress() -> None:
+    """A robot beside its goal, 0.28 rad off its heading, that does not turn."""
+    drive = Drive(progress_timeout_s=2.0, max_stuck_replans=2)
+    drive.pose, drive.moving = Pose2(7.96, 3.96, 0.28), False
+    drive.send(8, 4, 0.0)
+    drive.steps(16)
+    assert drive.message == Outcome.STUCK
+
+
 def test_driving_away_from_the_goal_around_a_wall_is_progress() -> None:
     occupancy, spec = empty_map(10, 8)
     fill(occupancy, spec, (0.2, 5.0), (4.6, 4.8))
