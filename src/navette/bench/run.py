@@ -5,6 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.bench import moving_worlds
+from navette.bench.dynabarn import dynabarn_scene
 from navette.bench.generators import generate
 from navette.bench.losses import lost_seconds
 from navette.bench.observer import TrialObserver
@@ -47,8 +49,13 @@ def run_trial(trial: Trial) -> TrialResult:
 
 
 def scene_of(world: str) -> Scene | None:
-    """Return the generated world ``KIND:SEED``; None for a name or a file."""
+    """Return the world of a suite (``KIND:SEED``, …); None for a name or a file."""
+    dynamic = dynabarn_scene(world)
+    if dynamic is not None:
+        return dynamic
     kind, _, seed = world.partition(":")
+    if kind == moving_worlds.KIND:
+        return moving_worlds.moving_scene(int(seed))
     return generate(kind, int(seed)).scene if seed.isdigit() else None
 
 

@@ -4,14 +4,18 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+from navette.bench import moving_worlds
 from navette.bench.barn import barn_trials
+from navette.bench.dynabarn import FILE as DYNABARN_FILE
+from navette.bench.dynabarn import dynabarn_trial, dynabarn_trials
 from navette.bench.generators import GENERATORS, generate
 from navette.bench.trial import Trial
 from navette.errors import InvalidValueError, UnknownNameError
 from navette.geometry import Pose2
 
-SUITES = ("barn", "course", "random", *GENERATORS)
-"""``barn`` requires its data set; ``random`` is every generator in turn."""
+SUITES = ("barn", "dynabarn", "course", "random", *GENERATORS, moving_worlds.KIND)
+"""``barn`` and ``dynabarn`` require their data sets; ``random`` is every generator of
+worlds in which nothing moves."""
 
 _COURSE_LIMIT_S = 124.0
 _COURSE = ((-6, -12), (6, -12), (12, 0), (6, 12.5), (-12, 11), (-3, 3), (-6, 0))
@@ -38,7 +42,8 @@ def suite_trials(
     Args:
         suite: one of :data:`SUITES`.
         data: folder of a data set.
-        worlds: numbers of worlds; empty = all of a data set, 0 … 9 of a generator.
+        worlds: numbers of worlds; empty = all of a data set, 0 … 9 of a generator
+            (0 … 29 of ``dynabarn-like``).
         robot: instead of the suite's own.
 
     Raises:
@@ -54,6 +59,18 @@ def suite_trials(
                 "paths/path_N.npy is required; barn-like needs no data"
             )
         trials = barn_trials(data, worlds)
+    elif suite == "dynabarn":
+        if data is None:
+            raise InvalidValueError(
+                f"suite dynabarn: --data FOLDER with {DYNABARN_FILE} is required; "
+                "dynabarn-like needs no data"
+            )
+        trials = dynabarn_trials(data, worlds)
+    elif suite == moving_worlds.KIND:
+        trials = [
+            dynabarn_trial(suite, f"{suite}-{seed}", f"{suite}:{seed}")
+            for seed in worlds or range(30)
+        ]
     elif suite == "course":
         trials = _course_trials()
     else:

@@ -24,8 +24,9 @@ def bench(
     suite: Annotated[
         str,
         Argument(
-            help="BARN's 300 worlds (barn, with --data), generated worlds (random,"
-            " barn-like, forest, …) or the course."
+            help="BARN's 300 worlds or DynaBARN's moving obstacles (barn, dynabarn,"
+            " with --data), generated worlds (random, barn-like, forest,"
+            " dynabarn-like, …) or the course."
         ),
     ],
     data: Annotated[
@@ -191,6 +192,11 @@ def _with_progress(results: Any, trials: Sequence["Trial"]) -> list["TrialResult
 
 def replay_command(trial: "Trial") -> str:
     """Return the command that repeats a trial with the live view."""
+    if trial.suite == "dynabarn":
+        file, _, number = trial.world.removeprefix("dynabarn:").rpartition(":")
+        words = ["navette", "bench", "dynabarn", "--data", str(Path(file).parent)]
+        words += ["--worlds", number, "--seeds", str(trial.seed), "--jobs", "1"]
+        return shlex.join(words)
     if ":" in trial.world:
         kind, _, seed = trial.world.partition(":")
         return f"navette bench {kind} --worlds {seed} --seeds {trial.seed} --jobs 1"

@@ -25,6 +25,7 @@ CAMERA_INFO = StackTopic("/camera_info", "sensor_msgs/msg/CameraInfo")
 JOINT_STATES = StackTopic("/joint_states", "sensor_msgs/msg/JointState")
 GROUND_TRUTH = StackTopic("/ground_truth", "nav_msgs/msg/Odometry")
 CONTACTS = StackTopic("/contacts", "diagnostic_msgs/msg/DiagnosticStatus")
+ACTORS = StackTopic("/actors", "visualization_msgs/msg/MarkerArray", 1)
 ROBOT_DESCRIPTION = StackTopic("/robot_description", "std_msgs/msg/String", 1, True)
 WORLD_DESCRIPTION = StackTopic("/world_description", "std_msgs/msg/String", 1, True)
 

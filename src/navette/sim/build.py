@@ -61,6 +61,10 @@ class Compiled:
     is_ground: NDArray[np.bool_]
     is_obstacle: NDArray[np.bool_]
 
+    def mocap_of(self, body: str) -> int:
+        """Return the index of a body whose pose is set, in MuJoCo's mocap arrays."""
+        return int(self.model.body(body).mocapid[0])
+
 
 def compile_scene(scene: Scene, *, timestep_s: float) -> Compiled:
     """Compile a scene that has a robot.

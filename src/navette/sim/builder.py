@@ -20,10 +20,11 @@ from navette.sim.scene import (
     Scene,
     Shape,
 )
+from navette.sim.trajectory import Trajectory, Waypoint
 
 
 class World:
-    """Static shapes on a floor at z = 0; every ``add_…`` method returns the world."""
+    """Shapes on a floor at z = 0; every ``add_…`` method returns the world."""
 
     def __init__(self, name: str = "world") -> None:
         self._name = name
@@ -75,6 +76,43 @@ class World:
                 ((sign * x, 0.0), (thickness, long_y)),
             ):
                 self.add_box(centre, edges, height=height, colour=colour)
+        return self
+
+    def add_actor(
+        self,
+        waypoints: Sequence[tuple[float, float, float]],
+        radius: float = 0.25,
+        *,
+        height: float = 1.7,
+        loop: bool = True,
+        delay: float = 0.0,
+        colour: Colour = (0.85, 0.35, 0.30, 1.0),
+    ) -> Self:
+        """Add an upright cylinder that moves; waypoints are time (s), x, y (m).
+
+        The first time is 0; between waypoints the cylinder moves straight at constant
+        speed.
+        """
+        _check_positive("actor", (radius, height))
+        motion = Trajectory(
+            waypoints=tuple(Waypoint(*waypoint) for waypoint in waypoints),
+            loop=loop,
+            delay_s=delay,
+        )
+        shape = Cylinder(radius, height)
+        body = Geometry(
+            name="body",
+            shape=shape,
+            link_T_shape=_standing((0.0, 0.0), height, 0.0),
+            colour=colour,
+        )
+        self._models.append(
+            Model(
+                name=f"actor_{len(self._models)}",
+                links=(Link(name="link", geometries=(body,)),),
+                motion=motion,
+            )
+        )
         return self
 
     def add_robot(self, robot: Model) -> Self:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Convert the simulator's values to ROS messages."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from navette.geometry import Transform3
@@ -20,16 +22,28 @@ from navette.msgs.geometry_msgs.msg import (
 )
 from navette.msgs.nav_msgs.msg import Odometry
 from navette.msgs.sensor_msgs.msg import CameraInfo, Image, Imu, JointState, LaserScan
-from navette.msgs.std_msgs.msg import Header
+from navette.msgs.std_msgs.msg import ColorRGBA, Header
+from navette.msgs.visualization_msgs.msg import Marker, MarkerArray
 from navette.sim.camera import Image as Pixels
 from navette.sim.camera import focal_length
 from navette.sim.contacts import ContactEpisode
 from navette.sim.imu import ImuReading
 from navette.sim.lidar import Scan
 from navette.sim.robot_state import JointReadings, Motion, cross
-from navette.sim.scene import CameraSensor, ImuSensor
+from navette.sim.scene import (
+    Box,
+    CameraSensor,
+    Capsule,
+    Cylinder,
+    Ellipsoid,
+    ImuSensor,
+    Model,
+    Shape,
+    Sphere,
+)
 from navette.sim.wheel_odometry import Matrix, PlanarCovariances
 
+_ACTOR_COLOUR = (0.85, 0.35, 0.30, 1.0)
 _PLANAR = np.ix_([0, 1, 5], [0, 1, 5])  # x, y, yaw of six
 
 
@@ -198,3 +212,51 @@ def contact_message(episode: ContactEpisode, count: int) -> DiagnosticStatus:
         message=f"{episode.part} touched {episode.obstacle}",
         values=[KeyValue(key=key, value=value) for key, value in values.items()],
     )
+
+
+def actors_message(
+    actors: Sequence[tuple[Model, Transform3]], stamp_ns: int, frame: str
+) -> MarkerArray:
+    """Return the visible shapes of models at their poses in the world."""
+    markers: list[Marker] = []
+    for model, world_T_model in actors:
+        for link in model.links:
+            for geometry in link.geometries:
+                kind = _marker_kind(geometry.shape)
+                if kind is None or not geometry.visible:
+                    continue
+                pose = world_T_model @ link.model_T_link @ geometry.link_T_shape
+                (x, y, z), (qx, qy, qz, qw) = pose
+                marker = Marker(
+                    header=header(stamp_ns, frame),
+                    ns=model.name,
+                    id=len(markers),
+                    type=kind[0],
+                    action=Marker.ADD,
+                    pose=Pose(
+                        position=Point(x=x, y=y, z=z),
+                        orientation=Quaternion(x=qx, y=qy, z=qz, w=qw),
+                    ),
+                )
+                marker.scale = Vector3(x=kind[1][0], y=kind[1][1], z=kind[1][2])
+                r, g, b, a = geometry.colour or _ACTOR_COLOUR
+                marker.color = ColorRGBA(r=r, g=g, b=b, a=a)
+                markers.append(marker)
+    return MarkerArray(markers=markers)
+
+
+def _marker_kind(shape: Shape) -> tuple[int, tuple[float, float, float]] | None:
+    """Return the type of marker and its size; None for a plane."""
+    if isinstance(shape, Box):
+        return Marker.CUBE, shape.size
+    if isinstance(shape, Sphere):
+        return Marker.SPHERE, (2 * shape.radius,) * 3
+    if isinstance(shape, Ellipsoid):
+        a, b, c = shape.radii
+        return Marker.SPHERE, (2 * a, 2 * b, 2 * c)
+    if isinstance(shape, Cylinder):
+        return Marker.CYLINDER, (2 * shape.radius, 2 * shape.radius, shape.length)
+    if isinstance(shape, Capsule):
+        height = shape.length + 2 * shape.radius
+        return Marker.CYLINDER, (2 * shape.radius, 2 * shape.radius, height)
+    return None

@@ -49,9 +49,12 @@ class ModelBuilder:
             )
 
     def add_model(self, model: Model, *, is_robot: bool) -> None:
+        if model.motion is not None:
+            self._add_actor(model)
+            return
         if model.static:
             for link in model.links:
-                self._add_static(model, link)
+                self._add_static(self.spec.worldbody, model, link, model.world_T_model)
             return
         for link in root_links(model):
             pinned = any(
@@ -68,16 +71,28 @@ class ModelBuilder:
             if not pinned:
                 body.add_freejoint(name=f"{model.name}/{link.name}/free")
 
-    def _add_static(self, model: Model, link: Link) -> None:
-        world_T_link = model.world_T_model @ link.model_T_link
+    def _add_actor(self, model: Model) -> None:
+        """Add a body whose pose is set, not simulated."""
+        body = self.spec.worldbody.add_body(name=actor_name(model), mocap=True)
+        for link in model.links:
+            self._add_static(body, model, link, Transform3.identity())
+
+    def _add_static(
+        self,
+        body: mujoco.MjsBody,
+        model: Model,
+        link: Link,
+        body_T_model: Transform3,
+    ) -> None:
+        body_T_link = body_T_model @ link.model_T_link
         for geometry in link.geometries:
             ground = isinstance(geometry.shape, Plane)
             name = self._name(model, link, geometry)
             add_geom(
-                self.spec.worldbody,
+                body,
                 name,
                 geometry,
-                world_T_link @ geometry.link_T_shape,
+                body_T_link @ geometry.link_T_shape,
                 group=group_of(geometry),
                 contype=(GROUND if ground else OBSTACLE) if geometry.collides else 0,
                 conaffinity=0,
@@ -183,6 +198,11 @@ class ModelBuilder:
             if drive.max_wheel_torque is not None:
                 servo.forcelimited = True
                 servo.forcerange = [-drive.max_wheel_torque, drive.max_wheel_torque]
+
+
+def actor_name(model: Model) -> str:
+    """Return MuJoCo's name of the body of a model with a scripted motion."""
+    return f"{model.name}/scripted"
 
 
 def root_links(model: Model) -> list[Link]:

@@ -21,6 +21,7 @@ from navette.sim.sensors import sensors_of
 from navette.sim.simulator import Simulator
 from navette.sim.wheel_odometry import PlanarCovariances
 
+_ACTORS_HZ = 20.0
 _HEARTBEAT_S = 0.1  # steps physics and reports contacts without any subscriber
 
 
@@ -72,6 +73,9 @@ class SimNode(StageNode):
         Output.of(topics.TF_STATIC, "fixed frames"),
         Output.of(topics.JOINT_STATES, "angles and speeds of the wheels", rate_hz=10),
         Output.of(topics.CONTACTS, "start of each contact with an obstacle"),
+        Output.of(
+            topics.ACTORS, "moving models of the world, as they stand", rate_hz=20
+        ),
         Output.of(topics.EMERGENCY_STOP_ACTIVE, "whether the robot is stopped"),
         Output.of(topics.ROBOT_DESCRIPTION, "URDF of the robot"),
         Output.of(topics.WORLD_DESCRIPTION, "URDF of the world"),
@@ -183,6 +187,8 @@ class SimNode(StageNode):
         self._every(p.tf_rate_hz, self._publish_base_tf, topics.TF.name)
         joints = topics.JOINT_STATES.name
         self._every(p.joint_tf_rate_hz, self._publish_joints, joints)
+        if self.simulator.actors:
+            self._every(_ACTORS_HZ, self._publish_actors, topics.ACTORS.name)
         if self.frames.moving:
             self._every(p.joint_tf_rate_hz, self._publish_joint_tf, topics.TF.name)
         self._create_sensor_timers(LidarSensor, topics.LIDAR.name, self._publish_scan)
@@ -313,6 +319,11 @@ class SimNode(StageNode):
         joints = self.simulator.state.wheel_joints()
         message = messages.joint_message(joints, stamp_ns)
         self.publish(topics.JOINT_STATES.name, message)
+
+    def _publish_actors(self, stamp_ns: int) -> None:
+        poses = self.simulator.actors.poses(self.simulator.now_ns)
+        message = messages.actors_message(poses, stamp_ns, self.params.map_frame)
+        self.publish(topics.ACTORS.name, message)
 
     def _publish_scan(self, topic: str, index: int, frame: str, stamp_ns: int) -> None:
         period_s = 1.0 / self.simulator.lidars[index].sensor.rate_hz

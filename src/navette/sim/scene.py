@@ -12,6 +12,7 @@ from pathlib import Path
 
 from navette.errors import InvalidValueError
 from navette.geometry import Transform3, Vector3
+from navette.sim.trajectory import Trajectory
 
 Colour = tuple[float, float, float, float]  # red, green, blue, alpha in 0…1
 
@@ -208,7 +209,10 @@ class DiffDrive:
 
 @dataclass(frozen=True, kw_only=True)
 class Model:
-    """Links and joints; nested models are flattened already."""
+    """Links and joints; nested models are flattened already.
+
+    A model with a ``motion`` follows it whatever it touches, and is otherwise static.
+    """
 
     name: str
     world_T_model: Transform3 = _IDENTITY
@@ -216,6 +220,7 @@ class Model:
     links: tuple[Link, ...] = ()
     joints: tuple[Joint, ...] = ()
     drive: DiffDrive | None = None
+    motion: Trajectory | None = None
 
     def link(self, name: str) -> Link:
         return next(link for link in self.links if link.name == name)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads SDF worlds and models (1.5 to 1.10; http://sdformat.org/spec).
 
-Supported: world, model (nested too), link, frame, joint (fixed, revolute,
+Supported: world, model (nested too), actor, link, frame, joint (fixed, revolute,
 continuous, prismatic, ball), collision and visual with primitive shapes, sensors,
 diff-drive plugins, gravity. Other elements are ignored with one warning per kind.
 """
@@ -22,6 +22,7 @@ from navette.sim.scene import (
     Plane,
     Scene,
 )
+from navette.sim.sdf_actors import MAX_ACTORS, read_actor
 from navette.sim.sdf_poses import PoseGraph, RawPose, read_pose
 from navette.sim.sdf_sensors import find_drive, note_plugin, read_sensors
 from navette.sim.sdf_shapes import read_geometries, read_inertial
@@ -33,7 +34,7 @@ MAX_MODELS = 20_000
 _IGNORED_IN_WORLD = {
     *("physics", "gui", "scene", "light", "gravity", "magnetic_field", "atmosphere"),
     *("spherical_coordinates", "state", "audio", "wind", "model", "frame", "plugin"),
-    "include",
+    *("include", "actor"),
 }
 _KNOWN_IN_MODEL = {
     *("static", "self_collide", "allow_auto_disable", "pose", "link", "joint", "frame"),
@@ -89,6 +90,7 @@ def _read_world(world: XmlNode, path: Path, unsupported: Unsupported) -> Scene:
         graph.add(node.name(), read_pose(node), node.attributes.get("attached_to", ""))
     models = [m.at(graph.pose_of(m.name, pose.node)) for m, pose in raw]
     models += _read_includes(world, unsupported)
+    models += _read_actors(world, {m.name for m in models}, unsupported)
     _note_unknown(world, unsupported)
     start = next((n for n in world.all("frame") if n.name() == START_FRAME), None)
     return Scene(
@@ -120,6 +122,23 @@ def _read_includes(world: XmlNode, unsupported: Unsupported) -> list[Model]:
         elif short != "sun":
             unsupported.note(f"<include> of {uri!r}", node)
     return models
+
+
+def _read_actors(
+    world: XmlNode, taken: set[str], unsupported: Unsupported
+) -> list[Model]:
+    actors: list[Model] = []
+    for node in world.all("actor"):
+        if len(actors) >= MAX_ACTORS:
+            raise node.error(f"more than {MAX_ACTORS} actors")
+        if node.name() in taken:
+            raise node.error(f"the name {node.name()!r} is used twice")
+        taken.add(node.name())
+        graph = PoseGraph("__model__")
+        _fill_graph(node, graph, [])
+        links = [_read_link(child, graph, unsupported) for child in node.all("link")]
+        actors.append(read_actor(node, tuple(links), unsupported))
+    return actors
 
 
 def _note_unknown(world: XmlNode, unsupported: Unsupported) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, Transform3
+from navette.sim.actors import Actors
 from navette.sim.build import compile_scene
 from navette.sim.camera import Image
 from navette.sim.clearance import Clearance, ClearanceProbe
@@ -61,6 +62,8 @@ class Simulator:
         self.compiled = compile_scene(scene, timestep_s=self.params.timestep_s)
         self._step_ns = round(self.params.timestep_s * 1e9)
         self._data = mujoco.MjData(self.compiled.model)
+        self.actors = Actors(self.compiled)
+        self.actors.place(self._data, 0)
         self._start = start
         self._ramp = SpeedRamp(self.params)
         self.state = RobotState(self.compiled.robot, self._data)
@@ -77,6 +80,7 @@ class Simulator:
     def reset(self) -> None:
         """Reset state, time, noise and records."""
         mujoco.mj_resetData(self.compiled.model, self._data)
+        self.actors.place(self._data, 0)
         self._seed_noise()
         self._steps = 0
         self._fresh_at = -1
@@ -167,6 +171,7 @@ class Simulator:
     def _step_checking_contacts(self, count: int) -> None:
         """Step singly, so that no short contact is missed."""
         for _ in range(count):
+            self.actors.place(self._data, self.now_ns)
             mujoco.mj_step(self.compiled.model, self._data, 1)
             self._steps += 1
             if self._data.ncon:
@@ -195,8 +200,11 @@ class Simulator:
         linear_growth = max(self.params.max_accel_mps2, self.params.max_decel_mps2)
         growth = linear_growth + self.params.max_yaw_accel_radps2 * reach
         period_s = _WATCH_PERIOD_NS * 1e-9
+        fastest += self.actors.fastest_mps
         margin = 1.5 * period_s * (fastest + growth * period_s) + 0.01
-        self._near = clearance.distance < margin
+        self._near = clearance.distance < margin or self.actors.jump_within(
+            self.now_ns, _WATCH_PERIOD_NS
+        )
 
     def _check_physics(self) -> None:
         """Raise if the state diverged; MuJoCo itself would reset it silently."""
@@ -210,6 +218,7 @@ class Simulator:
     def _refresh(self) -> None:
         """Update body and geom poses to the current state."""
         if self._fresh_at != self._steps:
+            self.actors.place(self._data, self.now_ns)
             mujoco.mj_kinematics(self.compiled.model, self._data)
             self._fresh_at = self._steps
 

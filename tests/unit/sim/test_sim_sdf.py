@@ -227,13 +227,13 @@ def test_unsupported_elements_are_logged_once_per_kind(
                 f"<link name='a'><visual name='v'>{mesh}</visual>"
                 f"<collision name='c'>{mesh}</collision></link>"
             )
-            + "<actor name='x'/><plugin name='p::Keys' filename='k'/>"
+            + "<road name='x'/><plugin name='p::Keys' filename='k'/>"
             + "<include><uri>model://house</uri></include>",
         )
     text = "\n".join(caplog.messages)
     assert text.count("<mesh> geometry") == 1
     assert "(and 1 more)" in text
-    for kind in ("<actor>", "plugin 'p::Keys'", "'model://house'"):
+    for kind in ("<road>", "plugin 'p::Keys'", "'model://house'"):
         assert kind in text
 
 
