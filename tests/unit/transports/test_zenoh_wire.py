@@ -198,9 +198,26 @@ def test_qos_as_text(qos: EndpointQos, text: str) -> None:
     assert parse_qos(text) == qos
 
 
-def test_an_explicit_infinite_duration_is_accepted() -> None:
-    text = "::,10:9223372036,854775807:,:,,"
-    assert parse_qos(text).deadline_ns == INFINITE_NS
+@pytest.mark.parametrize(
+    ("text", "deadline_ns"),
+    [
+        ("9223372036,854775807", INFINITE_NS),
+        ("18446744073709551615,18446744073709551615", INFINITE_NS),
+        ("1,1500000000", 2_500_000_000),  # nanoseconds of ten digits
+        # Each half has its own default.
+        ("5,", 5_854_775_807),
+        (",0", INFINITE_NS - 854_775_807),
+        ("0,0", 0),
+    ],
+)
+def test_durations_as_rmw_zenoh_writes_them(text: str, deadline_ns: int) -> None:
+    assert parse_qos(f"::,10:{text}:,:,,").deadline_ns == deadline_ns
+
+
+@pytest.mark.parametrize("text", ["5,", ",0", "0,0", ",", "1,5"])
+def test_the_halves_of_a_duration_are_written_as_rmw_zenoh_does(text: str) -> None:
+    chunk = f"::,10:{text}:,:,,"
+    assert format_qos(parse_qos(chunk)) == chunk
 
 
 def test_open_qos_values_are_announced_with_their_defaults() -> None:
@@ -245,12 +262,18 @@ def test_invalid_attachments_are_refused(data: bytes, what: str) -> None:
         decode_attachment(data)
 
 
+@pytest.mark.parametrize("chunks", ["/backends:cpu:", "/backends:cpu:/and/more"])
+def test_further_chunks_of_a_token_count_for_the_gid_only(chunks: str) -> None:
+    assert parse_token(PUBLISHER + chunks) == parse_token(PUBLISHER)
+    assert parse_token(LISTENER + chunks) == parse_token(LISTENER)
+    assert gid_of(PUBLISHER + chunks) != gid_of(PUBLISHER)
+
+
 @pytest.mark.parametrize(
     "key",
     [
         "",
         "@ros2_lv",
-        LISTENER + "/more",
         LISTENER.replace("@ros2_lv", "ros2_lv"),
         LISTENER.replace("NN", "MP"),
         LISTENER.replace("/2/", "/-2/"),
@@ -262,7 +285,7 @@ def test_invalid_attachments_are_refused(data: bytes, what: str) -> None:
         LISTENER.replace("%/%", "%/%%"),
         LISTENER.replace("%/%", "%/a"),
         LISTENER.replace("listener", "l" * 3000),
-        PUBLISHER.replace("/MP/", "/NN/"),
+        PUBLISHER.rpartition("/")[0],
         PUBLISHER.replace("/MP/", "/XX/"),
         PUBLISHER.replace("%chatter", "chatter"),
         PUBLISHER.replace("%chatter", "%chat%"),

@@ -109,8 +109,10 @@ class ZenohClient(ClientPort):
         if sample is None or sample.attachment is None:
             raise DecodeError("without an attachment")
         check_length(sample.payload, self._owner.session.settings.max_message_bytes)
+        # Not the gid: the query itself leads the reply here, and servers on Pico-ROS
+        # send their own gid, which rmw_zenoh accepts.
         attachment = decode_attachment(sample.attachment.to_bytes())
-        if (attachment.sequence, attachment.gid) != (sequence, self._entity.gid):
+        if attachment.sequence != sequence:
             raise DecodeError(
                 f"sequence number {attachment.sequence} instead of {sequence}"
             )

@@ -1,6 +1,8 @@
 """QoS as one chunk of a liveliness token; default values are left empty.
 
 ``<rel>:<dur>:<hist>,<depth>:<deadline s>,<ns>:<lifespan s>,<ns>:<liv>,<lease s>,<ns>``
+The default of a duration is infinite: 9223372036 s and 854775807 ns, each half of
+which is left empty on its own. rmw_zenoh writes both as numbers of up to 64 bits.
 """
 
 import re
@@ -17,12 +19,13 @@ from navette.transports.qos import (
     ReliabilityPolicy,
 )
 
-_DURATION = r"(\d{0,10}),(\d{0,9})"
+_DURATION = r"(\d{0,20}),(\d{0,20})"
 _CHUNK = re.compile(
     rf"(\d?):(\d?):(\d?),(\d{{0,10}}):{_DURATION}:{_DURATION}:(\d?),{_DURATION}",
     re.ASCII,
 )
 _NS = 1_000_000_000
+_INFINITE_HALVES = divmod(INFINITE_NS, _NS)
 
 # Values that a profile leaves open, and what rmw_zenoh replaces them by.
 _RELIABILITY = {
@@ -115,12 +118,11 @@ def _number(text: str, default: int) -> int:
 
 
 def _format_duration(duration_ns: int) -> str:
-    if duration_ns >= INFINITE_NS:
-        return ","
-    return f"{duration_ns // _NS},{duration_ns % _NS}"
+    halves = divmod(min(duration_ns, INFINITE_NS), _NS)
+    return ",".join(map(_or_empty, halves, _INFINITE_HALVES))
 
 
 def _duration(seconds: str, nanoseconds: str) -> int:
-    if not seconds and not nanoseconds:
-        return INFINITE_NS
-    return min(_number(seconds, 0) * _NS + _number(nanoseconds, 0), INFINITE_NS)
+    default_s, default_ns = _INFINITE_HALVES
+    total = _number(seconds, default_s) * _NS + _number(nanoseconds, default_ns)
+    return min(total, INFINITE_NS)

@@ -2,6 +2,8 @@
 
 Node: ``@ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<name>``; endpoint:
 ``…/<zid>/<nid>/<eid>/<kind>/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>``.
+Newer distributions append chunks: Lyrical's ``/backends:cpu:`` after endpoints whose
+type holds an unbounded ``uint8[]``. They count for the gid and are otherwise ignored.
 """
 
 import re
@@ -98,19 +100,20 @@ def parse_token(key: str) -> Token:
     if len(key) > _MAX_LENGTH:
         raise DecodeError(f"token of {len(key)} characters, longer than {_MAX_LENGTH}")
     parts = key.split("/")
-    if len(parts) not in (_NODE, _ENDPOINT) or parts[0] != SPACE:
+    if len(parts) < _NODE or parts[0] != SPACE:
         raise DecodeError(f"{key!r} is not a token of a node or endpoint")
+    is_node = parts[5] == "NN"
+    if not is_node and parts[5] not in _KINDS:
+        raise DecodeError(
+            f"{key!r}: entity {parts[5]!r}, expected NN, MP, MS, SS or SC"
+        )
+    if not is_node and len(parts) < _ENDPOINT:
+        raise DecodeError(f"{key!r}: {len(parts)} chunks, expected {_ENDPOINT} or more")
     domain, zid, nid = _session(parts[1], parts[2], parts[3])
     eid = int(_checked(_ID, parts[4], "entity id"))
     node = _node(parts[6], parts[7], parts[8])
-    if len(parts) == _NODE:
-        if parts[5] != "NN":
-            raise DecodeError(
-                f"{key!r}: entity {parts[5]!r} instead of NN in a token of a node"
-            )
+    if is_node:
         return NodeToken(domain, zid, nid, node)
-    if parts[5] not in _KINDS:
-        raise DecodeError(f"{key!r}: entity {parts[5]!r}, expected MP, MS, SS or SC")
     return EndpointToken(
         domain,
         zid,
