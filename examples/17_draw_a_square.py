@@ -28,7 +28,7 @@ class Turtle(navette.Node):
     def __init__(self):
         super().__init__("turtle")
         self.publisher = self.create_publisher(Twist, "/cmd_vel", 1)
-        self.create_subscription(Odometry, "/odom/filtered", self.on_odometry, 1)
+        self.create_subscription(Odometry, "/odom", self.on_odometry, 1)
         self.position = None
 
     def on_odometry(self, message):

@@ -70,7 +70,11 @@ def filtered(parameters, folder):
     arguments = ["--ros-args", "--params-file", file]
     with open_bag(DRIVE) as bag:
         replay = Replay(
-            bag, [lambda c: EkfNode(context=c)], record=way, arguments=arguments
+            bag,
+            [lambda c: EkfNode(context=c)],
+            record=way,
+            overwrite=True,
+            arguments=arguments,
         )
         replay.run()
         replay.close()

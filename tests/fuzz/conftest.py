@@ -5,7 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from fuzz.limits import limited_memory
+from fuzz.limits import HANG_S, SECONDS, limited_memory
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long runs end by NAVETTE_FUZZ_SECONDS; each input has its own bound."""
+    if SECONDS:
+        for item in items:
+            if Path(__file__).parent in item.path.parents:
+                item.add_marker(pytest.mark.timeout(SECONDS + 2 * HANG_S))
 
 
 @pytest.fixture(autouse=True)

@@ -123,7 +123,7 @@ def test_keys_on_a_real_terminal(terminal: Terminal) -> None:
     terminal.press(b"\x1b[A\x1b[A")
     terminal.wait_for("×1.21")
     terminal.press(b"\x1bOB")
-    terminal.wait_for("×1.1\x1b")
+    terminal.wait_for(r"×1\.1\b")
     terminal.press(b" ")
     terminal.wait_for("playing")
     terminal.wait_for(r" (0\.[3-9]|[1-9][\d.]*) / 60\.0 s")

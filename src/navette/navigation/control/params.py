@@ -128,7 +128,7 @@ class ControlParams(Params):
         0.1, "mppi: time of a predicted step", unit="s", at_least=0.02, at_most=0.5
     )
     mppi_temperature: float = param(
-        0.3, "mppi: cost difference that matters", above=0.0
+        0.3, "mppi: cost difference that matters", at_least=0.001
     )
     mppi_align_weight: float = param(
         6.0, "mppi: cost of the squared distance from the path", at_least=0.0
@@ -143,7 +143,7 @@ class ControlParams(Params):
         6.0, "mppi: cost of low clearance", at_least=0.0
     )
     mppi_clearance_m: float = param(
-        0.25, "mppi: clearance below which it costs", unit="m", above=0.0
+        0.25, "mppi: clearance below which it costs", unit="m", above=0.0, at_most=10.0
     )
     mppi_reverse_weight: float = param(
         5.0, "mppi: cost of driving against the path's direction", at_least=0.0
