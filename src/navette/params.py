@@ -13,7 +13,7 @@ parameters with the same description and range.
 import dataclasses
 import types
 import typing
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,7 +30,8 @@ class ParamInfo:
     at_most: float | None = None
     above: float | None = None
     below: float | None = None
-    choices: tuple[str, ...] = ()
+    #: Allowed texts; may be a registry of methods.
+    choices: Collection[str] = ()
 
     def allowed(self) -> str:
         """Describe the allowed values, for error messages and the reference."""
@@ -64,10 +65,10 @@ def param(
     at_most: float | None = None,
     above: float | None = None,
     below: float | None = None,
-    choices: Sequence[str] = (),
+    choices: Collection[str] = (),
 ) -> Any:
     """Make a dataclass field with a :class:`ParamInfo`."""
-    info = ParamInfo(meaning, unit, at_least, at_most, above, below, tuple(choices))
+    info = ParamInfo(meaning, unit, at_least, at_most, above, below, choices)
     return dataclasses.field(default=default, metadata={_KEY: info})
 
 

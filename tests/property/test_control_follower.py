@@ -16,7 +16,7 @@ from navette.navigation.control import (
     PathFollower,
 )
 from navette.navigation.control.followers import make_follower
-from navette.navigation.control.params import METHODS
+from navette.navigation.control.methods import CONTROLLERS
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)
 metres = st.floats(-20, 20)
@@ -28,7 +28,7 @@ inputs = st.builds(
     any_float | st.floats(-2, 2),
     st.builds(InputAges, st.sampled_from([0.0, 0.1, 9.0, math.inf, math.nan])),
 )
-methods = st.sampled_from(METHODS)
+methods = st.sampled_from(list(CONTROLLERS))
 points = st.lists(st.tuples(metres, metres), max_size=30)
 
 

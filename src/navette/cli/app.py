@@ -26,6 +26,7 @@ from navette.cli.completing_installed import (
 )
 from navette.cli.completion import discard_stderr, is_completing
 from navette.cli.ending import end_with
+from navette.cli.methods import MethodOptions
 from navette.cli.options import Argument, Option
 from navette.cli.stderr import print_error
 from navette.cli.verbs import DRIVE, VERBS
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from navette.navigation.stack import RunOptions
 
 USAGE_ERROR = 2
+NO_METHODS = MethodOptions()
 
 World = Annotated[
     str,
@@ -188,6 +190,7 @@ def app(
 @app.command(panel=DRIVE)
 def demo(
     robot: Robot = None,
+    methods: MethodOptions = NO_METHODS,
     tree: Tree = None,
     port: Port = 8765,
     host: Host = "127.0.0.1",
@@ -208,6 +211,7 @@ def demo(
         world="arena",
         robot=robot,
         goals=demo_goals(),
+        methods=methods.chosen,
         tree=tree,
         speed=parse_speed(speed or "1"),
         max_time_s=max_time,
@@ -234,6 +238,7 @@ def sim(
     record_images: RecordImages = False,
     overwrite: Overwrite = False,
     params: ParamsFile = None,
+    methods: MethodOptions = NO_METHODS,
     tree: Tree = None,
     max_time: MaxTime = None,
     as_json: Json = False,
@@ -263,6 +268,7 @@ def sim(
         record_images=record_images,
         overwrite=overwrite,
         params_files=tuple(params or ()),
+        methods=methods.chosen,
         tree=tree,
         max_time_s=max_time,
         port=port,

@@ -1,27 +1,12 @@
 """Parts of the controller that all pieces of all paths share."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
-from navette.geometry import Footprint, Pose2
-from navette.navigation.control.cross_track_pid import CrossTrackPid
+from navette.geometry import Footprint
 from navette.navigation.control.params import ControlParams
-from navette.navigation.control.path_pieces import DrivePiece
-from navette.navigation.control.piece_progress import PathPoint
-from navette.navigation.control.pure_pursuit import PurePursuit
+from navette.navigation.control.steering import Steering, make_steering
 from navette.navigation.control.turn_gain import TurnGain
 from navette.navigation.grids import CollisionCheck, MovingBody
-
-
-class Steering(Protocol):
-    """A path-tracking method."""
-
-    def reset(self) -> None: ...
-
-    def curvature(
-        self, piece: DrivePiece, at: PathPoint, pose: Pose2, speed: float
-    ) -> float:
-        """Return the curvature (1/m) to steer; left is positive driving forward."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +20,7 @@ class ControllerParts:
 
     @classmethod
     def of(cls, params: ControlParams) -> "ControllerParts":
-        pursues = params.method == "pure_pursuit"
-        steering = PurePursuit(params) if pursues else CrossTrackPid(params)
+        steering = make_steering(params)
         return cls(params, steering, collision_check(params), TurnGain())
 
 

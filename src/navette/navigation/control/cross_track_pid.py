@@ -3,6 +3,7 @@
 import math
 
 from navette.geometry import Pose2
+from navette.navigation.control.methods import CONTROLLERS
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_pieces import DrivePiece
 from navette.navigation.control.piece_progress import PathPoint
@@ -12,6 +13,7 @@ _MAX_CURVATURE = 4.0  # 1/m
 _MAX_INTEGRAL = 0.5  # 1/m, contribution of the integral
 
 
+@CONTROLLERS.register("cross_track_pid")
 class CrossTrackPid:
     """Steer ``κ = κ_path − kp e − ki ∫e ds − kd sin ψ``.
 
@@ -19,6 +21,8 @@ class CrossTrackPid:
     the derivative term, and the gains hold at every speed. The error obeys
     e″ + kd e′ + kp e = 0, which is critically damped at kd² = 4 kp.
     """
+
+    Params = ControlParams
 
     def __init__(self, params: ControlParams) -> None:
         self._params = params

@@ -44,6 +44,8 @@ class FollowMonitor:
             now_ns: time of the node's clock.
         """
         params = self._params
+        if state is ControlState.METHOD_FAILED:
+            return FollowFailure("NO_VALID_CONTROL", f"{state}: see the log")
         code = _PERSISTENT.get(state)
         if code is None:
             self._able_ns = now_ns

@@ -5,10 +5,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.navigation.control.command_follower import CommandFollower
 from navette.navigation.control.limits import SpeedCap
+from navette.navigation.control.methods import CONTROLLERS
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_follower import PathFollower
-from navette.navigation.control.predictive_follower import PredictiveFollower
 from navette.navigation.control.records import FollowerInputs, FollowerOutput
 from navette.navigation.control.states import ControlState
 
@@ -49,6 +50,10 @@ class Follower(Protocol):
 
 def make_follower(params: ControlParams) -> Follower:
     """Return the controller of ``params.method``."""
-    if params.method == "mppi":
-        return PredictiveFollower(params)
-    return PathFollower(params)
+    method = CONTROLLERS.load(params.method)
+    if method.entry == "command":
+        return CommandFollower(params, method.make(params), method.name)
+    if method.entry == "curvature":
+        return PathFollower(params)
+    follower: Follower = method.make(params)
+    return follower

@@ -41,6 +41,7 @@ from navette.navigation.control.servers.follow_path import (
 from navette.navigation.control.states import ControlState
 from navette.navigation.grids import ObstacleTracker
 from navette.navigation.servers.lifecycle import StageLifecycle
+from navette.plugins import MethodFaultError
 from navette.runtime.stage.commander import Commander
 from navette.runtime.stage.odometry import PoseTracker
 from navette.runtime.stage.path_messages import Poses, poses_of
@@ -128,6 +129,7 @@ class ControlNode(StageNode):
         self._path = np.empty((0, 3))
         self._follows_goal = False  # the path is that of a follow_path goal …
         self._method = ""  # … which may name a steering method
+        self._fault = ""  # newest of the user's method
         self._collision_action = CollisionMonitorState.DO_NOTHING
         self._obstacles = ObstacleTracker(self._tracker)
         self._placed_ns = _NEVER  # arrival of the costmap that the follower uses
@@ -220,7 +222,10 @@ class ControlNode(StageNode):
         is_masked = Commander.of(msg).masks(self._output_topic)
         if is_masked != self._is_paused:
             self._is_paused = is_masked
-            self._follower.pause()
+            try:
+                self._follower.pause()
+            except MethodFaultError as error:
+                self._on_fault(error)
             self._tick()
 
     def on_params_changed(self, old: ControlParams) -> None:
@@ -291,7 +296,10 @@ class ControlNode(StageNode):
             self._follower.reset(ControlState.INVALID_PATH)
 
     def _set_path(self, poses: Poses) -> None:
-        self._follower.set_path(poses)
+        try:
+            self._follower.set_path(poses)
+        except MethodFaultError as error:
+            self._on_fault(error)
         self._path = poses
 
     def _follow_goal(self, poses: Poses, method: str) -> None:
@@ -319,12 +327,28 @@ class ControlNode(StageNode):
         speed, turn_rate = self._tracker.velocity
         pose = self._tracker.predicted_now(self._now_ns) or UNKNOWN_POSE
         inputs = FollowerInputs(pose, speed, turn_rate, self._ages())
-        output = self._follower.step(inputs, 1 / self.params.rate_hz)
+        output = self._step(inputs)
         self._send(output)
         self._report(output)
         self._report_collision(output)
         fresh = inputs.ages.odometry_s <= self.params.odometry_timeout_s
         self._follow_server.step(output, inputs, fresh=fresh)
+
+    def _step(self, inputs: FollowerInputs) -> FollowerOutput:
+        """Step the follower; a fault of a user's method stops the robot."""
+        dt = 1 / self.params.rate_hz
+        try:
+            return self._follower.step(inputs, dt)
+        except MethodFaultError as error:
+            self._on_fault(error)
+            return self._follower.step(inputs, dt)
+
+    def _on_fault(self, error: MethodFaultError) -> None:
+        """Stop, and log a fault of a user's method once."""
+        self._follower.reset(ControlState.METHOD_FAILED)
+        if str(error) != self._fault:
+            self._fault = str(error)
+            self.get_logger().error(f"{self._fault}\nThe robot stops.")
 
     def _locate(self) -> None:
         if self._odometry is not None and self._tracker.update(self._odometry):

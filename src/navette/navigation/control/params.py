@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint
+from navette.navigation.control.methods import CONTROLLERS
 from navette.params import Params, param
-
-METHODS = ("pure_pursuit", "cross_track_pid", "mppi")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,7 +15,7 @@ class ControlParams(Params):
 
     map_frame: str = param("map", "frame of /path and of the pose that is steered")
     base_frame: str = param("base_link", "frame that is steered: the axle's midpoint")
-    method: str = param("pure_pursuit", "steering method", choices=METHODS)
+    method: str = param("pure_pursuit", "steering method", choices=CONTROLLERS)
     rate_hz: float = param(
         20.0, "commands per second", unit="Hz", at_least=10.0, at_most=1000.0
     )

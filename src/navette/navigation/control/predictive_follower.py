@@ -17,6 +17,7 @@ from navette.navigation.control.limits import (
     brake,
     clamp,
 )
+from navette.navigation.control.methods import CONTROLLERS
 from navette.navigation.control.mppi import MotionState, Mppi
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import (
@@ -42,8 +43,11 @@ _END_M = 0.15
 _END_YAW_RAD = 0.08
 
 
+@CONTROLLERS.register("mppi")
 class PredictiveFollower:
     """Follow paths of poses; the interface is that of ``PathFollower``."""
+
+    Params = ControlParams
 
     def __init__(self, params: ControlParams) -> None:
         self._params = params

@@ -8,15 +8,18 @@ import math
 from dataclasses import dataclass
 
 from navette.geometry import Pose2
+from navette.navigation.control.methods import CONTROLLERS
 from navette.navigation.control.params import ControlParams
 from navette.navigation.control.path_pieces import SAMPLE_M, DrivePiece
 from navette.navigation.control.piece_progress import PathPoint
 
 
+@CONTROLLERS.register("pure_pursuit")
 @dataclass(frozen=True)
 class PurePursuit:
     """Pure pursuit with a lookahead that adapts to bends and speed."""
 
+    Params = ControlParams
     params: ControlParams
 
     def reset(self) -> None:

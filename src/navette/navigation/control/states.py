@@ -21,6 +21,8 @@ class ControlState(StrEnum):
     UNKNOWN_FRAME = "unknown_frame"
     COMMAND_NOT_FINITE = "command_not_finite"
     COMMAND_OVER_LIMIT = "command_over_limit"
+    METHOD_FAILED = "method_failed"
+    """A user's controller raised, or returned something else than a command."""
 
     @property
     def moves(self) -> bool:
@@ -39,4 +41,5 @@ _RESTING = (
     ControlState.MISSED_GOAL,
     ControlState.INVALID_PATH,
     ControlState.UNKNOWN_FRAME,
+    ControlState.METHOD_FAILED,
 )

@@ -20,6 +20,7 @@ FAILURES = frozenset(
     {
         "no_path",
         "search_limit",
+        "method_failed",
         "start_blocked",
         "start_outside_map",
         "goal_blocked",

@@ -1,5 +1,6 @@
 """Planning: grid searches, and paths that the footprint can drive."""
 
+from navette.navigation.planning import astar, breadth_first, dijkstra
 from navette.navigation.planning.navigator import Navigator
 from navette.navigation.planning.outcome import Outcome
 from navette.navigation.planning.params import PlannerParams

@@ -20,6 +20,7 @@ from navette.navigation.planning.bucket_queue import (
     push,
     reserve,
 )
+from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.traversal import (
     DIAGONAL,
     STRAIGHT,
@@ -40,6 +41,7 @@ _CLOSED = 8
 _NEVER = 1 << 60
 
 
+@PLANNERS.register("a_star")
 class AStar:
     """Search that keeps its working arrays between queries."""
 

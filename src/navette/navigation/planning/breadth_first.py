@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.traversal import (
     Cell,
     EdgeTable,
@@ -21,6 +22,7 @@ from navette.navigation.planning.traversal import (
 from navette.storage.kernels import kernel
 
 
+@PLANNERS.register("breadth_first")
 def search(
     cost: NDArray[np.uint8],
     start: Cell,

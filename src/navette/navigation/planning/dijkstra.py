@@ -19,6 +19,7 @@ from navette.navigation.planning.bucket_queue import (
     push,
     reserve,
 )
+from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.traversal import (
     Cell,
     EdgeTable,
@@ -33,6 +34,7 @@ UNREACHED = 1 << 60
 Field = NDArray[np.int64]
 
 
+@PLANNERS.register("dijkstra")
 def search(
     cost: NDArray[np.uint8],
     start: Cell,

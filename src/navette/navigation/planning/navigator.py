@@ -280,9 +280,10 @@ class Navigator:
             return
         self._checker.spend()
         # A robot that has not started gets one more attempt only.
-        hopeless = first or (not self._set_out and self._checker.spent > 1)
+        failed = plan.outcome is Outcome.METHOD_FAILED
+        hopeless = first or failed or (not self._set_out and self._checker.spent > 1)
         if hopeless or self._checker.exhausted:
-            self._finish(plan.outcome)
+            self._finish(plan.outcome, plan.fault)
             return
         # The map may improve: retry until the attempts are exhausted.
         self._drop_path()
@@ -341,7 +342,12 @@ class Navigator:
             goal_id=self.report.goal_id + 1, goal_x=goal.x, goal_y=goal.y
         )
 
-    def _finish(self, how: Outcome | Phase) -> None:
+    def fail(self, why: Outcome) -> None:
+        """End the goal, if there is one, and stop."""
+        if self._goal is not None:
+            self._finish(why)
+
+    def _finish(self, how: Outcome | Phase, fault: str = "") -> None:
         """End the goal, reached or failed, and stop the robot."""
         self._goal = None
         if how is Phase.REACHED and self._avoided.clear():
@@ -349,7 +355,8 @@ class Navigator:
         if how is not Phase.REACHED:
             self._published = None  # a failure publishes an empty path in any case
         self._drop_path()
-        self._set_status(how, state=State.WAITING_FOR_GOAL, result=how.value)
+        state = State.WAITING_FOR_GOAL
+        self._set_status(how, state=state, result=how.value, fault=fault)
 
     def _drop_path(self) -> None:
         self._plan = self._progress = None

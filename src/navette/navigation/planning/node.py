@@ -45,6 +45,8 @@ from navette.runtime.stage.status import StatusReporter, status_output
 _WATCH_PERIOD_S = 0.1
 _check_pose = input_check(topics.GOAL_POSE.type)
 _check_point = input_check(topics.GOAL_POINT.type)
+# Age of a path from which the controller's status is that of this path.
+_STATUS_DELAY_NS = 200_000_000
 # Status of a controller that obstacles stop.
 _BLOCKED = "blocked"
 # Temporary failures; all others end the goal.
@@ -123,7 +125,8 @@ class PlannerNode(StageNode):
         self._odometry_ns: int | None = None
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._status = StatusReporter(self, topics.PLANNER_STATUS.name)
-        self._logged = ""
+        self._logged = self._fault = ""
+        self._path_ns = 0  # of the newest path
         self._timer = self.create_timer(self.params.plan_period_s, self.on_timer)
         self.create_timer(_WATCH_PERIOD_S, self.on_watch)
         context = PlanningContext(
@@ -144,8 +147,14 @@ class PlannerNode(StageNode):
         self._report()
 
     def on_control_status(self, msg: DiagnosticStatus) -> None:
-        """Plan at once from the robot's pose if obstacles stop the controller."""
-        if msg.message == _BLOCKED and self._navigator.has_path:
+        """Plan at once if obstacles stop the controller; end the goal if it failed."""
+        path_age_ns = self._now_ns - self._path_ns
+        if msg.message == Outcome.METHOD_FAILED and self._navigator.has_path:
+            if path_age_ns < _STATUS_DELAY_NS:
+                return  # the status may be that of the previous path
+            self._navigator.fail(Outcome.METHOD_FAILED)
+            self._publish_news()
+        elif msg.message == _BLOCKED and self._navigator.has_path:
             self._navigator.note_blocked()
             self.on_timer()
 
@@ -342,6 +351,7 @@ class PlannerNode(StageNode):
         if poses is not None:
             message = path_message(poses, self.params.map_frame, self._now_ns)
             self.publish(topics.PATH.name, message)
+            self._path_ns = self._now_ns
             if len(poses):
                 self._publish_plan(poses)
         self._report()
@@ -374,7 +384,10 @@ class PlannerNode(StageNode):
     def _log(self, report: NavigatorReport) -> None:
         logger = self.get_logger()
         goal = f"goal {report.goal_id} ({report.goal_x:.6g}, {report.goal_y:.6g})"
-        if report.failed:
+        if report.fault and report.fault != self._fault:
+            self._fault = report.fault
+            logger.error(f"{goal}: {report.message}: {report.fault}")
+        elif report.failed:
             logger.warning(f"{goal}: {report.message}")
         elif report.message == Phase.FOLLOWING:
             near = "" if report.plan == Outcome.OK else f" ({report.plan})"

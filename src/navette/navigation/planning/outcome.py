@@ -22,6 +22,9 @@ class Outcome(StrEnum):
     SEARCH_LIMIT = "search_limit"
     """The search with headings exhausted its budget."""
 
+    METHOD_FAILED = "method_failed"
+    """A user's planner or controller raised, or returned something else."""
+
     TIMED_OUT = "timed_out"
     STUCK = "stuck"
     STALE_ODOMETRY = "stale_odometry"

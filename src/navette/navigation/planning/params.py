@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 from navette.errors import InvalidValueError, ParameterError
 from navette.geometry import Footprint
+from navette.navigation.planning.methods import PLANNERS
 from navette.params import Params, param
-
-METHODS = ("a_star", "dijkstra", "breadth_first")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -15,7 +14,9 @@ class PlannerParams(Params):
 
     map_frame: str = param("map", "frame of the map and of the path")
     base_frame: str = param("base_link", "frame that is driven: the axle's midpoint")
-    method: str = param("a_star", "search on the grid", choices=METHODS)
+    method: str = param(
+        "a_star", "search on the grid, or a planner of your own", choices=PLANNERS
+    )
 
     footprint_m: tuple[float, ...] = param(
         (0.25, 0.2, -0.25, 0.2, -0.25, -0.2, 0.25, -0.2),

@@ -22,11 +22,13 @@ class PlannedRoute:
         outcome: of the first leg without a path, or of the last leg.
         poses: (N, 3) x, y, yaw in the map frame; empty without a path.
         leg: index of the last planned leg.
+        fault: error of a user's method; empty without one.
     """
 
     outcome: Outcome
     poses: Poses = field(default_factory=lambda: np.empty((0, 3)))
     leg: int = 0
+    fault: str = ""
 
 
 def plan_through(planner: Planner, start: Pose2, goals: Sequence[Goal]) -> PlannedRoute:
@@ -43,7 +45,7 @@ def plan_through(planner: Planner, start: Pose2, goals: Sequence[Goal]) -> Plann
         plan = planner.plan(start, goal)
         outcome = plan.outcome
         if not outcome.has_path:
-            return PlannedRoute(outcome, leg=index)
+            return PlannedRoute(outcome, leg=index, fault=plan.fault)
         legs.append(plan.poses)
         start = Pose2(*plan.poses[-1].tolist())
     return PlannedRoute(outcome, joined(*legs), len(goals) - 1)

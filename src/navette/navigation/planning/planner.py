@@ -11,7 +11,9 @@ from navette.navigation.grids import GridSpec
 from navette.navigation.planning.detour import DetourPlanner, Target
 from navette.navigation.planning.footprint_check import check_path, clearances
 from navette.navigation.planning.goals import nearest_reachable
+from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.outcome import Outcome
+from navette.navigation.planning.own_methods import Goal, OwnPlan, PlannerGrid
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import Poses, path_cost, turn_in_place
 from navette.navigation.planning.planning_grid import (
@@ -22,6 +24,9 @@ from navette.navigation.planning.planning_grid import (
     without_obstacles_in,
 )
 from navette.navigation.planning.route import GridRouter
+from navette.plugins import MethodFaultError
+
+__all__ = ["Goal", "Plan", "Planner"]
 
 # Share of the goal tolerance by which a route may be shortened.
 _CUT_SHARE = 0.5
@@ -35,15 +40,6 @@ _ROOMY_END = 2.0
 
 
 @dataclass(frozen=True)
-class Goal:
-    """Goal in the map frame; ``yaw`` None = any heading."""
-
-    x: float
-    y: float
-    yaw: float | None = None
-
-
-@dataclass(frozen=True)
 class Plan:
     """Result of planning.
 
@@ -53,6 +49,7 @@ class Plan:
         cost: cost of the path in metres of free driving forward.
         margin_m: clearance that the path keeps.
         expansions: poses expanded by the search with headings; 0 = not used.
+        fault: error of a user's method; empty without one.
     """
 
     outcome: Outcome
@@ -60,6 +57,7 @@ class Plan:
     cost: float = math.inf
     margin_m: float = math.nan
     expansions: int = 0
+    fault: str = ""
 
 
 class Planner:
@@ -69,6 +67,7 @@ class Planner:
         self.params = params
         self.footprint = Footprint.from_flat(params.footprint_m)
         self.router = GridRouter(params)
+        self._own = _own_plan(params)
         self._map: tuple[NDArray[np.int8], GridSpec] | None = None
         self._body: BodyShape | None = None
         self._grids: dict[float, PlanningGrid] = {}
@@ -128,6 +127,24 @@ class Planner:
         refused = self._refusal(start, goal)
         if refused is not None:
             return Plan(refused)
+        try:
+            if self._own is not None:
+                return self._plan_own(self._own, start, goal)
+            return self._plan_or_squeeze(start, goal)
+        except MethodFaultError as error:
+            return Plan(Outcome.METHOD_FAILED, fault=str(error))
+
+    def _plan_own(self, own: OwnPlan, start: Pose2, goal: Goal) -> Plan:
+        """Plan with the user's method; the path is driven as it is."""
+        assert self._map is not None, "set_map comes first"
+        margin = min(self.params.tight_margin_m, self.params.clearance_margin_m)
+        grid = PlannerGrid.of(self._map[0], self._opened(margin, start))
+        poses = own.plan(grid, start, goal)
+        if poses is None:
+            return Plan(Outcome.NO_PATH)
+        return self._planned(goal, poses, margin, 0)
+
+    def _plan_or_squeeze(self, start: Pose2, goal: Goal) -> Plan:
         plan = self._plan_with(self.params.clearance_margin_m, start, goal)
         tight = self.params.tight_margin_m
         direct = math.dist((start.x, start.y), (goal.x, goal.y))
@@ -144,11 +161,15 @@ class Planner:
 
         This is cheap, to look for a better path while one is being driven.
         """
-        if self._refusal(start, goal) is not None:
+        if self._own is not None or self._refusal(start, goal) is not None:
             return None
         margin = self.params.clearance_margin_m
         grid = self._opened(margin, start)
-        route = self.router.route(grid, self.body, start, (goal.x, goal.y), goal.yaw)
+        xy = goal.x, goal.y
+        try:
+            route = self.router.route(grid, self.body, start, xy, goal.yaw)
+        except MethodFaultError:
+            return None
         if route is None:
             return None
         poses = self._cut_to_fit(grid, start, goal, route)
@@ -267,3 +288,11 @@ class Planner:
         snapped = off > self.params.path_end_tolerance_m
         outcome = Outcome.GOAL_SNAPPED if snapped else Outcome.OK
         return Plan(outcome, poses, self.cost_of(poses), margin_m, expansions)
+
+
+def _own_plan(params: PlannerParams) -> OwnPlan | None:
+    """Return the user's planner; None if the method is a search."""
+    method = PLANNERS.load(params.method)
+    if method.entry != "plan":
+        return None
+    return OwnPlan(params, method.make(params), method.name)

@@ -50,6 +50,7 @@ class NavigatorReport:
         result: how the goal ended; empty until then.
         plan: outcome of the newest plan; empty before the first.
         replans: number of plans for this goal after the first.
+        fault: error of a user's method that ended the goal.
     """
 
     message: str = Phase.WAITING_FOR_GOAL
@@ -62,6 +63,7 @@ class NavigatorReport:
     plan: str = ""
     margin_m: float = math.nan
     replans: int = 0
+    fault: str = ""
 
     @property
     def failed(self) -> bool:

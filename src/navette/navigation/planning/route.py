@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navette.geometry import Pose2, angle_difference
-from navette.navigation.planning import breadth_first, dijkstra
 from navette.navigation.planning.astar import AStar
 from navette.navigation.planning.footprint_check import clearances
+from navette.navigation.planning.methods import PLANNERS
+from navette.navigation.planning.own_methods import OwnSearch
 from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_shape import (
     Poses,
@@ -28,17 +29,21 @@ _NEARLY_HALF_TURN = 2.4
 _Search = Callable[..., tuple[NDArray[np.int64], int] | None]
 
 
+def _make_search(params: PlannerParams) -> _Search:
+    """Return the search of ``params.method``; A* if that is not a search."""
+    method = PLANNERS.load(params.method)
+    if method.entry != "search":
+        return AStar().search
+    search: _Search = method.make(params).search
+    return OwnSearch(search, method.name).search if method.is_own else search
+
+
 class GridRouter:
     """Plan the path of a point through a grid and add headings."""
 
     def __init__(self, params: PlannerParams) -> None:
         self.params = params
-        searches: dict[str, _Search] = {
-            "a_star": AStar().search,
-            "dijkstra": dijkstra.search,
-            "breadth_first": breadth_first.search,
-        }
-        self._search = searches[params.method]
+        self._search = _make_search(params)
 
     def route(
         self,

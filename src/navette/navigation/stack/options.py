@@ -1,6 +1,7 @@
 """Options of a simulation run."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,9 +15,10 @@ class RunOptions:
 
     ``world`` and ``robot`` are built-in names or files. ``speed`` is a factor of real
     time; infinity means as fast as possible. ``record`` is a new file; ``overwrite``
-    replaces an existing recording. ``verb`` is the command that starts the run. With
-    ``share``, the run joins the network that all programs share; otherwise only this
-    user's programs can join it.
+    replaces an existing recording. ``methods`` chooses the stages' methods: the keys of
+    :data:`navette.navigation.stack.methods.METHOD_PARAMETERS` → name or place. ``verb``
+    is the command that starts the run. With ``share``, the run joins the network that
+    all programs share; otherwise only this user's programs can join it.
     """
 
     world: str = "arena"
@@ -31,6 +33,7 @@ class RunOptions:
     overwrite: bool = False
     tree: Path | None = None
     params_files: tuple[Path, ...] = field(default=())
+    methods: Mapping[str, str] = field(default_factory=dict)
     max_time_s: float | None = None
     port: int = 8765
     host: str = "127.0.0.1"

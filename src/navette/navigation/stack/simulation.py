@@ -8,6 +8,7 @@ from typing import Any
 from navette.bags.node import RecorderNode
 from navette.errors import CallbackError, NetworkError
 from navette.msgs.topics import CLOCK
+from navette.navigation.stack.methods import method_parameters
 from navette.navigation.stack.monitor import MonitorNode, RunProgress
 from navette.navigation.stack.options import RunOptions
 from navette.navigation.stack.reservation import reserve
@@ -117,6 +118,8 @@ class Simulation:
         if not self.options.headless:
             overrides.add("viewer", {"port": self.options.port}, "--port")
             overrides.add("viewer", _access(self.options), "--host")
+        for node, value in method_parameters(self.options.methods).items():
+            overrides.add(node, dict(value), "chosen method")
         for node, values in self._parameters.items():
             overrides.add(node, dict(values), "parameters of the run")
         for path in self.options.params_files:

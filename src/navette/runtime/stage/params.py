@@ -35,6 +35,7 @@ def declare_params(node: Node, params_class: type[P]) -> P:
     """Declare every field as a parameter of the node and return the values.
 
     A value from a file, a launch file or the command line replaces the field's default.
+    Fields that are declared already keep their values.
 
     Raises:
         ParameterError: names the node, the parameter, its value and the allowed values.
@@ -56,6 +57,8 @@ def declare_params(node: Node, params_class: type[P]) -> P:
 def _declare(
     node: Node, field: "dataclasses.Field[Any]", hint: Any, defaults: Params
 ) -> Any:
+    if node.has_parameter(field.name):
+        return node.get_parameter(field.name).value
     kind = _parameter_type(hint)
     default = getattr(defaults, field.name)
     if isinstance(default, tuple):

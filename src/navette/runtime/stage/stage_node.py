@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 from typing import Any, ClassVar, Self
 
@@ -16,6 +16,7 @@ from navette.msgs import get_interface, type_name
 from navette.msgs.rcl_interfaces.msg import SetParametersResult
 from navette.msgs.topics import StackTopic
 from navette.params import Params
+from navette.plugins import method_fields, own_fields, with_methods
 from navette.runtime.node import Node
 from navette.runtime.parameter import Parameter
 from navette.runtime.publisher import Publisher
@@ -153,8 +154,12 @@ class StageNode(Node):
             self._subscribe(declared, self._receiver(declared))
 
     def declare_params(self) -> Any:
-        """Declare PARAMS and return the values; extend for parameters beside them."""
-        return declare_params(self, self.PARAMS)
+        """Declare PARAMS and return the values; extend for parameters beside them.
+
+        The parameters of chosen methods are declared beside those of PARAMS.
+        """
+        chosen = {name: each.value for name, each in self._overrides.items()}
+        return declare_params(self, with_methods(self.PARAMS, chosen))
 
     def inputs(self) -> tuple[Input, ...]:
         """Return INPUTS; override if topics or types depend on ``self.params``."""
@@ -281,15 +286,51 @@ class StageNode(Node):
             if parameter.name in self.FIXED_AT_START:
                 reason = f"parameter {parameter.name!r} cannot change after the start"
                 return SetParametersResult(successful=False, reason=reason)
-        own = {field.name for field in dataclasses.fields(self.PARAMS)}
+        own = {field.name for field in fields(self.params)}
         changes = {p.name: p.value for p in parameters if p.name in own}
         try:
-            self._checked_params = dataclasses.replace(self.params, **changes)
+            self._checked_params = self._changed_params(changes)
         except ParameterError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
+    def _changed_params(self, changes: dict[str, Any]) -> Any:
+        """Return the parameters with changes; a new method brings its own fields.
+
+        Raises:
+            ParameterError: a value is not allowed.
+        """
+        registries = method_fields(self.PARAMS)
+        present = {f.name: getattr(self.params, f.name) for f in fields(self.params)}
+        chosen = {
+            name: value
+            for name, value in changes.items()
+            if name in registries and value != present[name]
+        }
+        if not chosen:
+            return dataclasses.replace(self.params, **changes)
+        for name, value in chosen.items():
+            # A peer on the network must not choose the files that this process runs.
+            if not (isinstance(value, str) and registries[name].is_named(value)):
+                known = ", ".join(registries[name])
+                raise ParameterError(
+                    f"parameter {name!r}: {value!r} is not a registered method (files "
+                    f"and modules can be given at the start only); known: {known}"
+                )
+        values = present | changes
+        kind = with_methods(self.PARAMS, values)
+        names = {field.name for field in fields(kind)}
+        return kind(**{k: v for k, v in values.items() if k in names})
+
     def _apply_params(self, parameters: list[Parameter[Any]]) -> None:
         old, self.params = self.params, self._checked_params
+        if type(self.params) is not type(old):
+            self._declare_methods(old)
         if self.params != old:
             self.on_params_changed(old)
+
+    def _declare_methods(self, old: Params) -> None:
+        """Replace the parameters of the previous methods by those of the new ones."""
+        for name in own_fields(old, self.PARAMS):
+            self.undeclare_parameter(name)
+        self.params = declare_params(self, type(self.params))

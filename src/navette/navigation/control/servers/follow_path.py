@@ -10,7 +10,8 @@ from navette.errors import InvalidValueError
 from navette.geometry import Pose2
 from navette.msgs.nav2_msgs.action import FollowPath
 from navette.navigation.control.follow_monitor import FollowMonitor
-from navette.navigation.control.params import METHODS, ControlParams
+from navette.navigation.control.methods import CONTROLLERS
+from navette.navigation.control.params import ControlParams
 from navette.navigation.control.records import FollowerInputs, FollowerOutput
 from navette.navigation.control.states import ControlState
 from navette.runtime.input_check import FARTHEST
@@ -19,7 +20,7 @@ from navette.runtime.stage.goal_server import DriveGoalServer
 from navette.runtime.stage.path_messages import Poses, moved, poses_of
 
 # Names of Nav2's default parameters; the empty name selects the only one.
-_CONTROLLERS = ("", "FollowPath", *METHODS)
+_CONTROLLERS = ("", "FollowPath", *CONTROLLERS)
 _GOAL_CHECKERS = ("", "general_goal_checker", "goal_checker")
 _PROGRESS_CHECKERS = ("", "progress_checker")
 
@@ -140,7 +141,7 @@ class FollowPathServer:
         if len(poses) == 0 or not (np.abs(poses) <= FARTHEST).all():
             self._fail("INVALID_PATH", "the path is empty or not finite")
             return
-        method = goal.controller_id if goal.controller_id in METHODS else ""
+        method = goal.controller_id if goal.controller_id in (*CONTROLLERS,) else ""
         try:
             self._context.follow(moved(poses, map_T_frame), method)
         except InvalidValueError as error:

@@ -15,8 +15,9 @@ from navette.msgs.geometry_msgs.msg import PoseStamped
 from navette.msgs.nav2_msgs.action import ComputePathThroughPoses, ComputePathToPose
 from navette.msgs.nav2_msgs.srv import IsPathValid
 from navette.msgs.nav_msgs.msg import Path
+from navette.navigation.planning.methods import PLANNERS
 from navette.navigation.planning.outcome import Outcome
-from navette.navigation.planning.params import METHODS, PlannerParams
+from navette.navigation.planning.params import PlannerParams
 from navette.navigation.planning.path_queries import blocked_poses, plan_through
 from navette.navigation.planning.path_shape import Poses
 from navette.navigation.planning.planner import Goal, Planner
@@ -38,6 +39,7 @@ _ERRORS = {
     Outcome.GOAL_NOT_FINITE: "GOAL_OUTSIDE_MAP",
     Outcome.NO_PATH: "NO_VALID_PATH",
     Outcome.SEARCH_LIMIT: "TIMEOUT",
+    Outcome.METHOD_FAILED: "UNKNOWN",
 }
 
 
@@ -135,13 +137,13 @@ class PathServer:
         raise _RequestError(
             _ERRORS[route.outcome],
             f"{route.outcome} (start ({start.x:.6g}, {start.y:.6g}), {which} "
-            f"({target.x:.6g}, {target.y:.6g}))",
+            f"({target.x:.6g}, {target.y:.6g})) {route.fault}".rstrip(),
         )
 
     def _planner(self, planner_id: str) -> Planner:
         params = self._context.params()
-        if planner_id not in ("", DEFAULT_PLANNER, *METHODS):
-            known = ", ".join((DEFAULT_PLANNER, *METHODS))
+        if planner_id not in ("", DEFAULT_PLANNER, params.method, *PLANNERS):
+            known = ", ".join((DEFAULT_PLANNER, *PLANNERS))
             raise _RequestError(
                 "INVALID_PLANNER",
                 f"planner_id {planner_id!r} is unknown; known: {known}",

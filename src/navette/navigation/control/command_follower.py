@@ -1,0 +1,245 @@
+"""Follow a path by a function of state, path and obstacles that returns a command."""
+
+import math
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2, angle_difference
+from navette.navigation.control.command_gate import CommandGate
+from navette.navigation.control.controller_parts import collision_check
+from navette.navigation.control.limits import (
+    NO_CAP,
+    STOP,
+    SpeedCap,
+    VelocityCommand,
+    approach,
+    brake,
+    clamp,
+)
+from navette.navigation.control.params import ControlParams
+from navette.navigation.control.records import (
+    FARTHEST_M,
+    FollowerInputs,
+    FollowerOutput,
+)
+from navette.navigation.control.states import ControlState
+from navette.plugins import checked_array, own_call
+
+_AHEAD_M = 2.0  # how far along the path the robot may be beyond the last place
+_OBSTACLES_M = 6.0  # distance around the robot within which obstacles are given
+_BLOCKED_SCALE = 0.1
+_STOPPED_MPS = 0.05
+
+
+class DriveState(NamedTuple):
+    """State of the robot for a controller; map frame."""
+
+    x: float
+    """m"""
+    y: float
+    """m"""
+    yaw: float
+    """rad"""
+    speed: float
+    """forward, m/s"""
+    turn_rate: float
+    """counter-clockwise, rad/s"""
+    dt: float
+    """time until the next call, s"""
+
+
+class CommandMethod(Protocol):
+    """A controller as a function of arrays."""
+
+    def command(
+        self,
+        state: DriveState,
+        path: NDArray[np.float64],
+        obstacles: NDArray[np.float64],
+    ) -> Any:
+        """Return the speed (m/s) and the turn rate (rad/s).
+
+        Args:
+            state: of the robot.
+            path: (N, 3) x, y, yaw (m, rad, map) from the pose nearest to the robot on.
+            obstacles: (M, 2) x, y (m, map) of occupied cells near the robot.
+        """
+
+
+class CommandFollower:
+    """Follow paths with a :class:`CommandMethod`; the interface is that of a follower.
+
+    The method chooses the command. Stale inputs, the limits of speed and acceleration,
+    the collision check and the end of the path are looked after here.
+
+    Args:
+        params: limits and tolerances.
+        method: the user's object.
+        name: its name, for errors.
+    """
+
+    def __init__(self, params: ControlParams, method: CommandMethod, name: str) -> None:
+        self._params = params
+        self._method = method
+        self._name = f"controller {name}: command(state, path, obstacles)"
+        self._gate = CommandGate(params)
+        self._collision = collision_check(params)
+        self._cap = NO_CAP
+        self._obstacles = np.empty((0, 2))
+        self.reset()
+
+    def reset(self, rest: ControlState = ControlState.IDLE) -> None:
+        """Drop the path and stop at once; ``rest`` is the state to report."""
+        self._path = np.empty((0, 3))
+        self._measure = np.empty(0)
+        self._at = 0
+        self._rest: ControlState | None = rest
+        self._last: VelocityCommand | None = None
+        self._cross_track = self._heading_error = 0.0
+        self._clearance, self._scale = math.inf, 1.0
+
+    @property
+    def has_path(self) -> bool:
+        """Whether a path is being followed."""
+        return self._rest is None
+
+    @property
+    def obstacle_reach_m(self) -> float:
+        """Distance around the robot within which obstacles matter."""
+        return max(self._collision.reach(self._params.max_speed_mps), _OBSTACLES_M)
+
+    def set_path(self, poses: NDArray[np.float64]) -> None:
+        """Replace the path by (N, 3) x, y, yaw (m, rad, map); an empty one stops.
+
+        Raises:
+            InvalidValueError: not (N, 3) or not finite; the follower is then reset.
+        """
+        last, drove = self._last, self.has_path
+        self.reset()
+        if len(poses) == 0:
+            return
+        if poses.ndim != 2 or poses.shape[1] != 3:
+            raise InvalidValueError(f"path of shape {poses.shape}: expected (N, 3)")
+        if not (np.abs(poses) <= FARTHEST_M).all():
+            raise InvalidValueError(
+                f"path: expected finite values within ±{FARTHEST_M:g} m"
+            )
+        steps = np.diff(poses[:, :2], axis=0)
+        self._path = poses
+        self._measure = np.concatenate([[0.0], np.cumsum(np.hypot(*steps.T))])
+        self._rest, self._last = None, last
+        if not drove:
+            self._restart()
+
+    def set_obstacles(self, points: NDArray[np.float64], half_cell: float) -> None:
+        """Store obstacle cell centres (N, 2), map, and half a cell's edge; metres."""
+        self._collision.set_obstacles(points, half_cell)
+        self._obstacles = points
+
+    def pause(self) -> None:
+        """Continue later from the robot's motion then, not from the last command."""
+        self._last = None
+        self._restart()
+
+    def limit_speed(self, limits: SpeedCap) -> None:
+        """Drive no faster than these limits, from the next step on."""
+        self._cap = limits
+
+    def step(self, inputs: FollowerInputs, dt: float) -> FollowerOutput:
+        """Return the command for the next ``dt`` seconds.
+
+        Raises:
+            MethodFaultError: the method raised or returned something else.
+        """
+        stale = self._gate.stale(inputs.ages)
+        if self._rest is not None or stale is not None or not inputs.plausible:
+            state = self._rest or stale or ControlState.STALE_ODOMETRY
+            return self._emit(STOP, state)
+        last = clamp(
+            self._last or VelocityCommand(inputs.speed, inputs.turn_rate), self._params
+        )
+        self._advance(inputs.pose)
+        if self._ends(inputs):
+            moving = abs(inputs.speed) > _STOPPED_MPS
+            if moving:
+                command = brake(last, self._params, dt)
+                return self._emit(command, ControlState.FOLLOWING)
+            self._rest = ControlState.REACHED
+            return self._emit(STOP, ControlState.REACHED)
+        if abs(self._cross_track) > self._params.max_deviation_m:
+            return self._emit(brake(last, self._params, dt), ControlState.OFF_PATH)
+        wanted = self._cap.applied_to(self._wanted(inputs, dt))
+        return self._keep_clear(inputs.pose, approach(last, wanted, self._params, dt))
+
+    def _wanted(self, inputs: FollowerInputs, dt: float) -> VelocityCommand:
+        state = DriveState(*inputs.pose, inputs.speed, inputs.turn_rate, dt)
+        returned = own_call(
+            self._name,
+            self._method.command,
+            state,
+            self._path[self._at :].copy(),
+            self._obstacles.copy(),
+        )
+        expected = "(speed, turn rate) in m/s and rad/s"
+        speed, turn_rate = checked_array(
+            self._name, returned, expected, lambda shape: shape == (2,)
+        ).tolist()
+        return VelocityCommand(speed, turn_rate)
+
+    def _keep_clear(self, pose: Pose2, command: VelocityCommand) -> FollowerOutput:
+        """Scale the command to what the obstacles allow, at worst a stop."""
+        if not self._params.collision_check:
+            return self._emit(command, ControlState.FOLLOWING)
+        scale, self._clearance = self._collision.check(pose, command)
+        self._scale = scale = min(1.0, scale)
+        if scale < _BLOCKED_SCALE:
+            return self._emit(STOP, ControlState.BLOCKED)
+        scaled = VelocityCommand(command.speed * scale, command.turn_rate * scale)
+        return self._emit(scaled, ControlState.FOLLOWING)
+
+    def _advance(self, pose: Pose2) -> None:
+        """Move to the pose of the path nearest to the robot; never back."""
+        stop = int(np.searchsorted(self._measure, self._measure[self._at] + _AHEAD_M))
+        near = self._path[self._at : max(stop, self._at + 1)]
+        dx, dy = pose.x - near[:, 0], pose.y - near[:, 1]
+        best = int(np.argmin(np.hypot(dx, dy)))
+        self._at += best
+        yaw = self._path[self._at, 2]
+        side = math.cos(yaw) * dy[best] - math.sin(yaw) * dx[best]
+        self._cross_track = math.copysign(math.hypot(dx[best], dy[best]), side)
+        self._heading_error = angle_difference(pose.yaw, float(yaw))
+
+    def _ends(self, inputs: FollowerInputs) -> bool:
+        """Return whether the robot is at the end of the path."""
+        off = math.dist(self._path[-1, :2], (inputs.pose.x, inputs.pose.y))
+        left = self._measure[-1] - self._measure[self._at]
+        tolerance = self._params.goal_tolerance_m
+        return bool(off <= tolerance and left <= tolerance)
+
+    def _restart(self) -> None:
+        """Let the method forget what it has accumulated, if it can."""
+        restart = getattr(self._method, "reset", None)
+        if restart is not None:
+            own_call(self._name, restart)
+
+    def _emit(self, command: VelocityCommand, state: ControlState) -> FollowerOutput:
+        """Pass the command through the gate and store it as the last one."""
+        refusal = self._gate.refusal(command)
+        if refusal is not None:
+            command, state = STOP, refusal
+        self._last = command if self._rest is None else None
+        left = 0.0
+        if self._rest is None:
+            left = float(self._measure[-1] - self._measure[self._at])
+        return FollowerOutput(
+            command,
+            state,
+            self._cross_track,
+            self._heading_error,
+            left,
+            self._clearance,
+            self._scale,
+        )
