@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from navette.bags.params import RecorderParams
+from navette.gym.params import NavigationEnvParams
 from navette.navigation.stack.stack import NODE_CLASSES
 from navette.params import Params, info_of
 from navette.viewer.params import ViewerParams
@@ -99,6 +100,7 @@ DIMENSIONLESS = (
     r"(process_noise|initial_estimate)_covariance|initial_state",  # mixed units
     r"\w+_probability|belief_limit|occupied_threshold|lidar_dropout",
     r"mppi_(\w+_weight|temperature|samples|steps)",
+    r"(progress|goal)_reward|(time|contact)_penalty",
     r"(clearance|map_cost)_weight|unknown_cost|reverse_factor|(switch|frontier)_gain",
 )
 
@@ -204,6 +206,7 @@ RECORDS: tuple[type[Params], ...] = (
     *(node_class.PARAMS for _, node_class in NODE_CLASSES),
     RecorderParams,
     ViewerParams,
+    NavigationEnvParams,
 )
 
 

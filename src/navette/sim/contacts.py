@@ -12,6 +12,11 @@ from navette.sim.clearance import bounds_of
 
 _GAP_NS = 250_000_000  # a repeated contact within this time belongs to the same episode
 
+# Kinds of geoms; every pair of them has a sum of its own.
+_STANDS, _BODY, _GROUND, _OBSTACLE = 0, 1, 4, 8
+_IS_CONTACT = np.zeros(17, np.bool_)
+_IS_CONTACT[[_BODY + _GROUND, _BODY + _OBSTACLE, _STANDS + _OBSTACLE]] = True
+
 
 @dataclass(frozen=True)
 class ContactEpisode:
@@ -32,8 +37,9 @@ class ContactMonitor:
     def __init__(self, compiled: Compiled, data: mujoco.MjData) -> None:
         self._owner = compiled.geom_owner
         self._robot = compiled.is_robot
-        self._ground = compiled.is_ground
-        self._stands = _stands(compiled, data)
+        part = np.where(_stands(compiled, data), _STANDS, _BODY)
+        other = np.where(compiled.is_ground, _GROUND, _OBSTACLE)
+        self._kind = np.where(compiled.is_robot, part, other)
         self.episodes: list[ContactEpisode] = []
         self._open: dict[str, int] = {}  # obstacle → index of its newest episode
 
@@ -48,9 +54,8 @@ class ContactMonitor:
     def observe(self, data: mujoco.MjData, now_ns: int) -> bool:
         """Record the contacts of the last physics step; return whether one exists."""
         pairs = data.contact.geom
-        robot = self._robot[pairs]
-        bad = robot.any(axis=1) & ~robot.all(axis=1)
-        bad &= ~(self._ground[pairs].any(axis=1) & self._stands[pairs].any(axis=1))
+        kind = self._kind[pairs]
+        bad = _IS_CONTACT[kind[:, 0] + kind[:, 1]]
         if not bad.any():
             return False
         for pair in pairs[bad]:

@@ -8,9 +8,11 @@ physics step, and sensors do not change the state.
 """
 
 import math
+from dataclasses import replace
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from navette.errors import InvalidValueError
 from navette.geometry import Pose2, Transform3
@@ -22,6 +24,7 @@ from navette.sim.contacts import ContactMonitor
 from navette.sim.drive import CONTROL_PERIOD_NS, SpeedRamp
 from navette.sim.imu import ImuReading
 from navette.sim.lidar import Scan
+from navette.sim.outlines import outlines_of
 from navette.sim.params import SimParams
 from navette.sim.robot_state import Motion, RobotState
 from navette.sim.scene import Scene
@@ -77,8 +80,19 @@ class Simulator:
         self._wheel_odometry = WheelOdometry(drive, noise=self.params.wheel_noise_m)
         self.reset()
 
-    def reset(self) -> None:
-        """Reset state, time, noise and records."""
+    def reset(self, *, start: Pose2 | None = None, seed: int | None = None) -> None:
+        """Reset state, time, noise and records.
+
+        Args:
+            start: new initial pose of this and later resets; None keeps the pose.
+            seed: new seed of all noise; None keeps the seed.
+
+        Raises:
+            InvalidValueError: the robot would start in an obstacle.
+        """
+        self._start = start or self._start
+        if seed is not None:
+            self.change_params(replace(self.params, seed=seed))
         mujoco.mj_resetData(self.compiled.model, self._data)
         self.actors.place(self._data, 0)
         self._seed_noise()
@@ -254,6 +268,11 @@ class Simulator:
         """Current image (height, width, 3) of camera ``index``."""
         self._refresh()
         return self.cameras[index].render(self.compiled.model, self._data)
+
+    def outlines(self) -> list[NDArray[np.float64]]:
+        """Outlines (N, 2) of the obstacles from above, within the robot's height."""
+        self._refresh()
+        return outlines_of(self.compiled, self._data)
 
     def wheel_odometry(self) -> WheelOdometry:
         """Dead reckoning up to now; starts at the true pose."""

@@ -1,0 +1,120 @@
+"""Observation and action of the navigation environment, also outside of it.
+
+A trained policy gets its observations from the same functions when it drives a robot.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from navette.errors import InvalidValueError
+from navette.geometry import Pose2
+
+FARTHEST_GOAL_M = 1000.0
+"""Limit of the goal's coordinates; farther goals are observed at it."""
+
+Observation = dict[str, NDArray[np.float32]]
+_OVERSHOOT = 1.5  # measured velocity beyond the commanded limits
+
+
+@dataclass(frozen=True, kw_only=True)
+class Observer:
+    """Scale and limits of observation and action for one robot and its lidar.
+
+    Attributes:
+        beams: ranges in the observation.
+        range_max_m: range of a beam that hits nothing.
+        forward_mps, reverse_mps, turn_radps: largest commands.
+    """
+
+    beams: int
+    range_max_m: float
+    forward_mps: float
+    reverse_mps: float
+    turn_radps: float
+
+    def observation_space(self) -> spaces.Space[Observation]:
+        """Space of :meth:`observe`."""
+        low = np.array([-self.reverse_mps, -self.turn_radps], np.float32) * _OVERSHOOT
+        high = np.array([self.forward_mps, self.turn_radps], np.float32) * _OVERSHOOT
+        return spaces.Dict(  # type: ignore[return-value] # of any values
+            {
+                "ranges": spaces.Box(
+                    0.0, np.float32(self.range_max_m), (self.beams,), np.float32
+                ),
+                "goal": spaces.Box(-FARTHEST_GOAL_M, FARTHEST_GOAL_M, (2,), np.float32),
+                "velocity": spaces.Box(low, high, dtype=np.float32),
+            }
+        )
+
+    def action_space(self) -> spaces.Space[NDArray[np.float32]]:
+        """Space of actions: shares of the largest speed and turn rate."""
+        return spaces.Box(-1.0, 1.0, (2,), np.float32)
+
+    def observe(
+        self,
+        ranges: NDArray[Any],
+        map_T_base: Pose2,
+        goal_map: tuple[float, float],
+        velocity: tuple[float, float],
+    ) -> Observation:
+        """Return the observation.
+
+        Args:
+            ranges: (N,) m of one scan; inf, −inf and NaN as in REP 117.
+            map_T_base: the robot's pose.
+            goal_map: (x, y), m.
+            velocity: forward speed (m/s) and turn rate (rad/s).
+        """
+        dx, dy = goal_map[0] - map_T_base.x, goal_map[1] - map_T_base.y
+        c, s = math.cos(map_T_base.yaw), math.sin(map_T_base.yaw)
+        goal = np.array([c * dx + s * dy, c * dy - s * dx])
+        limit = np.array([self.forward_mps, self.turn_radps]) * _OVERSHOOT
+        least = np.array([-self.reverse_mps, -self.turn_radps]) * _OVERSHOOT
+        return {
+            "ranges": self.reduce(ranges),
+            "goal": np.clip(goal, -FARTHEST_GOAL_M, FARTHEST_GOAL_M).astype(np.float32),
+            "velocity": np.clip(velocity, least, limit).astype(np.float32),
+        }
+
+    def reduce(self, ranges: NDArray[Any]) -> NDArray[np.float32]:
+        """Return the smallest range of each of ``beams`` equal sectors, m.
+
+        A beam that hits nothing, or is lost, counts as the largest range; one that is
+        too close as 0.
+        """
+        if len(ranges) < self.beams:
+            raise InvalidValueError(
+                f"scan of {len(ranges)} beams: at least {self.beams} required"
+            )
+        clean = np.nan_to_num(
+            ranges, nan=self.range_max_m, posinf=self.range_max_m, neginf=0.0
+        )
+        if len(clean) != self.beams:
+            edges = np.arange(self.beams) * len(clean) // self.beams
+            clean = np.minimum.reduceat(clean, edges)
+        limited: NDArray[np.float32] = np.clip(
+            clean.astype(np.float32), 0.0, np.float32(self.range_max_m)
+        )
+        return limited
+
+    def command(self, action: NDArray[Any]) -> tuple[float, float]:
+        """Return speed (m/s) and turn rate (rad/s) of an action in [−1, 1]².
+
+        Raises:
+            InvalidValueError: not two finite numbers.
+        """
+        values = np.asarray(action, np.float64)
+        if values.shape != (2,) or not np.isfinite(values).all():
+            raise InvalidValueError(
+                f"action {action!r}: two finite numbers in [-1, 1] required"
+            )
+        v, w = np.clip(values, -1.0, 1.0).tolist()
+        return (
+            v * (self.forward_mps if v > 0 else self.reverse_mps),
+            w * self.turn_radps,
+        )
